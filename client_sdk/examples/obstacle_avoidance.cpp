@@ -1,0 +1,65 @@
+// Obstacle avoidance after Braitenberg (thesis, section 5.2.1), for the s-bot: each track slows down for what is near on
+// the other side, so the robot turns away from it.
+//
+// It keeps nothing from one step to the next. So a copy that takes over in the middle of a run drives on as if nothing had
+// happened.
+
+#include <algorithm>
+#include <array>
+#include <cohort/controller.hpp>
+#include <stdexcept>
+
+namespace {
+
+// Of the four sensors on each side that look ahead, at 12, 36, 60 and 84 degrees from straight ahead: what is beside the
+// robot matters less than what is in its way.
+constexpr std::array weights{1.0, 0.8, 0.6, 0.3};
+
+constexpr double full_speed = 0.2;      // of a track [m/s]
+constexpr double turning_speed = 0.1;   // of a track when turning on the spot [m/s]
+constexpr double too_near = 0.5;        // halfway between the edge of what the sensors see and touching
+constexpr double alignment_gain = 5.0;  // of the turret [1/s]
+
+class ObstacleAvoidance final : public cohort::Controller {
+ public:
+  void start(const cohort::Start& start) override {
+    proximity_ = start.observations("proximity/*/reading");
+    if (proximity_.size() != 15) throw std::runtime_error("this controller is for the s-bot and its 15 proximity sensors");
+    turret_position_ = start.observation("turret/0/position");
+    turret_velocity_ = start.command("turret/0/velocity");
+    left_track_ = start.command("treel/left/velocity");
+    right_track_ = start.command("treel/right/velocity");
+  }
+
+  void step(const cohort::Observation& observation, cohort::Command& command) override {
+    // Sensors are numbered counter-clockwise from the gripper: the first ones look to the left, the last to the right.
+    double left = 0.0;
+    double right = 0.0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      left = std::max(left, weights[i] * observation[proximity_[i]]);
+      right = std::max(right, weights[i] * observation[proximity_[proximity_.size() - 1 - i]]);
+    }
+
+    if (std::max(left, right) > too_near) {
+      // On the spot, and always the same way: one that chose the freer side would swing to and fro in a corner for ever.
+      command.set(left_track_, -turning_speed);
+      command.set(right_track_, turning_speed);
+    } else {
+      command.set(left_track_, full_speed * (1.0 - right));
+      command.set(right_track_, full_speed * (1.0 - left));
+    }
+    // The sensors are on the turret: keep it looking where the tracks go.
+    command.set(turret_velocity_, -alignment_gain * observation[turret_position_]);
+  }
+
+ private:
+  std::vector<cohort::ObservationChannel> proximity_;
+  cohort::ObservationChannel turret_position_;
+  cohort::CommandChannel turret_velocity_;
+  cohort::CommandChannel left_track_;
+  cohort::CommandChannel right_track_;
+};
+
+}  // namespace
+
+COHORT_CONTROLLER(ObstacleAvoidance)

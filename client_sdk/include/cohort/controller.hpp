@@ -1,0 +1,155 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What the author of a controller writes against: one class derived from Controller, and COHORT_CONTROLLER(Class).
+/// The same source builds as a program (`cohort_add_controller` in CMake makes both) and as a plugin that
+/// `cohort run --controllers inprocess` and `cohort host` load.
+namespace cohort {
+
+/// A channel as the server describes it: `size` float64 values in a robot's observation or command.
+struct ChannelInfo {
+  std::string name;  ///< `device/index/quantity`, such as `proximity/3/reading`
+  std::string unit;  ///< SI; `1` if dimensionless
+  std::uint32_t offset = 0;
+  std::uint32_t size = 1;
+  double lower = 0.0;
+  double upper = 0.0;
+  double neutral = 0.0;
+};
+
+/// Handle of an observation channel, looked up once in `start`.
+struct ObservationChannel {
+  std::uint32_t offset = 0;
+  std::uint32_t size = 0;
+};
+
+/// Handle of a command channel, looked up once in `start`.
+struct CommandChannel {
+  std::uint32_t offset = 0;
+  std::uint32_t size = 0;
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+/// No channel of that name: the message lists the robot's nearest ones.
+class ChannelError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+enum class StartReason {
+  first,     ///< the run begins
+  takeover,  ///< another process drove this robot before; the run goes on from `Start::tick`
+  reset,     ///< the world was built anew
+  restored,  ///< the world was restored from a snapshot
+};
+
+/// What a controller is told before its first step, and again after each reset, restore and takeover.
+class Start {
+ public:
+  std::uint32_t robot = 0;       ///< id in this run
+  std::string name;              ///< scoped name, such as `explorers/sbot_7`
+  std::string model;             ///< such as `sbot`
+  StartReason reason = StartReason::first;
+  std::uint64_t tick = 0;        ///< of the first observation to come
+  std::uint64_t seed = 0;        ///< for the controller's own random numbers: fixed by experiment seed and robot name
+  std::chrono::nanoseconds step{0};    ///< simulated time between ticks
+  std::uint32_t period = 1;      ///< ticks from one observation to the next
+  std::vector<ChannelInfo> observation_channels;
+  std::vector<ChannelInfo> command_channels;
+
+  /// Throws ChannelError if there is no such channel.
+  ObservationChannel observation(std::string_view name) const;
+  /// All channels that match, in their order; `*` stands for any run of characters but `/`. Throws ChannelError if none.
+  std::vector<ObservationChannel> observations(std::string_view pattern) const;
+  /// Throws ChannelError if there is no such channel.
+  CommandChannel command(std::string_view name) const;
+  /// As `observations`.
+  std::vector<CommandChannel> commands(std::string_view pattern) const;
+};
+
+/// One robot's sensor readings at one tick. Valid during `step` only.
+class Observation {
+ public:
+  Observation(std::uint64_t tick, std::chrono::nanoseconds time, std::span<const double> values)
+      : tick_(tick), time_(time), values_(values) {}
+
+  std::uint64_t tick() const { return tick_; }
+  std::chrono::nanoseconds time() const { return time_; }  ///< simulated
+  double operator[](ObservationChannel channel) const { return values_[channel.offset]; }
+  std::span<const double> values(ObservationChannel channel) const {
+    return values_.subspan(channel.offset, channel.size);
+  }
+
+ private:
+  std::uint64_t tick_;
+  std::chrono::nanoseconds time_;
+  std::span<const double> values_;
+};
+
+/// One robot's command. Every channel begins each step at its neutral value, so that the answer depends on nothing that
+/// an earlier step left behind. Valid during `step` only.
+class Command {
+ public:
+  explicit Command(std::span<double> values) : values_(values) {}
+
+  /// Sets a channel, brought into its range. NaN is passed on as it is, and refused by the server by name.
+  void set(CommandChannel channel, double value, std::size_t index = 0) {
+    if (value < channel.lower) value = channel.lower;
+    if (value > channel.upper) value = channel.upper;
+    values_[channel.offset + index] = value;
+  }
+
+ private:
+  std::span<double> values_;
+};
+
+/// Drives one robot. An object of its own for each robot; all are called on one thread. An exception ends the run with
+/// its message.
+class Controller {
+ public:
+  virtual ~Controller() = default;
+  /// Looks channels up. Called before the first step, and again whenever the world begins anew.
+  virtual void start(const Start& start) = 0;
+  /// From one observation to one command. For lockstep with identical bits, a pure function of what `start` and the
+  /// steps since gave: no clock, no random device, no state shared between robots.
+  virtual void step(const Observation& observation, Command& command) = 0;
+};
+
+/// What a plugin exports as `cohort_plugin`.
+struct Plugin {
+  static constexpr std::uint32_t current_abi = 1;
+  std::uint32_t abi = 0;  ///< current_abi of the headers that it was built with
+  const char* name = nullptr;
+  Controller* (*create)() = nullptr;
+  void (*destroy)(Controller*) = nullptr;
+};
+
+/// The `main` of a controller that runs as a process of its own: `--robots`, `--server`, `--domain`, `--help`.
+/// Returns the process's exit code.
+int run_controller(const Plugin& plugin, int argc, char** argv);
+
+}  // namespace cohort
+
+#ifdef COHORT_BUILDS_PLUGIN
+#define COHORT_CONTROLLER_MAIN
+#else
+#define COHORT_CONTROLLER_MAIN \
+  int main(int argc, char** argv) { return ::cohort::run_controller(cohort_plugin, argc, argv); }
+#endif
+
+/// Once, at the end of a controller's source file.
+#define COHORT_CONTROLLER(Class)                                                                          \
+  extern "C" __attribute__((visibility("default"))) const ::cohort::Plugin cohort_plugin = {             \
+      ::cohort::Plugin::current_abi, #Class, []() -> ::cohort::Controller* { return new Class; },        \
+      [](::cohort::Controller* controller) { delete controller; }};                                      \
+  COHORT_CONTROLLER_MAIN

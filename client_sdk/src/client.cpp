@@ -1,0 +1,326 @@
+#include "client_sdk/src/client.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <set>
+#include <utility>
+
+#include "client_sdk/src/controller_host.hpp"
+#include "client_sdk/src/frame_queue.hpp"
+#include "idl/wire.hpp"
+
+namespace cohort {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono_literals::operator""ms;
+using std::chrono_literals::operator""s;
+
+constexpr auto stop_is_polled_every = 100ms;
+constexpr auto patience_before_notice = 3s;
+constexpr auto server_may_be_away = 2s;
+constexpr auto time_for_last_words = 500ms;
+constexpr int frames_kept_by_dds = 8;
+
+std::uint64_t random_id() {
+  std::random_device device;
+  const std::uint64_t high = device();
+  return high << 32 | device();
+}
+
+std::string host_name() {
+  char name[256] = {};
+  ::gethostname(name, sizeof(name) - 1);
+  return name;
+}
+
+// Lets a lock go for a scope.
+class Unlocked {
+ public:
+  explicit Unlocked(std::unique_lock<std::mutex>& lock) : lock_(lock) { lock_.unlock(); }
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+  ~Unlocked() { lock_.lock(); }
+
+ private:
+  std::unique_lock<std::mutex>& lock_;
+};
+
+// One process's part of the protocol. DDS threads only put what came into the members under `mutex_`; the thread in
+// `run` does the rest (with `inline_step`, the one that brought a frame answers it, if nobody is at it).
+class Client {
+ public:
+  Client(const Plugin& plugin, const ClientOptions& options);
+  ClientEnd run(const std::atomic<bool>& stop);
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+  struct Offer {
+    wire::Admit admit;
+    std::uint64_t sender = 0;
+  };
+
+  // On threads of DDS.
+  void receive(const wire::Admit& admit, const wire::Sender& sender);
+  void receive(const wire::RobotDescription& description);
+  void receive(const wire::Observation& frame);
+  void receive(const wire::Report& report);
+  void note_server(const wire::Sender& writer, bool alive);
+  void wake(Lock lock);
+
+  // Below: with `driving_` and `lock` held; `lock` is let go while controllers and DDS are called.
+  void drive(Lock& lock);
+  void heed(const wire::Report& report);
+  void heed(Offer offer, Lock& lock);
+  void answer_frames(Lock& lock);
+
+  bool is_described(const wire::Admit& admit) const;
+  std::optional<ClientEnd> reason_to_leave(const std::atomic<bool>& stop);
+  ClientEnd fail(Lock& lock);
+  void explain(const std::string& text) const;
+
+  const ClientOptions options_;
+  const std::string name_;
+  const std::uint64_t id_ = random_id();
+
+  std::mutex driving_;  // held by whoever uses the controllers
+  ControllerHost host_;
+
+  std::mutex mutex_;  // guards all down to the participant
+  std::condition_variable wake_;
+  bool news_ = false;
+  std::optional<Offer> offered_;  // an Admit not yet acted on
+  std::optional<Offer> current_;
+  std::vector<wire::RobotDescription> descriptions_;
+  std::vector<wire::Report> reports_;
+  FrameQueue frames_;
+  std::uint64_t tick_ = 0;  // of the frame last begun
+  std::optional<std::string> failure_;
+  std::optional<ClientEnd> end_;
+  std::set<std::uint64_t> servers_;  // live writers of our Admit
+  std::optional<Clock::time_point> server_left_;
+  std::set<std::string> reasons_told_;
+  Clock::time_point since_ = Clock::now();
+  bool notice_given_ = false;
+
+  wire::Participant participant_;
+  wire::Writer<wire::Join> joins_;
+  wire::Writer<wire::Command> commands_;
+  wire::Writer<wire::Report> own_reports_;
+  wire::Reader<wire::RobotDescription> description_reader_;
+  wire::Reader<wire::Admit> admit_reader_;
+  wire::Reader<wire::Report> report_reader_;
+  wire::Reader<wire::Observation> frame_reader_;
+};
+
+Client::Client(const Plugin& plugin, const ClientOptions& options)
+    : options_(options),
+      name_(options.name.empty() ? plugin.name : options.name),
+      host_(plugin),
+      participant_(wire::Participant::client(options.domain, options.server)),
+      joins_(participant_),
+      commands_(participant_, "", frames_kept_by_dds),
+      own_reports_(participant_),
+      description_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr}),
+      admit_reader_(participant_,
+                    {[this](const auto& message, const auto& sender) { receive(message, sender); },
+                     [this](const auto& sender, bool alive) { note_server(sender, alive); }},
+                    wire::partition_of(id_)),
+      report_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr},
+                     wire::partition_of(id_)),
+      frame_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr},
+                    wire::partition_of(id_), frames_kept_by_dds) {}
+
+ClientEnd Client::run(const std::atomic<bool>& stop) {
+  joins_.write({.client = id_, .controller = name_, .host = host_name(), .process = static_cast<std::uint32_t>(::getpid()),
+                .robots = options_.robots});
+  for (;;) {
+    {
+      const std::lock_guard driving(driving_);
+      Lock lock(mutex_);
+      drive(lock);
+      if (failure_) return fail(lock);
+      if (end_) return *end_;
+    }
+    Lock lock(mutex_);
+    if (const auto end = reason_to_leave(stop)) return *end;
+    wake_.wait_for(lock, stop_is_polled_every, [&] { return news_; });
+    news_ = false;
+  }
+}
+
+void Client::receive(const wire::Admit& admit, const wire::Sender& sender) {
+  if (admit.client != id_) return;
+  Lock lock(mutex_);
+  // Only the latest counts: by writing it the server has given up the one before.
+  offered_ = Offer{admit, sender.writer};
+  wake(std::move(lock));
+}
+
+void Client::receive(const wire::RobotDescription& description) {
+  Lock lock(mutex_);
+  std::erase_if(descriptions_, [&](const auto& known) { return known.description == description.description; });
+  descriptions_.push_back(description);
+  wake(std::move(lock));
+}
+
+void Client::receive(const wire::Report& report) {
+  if (report.client != id_) return;
+  Lock lock(mutex_);
+  reports_.push_back(report);
+  wake(std::move(lock));
+}
+
+void Client::receive(const wire::Observation& frame) {
+  if (frame.client != id_) return;
+  Lock lock(mutex_);
+  frames_.arrive(frame);
+  if (options_.inline_step && !offered_) {
+    news_ = true;  // for the thread in `run`: if it is at the controllers now, it looks again before it sleeps
+    lock.unlock();
+    const std::unique_lock driving(driving_, std::try_to_lock);
+    lock.lock();
+    if (driving) drive(lock);
+    if (driving && !failure_ && !end_) return;
+  }
+  wake(std::move(lock));
+}
+
+void Client::note_server(const wire::Sender& writer, bool alive) {
+  Lock lock(mutex_);
+  if (alive) {
+    servers_.insert(writer.writer);
+    server_left_.reset();
+  } else if (servers_.erase(writer.writer) != 0 && servers_.empty()) {
+    server_left_ = Clock::now();
+  }
+}
+
+void Client::wake(Lock lock) {
+  news_ = true;
+  lock.unlock();
+  wake_.notify_one();
+}
+
+void Client::drive(Lock& lock) {
+  try {
+    for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
+    if (offered_ && is_described(offered_->admit)) heed(*std::exchange(offered_, std::nullopt), lock);
+    answer_frames(lock);
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+  }
+}
+
+void Client::heed(const wire::Report& report) {
+  switch (report.kind) {
+    case wire::ReportKind::finished:
+      end_ = ClientEnd::finished;
+      break;
+    case wire::ReportKind::superseded:
+      explain("another process has taken these robots over. " + report.text);
+      end_ = ClientEnd::superseded;
+      break;
+    case wire::ReportKind::failed:
+      explain("the run failed. " + report.text);
+      end_ = ClientEnd::failed;
+      break;
+    case wire::ReportKind::rejected:
+      if (reasons_told_.insert(report.reason).second) {
+        explain("the server rejected the answer to tick " + std::to_string(report.tick) + " (" + report.reason +
+                "; told once). " + report.text);
+      }
+      break;
+  }
+}
+
+void Client::heed(Offer offer, Lock& lock) {
+  const wire::Admit& admit = offer.admit;
+  if (admit.status != wire::AdmitStatus::admitted) {
+    explain("refused: " + admit.reason);
+    end_ = ClientEnd::refused;
+    return;
+  }
+  const bool begun_already = current_ && current_->sender == offer.sender && current_->admit.run == admit.run &&
+                             current_->admit.epoch == admit.epoch;
+  if (begun_already) return;
+  current_ = std::move(offer);
+  tick_ = current_->admit.tick;
+  frames_.begin(current_->admit);
+  const std::vector<wire::RobotDescription> descriptions = descriptions_;
+  const Unlocked unlocked(lock);
+  host_.start(current_->admit, descriptions);
+}
+
+void Client::answer_frames(Lock& lock) {
+  while (!end_ && !failure_) {
+    if (const auto repeat = frames_.next_repeat()) {
+      const Unlocked unlocked(lock);
+      commands_.write(*repeat);
+      continue;
+    }
+    const wire::Observation* frame = frames_.next();
+    if (frame == nullptr) return;
+    tick_ = frame->tick;
+    std::span<const double> values;
+    {
+      const Unlocked unlocked(lock);
+      values = host_.answer(*frame);
+    }
+    const wire::Command command = frames_.finish(values);
+    const Unlocked unlocked(lock);
+    commands_.write(command);  // if it cannot be written it counts as lost, and the server asks again
+  }
+}
+
+bool Client::is_described(const wire::Admit& admit) const {
+  return std::all_of(admit.robots.begin(), admit.robots.end(), [&](const wire::AdmittedRobot& robot) {
+    return std::any_of(descriptions_.begin(), descriptions_.end(),
+                       [&](const auto& known) { return known.description == robot.description; });
+  });
+}
+
+std::optional<ClientEnd> Client::reason_to_leave(const std::atomic<bool>& stop) {
+  const auto now = Clock::now();
+  if (stop) {
+    explain("interrupted");
+    return ClientEnd::interrupted;
+  }
+  if (server_left_ && now - *server_left_ > server_may_be_away) {
+    explain("the server at " + options_.server + ", domain " + std::to_string(options_.domain) + " is gone");
+    return ClientEnd::server_lost;
+  }
+  if (!current_ && !notice_given_ && now - since_ > patience_before_notice) {
+    notice_given_ = true;
+    explain(joins_.matched() == 0 ? "waiting for a server at " + options_.server + ", domain " +
+                                        std::to_string(options_.domain)
+                                  : "waiting for the server to admit this client");
+  }
+  return std::nullopt;
+}
+
+ClientEnd Client::fail(Lock& lock) {
+  explain(*failure_);
+  const wire::Report report{.client = id_, .run = current_ ? current_->admit.run : 0, .kind = wire::ReportKind::failed,
+                            .tick = tick_, .reason = "exception", .text = *failure_};
+  const Unlocked unlocked(lock);
+  if (own_reports_.write(report)) own_reports_.wait_until_received(time_for_last_words);
+  return ClientEnd::failed;
+}
+
+void Client::explain(const std::string& text) const { std::fprintf(stderr, "%s: %s\n", name_.c_str(), text.c_str()); }
+
+}  // namespace
+
+ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop) {
+  return Client(plugin, options).run(stop);
+}
+
+}  // namespace cohort

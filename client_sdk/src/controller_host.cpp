@@ -1,0 +1,153 @@
+#include "client_sdk/src/controller_host.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <utility>
+
+namespace cohort {
+namespace {
+
+using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
+
+// Runs a controller's code. Whatever it throws becomes a ControllerFailure that says whose, where and why.
+template <class Call>
+decltype(auto) guarded(const std::string& robot, const char* function, std::uint64_t tick, Call call) {
+  const auto failure = [&](const std::string& why) {
+    return ControllerFailure("the controller of robot '" + robot + "' failed in " + function + " at tick " +
+                             std::to_string(tick) + ": " + why);
+  };
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    throw failure(error.what());
+  } catch (...) {
+    throw failure("it threw something that is not a std::exception");
+  }
+}
+
+std::vector<ChannelInfo> layout_of(const std::vector<wire::Channel>& channels) {
+  std::vector<ChannelInfo> layout;
+  std::uint32_t offset = 0;
+  for (const wire::Channel& channel : channels) {
+    layout.push_back({channel.name, channel.unit, offset, channel.size, channel.lower, channel.upper, channel.neutral});
+    offset += channel.size;
+  }
+  return layout;
+}
+
+std::size_t size_of(const std::vector<ChannelInfo>& channels) {
+  return channels.empty() ? 0 : std::size_t{channels.back().offset} + channels.back().size;
+}
+
+StartReason reason_of(wire::StartReason reason) {
+  switch (reason) {
+    case wire::StartReason::first: return StartReason::first;
+    case wire::StartReason::takeover: return StartReason::takeover;
+    case wire::StartReason::reset: return StartReason::reset;
+    case wire::StartReason::restored: return StartReason::restored;
+  }
+  throw ControllerFailure("the server gives a reason to start that this version does not know");
+}
+
+Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
+               std::span<const wire::RobotDescription> descriptions) {
+  const auto description = std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& candidate) {
+    return candidate.description == robot.description;
+  });
+  if (description == descriptions.end()) {
+    throw ControllerFailure("robot '" + robot.name + "' has no description");
+  }
+  Start start;
+  start.robot = robot.robot;
+  start.name = robot.name;
+  start.model = description->model;
+  start.reason = reason_of(admit.start_reason);
+  start.tick = admit.tick;
+  start.seed = robot.seed;
+  start.step = std::chrono::nanoseconds(admit.step_ns);
+  start.period = robot.period;
+  start.observation_channels = layout_of(description->observation);
+  start.command_channels = layout_of(description->command);
+  return start;
+}
+
+}  // namespace
+
+struct ControllerHost::Robot {
+  std::uint32_t id = 0;
+  std::string name;
+  OwnedController controller;
+  std::size_t observation_size = 0;
+  std::vector<double> neutral;
+};
+
+ControllerHost::ControllerHost(const Plugin& plugin) : plugin_(plugin) {}
+ControllerHost::~ControllerHost() = default;
+
+ControllerHost::Robot* ControllerHost::find(std::uint32_t id) {
+  const auto place = std::lower_bound(robots_.begin(), robots_.end(), id,
+                                      [](const Robot& robot, std::uint32_t wanted) { return robot.id < wanted; });
+  return place != robots_.end() && place->id == id ? &*place : nullptr;
+}
+
+void ControllerHost::start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions) {
+  const bool same_controllers =
+      admit.start_reason == wire::StartReason::reset || admit.start_reason == wire::StartReason::restored;
+  if (!same_controllers) robots_.clear();
+  std::vector<Robot> robots;
+  for (const wire::AdmittedRobot& admitted : admit.robots) {
+    const Start start = start_of(admit, admitted, descriptions);
+    Robot* before = find(admitted.robot);
+    OwnedController controller =
+        before != nullptr ? std::move(before->controller) : guarded(admitted.name, "its constructor", admit.tick, [&] {
+          return OwnedController(plugin_.create(), plugin_.destroy);
+        });
+    guarded(admitted.name, "start", admit.tick, [&] { controller->start(start); });
+    std::vector<double> neutral;
+    for (const ChannelInfo& channel : start.command_channels) {
+      neutral.insert(neutral.end(), channel.size, channel.neutral);
+    }
+    robots.push_back({admitted.robot, admitted.name, std::move(controller), size_of(start.observation_channels),
+                      std::move(neutral)});
+  }
+  std::sort(robots.begin(), robots.end(), [](const Robot& a, const Robot& b) { return a.id < b.id; });
+  robots_ = std::move(robots);
+}
+
+std::span<const double> ControllerHost::answer(const wire::Observation& frame) {
+  // Sized before anything runs: the controllers get spans into it.
+  std::size_t observed = 0;
+  std::size_t commanded = 0;
+  for (const std::uint32_t id : frame.robots) {
+    const Robot* robot = find(id);
+    if (robot == nullptr) {
+      throw ControllerFailure("the frame of tick " + std::to_string(frame.tick) + " has robot " + std::to_string(id) +
+                              ", which this process was not given");
+    }
+    observed += robot->observation_size;
+    commanded += robot->neutral.size();
+  }
+  if (observed != frame.values.size()) {
+    throw ControllerFailure("the frame of tick " + std::to_string(frame.tick) + " has " +
+                            std::to_string(frame.values.size()) + " values where its robots' descriptions have " +
+                            std::to_string(observed));
+  }
+  values_.resize(commanded);
+  std::size_t read = 0;
+  std::size_t written = 0;
+  for (const std::uint32_t id : frame.robots) {
+    Robot& robot = *find(id);
+    const Observation observation(frame.tick, std::chrono::nanoseconds(frame.time_ns),
+                                  frame.values.subspan(read, robot.observation_size));
+    const std::span<double> values(values_.data() + written, robot.neutral.size());
+    std::copy(robot.neutral.begin(), robot.neutral.end(), values.begin());
+    Command command(values);
+    guarded(robot.name, "step", frame.tick, [&] { robot.controller->step(observation, command); });
+    read += robot.observation_size;
+    written += robot.neutral.size();
+  }
+  return values_;
+}
+
+}  // namespace cohort

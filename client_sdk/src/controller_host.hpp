@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "client_sdk/include/cohort/controller.hpp"
+#include "idl/messages.hpp"
+
+namespace cohort {
+
+/// A controller threw: which robot's, where, and its message.
+class ControllerFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The controllers of some robots in this process: turns frames into answers. Knows nothing of the network, so a process
+/// of its own and a run in the server's process do the very same. One thread at a time.
+class ControllerHost {
+ public:
+  explicit ControllerHost(const Plugin& plugin);
+  ~ControllerHost();
+
+  /// Creates a controller for each admitted robot (keeping those that it has if the reason is reset or restored) and
+  /// calls `start`. `descriptions` holds at least those that `admit` names. Throws ControllerFailure.
+  void start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions);
+
+  /// The answer's values, robot after robot as in `frame.robots`. Valid until the next call. Throws ControllerFailure,
+  /// also if the frame does not fit the descriptions.
+  std::span<const double> answer(const wire::Observation& frame);
+
+ private:
+  struct Robot;
+  Robot* find(std::uint32_t id);
+
+  Plugin plugin_;
+  std::vector<Robot> robots_;  // ascending ids
+  std::vector<double> values_;
+};
+
+}  // namespace cohort

@@ -1,0 +1,130 @@
+#include "client_sdk/src/frame_queue.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace cohort {
+namespace {
+
+// Beyond this, frames are dropped: the server sends again what is not answered.
+constexpr std::size_t most_waiting = 64;
+constexpr std::size_t fewest_answers_kept = 8;
+
+}  // namespace
+
+void FrameQueue::begin(const wire::Admit& admit) {
+  lease_ = Lease(admit.run, admit.epoch);
+  client_ = admit.client;
+  next_tick_ = admit.tick;
+  longest_delay_ = 0;
+  schedules_.clear();
+  for (const wire::AdmittedRobot& robot : admit.robots) {
+    longest_delay_ = std::max<std::uint64_t>(longest_delay_, robot.delay);
+    const std::uint64_t period = std::max<std::uint64_t>(robot.period, 1);
+    const Schedule schedule{period, robot.phase % period};
+    if (std::find(schedules_.begin(), schedules_.end(), schedule) == schedules_.end()) schedules_.push_back(schedule);
+  }
+  answers_kept_ = std::max<std::size_t>(fewest_answers_kept, longest_delay_ + 1);
+  answers_.clear();
+  oldest_answer_ = 0;
+  repeats_.clear();
+  std::erase_if(waiting_, [&](const Frame& frame) {
+    const Lease lease(frame.head.run, frame.head.epoch);
+    return lease < *lease_ || (lease == *lease_ && frame.head.tick < next_tick_);
+  });
+}
+
+void FrameQueue::arrive(const wire::Observation& frame) {
+  const Lease lease(frame.run, frame.epoch);
+  if (lease_ && lease < *lease_) return;
+  if (lease_ && lease == *lease_ && frame.tick < next_tick_) {
+    const bool asked = std::find(repeats_.begin(), repeats_.end(), frame.tick) != repeats_.end();
+    if (!asked && find_answer(frame.tick) != nullptr) repeats_.push_back(frame.tick);
+    return;
+  }
+  const auto key = [](const wire::Observation& head) { return std::tuple(head.run, head.epoch, head.tick); };
+  const auto place = std::lower_bound(waiting_.begin(), waiting_.end(), key(frame), [&](const Frame& other, auto wanted) {
+    return key(other.head) < wanted;
+  });
+  if (place != waiting_.end() && key(place->head) == key(frame)) return;
+  if (waiting_.size() == most_waiting) return;
+
+  Frame kept;
+  if (!spare_.empty()) {
+    kept = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  kept.robots.assign(frame.robots.begin(), frame.robots.end());
+  kept.values.assign(frame.values.begin(), frame.values.end());
+  kept.head = frame;
+  kept.head.robots = kept.robots;
+  kept.head.values = kept.values;
+  waiting_.insert(place, std::move(kept));
+}
+
+const wire::Observation* FrameQueue::next() {
+  if (!lease_ || waiting_.empty()) return nullptr;
+  Frame& first = waiting_.front();
+  if (Lease(first.head.run, first.head.epoch) != *lease_ || !in_order(first)) return nullptr;
+  next_tick_ = first.head.tick + 1;
+  under_way_ = std::move(first);
+  waiting_.erase(waiting_.begin());
+  return &under_way_.head;
+}
+
+wire::Command FrameQueue::finish(std::span<const double> values) {
+  if (answers_.size() < answers_kept_) {
+    answers_.emplace_back();
+    oldest_answer_ = answers_.size() - 1;
+  }
+  Answer& answer = answers_[oldest_answer_];
+  oldest_answer_ = (oldest_answer_ + 1) % answers_kept_;
+  answer.tick = under_way_.head.tick;
+  answer.values.assign(values.begin(), values.end());
+  std::swap(answer.robots, under_way_.robots);
+  spare_.push_back(std::move(under_way_));
+  return command_of(answer);
+}
+
+std::optional<wire::Command> FrameQueue::next_repeat() {
+  while (!repeats_.empty()) {
+    const std::uint64_t tick = repeats_.back();
+    repeats_.pop_back();
+    if (const Answer* answer = find_answer(tick); answer != nullptr) return command_of(*answer);
+  }
+  return std::nullopt;
+}
+
+const FrameQueue::Answer* FrameQueue::find_answer(std::uint64_t tick) const {
+  const auto found =
+      std::find_if(answers_.begin(), answers_.end(), [&](const Answer& answer) { return answer.tick == tick; });
+  return found != answers_.end() ? &*found : nullptr;
+}
+
+// A due tick before this frame's may still come, if it was lost on the way and the server can still use its answer.
+// While it has the newest frame out, the server waits for the answers of the `delay` ticks before it; older ones it has
+// got or given up.
+bool FrameQueue::in_order(const Frame& frame) const {
+  std::uint64_t newest = frame.head.tick;
+  for (const Frame& other : waiting_) {
+    if (Lease(other.head.run, other.head.epoch) == *lease_) newest = std::max(newest, other.head.tick);
+  }
+  const std::uint64_t oldest_wanted = newest - std::min(newest, longest_delay_);
+  return next_due(std::max(next_tick_, oldest_wanted)) >= frame.head.tick;
+}
+
+std::uint64_t FrameQueue::next_due(std::uint64_t tick) const {
+  std::uint64_t earliest = ~std::uint64_t{0};
+  for (const Schedule& schedule : schedules_) {
+    const std::uint64_t since_last = (tick % schedule.period + schedule.period - schedule.phase) % schedule.period;
+    earliest = std::min(earliest, since_last == 0 ? tick : tick + schedule.period - since_last);
+  }
+  return earliest;
+}
+
+wire::Command FrameQueue::command_of(const Answer& answer) const {
+  const auto [run, epoch] = *lease_;
+  return {client_, run, epoch, answer.tick, answer.robots, answer.values};
+}
+
+}  // namespace cohort

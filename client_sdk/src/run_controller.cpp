@@ -1,0 +1,138 @@
+#include <signal.h>
+
+#include <atomic>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "client_sdk/src/client.hpp"
+
+namespace cohort {
+namespace {
+
+constexpr int exit_finished = 0;
+constexpr int exit_failed = 1;
+constexpr int exit_usage = 2;
+constexpr int exit_interrupted = 130;
+
+constexpr const char* help =
+    R"(Usage: %s [--robots SEL[,SEL...]] [--server ADDRESS] [--domain N]
+
+Drives robots of a running simulation until the run ends.
+
+  --robots SEL[,SEL...]  which robots: all, an id (3), a range of ids (0..7), a name (explorers/sbot_7), or a name
+                         with * in it (explorers/*). Default: all
+  --server ADDRESS       the server's IPv4 address or host name. Default: $COHORT_SERVER, or 127.0.0.1
+  --domain N             the server's DDS domain. Default: $COHORT_DOMAIN, or 0
+  --help                 this text
+
+Exit code: 0 when the run finished, 1 when it failed, the server was lost or another process took over, 2 for a mistake
+in the options or a refused claim, 130 when interrupted.
+)";
+
+// Set by signals, so it cannot be anything but global.
+std::atomic<bool> stop_requested{false};
+
+void stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = SA_RESETHAND;  // a second one ends the process even if the controller is stuck
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+std::uint32_t parse_domain(std::string_view text) {
+  std::uint32_t domain = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw UsageError("'" + std::string(text) + "' is not the number of a domain");
+  }
+  return domain;
+}
+
+std::vector<std::string> split(std::string_view list) {
+  std::vector<std::string> parts;
+  while (!list.empty()) {
+    const std::string_view part = list.substr(0, list.find(','));
+    if (!part.empty()) parts.emplace_back(part);
+    list.remove_prefix(std::min(list.size(), part.size() + 1));
+  }
+  return parts;
+}
+
+struct Arguments {
+  ClientOptions options;
+  bool help = false;
+};
+
+Arguments parse(int argc, char** argv) {
+  Arguments arguments;
+  ClientOptions& options = arguments.options;
+  if (const char* server = std::getenv("COHORT_SERVER"); server != nullptr) options.server = server;
+  if (const char* domain = std::getenv("COHORT_DOMAIN"); domain != nullptr) options.domain = parse_domain(domain);
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    const auto equals = argument.find('=');
+    const std::string_view name = argument.substr(0, equals);
+    const auto value = [&]() -> std::string_view {
+      if (equals != std::string_view::npos) return argument.substr(equals + 1);
+      if (++i == argc) throw UsageError(std::string(name) + " wants a value");
+      return argv[i];
+    };
+    if (name == "--help" || name == "-h") {
+      arguments.help = true;
+    } else if (name == "--robots") {
+      options.robots = split(value());
+      if (options.robots.empty()) throw UsageError("--robots names no robot");
+    } else if (name == "--server") {
+      options.server = value();
+    } else if (name == "--domain") {
+      options.domain = parse_domain(value());
+    } else {
+      throw UsageError("there is no option '" + std::string(name) + "'");
+    }
+  }
+  return arguments;
+}
+
+int exit_code(ClientEnd end) {
+  switch (end) {
+    case ClientEnd::finished: return exit_finished;
+    case ClientEnd::refused: return exit_usage;
+    case ClientEnd::interrupted: return exit_interrupted;
+    case ClientEnd::failed:
+    case ClientEnd::superseded:
+    case ClientEnd::server_lost: break;
+  }
+  return exit_failed;
+}
+
+}  // namespace
+
+int run_controller(const Plugin& plugin, int argc, char** argv) {
+  try {
+    const Arguments arguments = parse(argc, argv);
+    if (arguments.help) {
+      std::printf(help, argv[0]);
+      return exit_finished;
+    }
+    stop_on_signals();
+    return exit_code(run_client(plugin, arguments.options, stop_requested));
+  } catch (const UsageError& error) {
+    std::fprintf(stderr, "%s: %s. Try --help.\n", plugin.name, error.what());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", plugin.name, error.what());
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort

@@ -1,0 +1,189 @@
+#include "idl/codec.hpp"
+
+#include <span>
+#include <string>
+
+namespace cohort::wire {
+namespace {
+
+using std::chrono_literals::operator""s;
+
+// Cyclone's structs are not const-correct; writing only reads what they point to. `_release` stays false: it is ours.
+char* lent(const std::string& text) { return const_cast<char*>(text.c_str()); }
+
+template <class Sequence, class Elements>
+void lend(const Elements& elements, Sequence& sequence) {
+  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
+  sequence._buffer = const_cast<Element*>(elements.data());
+  sequence._length = static_cast<std::uint32_t>(elements.size());
+  sequence._maximum = sequence._length;
+}
+
+std::string to_string(const char* text) { return text == nullptr ? std::string() : std::string(text); }
+
+template <class Sequence>
+auto to_span(const Sequence& sequence) {
+  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
+  return std::span<const Element>(sequence._buffer, sequence._buffer == nullptr ? 0 : sequence._length);
+}
+
+std::vector<cohort_v1_Channel> encode(const std::vector<Channel>& channels) {
+  std::vector<cohort_v1_Channel> result;
+  result.reserve(channels.size());
+  for (const Channel& channel : channels) {
+    result.push_back({lent(channel.name), lent(channel.unit), channel.size, channel.lower, channel.upper,
+                      channel.neutral});
+  }
+  return result;
+}
+
+std::vector<Channel> decode_channels(const dds_sequence_cohort_v1_Channel& channels) {
+  std::vector<Channel> result;
+  for (const cohort_v1_Channel& channel : to_span(channels)) {
+    result.push_back({to_string(channel.name), to_string(channel.unit), channel.size, channel.lower, channel.upper,
+                      channel.neutral});
+  }
+  return result;
+}
+
+}  // namespace
+
+const Topic Codec<Join>::topic = {
+    .name = "cohort/v1/join", .type = &cohort_v1_Join_desc, .transient_local = true, .depth = 1, .lease = 1s};
+const Topic Codec<Admit>::topic = {
+    .name = "cohort/v1/admit", .type = &cohort_v1_Admit_desc, .transient_local = true, .depth = 1};
+const Topic Codec<RobotDescription>::topic = {.name = "cohort/v1/robot_description",
+                                              .type = &cohort_v1_RobotDescription_desc,
+                                              .transient_local = true,
+                                              .depth = 1};
+const Topic Codec<Observation>::topic = {.name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc};
+const Topic Codec<Command>::topic = {.name = "cohort/v1/command", .type = &cohort_v1_Command_desc};
+const Topic Codec<WorldState>::topic = {
+    .name = "cohort/v1/world_state", .type = &cohort_v1_WorldState_desc, .reliable = false, .depth = 1};
+const Topic Codec<Report>::topic = {
+    .name = "cohort/v1/report", .type = &cohort_v1_Report_desc, .transient_local = true, .depth = 16};
+
+Codec<Join>::Outgoing::Outgoing(const Join& message) {
+  for (const std::string& robot : message.robots) robots.push_back(lent(robot));
+  sample.client = message.client;
+  sample.minor = message.minor;
+  sample.controller = lent(message.controller);
+  sample.host = lent(message.host);
+  sample.process = message.process;
+  lend(robots, sample.robots);
+}
+
+Join Codec<Join>::decode(const Sample& sample) {
+  Join message;
+  message.client = sample.client;
+  message.minor = sample.minor;
+  message.controller = to_string(sample.controller);
+  message.host = to_string(sample.host);
+  message.process = sample.process;
+  for (const char* robot : to_span(sample.robots)) message.robots.push_back(to_string(robot));
+  return message;
+}
+
+Codec<Admit>::Outgoing::Outgoing(const Admit& message) {
+  for (const AdmittedRobot& robot : message.robots) {
+    robots.push_back({robot.robot, lent(robot.name), robot.description, robot.seed, robot.period, robot.phase,
+                      robot.delay});
+  }
+  sample.client = message.client;
+  sample.status = static_cast<std::uint32_t>(message.status);
+  sample.reason = lent(message.reason);
+  sample.run = message.run;
+  sample.epoch = message.epoch;
+  sample.start_reason = static_cast<std::uint32_t>(message.start_reason);
+  sample.tick = message.tick;
+  sample.step_ns = message.step_ns;
+  lend(robots, sample.robots);
+}
+
+Admit Codec<Admit>::decode(const Sample& sample) {
+  Admit message;
+  message.client = sample.client;
+  message.status = static_cast<AdmitStatus>(sample.status);
+  message.reason = to_string(sample.reason);
+  message.run = sample.run;
+  message.epoch = sample.epoch;
+  message.start_reason = static_cast<StartReason>(sample.start_reason);
+  message.tick = sample.tick;
+  message.step_ns = sample.step_ns;
+  for (const cohort_v1_AdmittedRobot& robot : to_span(sample.robots)) {
+    message.robots.push_back({robot.robot, to_string(robot.name), robot.description, robot.seed, robot.period,
+                              robot.phase, robot.delay});
+  }
+  return message;
+}
+
+Codec<RobotDescription>::Outgoing::Outgoing(const RobotDescription& message)
+    : observation(encode(message.observation)), command(encode(message.command)) {
+  sample.description = message.description;
+  sample.model = lent(message.model);
+  lend(observation, sample.observation);
+  lend(command, sample.command);
+}
+
+RobotDescription Codec<RobotDescription>::decode(const Sample& sample) {
+  return {sample.description, to_string(sample.model), decode_channels(sample.observation),
+          decode_channels(sample.command)};
+}
+
+Codec<Observation>::Outgoing::Outgoing(const Observation& message) {
+  sample.client = message.client;
+  sample.run = message.run;
+  sample.resent = message.resent;
+  sample.epoch = message.epoch;
+  sample.tick = message.tick;
+  sample.time_ns = message.time_ns;
+  lend(message.robots, sample.robots);
+  lend(message.values, sample.values);
+}
+
+Observation Codec<Observation>::decode(const Sample& sample) {
+  return {sample.client,  sample.run,  sample.resent,           sample.epoch,
+          sample.tick, sample.time_ns, to_span(sample.robots), to_span(sample.values)};
+}
+
+Codec<Command>::Outgoing::Outgoing(const Command& message) {
+  sample.client = message.client;
+  sample.run = message.run;
+  sample.epoch = message.epoch;
+  sample.tick = message.tick;
+  lend(message.robots, sample.robots);
+  lend(message.values, sample.values);
+}
+
+Command Codec<Command>::decode(const Sample& sample) {
+  return {sample.client, sample.run, sample.epoch, sample.tick, to_span(sample.robots), to_span(sample.values)};
+}
+
+Codec<WorldState>::Outgoing::Outgoing(const WorldState& message) {
+  sample.run = message.run;
+  sample.tick = message.tick;
+  sample.time_ns = message.time_ns;
+  sample.state_hash = message.state_hash;
+  lend(message.robots, sample.robots);
+  lend(message.poses, sample.poses);
+}
+
+WorldState Codec<WorldState>::decode(const Sample& sample) {
+  return {sample.run, sample.tick, sample.time_ns, sample.state_hash, to_span(sample.robots), to_span(sample.poses)};
+}
+
+Codec<Report>::Outgoing::Outgoing(const Report& message) {
+  sample.client = message.client;
+  sample.run = message.run;
+  sample.kind = static_cast<std::uint32_t>(message.kind);
+  sample.tick = message.tick;
+  sample.reason = lent(message.reason);
+  sample.text = lent(message.text);
+}
+
+Report Codec<Report>::decode(const Sample& sample) {
+  return {sample.client, sample.run, static_cast<ReportKind>(sample.kind), sample.tick, to_string(sample.reason),
+          to_string(sample.text)};
+}
+
+}  // namespace cohort::wire

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <dds/dds.h>
+
+#include <string>
+#include <utility>
+
+#include "idl/wire.hpp"
+
+/// What the files of idl/ share. Not for others: the only header that includes Cyclone's.
+namespace cohort::wire {
+
+/// `result` if it is a handle or a count. Throws WireError: what was tried on what, and what DDS says.
+dds_return_t check(dds_return_t result, const char* verb, const char* object);
+
+/// Owns a DDS entity.
+class Entity {
+ public:
+  Entity() = default;
+  explicit Entity(dds_entity_t handle) : handle_(handle) {}
+  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+  Entity& operator=(Entity&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Entity() {
+    if (handle_ != 0) dds_delete(handle_);
+  }
+
+  dds_entity_t handle() const { return handle_; }
+
+ private:
+  dds_entity_t handle_ = 0;
+};
+
+struct Participant::State {
+  Entity domain;
+  Entity participant;
+};
+
+}  // namespace cohort::wire

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// The messages of cohort.idl as C++ values. Observation, Command and WorldState are views: when read they are valid
+/// during the callback only; when written they must stay valid until `write` returns.
+namespace cohort::wire {
+
+inline constexpr std::uint32_t minor_version = 0;
+
+struct Channel {
+  std::string name{};
+  std::string unit{};
+  std::uint32_t size = 1;
+  double lower = 0.0;
+  double upper = 0.0;
+  double neutral = 0.0;
+};
+
+struct Join {
+  std::uint64_t client = 0;
+  std::uint32_t minor = minor_version;
+  std::string controller{};
+  std::string host{};
+  std::uint32_t process = 0;
+  std::vector<std::string> robots{};
+};
+
+struct AdmittedRobot {
+  std::uint32_t robot = 0;
+  std::string name{};
+  std::uint32_t description = 0;
+  std::uint64_t seed = 0;
+  std::uint32_t period = 1;
+  std::uint32_t phase = 0;
+  std::uint32_t delay = 0;
+};
+
+enum class AdmitStatus : std::uint32_t { admitted = 0, refused = 1 };
+enum class StartReason : std::uint32_t { first = 0, takeover = 1, reset = 2, restored = 3 };
+
+struct Admit {
+  std::uint64_t client = 0;
+  AdmitStatus status = AdmitStatus::admitted;
+  std::string reason{};
+  std::uint32_t run = 0;
+  std::uint64_t epoch = 0;
+  StartReason start_reason = StartReason::first;
+  std::uint64_t tick = 0;
+  std::int64_t step_ns = 0;
+  std::vector<AdmittedRobot> robots{};
+};
+
+struct RobotDescription {
+  std::uint32_t description = 0;
+  std::string model{};
+  std::vector<Channel> observation{};
+  std::vector<Channel> command{};
+};
+
+struct Observation {
+  std::uint64_t client = 0;
+  std::uint32_t run = 0;
+  std::uint32_t resent = 0;
+  std::uint64_t epoch = 0;
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::span<const std::uint32_t> robots{};
+  std::span<const double> values{};
+};
+
+struct Command {
+  std::uint64_t client = 0;
+  std::uint32_t run = 0;
+  std::uint64_t epoch = 0;
+  std::uint64_t tick = 0;
+  std::span<const std::uint32_t> robots{};
+  std::span<const double> values{};
+};
+
+struct WorldState {
+  std::uint32_t run = 0;
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::uint64_t state_hash = 0;
+  std::span<const std::uint32_t> robots{};
+  std::span<const double> poses{};
+};
+
+enum class ReportKind : std::uint32_t { finished = 0, rejected = 1, superseded = 2, failed = 3 };
+
+struct Report {
+  std::uint64_t client = 0;
+  std::uint32_t run = 0;
+  ReportKind kind = ReportKind::finished;
+  std::uint64_t tick = 0;
+  std::string reason{};
+  std::string text{};
+};
+
+}  // namespace cohort::wire

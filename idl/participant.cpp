@@ -1,0 +1,231 @@
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "idl/dds.hpp"
+
+namespace cohort::wire {
+namespace {
+
+// The last domain whose ports exist: the next one's lie beyond 65535.
+constexpr std::uint32_t last_domain = 232;
+
+// Cyclone has one log for the process, and says why it refused there only. While one of these lives, what the same
+// thread's calls log is kept.
+class LogCapture {
+ public:
+  LogCapture() {
+    install_sink();
+    current_ = this;
+  }
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+  ~LogCapture() { current_ = nullptr; }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  static void install_sink() {
+    static const bool installed = [] {
+      const char* level = std::getenv("COHORT_LOG");
+      void* shown = level != nullptr && std::string_view(level) == "debug" ? stderr : nullptr;
+      dds_set_log_sink(&LogCapture::receive, shown);
+      dds_set_trace_sink(&LogCapture::receive, shown);
+      return true;
+    }();
+    static_cast<void>(installed);
+  }
+
+  static void receive(void* shown, const dds_log_data_t* entry) noexcept {
+    const std::string_view message(entry->message, entry->size);
+    if (current_ != nullptr) {
+      if (!current_->text_.empty()) current_->text_ += "; ";
+      current_->text_ += message;
+    }
+    // After a fatal message Cyclone aborts, so that one is always shown.
+    if (shown != nullptr || (entry->priority & DDS_LC_FATAL) != 0) {
+      std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
+    }
+  }
+
+  static thread_local LogCapture* current_;
+  std::string text_;
+};
+
+thread_local LogCapture* LogCapture::current_ = nullptr;
+
+class UdpSocket {
+ public:
+  UdpSocket() : descriptor_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    if (descriptor_ < 0) throw WireError(std::string("cannot open a UDP socket: ") + std::strerror(errno));
+  }
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+  ~UdpSocket() { ::close(descriptor_); }
+
+  /// 0, or what errno says.
+  int bind(const sockaddr_in& address) const { return call(::bind, address); }
+  int connect(const sockaddr_in& address) const { return call(::connect, address); }
+
+  in_addr local_address() const {
+    sockaddr_in local{};
+    socklen_t size = sizeof(local);
+    ::getsockname(descriptor_, reinterpret_cast<sockaddr*>(&local), &size);
+    return local.sin_addr;
+  }
+
+ private:
+  int call(int (*function)(int, const sockaddr*, socklen_t), const sockaddr_in& address) const {
+    return function(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 ? 0 : errno;
+  }
+
+  int descriptor_;
+};
+
+sockaddr_in socket_address(in_addr address, std::uint16_t port) {
+  sockaddr_in result{};
+  result.sin_family = AF_INET;
+  result.sin_addr = address;
+  result.sin_port = htons(port);
+  return result;
+}
+
+in_addr resolve(const std::string& name) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  if (const int error = ::getaddrinfo(name.c_str(), nullptr, &hints, &found); error != 0) {
+    throw WireError("cannot find the address of '" + name + "': " + ::gai_strerror(error) +
+                    ". Give an IPv4 address or a host name that has one.");
+  }
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(found, ::freeaddrinfo);
+  return reinterpret_cast<const sockaddr_in*>(found->ai_addr)->sin_addr;
+}
+
+std::string to_text(in_addr address) {
+  char text[INET_ADDRSTRLEN] = {};
+  ::inet_ntop(AF_INET, &address, text, sizeof(text));
+  return text;
+}
+
+bool is_loopback(in_addr address) { return (ntohl(address.s_addr) >> 24) == 127; }
+
+bool is_taken(std::uint16_t port) {
+  return UdpSocket().bind(socket_address(in_addr{INADDR_ANY}, port)) == EADDRINUSE;
+}
+
+in_addr own_address_towards(in_addr server, std::uint16_t port) {
+  const UdpSocket socket;
+  if (const int error = socket.connect(socket_address(server, port)); error != 0) {
+    throw WireError("no way to the server at " + to_text(server) + ": " + std::strerror(error));
+  }
+  return socket.local_address();
+}
+
+// Large fragments are good on the loopback only: on a network a lost packet would cost the whole of one.
+std::string configuration(std::uint32_t domain, in_addr own_address, const std::string& discovery) {
+  const std::string fragments =
+      is_loopback(own_address) ? "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>60000B</FragmentSize>" : "";
+  return "<CycloneDDS><Domain Id=\"any\">"
+         "<General><Interfaces><NetworkInterface address=\"" + to_text(own_address) + "\"/></Interfaces>"
+         "<AllowMulticast>false</AllowMulticast>" + fragments + "</General>"
+         "<Discovery><ExternalDomainId>" + std::to_string(domain) + "</ExternalDomainId>"
+         "<LeaseDuration>5s</LeaseDuration>" + discovery + "</Discovery>"
+         // Below the watermark a write never waits for acknowledgements, which arrive on the thread that may be writing.
+         // The receive buffer has no minimum: where the kernel allows less, that would be an error.
+         // Leaving waits only so long for a reader that is dead but not yet known to be.
+         "<Internal><Watermarks><WhcHigh>16MB</WhcHigh><WhcHighInit>16MB</WhcHighInit></Watermarks>"
+         "<SocketReceiveBufferSize max=\"4MB\"/><WriterLingerDuration>100ms</WriterLingerDuration></Internal>"
+         "</Domain></CycloneDDS>";
+}
+
+// Cyclone allows one participant configuration for each domain number in a process. Others of the same domain use a
+// number of their own inside; on the network the domain is the one in the configuration.
+std::unique_ptr<Participant::State> join(std::uint32_t domain, const std::string& configuration) {
+  std::uint32_t number = domain;
+  dds_entity_t handle = dds_create_domain(number, configuration.c_str());
+  while (handle == DDS_RETCODE_PRECONDITION_NOT_MET) {
+    number += last_domain + 1;
+    handle = dds_create_domain(number, configuration.c_str());
+  }
+  if (handle < 0) return nullptr;
+  auto state = std::make_unique<Participant::State>();
+  state->domain = Entity(handle);
+  state->participant = Entity(check(dds_create_participant(number, nullptr, nullptr), "create", "a participant"));
+  return state;
+}
+
+}  // namespace
+
+dds_return_t check(dds_return_t result, const char* verb, const char* object) {
+  if (result >= 0) return result;
+  throw WireError(std::string("DDS cannot ") + verb + " " + object + ": " + dds_strretcode(-result));
+}
+
+std::string partition_of(std::uint64_t client) {
+  char text[18] = {};
+  std::snprintf(text, sizeof(text), "c%016llx", static_cast<unsigned long long>(client));
+  return text;
+}
+
+std::uint16_t discovery_port(std::uint32_t domain) {
+  if (domain > last_domain) {
+    throw WireError("domain " + std::to_string(domain) + " does not exist: choose one from 0 to " +
+                    std::to_string(last_domain) + ", best below 100");
+  }
+  return static_cast<std::uint16_t>(7410 + 250 * domain);
+}
+
+Participant Participant::server(std::uint32_t domain, const std::string& address) {
+  const std::uint16_t port = discovery_port(domain);
+  const in_addr own_address = resolve(address);
+  if (UdpSocket().bind(socket_address(own_address, 0)) != 0) {
+    throw WireError("this machine has no network interface with the address " + address);
+  }
+  LogCapture log;
+  auto state = join(domain, configuration(domain, own_address,
+                                          "<ParticipantIndex>0</ParticipantIndex><SPDPInterval>5s</SPDPInterval>"));
+  if (state == nullptr) {
+    const auto data_port = static_cast<std::uint16_t>(port + 1);
+    if (is_taken(port) || is_taken(data_port)) {
+      throw DomainTaken("domain " + std::to_string(domain) + " is taken: another program has UDP port " +
+                        std::to_string(port) + " or " + std::to_string(data_port) +
+                        ", most likely another server. Stop it, or give this server and its clients another domain.");
+    }
+    throw WireError("cannot serve domain " + std::to_string(domain) + " at " + address + ": " + log.text());
+  }
+  return Participant(std::move(state));
+}
+
+Participant Participant::client(std::uint32_t domain, const std::string& address) {
+  const std::uint16_t port = discovery_port(domain);
+  const in_addr server = resolve(address);
+  // A client announces itself every second, to the server alone: so a server that starts later is found within one, and
+  // one small packet each second harms nobody. The server need not repeat itself: it answers each announcement.
+  const std::string discovery = "<ParticipantIndex>none</ParticipantIndex><SPDPInterval>1s</SPDPInterval>"
+                                "<Peers><Peer address=\"" + to_text(server) + ":" + std::to_string(port) + "\"/></Peers>";
+  LogCapture log;
+  auto state = join(domain, configuration(domain, own_address_towards(server, port), discovery));
+  if (state == nullptr) {
+    throw WireError("cannot join domain " + std::to_string(domain) + " of the server at " + address + ": " + log.text());
+  }
+  return Participant(std::move(state));
+}
+
+Participant::Participant(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Participant::Participant(Participant&&) noexcept = default;
+Participant& Participant::operator=(Participant&&) noexcept = default;
+Participant::~Participant() = default;
+
+}  // namespace cohort::wire

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/description/world.hpp"
+
+namespace cohort::description {
+
+enum class OnLate { wait, hold, zero, detach, stop };
+
+/// When a robot's controller is asked, and what happens when it does not answer (docs/semantics.md).
+struct Policy {
+  std::uint32_t period = 1;  ///< asked every `period` ticks, >= 1
+  std::uint32_t phase = 0;   ///< first asked at this tick, < period
+  std::uint32_t delay = 0;   ///< the answer to frame k acts at tick k + delay
+  OnLate on_late = OnLate::wait;
+  std::chrono::nanoseconds deadline{0};  ///< wall-clock patience per tick; only read if on_late is not wait
+};
+
+/// Robots that share a controller and a policy.
+struct Team {
+  std::string name;
+  std::vector<std::uint32_t> robots;  ///< ids, ascending
+  std::string controller;             ///< plugin name, or a path to a plugin
+  Policy policy;
+};
+
+struct Experiment {
+  std::filesystem::path file;
+  std::string name;  ///< the file's, without the extension
+  World world;
+  std::uint64_t seed = 1;
+  std::chrono::nanoseconds duration{0};
+  std::vector<Team> teams;  ///< every robot is in exactly one
+};
+
+/// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's. Throws InputError
+/// with every problem found.
+Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
+                           std::optional<std::chrono::nanoseconds> duration = {});
+
+/// Ids, ascending, of the robots that `selector` names: `all`, an id, an id range `A..B`, a scoped name, or a name with `*`.
+/// Throws std::invalid_argument if it is malformed or matches none.
+std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector);
+
+}  // namespace cohort::description

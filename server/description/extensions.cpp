@@ -1,0 +1,85 @@
+#include "server/description/extensions.hpp"
+
+#include <algorithm>
+
+namespace cohort::description {
+namespace {
+
+using enum ExtensionValue;
+
+constexpr ExtensionKey treel_drive[] = {
+    {"link", name, "", "", "the body of the tracks; the root link"},
+    {"half_gauge", positive, "m", "", "|y| of the ground points in the link"},
+    {"half_contact_length", positive, "m", "", "|x| of the ground points in the link"},
+    {"ground_height", real, "m", "", "z of the ground points in the link"},
+    {"wheel_radius", positive, "m", "", "from the torque of a motor to traction"},
+    {"max_torque", positive, "N m", "", "of each side's motor"},
+    {"max_velocity", positive, "m/s", "", "of each track along the ground"},
+    {"friction", non_negative, "1", "", "Coulomb coefficient of the tracks; a pair of surfaces has the smaller one"},
+};
+
+constexpr ExtensionKey velocity_motor[] = {
+    {"joint", name, "", "", "the joint that it turns or slides; at most one motor each"},
+    {"max_velocity", positive, "rad/s or m/s", "", "greatest velocity that can be commanded"},
+    {"max_effort", positive, "N m or N", "", "greatest torque or force"},
+};
+
+constexpr ExtensionKey joint_encoder[] = {
+    {"joint", name, "", "", "the joint that is measured"},
+};
+
+constexpr ExtensionKey treel_encoder[] = {
+    {"drive", name, "", "", "the treel_drive that is measured"},
+};
+
+constexpr ExtensionKey proximity_ring[] = {
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the rays lie in its xy plane"},
+    {"count", count, "1", "", "number of sensors, numbered counter-clockwise"},
+    {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
+    {"spacing", real, "rad", "", "from one sensor to the next"},
+    {"ring_radius", non_negative, "m", "", "where the rays start"},
+    {"range", positive, "m", "", "length of the rays"},
+    {"noise", non_negative, "1", "0", "standard deviation of the Gaussian noise on a reading"},
+};
+
+constexpr ExtensionKey population[] = {
+    {"uri", uri, "", "", "the model"},
+    {"count", count, "1", "", "number of instances"},
+    {"seed_offset", whole, "1", "0", "added to the seed of the run: another value, another placement"},
+    {"placement", group, "", "", "where they are put"},
+};
+
+constexpr ExtensionKey placement[] = {
+    {"uniform", group, "", "", "anywhere in a rectangle with equal probability, with any heading"},
+    {"gap", non_negative, "m", "0.01", "kept free between an instance's bounding circle and everything else"},
+};
+
+constexpr ExtensionKey uniform[] = {
+    {"min", point, "m", "", "corner with the least x and y of the origins of the instances"},
+    {"max", point, "m", "", "corner with the greatest x and y"},
+};
+
+constexpr Extension table[] = {
+    {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", treel_drive},
+    {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", velocity_motor},
+    {"joint_encoder", "model", true, "Measures position and velocity of one joint.", joint_encoder},
+    {"treel_encoder", "model", true, "Measures way and velocity of each track relative to the hull.", treel_encoder},
+    {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", proximity_ring},
+    {"population", "world", true, "Instances of one model, placed by the seed of the run.", population},
+    {"placement", "population", false, "Where the instances of a population are put.", placement},
+    {"uniform", "placement", false, "A rectangle of the ground.", uniform},
+};
+
+}  // namespace
+
+std::span<const Extension> extensions() { return table; }
+
+const Extension* find_extension(std::string_view extension_name, std::string_view parent) {
+  const auto found = std::find_if(std::begin(table), std::end(table), [&](const Extension& extension) {
+    return extension.name == extension_name && extension.parent == parent;
+  });
+  return found == std::end(table) ? nullptr : found;
+}
+
+}  // namespace cohort::description

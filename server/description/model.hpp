@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/core/pose.hpp"
+
+/// A model as plain data, read once and never changed. SI units; radians; frames as in SDFormat: M the model, L a link,
+/// C a collision, J a joint, S a sensor. A member `X_AB` is the pose of frame B in frame A.
+namespace cohort::description {
+
+struct Box {
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< full edge lengths [m]
+};
+struct Sphere {
+  double radius = 1.0;
+};
+/// Axis along z, centred on the origin.
+struct Cylinder {
+  double radius = 1.0;
+  double length = 1.0;
+};
+/// The half-space below the plane through the origin is solid. Static models only.
+struct Plane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+};
+using Shape = std::variant<Box, Sphere, Cylinder, Plane>;
+
+struct Surface {
+  double friction = 1.0;     ///< Coulomb coefficient; a pair of surfaces has the smaller of the two
+  double restitution = 0.0;  ///< a pair of surfaces has the larger of the two
+};
+
+struct Collision {
+  std::string name;
+  Pose X_LC;
+  Shape shape;
+  Surface surface;
+};
+
+struct Inertial {
+  double mass = 1.0;                                     ///< [kg], > 0
+  Pose X_LI;                                             ///< I: the centre of mass and the axes of `inertia`
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, in I [kg m^2]
+};
+
+struct Link {
+  std::string name;
+  Pose X_ML;
+  Inertial inertial;
+  std::vector<Collision> collisions;
+};
+
+enum class JointType { fixed, revolute, prismatic };
+
+/// One degree of freedom (none if fixed) between two links of the same model. Links form trees: every link is the child
+/// of at most one joint.
+struct Joint {
+  std::string name;
+  JointType type = JointType::fixed;
+  std::size_t parent = 0;  ///< index into Model::links
+  std::size_t child = 0;   ///< index into Model::links
+  Pose X_LJ;               ///< in the child link
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit vector in J
+  double lower = -std::numeric_limits<double>::infinity();  ///< [rad] or [m]
+  double upper = std::numeric_limits<double>::infinity();
+  double damping = 0.0;  ///< [N m s/rad] or [N s/m]
+};
+
+/// Two tracks that share one rigid body ("treels", tracks and wheels of the s-bot): drawn as four ground points, two a
+/// side. Commands `NAME/left/velocity` and `NAME/right/velocity` [m/s].
+struct TreelDrive {
+  std::string name;
+  std::size_t link = 0;
+  double half_gauge = 0.0;           ///< |y| of the ground points in the link's frame [m]
+  double half_contact_length = 0.0;  ///< |x| of the ground points [m]
+  double ground_height = 0.0;        ///< z of the ground points [m]
+  double wheel_radius = 0.0;         ///< from motor torque to traction [m]
+  double max_torque = 0.0;           ///< per side [N m]
+  double max_velocity = 0.0;         ///< of the ground points [m/s]
+  double friction = 0.0;             ///< Coulomb coefficient of the tracks; a pair has the smaller of the two
+};
+
+/// A motor with a velocity loop on one joint. Command `NAME/0/velocity` [rad/s] or [m/s].
+struct VelocityMotor {
+  std::string name;
+  std::size_t joint = 0;
+  double max_velocity = 0.0;
+  double max_effort = 0.0;  ///< [N m] or [N]
+};
+
+/// Position and velocity of one joint: observations `NAME/0/position` and `NAME/0/velocity`.
+struct JointEncoder {
+  std::string name;
+  std::size_t joint = 0;
+};
+
+/// Way and velocity of each track relative to the hull: observations `NAME/left/position` [m], `NAME/left/velocity`
+/// [m/s] and the same of the right.
+struct TreelEncoder {
+  std::string name;
+  std::size_t drive = 0;  ///< index into Model::devices of a TreelDrive
+};
+
+/// A ring of infrared proximity sensors in the xy plane of S, looking outwards, numbered counter-clockwise from
+/// `first_bearing`. Observations `NAME/I/reading`: 1 at contact, falling linearly to 0 at `range`.
+struct ProximityRing {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  std::size_t count = 0;
+  double first_bearing = 0.0;  ///< of sensor 0, from the x axis of S [rad]
+  double spacing = 0.0;        ///< between neighbours [rad]
+  double ring_radius = 0.0;    ///< where the rays start [m]
+  double range = 0.0;          ///< from there [m]
+  double noise = 0.0;          ///< standard deviation of the Gaussian noise on a reading [1]
+};
+
+using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing>;
+
+/// Links in an order in which every parent comes before its children; link 0 is the root. Devices in document order,
+/// which is the order of their channels. A static model has neither joints nor devices, and its links stay at X_ML.
+struct Model {
+  std::string name;
+  bool is_static = false;
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::vector<Device> devices;
+
+  /// A robot is a model that can be observed or commanded.
+  bool is_robot() const { return !devices.empty(); }
+};
+
+}  // namespace cohort::description

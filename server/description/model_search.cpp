@@ -1,0 +1,94 @@
+#include "server/description/model_search.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sdf/parser.hh>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "server/description/xml_outline.hpp"
+
+namespace cohort::description {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view model_scheme = "model://";
+constexpr std::string_view file_scheme = "file://";
+constexpr int parent_levels = 4;
+
+// The SDF file of a model's folder. libsdformat chooses among the versions that model.config offers, but takes for granted
+// that the file has all its elements.
+fs::path sdf_file_of(const fs::path& folder) {
+  const fs::path config = folder / "model.config";
+  std::ifstream stream(config);
+  if (!stream) throw std::runtime_error("the model's folder '" + folder.string() + "' has no model.config");
+  const XmlOutline outline = outline_xml(std::string(std::istreambuf_iterator<char>(stream), {}));
+  if (outline.error)
+    throw std::runtime_error(config.string() + ":" + std::to_string(outline.error->line) + ": " +
+                             outline.error->message);
+  const XmlNode* const name = outline.root.child("name");
+  const XmlNode* const sdf = outline.root.child("sdf");
+  if (outline.root.name != "model" || name == nullptr || name->text.empty() || sdf == nullptr || sdf->text.empty())
+    throw std::runtime_error(config.string() + " needs <model> with <name> and <sdf version=\"1.9\">FILE</sdf>");
+  const fs::path file = sdf::getModelFilePath(folder.string());
+  if (file.empty()) throw std::runtime_error(config.string() + " names no SDF file of a version that is read");
+  if (!fs::is_regular_file(file))
+    throw std::runtime_error("there is no '" + file.string() + "', which " + config.string() + " names");
+  return file;
+}
+
+}  // namespace
+
+ModelSearch::ModelSearch(const fs::path& world_file)
+    : world_folder_(fs::absolute(world_file).lexically_normal().parent_path()) {
+  if (const char* const path = std::getenv("COHORT_MODEL_PATH")) {
+    std::istringstream stream(path);
+    for (std::string folder; std::getline(stream, folder, ':');)
+      if (!folder.empty()) folders_.push_back(fs::absolute(folder).lexically_normal());
+  }
+  fs::path folder = world_folder_;
+  for (int level = 0; level <= parent_levels; ++level) {
+    folders_.push_back(folder / "robots");
+    folders_.push_back(folder / "objects");
+    if (folder == folder.parent_path()) break;
+    folder = folder.parent_path();
+  }
+}
+
+fs::path ModelSearch::find_folder(const std::string& name) const {
+  std::string searched;
+  for (const fs::path& folder : folders_) {
+    if (!name.empty() && fs::is_directory(folder / name)) return folder / name;
+    if (fs::is_directory(folder)) searched += (searched.empty() ? "" : ", ") + folder.string();
+  }
+  throw std::runtime_error("there is no model '" + name + "' in " +
+                           (searched.empty() ? "any folder 'robots' or 'objects' at or above the world file, nor in "
+                                               "COHORT_MODEL_PATH"
+                                             : searched));
+}
+
+FoundModel ModelSearch::find(const std::string& uri) const {
+  fs::path path;
+  if (uri.starts_with(model_scheme)) {
+    const std::string inside = uri.substr(model_scheme.size());
+    const std::size_t slash = std::min(inside.find('/'), inside.size());
+    path = find_folder(inside.substr(0, slash)) / fs::path(inside.substr(slash)).relative_path();
+  } else if (uri.starts_with(file_scheme)) {
+    path = uri.substr(file_scheme.size());
+  } else if (uri.find("://") != std::string::npos) {
+    throw std::runtime_error("'" + uri + "' cannot be fetched: expected model://NAME or a path");
+  } else {
+    path = world_folder_ / uri;
+  }
+  path = path.lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // it ended in a slash
+
+  if (fs::is_directory(path)) return {sdf_file_of(path), path, uri};
+  if (fs::is_regular_file(path)) return {path, path.parent_path(), uri.substr(0, uri.rfind('/') + 1)};
+  throw std::runtime_error("there is no '" + path.string() + "'");
+}
+
+}  // namespace cohort::description

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cohort::description {
+
+/// A model that a URI leads to.
+struct FoundModel {
+  std::filesystem::path file;    ///< the SDF file
+  std::filesystem::path folder;  ///< the model's folder, or the file's if the URI names a file
+  std::string folder_uri;        ///< what of the URI stands for `folder`
+};
+
+/// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these that
+/// has one: the folders of the environment variable COHORT_MODEL_PATH (separated by colons), then `robots` and `objects`
+/// in the folder of the world file and in its parents, four levels up. Any other URI is a path relative to the world
+/// file, to a model's folder or to an SDF file.
+class ModelSearch {
+ public:
+  explicit ModelSearch(const std::filesystem::path& world_file);
+
+  /// Throws std::runtime_error that says what is missing and where it was looked for.
+  FoundModel find(const std::string& uri) const;
+
+ private:
+  std::filesystem::path find_folder(const std::string& name) const;
+
+  std::filesystem::path world_folder_;
+  std::vector<std::filesystem::path> folders_;
+};
+
+}  // namespace cohort::description

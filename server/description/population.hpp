@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <sdf/Element.hh>
+#include <string>
+
+#include "server/description/extensions.hpp"
+#include "server/description/placement.hpp"
+#include "server/description/sdf_report.hpp"
+
+namespace cohort::description {
+
+/// A `cohort:population` as it is written.
+struct Population {
+  sdf::ElementPtr uri_element;
+  sdf::ElementPtr placement_element;
+  std::string uri;
+  UniformPlacement placement;
+};
+
+/// Nothing if anything is wrong with the element; the report then has it. `seed` is that of the run.
+std::optional<Population> read_population(const sdf::ElementPtr& element, const Extension& extension,
+                                          std::uint64_t seed, const SdfReport& report);
+
+}  // namespace cohort::description

@@ -1,0 +1,163 @@
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "server/description/extension_values.hpp"
+#include "server/description/read_model.hpp"
+#include "server/description/text.hpp"
+
+namespace cohort::description {
+namespace {
+
+class DeviceReader {
+ public:
+  /// `drives` are the treel drives of the model: name and index among the devices.
+  DeviceReader(const Model& model, std::map<std::string, std::size_t> drives, const SdfReport& report)
+      : model_(model), drives_(std::move(drives)), report_(report) {}
+
+  std::optional<Device> read(const ExtensionValues& values, std::string_view kind);
+
+ private:
+  std::optional<Device> read_treel_drive(const ExtensionValues& values);
+  std::optional<Device> read_velocity_motor(const ExtensionValues& values);
+  std::optional<Device> read_joint_encoder(const ExtensionValues& values);
+  std::optional<Device> read_treel_encoder(const ExtensionValues& values);
+  std::optional<Device> read_proximity_ring(const ExtensionValues& values);
+
+  /// The index of the link or joint that `key` names; reported if there is none.
+  template <class Named>
+  std::optional<std::size_t> find(const ExtensionValues& values, const char* key, const std::vector<Named>& named);
+  std::optional<std::size_t> find_moving_joint(const ExtensionValues& values);
+
+  const Model& model_;
+  std::map<std::string, std::size_t> drives_;
+  const SdfReport& report_;
+  std::set<std::size_t> motorised_;  // joints
+};
+
+template <class Named>
+std::optional<std::size_t> DeviceReader::find(const ExtensionValues& values, const char* key,
+                                              const std::vector<Named>& named) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    if (named[i].name == values.text(key)) return i;
+    names.push_back(named[i].name);
+  }
+  report_.problem(values.where(key), "the model has no " + std::string(key) + " '" + values.text(key) + "'" +
+                                         suggestion(values.text(key), names));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> DeviceReader::find_moving_joint(const ExtensionValues& values) {
+  const std::optional<std::size_t> joint = find(values, "joint", model_.joints);
+  if (!joint || model_.joints[*joint].type != JointType::fixed) return joint;
+  report_.problem(values.where("joint"), "the joint '" + values.text("joint") + "' is fixed");
+  return std::nullopt;
+}
+
+std::optional<Device> DeviceReader::read_treel_drive(const ExtensionValues& values) {
+  const std::optional<std::size_t> link = find(values, "link", model_.links);
+  if (!link) return std::nullopt;
+  if (*link != 0) {
+    report_.problem(values.where("link"), "expected the root link, '" + model_.links[0].name + "'");
+    return std::nullopt;
+  }
+  TreelDrive drive;
+  drive.name = values.name();
+  drive.link = *link;
+  drive.half_gauge = values.real("half_gauge");
+  drive.half_contact_length = values.real("half_contact_length");
+  drive.ground_height = values.real("ground_height");
+  drive.wheel_radius = values.real("wheel_radius");
+  drive.max_torque = values.real("max_torque");
+  drive.max_velocity = values.real("max_velocity");
+  drive.friction = values.real("friction");
+  return drive;
+}
+
+std::optional<Device> DeviceReader::read_velocity_motor(const ExtensionValues& values) {
+  const std::optional<std::size_t> joint = find_moving_joint(values);
+  if (!joint) return std::nullopt;
+  if (!motorised_.insert(*joint).second) {
+    report_.problem(values.where("joint"), "the joint '" + values.text("joint") + "' has a motor already");
+    return std::nullopt;
+  }
+  return VelocityMotor{values.name(), *joint, values.real("max_velocity"), values.real("max_effort")};
+}
+
+std::optional<Device> DeviceReader::read_joint_encoder(const ExtensionValues& values) {
+  const std::optional<std::size_t> joint = find_moving_joint(values);
+  if (!joint) return std::nullopt;
+  return JointEncoder{values.name(), *joint};
+}
+
+std::optional<Device> DeviceReader::read_treel_encoder(const ExtensionValues& values) {
+  const auto drive = drives_.find(values.text("drive"));
+  if (drive != drives_.end()) return TreelEncoder{values.name(), drive->second};
+  std::vector<std::string> names;
+  for (const auto& [name, index] : drives_) names.push_back(name);
+  report_.problem(values.where("drive"), "the model has no treel_drive '" + values.text("drive") + "'" +
+                                             suggestion(values.text("drive"), names));
+  return std::nullopt;
+}
+
+std::optional<Device> DeviceReader::read_proximity_ring(const ExtensionValues& values) {
+  const std::optional<std::size_t> link = find(values, "link", model_.links);
+  if (!link) return std::nullopt;
+  ProximityRing ring;
+  ring.name = values.name();
+  ring.link = *link;
+  ring.X_LS = values.pose("pose");
+  ring.count = values.whole("count");
+  ring.first_bearing = values.real("first_bearing");
+  ring.spacing = values.real("spacing");
+  ring.ring_radius = values.real("ring_radius");
+  ring.range = values.real("range");
+  ring.noise = values.real("noise");
+  return ring;
+}
+
+std::optional<Device> DeviceReader::read(const ExtensionValues& values, std::string_view kind) {
+  using Read = std::optional<Device> (DeviceReader::*)(const ExtensionValues&);
+  constexpr std::pair<std::string_view, Read> readers[] = {
+      {"treel_drive", &DeviceReader::read_treel_drive},
+      {"velocity_motor", &DeviceReader::read_velocity_motor},
+      {"joint_encoder", &DeviceReader::read_joint_encoder},
+      {"treel_encoder", &DeviceReader::read_treel_encoder},
+      {"proximity_ring", &DeviceReader::read_proximity_ring},
+  };
+  for (const auto& [name, reader] : readers)
+    if (name == kind) return (this->*reader)(values);
+  throw std::logic_error("no reader for the device " + std::string(kind));
+}
+
+// Commands and observations are named after their device, so two devices that command, or two that observe, cannot share
+// a name.
+bool commands(std::string_view kind) { return kind == "treel_drive" || kind == "velocity_motor"; }
+
+}  // namespace
+
+std::vector<Device> read_devices(const sdf::ElementPtr& model_element, const Model& model, const SdfReport& report) {
+  const auto elements = extensions_in(model_element, report);
+  // An encoder may stand before the drive that it measures.
+  std::map<std::string, std::size_t> drives;
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    if (elements[i].second->name == "treel_drive" && elements[i].first->HasAttribute("name"))
+      drives.emplace(elements[i].first->GetAttribute("name")->GetAsString(), i);
+
+  DeviceReader reader(model, std::move(drives), report);
+  std::vector<Device> devices;
+  std::set<std::pair<bool, std::string>> names;
+  for (const auto& [element, extension] : elements) {
+    const std::optional<ExtensionValues> values = ExtensionValues::read(element, *extension, report);
+    if (!values) continue;
+    if (!names.emplace(commands(extension->name), values->name()).second)
+      report.problem(element, "another device of the model has the name '" + values->name() + "'");
+    if (std::optional<Device> device = reader.read(*values, extension->name)) devices.push_back(*std::move(device));
+  }
+  return devices;
+}
+
+}  // namespace cohort::description

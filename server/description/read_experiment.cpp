@@ -1,0 +1,236 @@
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "server/description/experiment.hpp"
+#include "server/description/input_error.hpp"
+#include "server/description/select_robots.hpp"
+#include "server/description/text.hpp"
+#include "server/description/yaml_map.hpp"
+
+namespace cohort::description {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>::max();
+
+const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "teams"};
+const std::vector<std::string> team_keys = {"name",  "robots",  "controller", "period",
+                                            "phase", "delay",   "on_late",    "deadline"};
+
+const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLate::wait},
+                                                                   {"hold", OnLate::hold},
+                                                                   {"zero", OnLate::zero},
+                                                                   {"detach", OnLate::detach},
+                                                                   {"stop", OnLate::stop}};
+
+std::vector<std::string> names_of_policies() {
+  std::vector<std::string> names;
+  for (const auto& [name, policy] : late_policies) names.push_back(name);
+  return names;
+}
+
+// A time that is more than nothing and fits into nanoseconds.
+std::optional<std::chrono::nanoseconds> read_seconds(const YamlMap& map, const std::string& key) {
+  constexpr double longest = 9e9;  // 285 years
+  const std::optional<double> seconds = map.real(key);
+  if (!seconds) return std::nullopt;
+  const double nanoseconds = std::round(*seconds * 1e9);
+  if (nanoseconds >= 1.0 && *seconds <= longest)
+    return std::chrono::nanoseconds(static_cast<std::int64_t>(nanoseconds));
+  map.problem(key, "expected more than 0 s and at most 9e9 s");
+  return std::nullopt;
+}
+
+Policy read_policy(const YamlMap& team) {
+  Policy policy;
+  const auto ticks = [&](const char* key, std::uint64_t least, std::uint32_t& value) {
+    if (const auto read = team.whole(key, least, greatest_tick_count)) value = static_cast<std::uint32_t>(*read);
+  };
+  ticks("period", 1, policy.period);
+  ticks("phase", 0, policy.phase);
+  ticks("delay", 0, policy.delay);
+  if (policy.phase >= policy.period)
+    team.problem("phase", "expected less than the period, " + std::to_string(policy.period));
+
+  const std::string on_late = team.text("on_late").value_or("wait");
+  const auto found = std::find_if(late_policies.begin(), late_policies.end(),
+                                  [&](const auto& each) { return each.first == on_late; });
+  if (found == late_policies.end()) {
+    team.problem("on_late", "unknown policy '" + on_late + "'" + suggestion(on_late, names_of_policies()));
+    return policy;
+  }
+  policy.on_late = found->second;
+  if (policy.on_late == OnLate::wait) {
+    if (team.has("deadline")) team.problem("deadline", "has no meaning with on_late: wait, which waits for ever");
+    return policy;
+  }
+  team.require("deadline", "how long to wait before '" + on_late + "', in seconds");
+  policy.deadline = read_seconds(team, "deadline").value_or(policy.deadline);
+  return policy;
+}
+
+class ExperimentReader {
+ public:
+  explicit ExperimentReader(const fs::path& file) : report_(file, problems_) { experiment_.file = file; }
+
+  Experiment read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration);
+
+ private:
+  YAML::Node load();
+  void read_world_of(const YamlMap& top);
+  void read_teams(const YamlMap& top);
+  void read_team(const YAML::Node& node, const std::string& path);
+  void select(const YAML::Node& selector, const std::string& path, std::set<std::uint32_t>& selected);
+  void claim(const YAML::Node& node, const std::string& path, const std::string& team,
+             const std::set<std::uint32_t>& selected);
+  void report_robots_without_team(const YamlMap& top);
+
+  Experiment experiment_;
+  std::vector<Problem> problems_;
+  YamlReport report_;
+  bool world_is_read_ = false;
+  std::vector<std::string> team_of_;  // by robot; empty if none
+};
+
+Experiment ExperimentReader::read(std::optional<std::uint64_t> seed,
+                                  std::optional<std::chrono::nanoseconds> duration) {
+  const YAML::Node node = load();
+  const YamlMap top(node, "", experiment_keys, report_);
+  experiment_.name = experiment_.file.stem().string();
+
+  const std::uint64_t written_seed =
+      top.whole("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(experiment_.seed);
+  experiment_.seed = seed.value_or(written_seed);
+  if (!duration) top.require("duration", "simulated time in seconds");
+  experiment_.duration = duration.value_or(read_seconds(top, "duration").value_or(experiment_.duration));
+  top.require("world", "the SDF file of the world, relative to this file");
+  top.require("teams", "which robots have which controller");
+  read_world_of(top);
+  read_teams(top);
+
+  if (!problems_.empty()) throw InputError(std::move(problems_));
+  return std::move(experiment_);
+}
+
+YAML::Node ExperimentReader::load() {
+  const fs::path& file = experiment_.file;
+  if (!fs::is_regular_file(file)) throw InputError({{file, 0, "", "there is no such file"}});
+  try {
+    return YAML::LoadFile(file.string());
+  } catch (const YAML::ParserException& error) {
+    throw InputError({{file, error.mark.line + 1, "", "not YAML: " + error.msg}});
+  } catch (const YAML::Exception& error) {
+    throw InputError({{file, 0, "", error.msg}});
+  }
+}
+
+void ExperimentReader::read_world_of(const YamlMap& top) {
+  const std::optional<std::string> name = top.text("world");
+  if (!name) return;
+  const fs::path world = experiment_.file.parent_path() / *name;
+  if (!fs::is_regular_file(world)) {
+    top.problem("world", "there is no '" + world.lexically_normal().string() + "'");
+    return;
+  }
+  try {
+    experiment_.world = read_world(world.lexically_normal(), experiment_.seed);
+    team_of_.resize(experiment_.world.robots.size());
+    world_is_read_ = true;
+  } catch (const InputError& error) {
+    problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
+  }
+}
+
+void ExperimentReader::read_teams(const YamlMap& top) {
+  if (!top.has("teams")) return;
+  const YAML::Node teams = top.where("teams");
+  if (!teams.IsSequence()) {
+    top.problem("teams", "expected a list of teams, not " + shown(teams));
+    return;
+  }
+  for (std::size_t i = 0; i < teams.size(); ++i) read_team(teams[i], "teams[" + std::to_string(i) + "]");
+  report_robots_without_team(top);
+}
+
+void ExperimentReader::read_team(const YAML::Node& node, const std::string& path) {
+  const YamlMap map(node, path, team_keys, report_);
+  map.require("name", "a name for the team");
+  map.require("robots", "which robots belong to it");
+  map.require("controller", "a controller plugin: its name or a path to it");
+  Team team;
+  team.name = map.text("name").value_or("");
+  team.controller = map.text("controller").value_or("");
+  team.policy = read_policy(map);
+  for (const Team& other : experiment_.teams)
+    if (!team.name.empty() && other.name == team.name)
+      map.problem("name", "another team has the name '" + team.name + "'");
+
+  if (map.has("robots")) {
+    const YAML::Node robots = map.where("robots");
+    std::set<std::uint32_t> selected;
+    if (robots.IsSequence() && robots.size() > 0) {
+      for (std::size_t i = 0; i < robots.size(); ++i)
+        select(robots[i], map.path_to("robots") + "[" + std::to_string(i) + "]", selected);
+    } else {
+      select(robots, map.path_to("robots"), selected);
+    }
+    claim(robots, map.path_to("robots"), team.name, selected);
+    team.robots.assign(selected.begin(), selected.end());
+  }
+  experiment_.teams.push_back(std::move(team));
+}
+
+void ExperimentReader::select(const YAML::Node& selector, const std::string& path, std::set<std::uint32_t>& selected) {
+  if (!selector.IsScalar()) {
+    report_.problem(selector, path, "expected a robot's name, an id, a range 0..7, all, or a list of these, not " +
+                                        shown(selector));
+    return;
+  }
+  if (!world_is_read_) return;
+  try {
+    for (const std::uint32_t robot : select_robots(experiment_.world, selector.Scalar())) selected.insert(robot);
+  } catch (const std::invalid_argument& error) {
+    report_.problem(selector, path, error.what());
+  }
+}
+
+void ExperimentReader::claim(const YAML::Node& node, const std::string& path, const std::string& team,
+                             const std::set<std::uint32_t>& selected) {
+  for (const std::uint32_t robot : selected) {
+    if (team_of_[robot].empty()) {
+      team_of_[robot] = team.empty() ? path : team;
+      continue;
+    }
+    report_.problem(node, path, "the robot '" + experiment_.world.robot(robot).name + "' is in the team '" +
+                                    team_of_[robot] + "' already");
+  }
+}
+
+void ExperimentReader::report_robots_without_team(const YamlMap& top) {
+  constexpr std::size_t most_names = 5;
+  std::size_t count = 0;
+  std::string names;
+  for (std::uint32_t robot = 0; robot < team_of_.size(); ++robot) {
+    if (!team_of_[robot].empty()) continue;
+    if (count++ < most_names) names += (names.empty() ? "'" : ", '") + experiment_.world.robot(robot).name + "'";
+  }
+  if (count == 0) return;
+  if (count > most_names) names += " and " + std::to_string(count - most_names) + " more";
+  top.problem("teams", count == 1 ? "the robot " + names + " is in no team" : "the robots " + names + " are in no team");
+}
+
+}  // namespace
+
+Experiment read_experiment(const fs::path& file, std::optional<std::uint64_t> seed,
+                           std::optional<std::chrono::nanoseconds> duration) {
+  return ExperimentReader(file).read(seed, duration);
+}
+
+}  // namespace cohort::description

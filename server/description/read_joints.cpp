@@ -1,0 +1,104 @@
+#include <cmath>
+#include <sdf/Error.hh>
+#include <sdf/JointAxis.hh>
+
+#include "server/description/read_model.hpp"
+
+namespace cohort::description {
+namespace {
+
+// SDF writes "no limit" as a number this large.
+constexpr double no_limit = 1e16;
+
+std::optional<std::size_t> index_of(const std::vector<Link>& links, const std::string& name) {
+  for (std::size_t i = 0; i < links.size(); ++i)
+    if (links[i].name == name) return i;
+  return std::nullopt;
+}
+
+std::optional<JointType> read_type(const sdf::Joint& joint, const SdfReport& report) {
+  switch (joint.Type()) {
+    case sdf::JointType::FIXED:
+      return JointType::fixed;
+    case sdf::JointType::REVOLUTE:
+    case sdf::JointType::CONTINUOUS:
+      return JointType::revolute;
+    case sdf::JointType::PRISMATIC:
+      return JointType::prismatic;
+    case sdf::JointType::INVALID:
+      return std::nullopt;  // libsdformat has said so
+    default:
+      report.problem(joint.Element(), "the joint type '" + joint.Element()->Get<std::string>("type") +
+                                          "' is not supported; expected fixed, revolute, continuous or prismatic");
+      return std::nullopt;
+  }
+}
+
+void read_axis(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& joint) {
+  const sdf::JointAxis* const axis = sdf_joint.Axis(0);
+  if (axis == nullptr) {
+    report.problem(sdf_joint.Element(), "missing: the direction of the axis, <axis><xyz>", "axis");
+    return;
+  }
+  ignition::math::Vector3d direction;
+  const sdf::Errors errors = axis->ResolveXyz(direction);
+  if (!errors.empty()) {
+    report.problem(axis->Element(), errors.front().Message());
+    return;
+  }
+  joint.axis = to_eigen(direction).normalized();
+  joint.damping = axis->Damping();
+  if (!(joint.damping >= 0.0) || !std::isfinite(joint.damping))
+    report.problem(find(axis->Element(), {"dynamics", "damping"}), "expected a damping >= 0");
+  if (sdf_joint.Type() == sdf::JointType::CONTINUOUS) return;
+  if (axis->Lower() > -no_limit) joint.lower = axis->Lower();
+  if (axis->Upper() < no_limit) joint.upper = axis->Upper();
+  if (joint.lower > joint.upper) {
+    const sdf::ElementPtr limit = axis->Element()->FindElement("limit");
+    report.problem(limit, "the lower limit exceeds the upper limit");
+  }
+}
+
+}  // namespace
+
+std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links,
+                               const ModelReading& reading) {
+  std::vector<Joint> joints;
+  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) {
+    const sdf::Joint& sdf_joint = *sdf_model.JointByIndex(i);
+    const sdf::ElementPtr element = sdf_joint.Element();
+    if (sdf_joint.ParentLinkName() == "world") {
+      reading.report.problem(find(element, {"parent"}),
+                             "a joint to the world is not supported; a model that does not move is <static>");
+      continue;
+    }
+    const std::optional<JointType> type = read_type(sdf_joint, reading.report);
+    if (!type || !reading.frames_resolve) continue;
+
+    // Parent and child may be frames that are attached to links.
+    std::string parent_name;
+    std::string child_name;
+    sdf::Errors errors = sdf_joint.ResolveParentLink(parent_name);
+    const sdf::Errors more = sdf_joint.ResolveChildLink(child_name);
+    errors.insert(errors.end(), more.begin(), more.end());
+    const std::optional<std::size_t> parent = index_of(links, parent_name);
+    const std::optional<std::size_t> child = index_of(links, child_name);
+    if (!errors.empty() || !parent || !child || parent == child) {
+      reading.report.problem(element, errors.empty() ? "expected two different links of this model as parent and child"
+                                                     : errors.front().Message());
+      continue;
+    }
+
+    Joint joint;
+    joint.name = sdf_joint.Name();
+    joint.type = *type;
+    joint.parent = *parent;
+    joint.child = *child;
+    joint.X_LJ = resolved_pose(sdf_joint, reading, child_name);
+    if (joint.type != JointType::fixed) read_axis(sdf_joint, reading.report, joint);
+    joints.push_back(joint);
+  }
+  return joints;
+}
+
+}  // namespace cohort::description

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <sdf/Error.hh>
+#include <sdf/Joint.hh>
+#include <sdf/Link.hh>
+#include <sdf/Model.hh>
+#include <sdf/SemanticPose.hh>
+#include <string>
+#include <vector>
+
+#include "server/description/model.hpp"
+#include "server/description/sdf_report.hpp"
+#include "server/description/sdf_values.hpp"
+
+namespace cohort::description {
+
+/// How a model is read.
+struct ModelReading {
+  bool is_static = false;
+  bool frames_resolve = false;  ///< libsdformat found no fault with the file; if it did, it has said why
+  const SdfReport& report;
+};
+
+/// A model, checked; what is wrong goes to the report, and the model is then not to be used.
+Model read_model(const sdf::Model& sdf_model, const ModelReading& reading);
+
+/// A link with its inertial and its collisions.
+Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
+
+/// The joints between `links`, in document order.
+std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const ModelReading& reading);
+
+/// The `cohort:` devices of a model whose links and joints are read. `model_element` is where they stand.
+std::vector<Device> read_devices(const sdf::ElementPtr& model_element, const Model& model, const SdfReport& report);
+
+/// The pose of anything that has one, in the frame `in`; by default, in that of the element that it stands in.
+template <class Posed>
+Pose resolved_pose(const Posed& posed, const ModelReading& reading, const std::string& in = "") {
+  if (!reading.frames_resolve) return {};
+  ignition::math::Pose3d X;
+  for (const sdf::Error& error : posed.SemanticPose().Resolve(X, in))
+    reading.report.problem(posed.Element(), error.Message());
+  return to_pose(X);
+}
+
+}  // namespace cohort::description

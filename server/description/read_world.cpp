@@ -1,0 +1,205 @@
+#include <cmath>
+#include <map>
+#include <sdf/Error.hh>
+#include <sdf/Light.hh>
+#include <sdf/Physics.hh>
+#include <sdf/World.hh>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "server/description/extension_values.hpp"
+#include "server/description/not_supported.hpp"
+#include "server/description/population.hpp"
+#include "server/description/read_model.hpp"
+#include "server/description/sdf_files.hpp"
+#include "server/description/sdf_values.hpp"
+#include "server/description/world.hpp"
+
+namespace cohort::description {
+namespace {
+
+class WorldReader {
+ public:
+  WorldReader(const std::filesystem::path& file, std::uint64_t seed)
+      : seed_(seed), files_(file, problems_), report_(files_, problems_, world_.warnings) {
+    world_.file = file;
+  }
+
+  World read();
+
+ private:
+  void read_settings(const sdf::World& sdf_world);
+  void read_models(const sdf::World& sdf_world, const SdfFile& file);
+  void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
+  void read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file);
+  void read_populations(const sdf::World& sdf_world);
+  void expand(const Population& population);
+  /// The place in World::models of the model in a file: one for all that include it.
+  std::size_t shared_model(const SdfFile& file, bool is_static);
+  /// False if the name is taken.
+  bool add_instance(std::string name, std::size_t model, const Pose& X_WM);
+  [[noreturn]] void throw_problems();
+
+  std::uint64_t seed_;
+  World world_;
+  std::vector<Problem> problems_;
+  SdfFiles files_;
+  SdfReport report_;
+  std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
+  std::set<std::string> names_;
+};
+
+World WorldReader::read() {
+  const SdfFile& file = files_.world();
+  if (!file.loaded) throw_problems();
+  if (file.root.WorldCount() != 1) {
+    problems_.push_back({file.shown, file.xml.line, "", "expected one <world>, not " +
+                                                            std::to_string(file.root.WorldCount())});
+    throw_problems();
+  }
+  const sdf::World& sdf_world = *file.root.WorldByIndex(0);
+  read_settings(sdf_world);
+  read_models(sdf_world, file);
+  read_populations(sdf_world);
+  if (!problems_.empty()) throw_problems();
+
+  for (std::size_t i = 0; i < world_.instances.size(); ++i)
+    if (world_.models[world_.instances[i].model].is_robot()) world_.robots.push_back(i);
+  return std::move(world_);
+}
+
+void WorldReader::read_settings(const sdf::World& sdf_world) {
+  world_.name = sdf_world.Name();
+  world_.gravity = to_eigen(sdf_world.Gravity());
+  check_numbers(sdf_world.Element(), report_);
+  warn_of_unsupported(sdf_world.Element(), report_);
+
+  // SDF's default would be 1 ms, which libsdformat fills in where there is none.
+  const sdf::Physics* const physics = sdf_world.PhysicsDefault();
+  if (physics == nullptr || !physics->Element()) return;
+  const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
+  if (!step || !step->GetExplicitlySetInFile()) return;
+  constexpr double nanoseconds = 1e9;
+  constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
+  constexpr double longest = 1.0;
+  const double seconds = step->Get<double>();
+  if (!(seconds > 0.0 && seconds <= longest)) {
+    report_.problem(step, "expected a step > 0 s and <= 1 s");
+    return;
+  }
+  const double count = std::round(seconds * nanoseconds);
+  if (count < 1.0 || std::abs(seconds * nanoseconds - count) > rounding)
+    report_.problem(step, "expected a whole number of nanoseconds, not " + step->GetValue()->GetAsString() + " s");
+  world_.step = std::chrono::nanoseconds(static_cast<std::int64_t>(count));
+}
+
+void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {
+  std::size_t included = 0;
+  for (sdf::ElementPtr child = sdf_world.Element()->GetFirstElement(); child; child = child->GetNextElement()) {
+    const Include* include = nullptr;
+    if (child->GetIncludeElement()) {
+      // There are more only if libsdformat found in the working directory what the search did not find.
+      if (included == file.includes.size()) break;
+      include = &file.includes[included++];
+    }
+    if (child->GetName() == "actor" && include != nullptr)
+      world_.warnings.push_back(Problem{file.shown, include->line, "world/include", "actors are not supported"}.text());
+    if (child->GetName() != "model") continue;
+    const auto name = child->Get<std::string>("name");
+    // libsdformat drops the second of two with the same name, and the first one is found here again.
+    const sdf::Model* const sdf_model = sdf_world.ModelByName(name);
+    if (sdf_model == nullptr) continue;
+    if (names_.contains(name)) {
+      const std::string message = "another model has the name '" + name + "'";
+      if (include != nullptr)
+        problems_.push_back({file.shown, include->line, "world/include[" + name + "]", message});
+      else
+        report_.problem(child, message);
+    } else if (include != nullptr) {
+      read_included_model(*sdf_model, *include, file);
+    } else {
+      read_inline_model(*sdf_model, file);
+    }
+  }
+}
+
+void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
+  const ModelReading reading{sdf_model.Static(), file.sound, report_};
+  world_.models.push_back(read_model(sdf_model, reading));
+  add_instance(sdf_model.Name(), world_.models.size() - 1, resolved_pose(sdf_model, reading));
+}
+
+void WorldReader::read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file) {
+  const ModelReading reading{sdf_model.Static(), file.sound, report_};
+  add_instance(sdf_model.Name(), shared_model(*include.file, sdf_model.Static()), resolved_pose(sdf_model, reading));
+}
+
+std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
+  const auto [entry, is_new] = shared_.emplace(std::pair{&file, is_static}, world_.models.size());
+  if (is_new) {
+    check_numbers(file.root.Element(), report_);
+    world_.models.push_back(read_model(*file.root.Model(), {is_static, file.sound, report_}));
+  }
+  return entry->second;
+}
+
+void WorldReader::read_populations(const sdf::World& sdf_world) {
+  for (const auto& [element, extension] : extensions_in(sdf_world.Element(), report_))
+    if (const auto population = read_population(element, *extension, seed_, report_)) expand(*population);
+}
+
+void WorldReader::expand(const Population& population) {
+  const SdfFile* file = nullptr;
+  try {
+    file = &files_.model(population.uri);
+  } catch (const std::runtime_error& error) {
+    report_.problem(population.uri_element, error.what());
+    return;
+  }
+  if (!file->loaded) return;
+  if (file->root.Model() == nullptr) {
+    report_.problem(population.uri_element, "'" + file->shown.string() + "' has no <model>");
+    return;
+  }
+  const std::size_t model = shared_model(*file, file->root.Model()->Static());
+  // Where a shape is wrong, so is the room that it takes.
+  if (!problems_.empty()) return;
+
+  std::vector<Footprint> obstacles;
+  for (const Instance& instance : world_.instances)
+    for (const Footprint& part : footprints_of(world_.models[instance.model], instance.X_WM)) obstacles.push_back(part);
+  const std::vector<Pose> poses = place_uniformly(population.placement, world_.models[model], obstacles);
+  if (poses.size() < population.placement.count)
+    report_.problem(population.placement_element,
+                    "only " + std::to_string(poses.size()) + " of " + std::to_string(population.placement.count) +
+                        " fit; enlarge the rectangle, or lower the count or the gap");
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::string name =
+        population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(i);
+    if (add_instance(name, model, poses[i])) continue;
+    report_.problem(population.uri_element->GetParent(), "another instance has the name '" + name + "'");
+    return;
+  }
+}
+
+bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& X_WM) {
+  if (!names_.insert(name).second) return false;
+  world_.instances.push_back({std::move(name), model, X_WM});
+  return true;
+}
+
+void WorldReader::throw_problems() {
+  // A file that is read twice, as static and not, is found at fault twice.
+  std::set<std::string> said;
+  std::vector<Problem> problems;
+  for (Problem& problem : problems_)
+    if (said.insert(problem.text()).second) problems.push_back(std::move(problem));
+  throw InputError(std::move(problems));
+}
+
+}  // namespace
+
+World read_world(const std::filesystem::path& file, std::uint64_t seed) { return WorldReader(file, seed).read(); }
+
+}  // namespace cohort::description

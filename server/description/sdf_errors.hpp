@@ -1,0 +1,15 @@
+#pragma once
+
+#include <sdf/Types.hh>
+#include <vector>
+
+#include "server/description/input_error.hpp"
+#include "server/description/sdf_files.hpp"
+
+namespace cohort::description {
+
+/// What libsdformat found wrong in a file, as problems of ours: without the trail of consequences that it reports after
+/// a cause, without what our own checks say better, and with a place wherever one can be found.
+std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file);
+
+}  // namespace cohort::description

@@ -1,0 +1,81 @@
+#include "server/description/select_robots.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "server/description/text.hpp"
+
+namespace cohort::description {
+namespace {
+
+// Greedy matching with one step back to the last star is enough for stars alone.
+bool matches(std::string_view name, std::string_view pattern) {
+  std::size_t n = 0;
+  std::size_t p = 0;
+  std::size_t after_star = std::string_view::npos;
+  std::size_t resume = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      after_star = ++p;
+      resume = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p;
+      ++n;
+    } else if (after_star != std::string_view::npos) {
+      p = after_star;
+      n = ++resume;
+    } else {
+      return false;
+    }
+  }
+  return pattern.find_first_not_of('*', p) == std::string_view::npos;
+}
+
+std::vector<std::uint32_t> ids(std::uint64_t first, std::uint64_t last) {
+  std::vector<std::uint32_t> range(last - first + 1);
+  std::iota(range.begin(), range.end(), static_cast<std::uint32_t>(first));
+  return range;
+}
+
+std::string robots_of(const World& world) {
+  const std::size_t count = world.robots.size();
+  if (count == 0) return "the world has no robots";
+  return "the robots of this world are 0.." + std::to_string(count - 1);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector) {
+  const std::string_view text = trimmed(selector);
+  const std::string quoted = "'" + std::string(text) + "'";
+  const std::size_t count = world.robots.size();
+  if (text.empty()) throw std::invalid_argument("expected a robot: a name with '*', an id, a range 0..7, or all");
+  if (text == "all") {
+    if (count == 0) throw std::invalid_argument("the world has no robots");
+    return ids(0, count - 1);
+  }
+
+  const std::size_t dots = text.find("..");
+  const std::optional<std::uint64_t> first = parse_whole(text.substr(0, dots));
+  const std::optional<std::uint64_t> last =
+      dots == std::string_view::npos ? first : parse_whole(text.substr(dots + 2));
+  if (first && last) {
+    if (*first > *last) throw std::invalid_argument("the range " + quoted + " ends before it starts");
+    if (*last >= count) throw std::invalid_argument(quoted + " reaches beyond the last robot; " + robots_of(world));
+    return ids(*first, *last);
+  }
+
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t id = 0; id < count; ++id)
+    if (matches(world.robot(id).name, text)) found.push_back(id);
+  if (!found.empty()) return found;
+  std::vector<std::string> names;
+  for (std::uint32_t id = 0; id < count; ++id) names.push_back(world.robot(id).name);
+  throw std::invalid_argument("no robot is called " + quoted +
+                              (count == 0 ? "; the world has no robots" : suggestion(text, names)));
+}
+
+}  // namespace cohort::description

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "server/description/world.hpp"
+
+namespace cohort::description {
+
+/// The ids, ascending, of the robots that a selector means:
+/// - `all`;
+/// - an id, such as `7`;
+/// - a range of ids with both ends, such as `0..7`;
+/// - a scoped name, in which `*` stands for any characters or none, such as `explorers/*`.
+/// Throws std::invalid_argument, with a message for the user, if it is none of these or means no robot.
+std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector);
+
+}  // namespace cohort::description

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace cohort::description {
+
+/// An element of an XML file and the line where it starts.
+struct XmlNode {
+  std::string name;
+  int line = 0;
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::string text;  ///< all text directly inside, without white space at the ends
+  std::vector<XmlNode> children;
+
+  /// nullptr if there is none.
+  const XmlNode* child(std::string_view child_name) const;
+  /// nullptr if there is none.
+  const std::string* attribute(std::string_view attribute_name) const;
+};
+
+struct XmlSyntaxError {
+  int line = 0;
+  std::string message;
+};
+
+/// The elements of an XML text. libsdformat does not say where an XML file is broken, nor on which line an element
+/// stands that is not its own, nor what a file includes before it has gone to look for it; so these are read here.
+struct XmlOutline {
+  XmlNode root;
+  std::optional<XmlSyntaxError> error;  ///< then `root` is not complete
+};
+
+XmlOutline outline_xml(std::string_view text);
+
+}  // namespace cohort::description

@@ -1,0 +1,77 @@
+#include "server/geometry/scene.hpp"
+
+#include <algorithm>
+
+namespace cohort::geometry {
+namespace {
+
+// A solid that touches more cells than this is kept in a list of its own: walls, floors, planes.
+constexpr double most_cells = 64.0;
+
+}  // namespace
+
+std::uint32_t Scene::add(Solid solid) {
+  const auto index = static_cast<std::uint32_t>(solids_.size());
+  bounds_.push_back(bounds_of(solid.shape, solid.X_WC));
+  X_CW_.push_back(solid.X_WC.inverse());
+  if (solid.moves) moving_.push_back(index);
+  solids_.push_back(std::move(solid));
+  return index;
+}
+
+void Scene::build() {
+  // A cell as wide as the widest thing that moves: it then touches four cells at the most.
+  double edge = 0.0;
+  for (const std::uint32_t index : moving_)
+    edge = std::max(edge, (bounds_[index].upper - bounds_[index].lower).head<2>().maxCoeff());
+  if (!(edge > 0.0)) edge = 1.0;
+  static_grid_.set_cell_size(edge);
+  moving_grid_.set_cell_size(edge);
+
+  large_.clear();
+  std::vector<std::uint32_t> small;
+  for (std::uint32_t index = 0; index < solids_.size(); ++index) {
+    if (solids_[index].moves) continue;
+    (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
+  }
+  static_grid_.build(small, bounds_);
+  update();
+}
+
+void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
+  solids_[index].X_WC = X_WC;
+  X_CW_[index] = X_WC.inverse();
+  bounds_[index] = bounds_of(solids_[index].shape, X_WC);
+}
+
+std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
+                                      double range, std::uint32_t ignored_body) const {
+  std::optional<RayHit> best;
+  double reach = range;
+  const auto test = [&](std::uint32_t index) {
+    const Solid& solid = solids_[index];
+    if (solid.body == ignored_body) return reach;
+    const RayEntry entry = geometry::cast_ray(solid.shape, X_CW_[index] * origin_W,
+                                              X_CW_[index].orientation * direction_W);
+    if (entry.distance < reach || (entry.distance == reach && (!best || index < best->solid))) {
+      reach = entry.distance;
+      best = RayHit{entry.distance, index, solid.X_WC.orientation * entry.normal};
+    }
+    return reach;
+  };
+  for (const std::uint32_t index : large_) test(index);
+  static_grid_.for_each_along(origin_W, direction_W, reach, test);
+  moving_grid_.for_each_along(origin_W, direction_W, reach, test);
+  return best;
+}
+
+bool Scene::reaches(std::uint32_t large_solid, const Bounds& query) const {
+  const auto* plane = std::get_if<description::Plane>(&solids_[large_solid].shape);
+  if (plane == nullptr) return bounds_[large_solid].overlaps(query);
+  const Eigen::Vector3d normal_W = solids_[large_solid].X_WC.orientation * plane->normal;
+  const Eigen::Vector3d centre = 0.5 * (query.lower + query.upper);
+  const Eigen::Vector3d half = 0.5 * (query.upper - query.lower);
+  return normal_W.dot(centre - solids_[large_solid].X_WC.position) <= normal_W.cwiseAbs().dot(half);
+}
+
+}  // namespace cohort::geometry

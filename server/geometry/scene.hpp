@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "server/geometry/grid.hpp"
+#include "server/geometry/shapes.hpp"
+
+namespace cohort::geometry {
+
+/// One collision shape, placed in the world.
+struct Solid {
+  Shape shape;
+  description::Surface surface;
+  std::uint32_t body = 0;  ///< whose it is; solids of one body do not see each other
+  bool moves = false;
+  Pose X_WC;
+};
+
+struct RayHit {
+  double distance = 0.0;     ///< [m], 0 if the ray starts inside the solid
+  std::uint32_t solid = 0;
+  Eigen::Vector3d normal_W;  ///< outward; zero if the ray starts inside
+};
+
+/// Everything solid in the world, for collision, ground contact, sensing and placement alike. Poses are set between
+/// `update` calls; queries are const and run from any thread.
+class Scene {
+ public:
+  static constexpr std::uint32_t no_body = 0xffffffffu;
+
+  /// Adds a solid; `build` must follow before the first query. Returns its index.
+  std::uint32_t add(Solid solid);
+  /// Chooses the cell size and sorts what does not move. Once, after the last `add`.
+  void build();
+
+  std::size_t size() const { return solids_.size(); }
+  const Solid& solid(std::uint32_t index) const { return solids_[index]; }
+  const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
+
+  /// Moves a solid that moves. Different solids may be moved from different threads.
+  void set_pose(std::uint32_t index, const Pose& X_WC);
+  /// Takes the new poses into the grid.
+  void update() { moving_grid_.build(moving_, bounds_); }
+
+  /// The first solid along a ray of unit direction and length `range`, those of `ignored_body` left out. Of two at the
+  /// very same distance the one with the lower index, so the answer depends on the scene alone.
+  std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+                                 std::uint32_t ignored_body = no_body) const;
+
+  /// Calls `visit(index)` once for each solid whose bounds overlap `query` (for a plane: that it reaches into).
+  template <class Visit>
+  void for_each_overlap(const Bounds& query, Visit&& visit) const {
+    for (const std::uint32_t index : large_)
+      if (reaches(index, query)) visit(index);
+    static_grid_.for_each_overlap(query, bounds_, visit);
+    moving_grid_.for_each_overlap(query, bounds_, visit);
+  }
+
+ private:
+  bool reaches(std::uint32_t large_solid, const Bounds& query) const;
+
+  std::vector<Solid> solids_;
+  std::vector<Pose> X_CW_;  // inverse of each solid's pose
+  std::vector<Bounds> bounds_;
+  std::vector<std::uint32_t> moving_;
+  std::vector<std::uint32_t> large_;  // planes, and what would fill many cells
+  Grid static_grid_;
+  Grid moving_grid_;
+};
+
+}  // namespace cohort::geometry

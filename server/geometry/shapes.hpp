@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "server/core/pose.hpp"
+#include "server/description/model.hpp"
+
+/// Closed forms on the shapes of a description. Pure functions, callable from any thread.
+namespace cohort::geometry {
+
+using description::Shape;
+
+/// Axis-aligned box in the world frame [m]; may be infinite.
+struct Bounds {
+  Eigen::Vector3d lower;
+  Eigen::Vector3d upper;
+
+  bool overlaps(const Bounds& other) const {
+    return (lower.array() <= other.upper.array()).all() && (other.lower.array() <= upper.array()).all();
+  }
+  Bounds grown_by(double margin) const { return {lower.array() - margin, upper.array() + margin}; }
+};
+
+/// The tightest bounds of `shape` at X_WC; those of a plane are all of space.
+Bounds bounds_of(const Shape& shape, const Pose& X_WC);
+
+/// Where a ray enters a solid: `distance` along the unit direction, 0 if it starts inside, infinite if it misses.
+/// `normal`: outward unit normal of the surface there, undefined if it starts inside or misses.
+struct RayEntry {
+  double distance = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+};
+
+/// The ray and the result are in the shape's own frame.
+RayEntry cast_ray(const Shape& shape, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+
+}  // namespace cohort::geometry

@@ -1,0 +1,128 @@
+#include "server/lockstep/barrier.hpp"
+
+#include <algorithm>
+
+namespace cohort::lockstep {
+
+using description::OnLate;
+
+Barrier::Barrier(std::vector<description::Policy> policies, const std::vector<std::size_t>& command_sizes) {
+  robots_.resize(policies.size());
+  for (std::size_t i = 0; i < policies.size(); ++i) {
+    robots_[i].policy = policies[i];
+    robots_[i].answers.resize(policies[i].delay + 1);
+    for (Answer& answer : robots_[i].answers) answer.values.resize(command_sizes[i]);
+  }
+}
+
+void Barrier::open(std::uint64_t tick, Time now) {
+  tick_ = tick;
+  opened_at_ = now;
+  awaited_count_ = 0;
+  for (Robot& robot : robots_) {
+    answer_of(robot, tick).state = Answer::State::none;  // the slot of the frame that goes out now
+    const auto frame = acting_frame(robot);
+    robot.awaited = frame && answer_of(robot, *frame).state == Answer::State::none;
+    if (robot.awaited) ++awaited_count_;
+  }
+}
+
+bool Barrier::is_due(std::uint32_t robot, std::uint64_t tick) const {
+  const description::Policy& policy = robots_[robot].policy;
+  return !robots_[robot].detached && tick >= policy.phase && (tick - policy.phase) % policy.period == 0;
+}
+
+std::optional<std::uint64_t> Barrier::acting_frame(const Robot& robot) const {
+  if (tick_ < robot.policy.delay) return std::nullopt;
+  const std::uint64_t frame = tick_ - robot.policy.delay;
+  if (!is_due(static_cast<std::uint32_t>(&robot - robots_.data()), frame)) return std::nullopt;
+  return frame;
+}
+
+Barrier::Verdict Barrier::judge(std::uint32_t robot, std::uint64_t frame_tick) const {
+  const Robot& r = robots_[robot];
+  if (frame_tick > tick_) return Verdict::early;
+  if (frame_tick + r.policy.delay < tick_ || r.detached) return Verdict::stale;
+  if (!is_due(robot, frame_tick)) return Verdict::early;
+  switch (answer_of(r, frame_tick).state) {
+    case Answer::State::none: return Verdict::accepted;
+    case Answer::State::missed: return Verdict::stale;
+    default: return Verdict::repeated;
+  }
+}
+
+void Barrier::answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values) {
+  Answer& slot = answer_of(robots_[robot], frame_tick);
+  slot.state = Answer::State::given;
+  std::ranges::copy(values, slot.values.begin());
+  if (acting_frame(robots_[robot]) == frame_tick) settle(robots_[robot]);
+}
+
+void Barrier::refuse(std::uint32_t robot, std::uint64_t frame_tick) {
+  Robot& r = robots_[robot];
+  answer_of(r, frame_tick).state = Answer::State::refused;
+  if (acting_frame(r) == frame_tick) settle(r);
+  if (r.policy.on_late == OnLate::detach) {
+    settle(r);
+    r.detached = true;
+  }
+}
+
+void Barrier::settle(Robot& robot) {
+  if (!robot.awaited) return;
+  robot.awaited = false;
+  --awaited_count_;
+}
+
+std::vector<std::uint32_t> Barrier::awaited() const {
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t robot = 0; robot < robots_.size(); ++robot)
+    if (robots_[robot].awaited) result.push_back(robot);
+  return result;
+}
+
+std::vector<std::uint64_t> Barrier::unanswered(std::uint32_t robot) const {
+  std::vector<std::uint64_t> frames;
+  const std::uint64_t delay = robots_[robot].policy.delay;
+  for (std::uint64_t frame = tick_ > delay ? tick_ - delay : 0; frame <= tick_; ++frame)
+    if (is_due(robot, frame) && answer_of(robots_[robot], frame).state == Answer::State::none) frames.push_back(frame);
+  return frames;
+}
+
+std::optional<Time> Barrier::next_deadline() const {
+  std::optional<Time> next;
+  for (const Robot& robot : robots_) {
+    if (!robot.awaited || robot.policy.on_late == OnLate::wait) continue;
+    const Time deadline = opened_at_ + robot.policy.deadline;
+    if (!next || deadline < *next) next = deadline;
+  }
+  return next;
+}
+
+std::vector<Barrier::Miss> Barrier::expire(Time now) {
+  std::vector<Miss> misses;
+  for (std::uint32_t id = 0; id < robots_.size(); ++id) {
+    Robot& robot = robots_[id];
+    if (!robot.awaited || robot.policy.on_late == OnLate::wait) continue;
+    if (now < opened_at_ + robot.policy.deadline) continue;
+    const std::uint64_t frame = *acting_frame(robot);
+    answer_of(robot, frame).state = Answer::State::missed;
+    settle(robot);
+    robot.detached = robot.policy.on_late == OnLate::detach;
+    misses.push_back({id, frame, robot.policy.on_late, now - opened_at_});
+  }
+  return misses;
+}
+
+Barrier::Outcome Barrier::outcome(std::uint32_t id) const {
+  const Robot& robot = robots_[id];
+  if (robot.detached) return {Outcome::Kind::neutral, {}};
+  const auto frame = acting_frame(robot);
+  if (!frame) return {};
+  const Answer& answer = answer_of(robot, *frame);
+  if (answer.state == Answer::State::given) return {Outcome::Kind::command, answer.values};
+  const bool hold = robot.policy.on_late == OnLate::hold || robot.policy.on_late == OnLate::wait;
+  return {hold ? Outcome::Kind::keep : Outcome::Kind::neutral, {}};
+}
+
+}  // namespace cohort::lockstep

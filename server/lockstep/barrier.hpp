@@ -1,0 +1,103 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "server/description/experiment.hpp"
+
+namespace cohort::lockstep {
+
+/// A point on whatever clock the caller uses; only differences count.
+using Time = std::chrono::nanoseconds;
+
+/// Decides, tick by tick, whose answers the world waits for and what it does without them. Pure logic: it reads no clock,
+/// knows no network and never blocks. Not thread-safe.
+///
+/// At tick k a robot's answer to frame k - delay is needed, if that frame was due; up to delay + 1 frames are under way.
+class Barrier {
+ public:
+  /// `policies` and `command_sizes` (float64 values) by robot.
+  Barrier(std::vector<description::Policy> policies, const std::vector<std::size_t>& command_sizes);
+
+  /// Starts tick `tick` at time `now`; the first call has tick 0, each further one the next tick. The tick before must be
+  /// complete.
+  void open(std::uint64_t tick, Time now);
+
+  std::uint64_t tick() const { return tick_; }
+  /// Whether the robot is asked at this tick, detached ones aside.
+  bool is_due(std::uint32_t robot, std::uint64_t tick) const;
+
+  enum class Verdict {
+    accepted,
+    repeated,  ///< that frame is answered already
+    stale,     ///< that frame can no longer act
+    early,     ///< no such frame has been sent
+  };
+  /// Whether an answer to the frame of `frame_tick` would be accepted.
+  Verdict judge(std::uint32_t robot, std::uint64_t frame_tick) const;
+  /// Takes an answer that `judge` accepts.
+  void answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values);
+  /// An answer that cannot act: a miss at once. Under `wait` nothing else can come of it, so the run has to stop.
+  void refuse(std::uint32_t robot, std::uint64_t frame_tick);
+
+  bool complete() const { return awaited_count_ == 0; }
+  bool is_awaited(std::uint32_t robot) const { return robots_[robot].awaited; }
+  /// Ascending.
+  std::vector<std::uint32_t> awaited() const;
+  Time opened_at() const { return opened_at_; }
+
+  /// Frames sent to the robot and not answered, oldest first: what whoever takes it over has to be given.
+  std::vector<std::uint64_t> unanswered(std::uint32_t robot) const;
+
+  struct Miss {
+    std::uint32_t robot;
+    std::uint64_t frame_tick;
+    description::OnLate consequence;
+    Time waited;
+  };
+  /// When `expire` has something to do next; never if nobody who is awaited has a deadline.
+  std::optional<Time> next_deadline() const;
+  /// Gives up on those whose deadline has passed. Each is a miss, and no longer awaited.
+  std::vector<Miss> expire(Time now);
+
+  struct Outcome {
+    enum class Kind {
+      keep,     ///< nothing was due, or the last command holds
+      command,  ///< `values` act from this tick on
+      neutral,  ///< the neutral values act from this tick on
+    };
+    Kind kind = Kind::keep;
+    std::span<const double> values;  ///< valid until the next `open`
+  };
+  /// What the tick gives the robot. Once the tick is complete.
+  Outcome outcome(std::uint32_t robot) const;
+
+ private:
+  struct Answer {
+    enum class State { none, given, missed, refused } state = State::none;
+    std::vector<double> values;
+  };
+  struct Robot {
+    description::Policy policy;
+    std::vector<Answer> answers;  // by frame tick, modulo delay + 1
+    bool awaited = false;
+    bool detached = false;
+  };
+  Answer& answer_of(Robot& robot, std::uint64_t frame_tick) { return robot.answers[frame_tick % robot.answers.size()]; }
+  const Answer& answer_of(const Robot& robot, std::uint64_t frame_tick) const {
+    return robot.answers[frame_tick % robot.answers.size()];
+  }
+  /// The frame whose answer acts at this tick, if there is one.
+  std::optional<std::uint64_t> acting_frame(const Robot& robot) const;
+  void settle(Robot& robot);
+
+  std::vector<Robot> robots_;
+  std::uint64_t tick_ = 0;
+  Time opened_at_{0};
+  std::size_t awaited_count_ = 0;
+};
+
+}  // namespace cohort::lockstep

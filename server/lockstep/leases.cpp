@@ -1,0 +1,73 @@
+#include "server/lockstep/leases.hpp"
+
+#include <algorithm>
+
+namespace cohort::lockstep {
+
+std::uint64_t Leases::answers_of_holder(std::uint32_t robot) const {
+  if (!holder_[robot]) return 0;
+  const auto found = answers_.find(*holder_[robot]);
+  return found == answers_.end() ? 0 : found->second;
+}
+
+void Leases::claim(std::uint64_t client, std::vector<std::uint32_t> robots) {
+  std::erase_if(claims_, [&](const Claim& claim) { return claim.client == client; });
+  Claim claim{client, std::move(robots), {}};
+  for (const std::uint32_t robot : claim.robots) claim.answers_before.push_back(answers_of_holder(robot));
+  claims_.push_back(std::move(claim));
+}
+
+bool Leases::decide_one(const Claim& claim, bool may_grant, Decisions& decisions) {
+  std::vector<std::uint64_t> superseded;
+  bool waits = false;
+  for (std::size_t i = 0; i < claim.robots.size(); ++i) {
+    const std::uint32_t robot = claim.robots[i];
+    if (!holder_[robot] || holder_[robot] == claim.client) continue;
+    if (!leases_.at(*holder_[robot]).alive) {
+      if (std::ranges::find(superseded, *holder_[robot]) == superseded.end()) superseded.push_back(*holder_[robot]);
+      continue;
+    }
+    if (answers_of_holder(robot) > claim.answers_before[i]) {
+      decisions.refused.push_back({claim.client, robot, *holder_[robot]});
+      return true;
+    }
+    waits = true;
+  }
+  if (waits || !may_grant) return false;
+
+  const Lease* before = lease(claim.client);
+  const bool again = before != nullptr && before->robots == claim.robots;
+  const std::uint64_t epoch = again ? before->epoch : next_epoch_++;
+  for (const std::uint64_t client : superseded) end_lease(client);
+  end_lease(claim.client);
+  leases_[claim.client] = {epoch, claim.robots, true};
+  for (const std::uint32_t robot : claim.robots) holder_[robot] = claim.client;
+  decisions.granted.push_back({claim.client, std::move(superseded), again});
+  return true;
+}
+
+const Leases::Lease* Leases::lease(std::uint64_t client) const {
+  const auto found = leases_.find(client);
+  return found == leases_.end() ? nullptr : &found->second;
+}
+
+void Leases::note_answer(std::uint64_t client) { ++answers_[client]; }
+
+void Leases::set_alive(std::uint64_t client, bool alive) {
+  if (const auto found = leases_.find(client); found != leases_.end()) found->second.alive = alive;
+}
+
+void Leases::release(std::uint64_t client) {
+  std::erase_if(claims_, [&](const Claim& claim) { return claim.client == client; });
+  end_lease(client);
+}
+
+void Leases::end_lease(std::uint64_t client) {
+  const auto found = leases_.find(client);
+  if (found == leases_.end()) return;
+  for (const std::uint32_t robot : found->second.robots) holder_[robot].reset();
+  leases_.erase(found);
+  answers_.erase(client);
+}
+
+}  // namespace cohort::lockstep

@@ -1,0 +1,19 @@
+#include "server/physics/joint_motor.hpp"
+
+#include "server/physics/one_body_row.hpp"
+
+namespace cohort::physics {
+
+JointMotor::JointMotor(btMultiBody* body, int link, double max_effort)
+    : btMultiBodyConstraint(body, nullptr, link, -1, 1, false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR),
+      max_effort_(max_effort) {
+  m_data.resize(1, 0.0);  // the impulse kept for the warm start
+}
+
+void JointMotor::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
+                                      const btContactSolverInfo& info) {
+  const double limit = max_effort_ * info.m_timeStep;
+  add_joint_row(*this, *m_bodyA, m_linkA, 0, rows, data).drive_towards(target_, -limit, limit);
+}
+
+}  // namespace cohort::physics

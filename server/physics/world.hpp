@@ -1,0 +1,79 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "server/core/hash.hpp"
+#include "server/core/worker_pool.hpp"
+#include "server/description/world.hpp"
+#include "server/geometry/scene.hpp"
+
+namespace cohort::physics {
+
+/// Two bodies that touched during the last step.
+struct Contact {
+  std::uint32_t body_a = 0;
+  std::uint32_t body_b = 0;
+  Eigen::Vector3d position_W;
+  Eigen::Vector3d normal_W;  ///< unit, from b towards a
+  double distance = 0.0;     ///< [m], negative: they overlap
+  double impulse = 0.0;      ///< along the normal over the step [N s]
+};
+
+struct Twist {
+  Eigen::Vector3d angular_W;  ///< [rad/s]
+  Eigen::Vector3d linear_W;   ///< of the link's origin [m/s]
+};
+
+/// What the tracks of one treel drive do, relative to the hull.
+struct TrackState {
+  double position = 0.0;  ///< way travelled since the world began [m]
+  double velocity = 0.0;  ///< [m/s]
+  double traction = 0.0;  ///< force along the track over the last step [N]
+};
+enum class Side : std::uint8_t { left = 0, right = 1 };
+
+/// The moving part of a world: rigid multibodies in reduced coordinates, stepped by semi-implicit Euler with a
+/// warm-started sequential-impulse solver. Bodies are the instances of the description, under the same indices; links,
+/// joints and devices keep their indices in the model. Poses and states are those of the last completed step. Setters
+/// and `step` belong to one thread; getters may run from any thread between steps.
+class World {
+ public:
+  /// Keeps a reference to both. Throws std::invalid_argument for a model that cannot be simulated.
+  World(const description::World& description, WorkerPool& workers);
+  ~World();
+
+  /// Advances by one step of the description. The result depends on the state and the targets alone, not on the number
+  /// of workers. Throws std::runtime_error if a body's state is no longer finite.
+  void step();
+
+  const geometry::Scene& scene() const;
+  std::size_t body_count() const;
+
+  Pose link_pose(std::uint32_t body, std::size_t link) const;    ///< X_WL
+  Twist link_twist(std::uint32_t body, std::size_t link) const;  ///< zero for a static body
+  double joint_position(std::uint32_t body, std::size_t joint) const;
+  double joint_velocity(std::uint32_t body, std::size_t joint) const;
+  const TrackState& track(std::uint32_t body, std::size_t drive, Side side) const;
+
+  /// For a joint that a VelocityMotor drives.
+  void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity);
+  /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
+  void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity);
+
+  /// In the order of the bodies' solids: the same for any number of workers.
+  std::span<const Contact> contacts() const;
+
+  /// Adds all that decides how `body` goes on: pose, velocities, joints, tracks, targets, warm-start impulses.
+  void hash_body(std::uint32_t body, StateHash& hash) const;
+  /// Adds every cached contact point with what the solver's warm start takes from it.
+  void hash_contacts(StateHash& hash) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace cohort::physics

@@ -1,0 +1,35 @@
+#include "server/sensing/proximity_ring.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cohort::sensing {
+
+ProximityRing::ProximityRing(const description::ProximityRing& ring, Mount mount)
+    : ring_(ring), mount_(std::move(mount)), noise_(mount_.seed, mount_.robot, ring.name) {
+  for (std::size_t i = 0; i < ring.count; ++i) {
+    const double bearing = ring.first_bearing + static_cast<double>(i) * ring.spacing;
+    directions_S_.emplace_back(std::cos(bearing), std::sin(bearing), 0.0);
+  }
+}
+
+std::vector<Channel> ProximityRing::channels() const {
+  std::vector<Channel> channels;
+  for (std::size_t i = 0; i < ring_.count; ++i)
+    channels.push_back({ring_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
+  return channels;
+}
+
+void ProximityRing::sense(std::uint64_t tick, std::span<double> values) const {
+  const Pose X_WS = mount_.world.link_pose(mount_.body, ring_.link) * ring_.X_LS;
+  for (std::size_t i = 0; i < ring_.count; ++i) {
+    const Eigen::Vector3d direction_W = X_WS.orientation * directions_S_[i];
+    const Eigen::Vector3d origin_W = X_WS.position + ring_.ring_radius * direction_W;
+    const auto hit = mount_.world.scene().cast_ray(origin_W, direction_W, ring_.range, mount_.body);
+    double reading = hit ? 1.0 - hit->distance / ring_.range : 0.0;
+    if (ring_.noise > 0.0) reading += ring_.noise * noise_.normal(tick, static_cast<std::uint32_t>(i));
+    values[i] = std::clamp(reading, 0.0, 1.0);
+  }
+}
+
+}  // namespace cohort::sensing

@@ -1,0 +1,136 @@
+#include "server/session/exchange.hpp"
+
+#include <algorithm>
+
+namespace cohort::session {
+namespace {
+
+std::vector<description::Policy> policies_of(const Simulation& simulation) {
+  std::vector<description::Policy> policies;
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
+    policies.push_back(simulation.policy(robot));
+  return policies;
+}
+
+std::vector<std::size_t> command_sizes_of(const Simulation& simulation) {
+  std::vector<std::size_t> sizes;
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
+    sizes.push_back(simulation.kinds()[simulation.kind_of(robot)].command_size);
+  return sizes;
+}
+
+std::string reason_word(CommandFault::Reason reason) {
+  switch (reason) {
+    case CommandFault::Reason::wrong_size: return "wrong_size";
+    case CommandFault::Reason::not_finite: return "not_finite";
+    case CommandFault::Reason::out_of_range: return "out_of_range";
+  }
+  return "malformed";
+}
+
+}  // namespace
+
+Exchange::Exchange(Simulation& simulation)
+    : simulation_(simulation), barrier_(policies_of(simulation), command_sizes_of(simulation)) {
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
+    history_.emplace_back(simulation.kinds()[simulation.kind_of(robot)].observation_size *
+                          (simulation.policy(robot).delay + 1));
+}
+
+void Exchange::open(lockstep::Time now) {
+  const std::uint64_t tick = simulation_.tick();
+  barrier_.open(tick, now);
+  for (std::uint32_t robot = 0; robot < history_.size(); ++robot) {
+    if (!barrier_.is_due(robot, tick)) continue;
+    const auto values = kept(robot, tick);
+    std::ranges::copy(simulation_.observation(robot), history_[robot].begin() + (values.data() - history_[robot].data()));
+  }
+}
+
+std::span<const double> Exchange::kept(std::uint32_t robot, std::uint64_t tick) const {
+  const std::size_t slots = simulation_.policy(robot).delay + 1;
+  const std::size_t size = history_[robot].size() / slots;
+  return {history_[robot].data() + size * (tick % slots), size};
+}
+
+void Exchange::fill_frame(Frame& frame, std::span<const std::uint32_t> robots, std::uint64_t tick) const {
+  frame.robots.clear();
+  frame.values.clear();
+  for (const std::uint32_t robot : robots) {
+    if (!barrier_.is_due(robot, tick)) continue;
+    frame.robots.push_back(robot);
+    const auto values = kept(robot, tick);
+    frame.values.insert(frame.values.end(), values.begin(), values.end());
+  }
+}
+
+Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_t frame_tick,
+                               std::span<const std::uint32_t> robots, std::span<const double> values) {
+  Taken taken;
+  const auto reject = [&](std::string reason, std::string text) {
+    if (!taken.rejection) taken.rejection = Rejection{std::move(reason), std::move(text)};
+  };
+  const std::string frame_text = "the answer to tick " + std::to_string(frame_tick);
+  if (frame_tick > barrier_.tick()) {
+    reject("early", frame_text + " came at tick " + std::to_string(barrier_.tick()));
+    return taken;
+  }
+  std::vector<std::uint32_t> due;
+  std::size_t expected_size = 0;
+  for (const std::uint32_t robot : held) {
+    if (!barrier_.is_due(robot, frame_tick)) continue;
+    due.push_back(robot);
+    expected_size += simulation_.kinds()[simulation_.kind_of(robot)].command_size;
+  }
+  if (!std::ranges::equal(due, robots)) {
+    reject("malformed", frame_text + " is not for the robots of that frame");
+    return taken;
+  }
+  const bool sizes_fit = values.size() == expected_size;
+  for (const std::uint32_t robot : due) {
+    const std::size_t size = simulation_.kinds()[simulation_.kind_of(robot)].command_size;
+    switch (barrier_.judge(robot, frame_tick)) {
+      case lockstep::Barrier::Verdict::accepted: {
+        std::optional<CommandFault> fault;
+        if (!sizes_fit) {
+          fault = CommandFault{CommandFault::Reason::wrong_size, "",
+                               frame_text + " has " + std::to_string(values.size()) + " values, expected " +
+                                   std::to_string(expected_size)};
+        } else {
+          fault = simulation_.check_command(robot, values.first(size));
+        }
+        if (fault) {
+          reject(reason_word(fault->reason), fault->text);
+          taken.is_fault = true;
+          const description::OnLate on_late = simulation_.policy(robot).on_late;
+          taken.ends_run |= on_late == description::OnLate::wait || on_late == description::OnLate::stop;
+          barrier_.refuse(robot, frame_tick);
+        } else {
+          barrier_.answer(robot, frame_tick, values.first(size));
+          ++taken.accepted;
+        }
+        break;
+      }
+      case lockstep::Barrier::Verdict::repeated: reject("repeated", frame_text + " came twice"); break;
+      case lockstep::Barrier::Verdict::early: reject("early", frame_text + " came before its frame"); break;
+      case lockstep::Barrier::Verdict::stale:
+        reject("stale", frame_text + " came at tick " + std::to_string(barrier_.tick()));
+        break;
+    }
+    if (sizes_fit) values = values.subspan(size);
+  }
+  return taken;
+}
+
+void Exchange::apply() {
+  for (std::uint32_t robot = 0; robot < simulation_.robot_count(); ++robot) {
+    const lockstep::Barrier::Outcome outcome = barrier_.outcome(robot);
+    switch (outcome.kind) {
+      case lockstep::Barrier::Outcome::Kind::keep: break;
+      case lockstep::Barrier::Outcome::Kind::command: simulation_.set_command(robot, outcome.values); break;
+      case lockstep::Barrier::Outcome::Kind::neutral: simulation_.set_neutral_command(robot); break;
+    }
+  }
+}
+
+}  // namespace cohort::session

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "idl/messages.hpp"
+#include "server/description/experiment.hpp"
+#include "server/simulation/simulation.hpp"
+
+/// The robots of a simulation in the words of the wire.
+namespace cohort::session {
+
+/// One for each kind of robot; RobotDescription::description is its index in Simulation::kinds().
+std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation);
+
+/// What an Admit says of each robot. The seed for a controller's own randomness depends on the experiment's seed and the
+/// robot's name only.
+std::vector<wire::AdmittedRobot> admit_robots(const description::Experiment& experiment, const Simulation& simulation,
+                                              std::span<const std::uint32_t> robots);
+
+}  // namespace cohort::session

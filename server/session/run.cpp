@@ -1,0 +1,58 @@
+#include "server/session/run.hpp"
+
+namespace cohort::session {
+
+RunBook::RunBook(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
+                 RunListener listener)
+    : simulation_(simulation),
+      options_(options),
+      listener_(std::move(listener)),
+      step_(experiment.world.step),
+      total_ticks_(static_cast<std::uint64_t>(experiment.duration / experiment.world.step)),
+      start_(Clock::now()),
+      last_report_(start_) {}
+
+void RunBook::start() {
+  started_ = true;
+  start_ = Clock::now();
+  last_report_ = start_;
+}
+
+RunBook::Clock::time_point RunBook::due_time() const {
+  if (options_.speed <= 0.0) return start_;
+  const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulation_.time().count()) / options_.speed);
+  return start_ + std::chrono::duration_cast<Clock::duration>(wall);
+}
+
+Progress RunBook::progress_at(Clock::time_point now) {
+  Progress progress;
+  progress.time = simulation_.time();
+  progress.duration = step_ * static_cast<std::int64_t>(total_ticks_);
+  progress.started = started_;
+  const std::chrono::duration<double> wall = now - last_report_;
+  const std::chrono::duration<double> simulated = progress.time - last_report_time_;
+  progress.real_time_factor = wall.count() > 0.0 ? simulated / wall : 0.0;
+  last_report_ = now;
+  last_report_time_ = progress.time;
+  return progress;
+}
+
+void RunBook::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
+  if (log_.add(simulation_.tick(), kind, text, count) && listener_.event)
+    listener_.event({simulation_.tick(), kind, text, count});
+}
+
+RunResult RunBook::finish(RunResult::End end, std::string error) {
+  result_.end = end;
+  result_.error = std::move(error);
+  result_.ticks = simulation_.tick();
+  result_.sim_time = simulation_.time();
+  result_.wall_time = started_ ? Clock::now() - start_ : Clock::duration::zero();
+  result_.state_hash = simulation_.state_hash();
+  result_.robots = simulation_.robot_count();
+  result_.touches = simulation_.touches();
+  result_.events.assign(log_.events().begin(), log_.events().end());
+  return std::move(result_);
+}
+
+}  // namespace cohort::session

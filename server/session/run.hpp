@@ -1,0 +1,101 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/lockstep/latency_histogram.hpp"
+#include "server/session/events.hpp"
+#include "server/simulation/simulation.hpp"
+
+/// What a run over DDS and a run in one process have in common.
+namespace cohort::session {
+
+struct RunOptions {
+  double speed = 0.0;  ///< simulated seconds per wall second at the most; 0: as fast as it goes
+};
+
+/// How far a run is.
+struct Progress {
+  std::chrono::nanoseconds time{0};      ///< simulated
+  std::chrono::nanoseconds duration{0};  ///< simulated, of the whole run
+  double real_time_factor = 0.0;         ///< over the last report's interval
+  bool started = false;                  ///< false while controllers are missing at the start
+  std::vector<std::string> awaited;      ///< names of the robots that are waited for, in order
+  std::string awaited_from;              ///< who drives the first of them, if anybody does
+  std::chrono::nanoseconds waiting{0};   ///< wall time since the wait began
+};
+
+/// Told what happens, on the thread that runs. Either may be empty.
+struct RunListener {
+  std::function<void(const Progress&)> progress;  ///< a few times a second, also while waiting
+  std::function<void(const Event&)> event;        ///< the first of its kind and text
+};
+
+struct RunResult {
+  enum class End {
+    finished,     ///< the whole duration was simulated
+    interrupted,  ///< asked to stop
+    failed,       ///< `error` says why
+  };
+  End end = End::finished;
+  std::string error;
+  std::uint64_t ticks = 0;
+  std::chrono::nanoseconds sim_time{0};
+  std::chrono::nanoseconds wall_time{0};  ///< from the first frame to the last step
+  std::uint64_t state_hash = 0;
+  std::uint32_t robots = 0;
+  lockstep::LatencyHistogram barrier;  ///< from the first frame of a tick sent to the last answer needed
+  std::uint64_t late = 0;              ///< answers that missed their deadline
+  TouchCounts touches;
+  std::vector<Event> events;
+};
+
+/// Keeps the books of one run: wall time, pace, progress reports, events.
+class RunBook {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  RunBook(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
+          RunListener listener);
+
+  std::uint64_t total_ticks() const { return total_ticks_; }
+  void start();  ///< the first frame is about to go out
+  /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
+  template <class Complete>
+  void report(bool now_anyway, Complete&& complete) {
+    const Clock::time_point now = Clock::now();
+    if (!listener_.progress || (!now_anyway && now - last_report_ < report_interval)) return;
+    Progress progress = progress_at(now);
+    complete(progress);
+    listener_.progress(progress);
+  }
+  Clock::time_point next_report() const { return last_report_ + report_interval; }
+  /// When the next tick may begin at the asked speed.
+  Clock::time_point due_time() const;
+  void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
+  void add_barrier(std::chrono::nanoseconds latency) { result_.barrier.add(latency); }
+  void add_late() { ++result_.late; }
+  /// Closes the books.
+  RunResult finish(RunResult::End end, std::string error = {});
+
+ private:
+  static constexpr std::chrono::milliseconds report_interval{200};
+  Progress progress_at(Clock::time_point now);
+
+  const Simulation& simulation_;
+  RunOptions options_;
+  RunListener listener_;
+  std::chrono::nanoseconds step_;
+  std::uint64_t total_ticks_;
+  bool started_ = false;
+  Clock::time_point start_;
+  Clock::time_point last_report_;
+  std::chrono::nanoseconds last_report_time_{0};  // simulated
+  EventLog log_;
+  RunResult result_;
+};
+
+}  // namespace cohort::session

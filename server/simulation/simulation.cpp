@@ -1,0 +1,193 @@
+#include "server/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "server/core/hash.hpp"
+
+namespace cohort {
+namespace {
+
+constexpr std::size_t robots_a_chunk = 32;
+constexpr std::size_t bodies_a_chunk = 64;
+constexpr std::uint32_t none = 0xffffffffu;
+
+std::size_t total_size(const std::vector<Channel>& channels) {
+  std::size_t size = 0;
+  for (const Channel& channel : channels) size += channel.size;
+  return size;
+}
+
+std::vector<double> neutral_values(const RobotKind& kind) {
+  std::vector<double> values;
+  for (const Channel& channel : kind.command) values.insert(values.end(), channel.size, channel.neutral);
+  return values;
+}
+
+}  // namespace
+
+Simulation::Simulation(const description::Experiment& experiment, unsigned threads)
+    : experiment_(experiment), workers_(threads), world_(experiment.world, workers_) {
+  const description::World& world = experiment.world;
+  kind_of_model_.assign(world.models.size(), none);
+  robot_of_body_.assign(world.instances.size(), none);
+  is_ground_.assign(world.instances.size(), 0);
+  for (std::uint32_t solid = 0; solid < world_.scene().size(); ++solid)
+    if (std::holds_alternative<description::Plane>(world_.scene().solid(solid).shape))
+      is_ground_[world_.scene().solid(solid).body] = 1;
+
+  robots_.resize(world.robots.size());
+  for (const description::Team& team : experiment.teams)
+    for (const std::uint32_t robot : team.robots) robots_[robot].policy = team.policy;
+  for (std::uint32_t robot = 0; robot < robots_.size(); ++robot) build_robot(robot);
+  body_hashes_.resize(world.instances.size());
+  sense();
+}
+
+Simulation::~Simulation() = default;
+
+void Simulation::build_robot(std::uint32_t id) {
+  const description::World& world = experiment_.world;
+  Robot& robot = robots_[id];
+  robot.body = static_cast<std::uint32_t>(world.robots[id]);
+  robot_of_body_[robot.body] = id;
+  const description::Instance& instance = world.robot(id);
+  const description::Model& model = world.robot_model(id);
+
+  RobotKind kind{model.name, {}, {}, 0, 0};
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    if (auto sensor = sensing::make_sensor(model.devices[device], model,
+                                           {world_, robot.body, instance.name, experiment_.seed})) {
+      const std::vector<Channel> channels = sensor->channels();
+      kind.observation.insert(kind.observation.end(), channels.begin(), channels.end());
+      robot.sensors.push_back(std::move(sensor));
+      robot.sensor_sizes.push_back(total_size(channels));
+    }
+    if (auto actuator = actuation::make_actuator(model, device, world_, robot.body)) {
+      const std::vector<Channel> channels = actuator->channels();
+      kind.command.insert(kind.command.end(), channels.begin(), channels.end());
+      robot.actuators.push_back(std::move(actuator));
+      robot.actuator_sizes.push_back(total_size(channels));
+    }
+  }
+  std::uint32_t& known = kind_of_model_[instance.model];
+  if (known == none) {
+    known = static_cast<std::uint32_t>(kinds_.size());
+    kind.observation_size = total_size(kind.observation);
+    kind.command_size = total_size(kind.command);
+    kinds_.push_back(std::move(kind));
+  }
+  robot.kind = known;
+  robot.observation_offset = observations_.size();
+  observations_.resize(observations_.size() + kinds_[known].observation_size);
+  robot.command = neutral_values(kinds_[known]);
+}
+
+bool Simulation::is_due(std::uint32_t robot, std::uint64_t tick) const {
+  const description::Policy& policy = robots_[robot].policy;
+  return tick >= policy.phase && (tick - policy.phase) % policy.period == 0;
+}
+
+std::span<const double> Simulation::observation(std::uint32_t robot) const {
+  return {observations_.data() + robots_[robot].observation_offset, kinds_[robots_[robot].kind].observation_size};
+}
+
+std::optional<CommandFault> Simulation::check_command(std::uint32_t robot, std::span<const double> values) const {
+  using Reason = CommandFault::Reason;
+  const RobotKind& kind = kinds_[robots_[robot].kind];
+  std::ostringstream text;
+  if (values.size() != kind.command_size) {
+    text << "the command of " << robot_name(robot) << " has " << values.size() << " values, expected "
+         << kind.command_size;
+    return CommandFault{Reason::wrong_size, "", text.str()};
+  }
+  std::size_t i = 0;
+  for (const Channel& channel : kind.command) {
+    for (std::uint32_t k = 0; k < channel.size; ++k, ++i) {
+      const bool finite = std::isfinite(values[i]);
+      if (finite && values[i] >= channel.lower && values[i] <= channel.upper) continue;
+      text << robot_name(robot) << ": " << channel.name << " is " << values[i] << " " << channel.unit << ", expected "
+           << channel.lower << " to " << channel.upper;
+      return CommandFault{finite ? Reason::out_of_range : Reason::not_finite, channel.name, text.str()};
+    }
+  }
+  return std::nullopt;
+}
+
+void Simulation::set_command(std::uint32_t robot, std::span<const double> values) {
+  std::ranges::copy(values, robots_[robot].command.begin());
+}
+
+void Simulation::set_neutral_command(std::uint32_t robot) {
+  robots_[robot].command = neutral_values(kinds_[robots_[robot].kind]);
+}
+
+void Simulation::step() {
+  for (Robot& robot : robots_) {
+    std::span<const double> values = robot.command;
+    for (std::size_t i = 0; i < robot.actuators.size(); ++i) {
+      robot.actuators[i]->apply(values.first(robot.actuator_sizes[i]));
+      values = values.subspan(robot.actuator_sizes[i]);
+    }
+  }
+  world_.step();
+  ++tick_;
+  count_touches();
+  sense();
+}
+
+void Simulation::sense() {
+  workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t id = begin; id < end; ++id) {
+      if (!is_due(static_cast<std::uint32_t>(id), tick_)) continue;
+      const Robot& robot = robots_[id];
+      std::span<double> values(observations_.data() + robot.observation_offset,
+                               kinds_[robot.kind].observation_size);
+      for (std::size_t i = 0; i < robot.sensors.size(); ++i) {
+        robot.sensors[i]->sense(tick_, values.first(robot.sensor_sizes[i]));
+        values = values.subspan(robot.sensor_sizes[i]);
+      }
+    }
+  });
+}
+
+void Simulation::count_touches() {
+  std::vector<char> touches_obstacle(robots_.size(), 0);
+  std::vector<char> touches_robot(robots_.size(), 0);
+  const auto note = [&](std::uint32_t body, std::uint32_t other) {
+    const std::uint32_t robot = robot_of_body_[body];
+    if (robot == none || is_ground_[other]) return;
+    (robot_of_body_[other] == none ? touches_obstacle : touches_robot)[robot] = 1;
+  };
+  for (const physics::Contact& contact : world_.contacts()) {
+    note(contact.body_a, contact.body_b);
+    note(contact.body_b, contact.body_a);
+  }
+  touches_.robot_ticks += robots_.size();
+  for (const char touched : touches_obstacle) touches_.obstacles += static_cast<std::uint64_t>(touched);
+  for (const char touched : touches_robot) touches_.robots += static_cast<std::uint64_t>(touched);
+}
+
+std::uint64_t Simulation::state_hash() const {
+  workers_.for_each_chunk(body_hashes_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t body = begin; body < end; ++body) {
+      StateHash hash;
+      world_.hash_body(static_cast<std::uint32_t>(body), hash);
+      if (robot_of_body_[body] != none) {
+        for (const double value : observation(robot_of_body_[body])) hash.add(value);
+        for (const double value : robots_[robot_of_body_[body]].command) hash.add(value);
+      }
+      body_hashes_[body] = hash.value();
+    }
+  });
+  StateHash hash;
+  hash.add(tick_);
+  for (const std::uint64_t body_hash : body_hashes_) hash.add(body_hash);
+  world_.hash_contacts(hash);
+  return hash.value();
+}
+
+Pose Simulation::robot_pose(std::uint32_t robot) const { return world_.link_pose(robots_[robot].body, 0); }
+
+}  // namespace cohort

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/actuation/actuator.hpp"
+#include "server/core/channel.hpp"
+#include "server/core/worker_pool.hpp"
+#include "server/description/experiment.hpp"
+#include "server/physics/world.hpp"
+#include "server/sensing/sensor.hpp"
+
+namespace cohort {
+
+/// Robots of one model: what they observe and how they are commanded.
+struct RobotKind {
+  std::string model;
+  std::vector<Channel> observation;
+  std::vector<Channel> command;
+  std::size_t observation_size = 0;  ///< float64 values
+  std::size_t command_size = 0;
+};
+
+/// Why a command cannot act.
+struct CommandFault {
+  enum class Reason { wrong_size, not_finite, out_of_range };
+  Reason reason;
+  std::string channel;  ///< empty for wrong_size
+  std::string text;     ///< a sentence that says what was found and what was expected
+};
+
+/// Robot-ticks in which a robot touched something, since the run began.
+struct TouchCounts {
+  std::uint64_t robot_ticks = 0;  ///< robots times ticks
+  std::uint64_t obstacles = 0;    ///< touched something that is neither a robot nor a plane
+  std::uint64_t robots = 0;       ///< touched another robot
+};
+
+/// One world, advancing tick by tick. Between calls it stands at a boundary: the state of tick() is complete, and the
+/// observations of the robots due at this tick are there. No network, no wall clock; every result is a function of the
+/// experiment and of the commands, for any number of threads. One thread calls it.
+class Simulation {
+ public:
+  /// Builds the world and senses tick 0. The experiment must outlive this. Throws std::invalid_argument for a world that
+  /// cannot be simulated.
+  Simulation(const description::Experiment& experiment, unsigned threads);
+  ~Simulation();
+
+  std::uint64_t tick() const { return tick_; }
+  /// Simulated time: tick() * step.
+  std::chrono::nanoseconds time() const { return experiment_.world.step * static_cast<std::int64_t>(tick_); }
+
+  std::uint32_t robot_count() const { return static_cast<std::uint32_t>(robots_.size()); }
+  const std::string& robot_name(std::uint32_t robot) const { return experiment_.world.robot(robot).name; }
+  std::span<const RobotKind> kinds() const { return kinds_; }
+  std::uint32_t kind_of(std::uint32_t robot) const { return robots_[robot].kind; }
+  const description::Policy& policy(std::uint32_t robot) const { return robots_[robot].policy; }
+  /// Whether the robot is asked at this tick.
+  bool is_due(std::uint32_t robot, std::uint64_t tick) const;
+
+  /// As of the last tick at which the robot was due.
+  std::span<const double> observation(std::uint32_t robot) const;
+
+  /// Nothing if `values` may act on `robot`.
+  std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const;
+  /// From this tick on the robot does this, until told otherwise. `values` must have passed `check_command`. Until the
+  /// first call every channel has its neutral value.
+  void set_command(std::uint32_t robot, std::span<const double> values);
+  /// The same with every channel's neutral value.
+  void set_neutral_command(std::uint32_t robot);
+
+  /// Actuates in the order of the robots, steps the world to the next boundary and senses there. Throws
+  /// std::runtime_error if a body's state is no longer finite.
+  void step();
+
+  /// Of this boundary: everything that decides how the run goes on, and the observations.
+  std::uint64_t state_hash() const;
+
+  Pose robot_pose(std::uint32_t robot) const;  ///< of its root link, X_WL
+  const physics::World& world() const { return world_; }
+  const TouchCounts& touches() const { return touches_; }
+
+ private:
+  struct Robot {
+    std::uint32_t kind;
+    std::uint32_t body;
+    description::Policy policy;
+    std::vector<std::unique_ptr<sensing::Sensor>> sensors;
+    std::vector<std::size_t> sensor_sizes;
+    std::vector<std::unique_ptr<actuation::Actuator>> actuators;
+    std::vector<std::size_t> actuator_sizes;
+    std::size_t observation_offset = 0;
+    std::vector<double> command;  // that acts now
+  };
+
+  void build_robot(std::uint32_t robot);
+  void sense();
+  void count_touches();
+
+  const description::Experiment& experiment_;
+  mutable WorkerPool workers_;
+  physics::World world_;
+  std::vector<RobotKind> kinds_;
+  std::vector<std::uint32_t> kind_of_model_;
+  std::vector<Robot> robots_;
+  std::vector<double> observations_;
+  std::vector<std::uint32_t> robot_of_body_;
+  std::vector<char> is_ground_;  // by body
+  std::uint64_t tick_ = 0;
+  TouchCounts touches_;
+  mutable std::vector<std::uint64_t> body_hashes_;
+};
+
+}  // namespace cohort

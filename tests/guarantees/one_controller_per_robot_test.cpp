@@ -1,0 +1,32 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/process.hpp"
+
+namespace cohort::testing {
+namespace {
+
+TEST(OneControllerPerRobot, ASecondClaimIsRefusedByNameAndTheRunGoesOn) {
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain",
+                  domain.text()});
+  Process holder({cohort_program(), "host", "obstacle_avoidance", "--robots", "all", "--domain", domain.text()});
+  ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
+  Process second({cohort_program(), "host", "obstacle_avoidance", "--robots", "3", "--domain", domain.text()});
+  EXPECT_EQ(second.wait_for_exit(), 2) << second.output();
+  EXPECT_NE(second.output().find("explorers/sbot_3 is driven by"), std::string::npos) << second.output();
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(holder.wait_for_exit(), 0) << holder.output();
+  EXPECT_NE(server.output().find(reference_hash(10)), std::string::npos) << server.output();
+}
+
+TEST(OneControllerPerRobot, AClaimOnARobotThatDoesNotExistIsRefusedByName) {
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", demo_experiment(), "--domain", domain.text()});
+  Process stranger({cohort_program(), "host", "obstacle_avoidance", "--robots", "explorers/sbot_99", "--domain",
+                    domain.text()});
+  EXPECT_EQ(stranger.wait_for_exit(), 2) << stranger.output();
+  EXPECT_NE(stranger.output().find("explorers/sbot_99"), std::string::npos) << stranger.output();
+}
+
+}  // namespace
+}  // namespace cohort::testing

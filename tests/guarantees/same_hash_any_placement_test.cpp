@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/process.hpp"
+
+namespace cohort::testing {
+namespace {
+
+TEST(SameHashAnyPlacement, InProcessOneProcessAndAProcessForEachRobotGiveTheSameBits) {
+  const std::string expected = reference_hash(10);
+  for (const char* placement : {"process", "per-robot"}) {
+    const auto summary = run_demo({"--controllers", placement, "--duration", "10"});
+    EXPECT_EQ(summary["state_hash"], expected) << placement;
+    EXPECT_EQ(summary["late"], 0);
+  }
+}
+
+TEST(SameHashAnyPlacement, ControllersThatAttachFromOutsideGiveTheSameBits) {
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "5", "--domain", domain.text()});
+  Process first({cohort_program(), "host", "obstacle_avoidance", "--robots", "0..4,9", "--domain", domain.text()});
+  ASSERT_TRUE(server.wait_for_output("waiting for explorers/sbot_5")) << server.output();
+  Process second({cohort_program(), "host", "obstacle_avoidance", "--robots", "5..8", "--domain", domain.text()});
+  Process third({COHORT_BUILD_DIR "/bin/obstacle_avoidance", "--robots", "10..15", "--domain", domain.text()});
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(first.wait_for_exit(), 0) << first.output();
+  EXPECT_EQ(second.wait_for_exit(), 0) << second.output();
+  EXPECT_EQ(third.wait_for_exit(), 0) << third.output();
+  EXPECT_NE(server.output().find(reference_hash(5)), std::string::npos) << server.output();
+}
+
+TEST(SameHashAnyPlacement, TheSameRunTwiceInARowGivesTheSameBits) {
+  const auto once = run_demo({"--duration", "10"});
+  const auto again = run_demo({"--duration", "10"});
+  EXPECT_EQ(once["state_hash"], again["state_hash"]);
+}
+
+}  // namespace
+}  // namespace cohort::testing

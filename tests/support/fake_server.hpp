@@ -1,0 +1,126 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "idl/wire.hpp"
+#include "tests/support/free_domain.hpp"
+
+namespace cohort::test {
+
+/// The server's side of the protocol, one message at a time, for tests of clients: says what it is told to say and keeps
+/// what it hears.
+class FakeServer {
+ public:
+  struct Answer {
+    std::uint64_t epoch = 0;
+    std::uint64_t tick = 0;
+    std::vector<std::uint32_t> robots;
+    std::vector<double> values;
+    bool operator==(const Answer&) const = default;
+  };
+
+  FakeServer() {
+    // Not before all else is there: the readers call back at once.
+    joins_.emplace(free_.server,
+                   wire::Reader<wire::Join>::Callbacks{[this](const wire::Join& join, const wire::Sender&) {
+                                                         const std::lock_guard lock(mutex_);
+                                                         heard_join_ = join;
+                                                       },
+                                                       nullptr});
+    commands_.emplace(
+        free_.server,
+        wire::Reader<wire::Command>::Callbacks{[this](const wire::Command& command, const wire::Sender&) {
+                                                 const std::lock_guard lock(mutex_);
+                                                 answers_.push_back({command.epoch, command.tick,
+                                                                     {command.robots.begin(), command.robots.end()},
+                                                                     {command.values.begin(), command.values.end()}});
+                                               },
+                                               nullptr},
+        "", 8);
+    reports_.emplace(free_.server,
+                     wire::Reader<wire::Report>::Callbacks{[this](const wire::Report& report, const wire::Sender&) {
+                                                             const std::lock_guard lock(mutex_);
+                                                             heard_report_ = report;
+                                                           },
+                                                           nullptr});
+  }
+
+  std::uint32_t domain() const { return free_.domain; }
+
+  /// The Join of a client; makes ready to speak to it. Empty if none comes.
+  std::optional<wire::Join> accept() {
+    if (!eventually([&] { return join().has_value(); })) return std::nullopt;
+    client_ = join()->client;
+    const std::string partition = wire::partition_of(client_);
+    admits_.emplace(free_.server, partition);
+    frames_.emplace(free_.server, partition, 8);
+    own_reports_.emplace(free_.server, partition);
+    descriptions_.emplace(free_.server);
+    return join();
+  }
+
+  void describe(const wire::RobotDescription& description) { descriptions_->write(description); }
+
+  void admit(wire::Admit admit) {
+    admit.client = client_;
+    admits_->write(admit);
+  }
+
+  void report(wire::Report report) {
+    report.client = client_;
+    own_reports_->write(report);
+  }
+
+  void send(std::uint64_t tick, std::vector<double> values, std::uint64_t epoch = 1,
+            std::vector<std::uint32_t> robots = {0}) {
+    frames_->write({.client = client_, .epoch = epoch, .tick = tick, .robots = robots, .values = values});
+  }
+
+  /// Sends a frame until an answer comes that was not there before; empty if none comes.
+  std::optional<Answer> ask(std::uint64_t tick, const std::vector<double>& values, std::uint64_t epoch = 1,
+                            const std::vector<std::uint32_t>& robots = {0}) {
+    const std::size_t before = answers().size();
+    for (int attempt = 0; attempt < 50; ++attempt) {
+      send(tick, values, epoch, robots);
+      if (eventually([&] { return answers().size() > before; }, std::chrono::milliseconds(200))) return answers()[before];
+    }
+    return std::nullopt;
+  }
+
+  std::vector<Answer> answers() const {
+    const std::lock_guard lock(mutex_);
+    return answers_;
+  }
+  std::optional<wire::Join> join() const {
+    const std::lock_guard lock(mutex_);
+    return heard_join_;
+  }
+  std::optional<wire::Report> heard_report() const {
+    const std::lock_guard lock(mutex_);
+    return heard_report_;
+  }
+
+ private:
+  FreeDomain free_ = take_free_domain();
+  std::uint64_t client_ = 0;
+  mutable std::mutex mutex_;
+  std::optional<wire::Join> heard_join_;
+  std::optional<wire::Report> heard_report_;
+  std::vector<Answer> answers_;
+  std::optional<wire::Writer<wire::RobotDescription>> descriptions_;
+  std::optional<wire::Writer<wire::Admit>> admits_;
+  std::optional<wire::Writer<wire::Observation>> frames_;
+  std::optional<wire::Writer<wire::Report>> own_reports_;
+  std::optional<wire::Reader<wire::Join>> joins_;
+  std::optional<wire::Reader<wire::Command>> commands_;
+  std::optional<wire::Reader<wire::Report>> reports_;
+};
+
+}  // namespace cohort::test

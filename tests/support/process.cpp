@@ -1,0 +1,149 @@
+#include "tests/support/process.hpp"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace cohort::testing {
+namespace {
+
+// Apart from the domains that `cohort run` takes by itself (1 to 59), and below those whose ports are ephemeral ones.
+constexpr std::uint32_t first_domain = 60;
+constexpr std::uint32_t last_domain = 99;
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+template <class Condition>
+bool poll_until(Condition&& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(5ms);
+  }
+  return true;
+}
+
+bool port_is_free(std::uint32_t domain) {
+  const int udp = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(7410 + 250 * domain));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const bool free = bind(udp, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  close(udp);
+  return free;
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "cohort-test-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no scratch folder can be made");
+  path_ = pattern;
+}
+
+ScratchFolder::~ScratchFolder() { std::filesystem::remove_all(path_); }
+
+Process::Process(std::vector<std::string> command, const Environment& environment) {
+  std::vector<char*> arguments;
+  for (std::string& argument : command) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  const std::string output = (folder_ / "output").string();
+  pid_ = fork();
+  if (pid_ == 0) {
+    setpgid(0, 0);
+    const int file = open(output.c_str(), O_CREAT | O_WRONLY | O_APPEND, 0600);
+    dup2(file, STDOUT_FILENO);
+    dup2(file, STDERR_FILENO);
+    for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
+    execv(arguments[0], arguments.data());
+    _exit(127);
+  }
+  setpgid(pid_, pid_);
+}
+
+Process::~Process() {
+  if (running()) {
+    for (const pid_t child : children_of(pid_)) kill(child, SIGKILL);
+    kill(-pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+}
+
+void Process::signal(int number) const { kill(pid_, number); }
+
+std::string Process::output() const { return read_file(folder_ / "output"); }
+
+bool Process::running() {
+  if (exit_code_) return false;
+  int status = 0;
+  if (waitpid(pid_, &status, WNOHANG) != pid_) return true;
+  exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return false;
+}
+
+bool Process::wait_for_output(const std::string& text) {
+  poll_until([&] { return output().find(text) != std::string::npos || !running(); });
+  return output().find(text) != std::string::npos;
+}
+
+std::optional<int> Process::wait_for_exit() {
+  poll_until([&] { return !running(); });
+  return exit_code_;
+}
+
+std::vector<pid_t> children_of(pid_t parent) {
+  std::vector<pid_t> children;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(parent) + "/task")) {
+    std::istringstream list(read_file(task.path() / "children"));
+    for (pid_t child; list >> child;) children.push_back(child);
+  }
+  return children;
+}
+
+ReservedDomain::ReservedDomain() {
+  for (std::uint32_t i = 0; i <= last_domain - first_domain; ++i) {
+    number_ = first_domain + (static_cast<std::uint32_t>(getpid()) + i) % (last_domain - first_domain + 1);
+    const auto file = std::filesystem::temp_directory_path() / ("cohort-test-domain-" + std::to_string(number_));
+    lock_ = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0 && port_is_free(number_)) return;
+    if (lock_ >= 0) close(lock_);
+  }
+  throw std::runtime_error("no free DDS domain");
+}
+
+ReservedDomain::~ReservedDomain() { close(lock_); }
+
+std::string cohort_program() { return COHORT_BUILD_DIR "/bin/cohort"; }
+std::string demo_experiment() { return COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml"; }
+
+nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment) {
+  const ScratchFolder folder;
+  const std::string summary = (folder / "summary.json").string();
+  std::vector<std::string> command = {cohort_program(), "run", demo_experiment(), "--summary", summary};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  Process process(command, environment);
+  EXPECT_EQ(process.wait_for_exit(), 0) << process.output();
+  return nlohmann::json::parse(read_file(summary), nullptr, false);
+}
+
+std::string reference_hash(double seconds) {
+  const nlohmann::json summary = run_demo({"--controllers", "inprocess", "--duration", std::to_string(seconds)});
+  return summary.value("state_hash", "no summary");
+}
+
+}  // namespace cohort::testing

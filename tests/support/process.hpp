@@ -1,0 +1,84 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Running `cohort` as users do, from tests.
+namespace cohort::testing {
+
+using namespace std::chrono_literals;
+
+/// How long a test waits for something that should happen before it fails: long, since it is never waited for in vain.
+inline constexpr std::chrono::seconds patience{60};
+
+/// A folder that is gone with this.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ~ScratchFolder();
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A program in a process group of its own, killed with all that it started when this is gone.
+class Process {
+ public:
+  using Environment = std::map<std::string, std::string>;
+  explicit Process(std::vector<std::string> command, const Environment& environment = {});
+  Process(const Process&) = delete;
+  ~Process();
+
+  pid_t pid() const { return pid_; }
+  void signal(int number) const;
+  /// What it wrote to standard output and standard error so far, in one.
+  std::string output() const;
+  /// Waits until the output contains `text`; false if the process ended without it or patience ran out.
+  bool wait_for_output(const std::string& text);
+  /// Waits for its end. Its exit code, or 128 + the signal that ended it; nothing if patience ran out.
+  std::optional<int> wait_for_exit();
+  bool running();
+
+ private:
+  ScratchFolder folder_;
+  pid_t pid_ = -1;
+  std::optional<int> exit_code_;
+};
+
+/// Processes started by `parent`.
+std::vector<pid_t> children_of(pid_t parent);
+
+/// A DDS domain that no other test of this machine has while this lives.
+class ReservedDomain {
+ public:
+  ReservedDomain();
+  ReservedDomain(const ReservedDomain&) = delete;
+  ~ReservedDomain();
+  std::uint32_t number() const { return number_; }
+  std::string text() const { return std::to_string(number_); }
+
+ private:
+  std::uint32_t number_ = 0;
+  int lock_ = -1;
+};
+
+std::string cohort_program();
+std::string demo_experiment();
+
+/// Runs `cohort run` on the demo with more arguments, checks that it succeeds, and returns its summary.
+nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment = {});
+/// Hash of the first `seconds` of the demo with its controllers in the server's process: what every other way to run it
+/// has to reach.
+std::string reference_hash(double seconds);
+
+}  // namespace cohort::testing

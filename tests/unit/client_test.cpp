@@ -1,0 +1,215 @@
+#include "client_sdk/src/client.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/support/counting_controller.hpp"
+#include "tests/support/fake_server.hpp"
+
+namespace cohort {
+namespace {
+
+using std::chrono_literals::operator""s;
+using test::CountingController;
+using test::eventually;
+
+// A client on a thread of its own, stopped at the latest when this goes.
+class RunningClient {
+ public:
+  RunningClient(std::uint32_t domain, bool inline_step) {
+    ClientOptions options;
+    options.domain = domain;
+    options.robots = {"0", "team/*"};
+    options.inline_step = inline_step;
+    end_ = std::async(std::launch::async, [this, options] { return run_client(CountingController::plugin(), options, stop); });
+  }
+  ~RunningClient() { stop = true; }
+
+  // How it ended; empty if it still runs after ten seconds.
+  std::optional<ClientEnd> end() {
+    if (end_.wait_for(10s) != std::future_status::ready) return std::nullopt;
+    return end_.get();
+  }
+
+  std::atomic<bool> stop{false};
+
+ private:
+  std::future<ClientEnd> end_;
+};
+
+// The parameter: whether `step` runs on the thread of DDS.
+class ClientTest : public testing::TestWithParam<bool> {
+ protected:
+  void SetUp() override {
+    testing::internal::CaptureStderr();
+    client.emplace(server->domain(), GetParam());
+    ASSERT_TRUE(server->accept());
+  }
+  void TearDown() override {
+    client.reset();
+    if (!told) testing::internal::GetCapturedStderr();
+  }
+
+  // What the user was told.
+  std::string text_told() {
+    told = true;
+    return testing::internal::GetCapturedStderr();
+  }
+  void admit(std::uint64_t epoch = 1, wire::StartReason reason = wire::StartReason::first) {
+    server->describe(CountingController::description());
+    server->admit({.epoch = epoch, .start_reason = reason, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0"}}});
+  }
+  // The answer to a frame: steps made, tick, twice the reading, reason to start.
+  std::vector<double> ask(std::uint64_t tick, double reading, std::uint64_t epoch = 1) {
+    const auto answer = server->ask(tick, {reading}, epoch);
+    if (!answer || answer->values.size() != 6) return {};
+    EXPECT_EQ(answer->tick, tick);
+    EXPECT_EQ(answer->epoch, epoch);
+    return {answer->values.begin(), answer->values.begin() + 4};
+  }
+  using Values = std::vector<double>;
+
+  std::unique_ptr<test::FakeServer> server = std::make_unique<test::FakeServer>();
+  std::optional<RunningClient> client;
+  bool told = false;
+};
+
+INSTANTIATE_TEST_SUITE_P(, ClientTest, testing::Values(false, true), [](const auto& parameter) {
+  return std::string(parameter.param ? "stepping_inline" : "stepping_on_its_own_thread");
+});
+
+TEST_P(ClientTest, a_join_says_who_wants_which_robots) {
+  const auto join = server->join();
+  EXPECT_EQ(join->controller, "counting");
+  EXPECT_EQ(join->robots, (std::vector<std::string>{"0", "team/*"}));
+  EXPECT_NE(join->client, 0u);
+  EXPECT_NE(join->process, 0u);
+  EXPECT_FALSE(join->host.empty());
+}
+
+TEST_P(ClientTest, every_frame_is_answered_and_one_sent_again_gets_the_same_answer) {
+  admit();
+  EXPECT_EQ(ask(0, 0.5), (Values{1, 0, 1.0, 0}));
+  EXPECT_EQ(ask(1, 0.25), (Values{2, 1, 0.5, 0}));
+  EXPECT_EQ(ask(1, 0.75), (Values{2, 1, 0.5, 0})) << "from memory, without another step";
+  EXPECT_EQ(ask(0, 0.75), (Values{1, 0, 1.0, 0}));
+  EXPECT_EQ(ask(2, 0.0), (Values{3, 2, 0.0, 0}));
+}
+
+TEST_P(ClientTest, frames_may_come_before_the_admission_and_that_before_the_descriptions) {
+  // Until the frame is known to have arrived: the channel to the client may not be open at first.
+  server->send(0, {0.5});
+  server->admit({.epoch = 1, .robots = {{.robot = 0, .name = "r0", .description = 7}}});
+  server->describe(CountingController::description(7));
+  EXPECT_EQ(ask(0, 0.5), (Values{1, 0, 1.0, 0}));
+}
+
+TEST_P(ClientTest, a_new_epoch_starts_the_controllers_again_and_the_old_one_is_not_answered) {
+  admit(1);
+  EXPECT_EQ(ask(0, 0.5, 1), (Values{1, 0, 1.0, 0}));
+  admit(2, wire::StartReason::reset);
+  EXPECT_EQ(ask(0, 0.5, 2), (Values{2, 0, 1.0, 2})) << "the same controller";
+  server->send(1, {0.5}, 1);
+  admit(3, wire::StartReason::takeover);
+  EXPECT_EQ(ask(5, 0.5, 3), (Values{1, 5, 1.0, 1})) << "a new controller";
+  for (const auto& answer : server->answers()) EXPECT_FALSE(answer.epoch == 1 && answer.tick == 1);
+}
+
+TEST_P(ClientTest, a_refused_claim_ends_the_client_with_the_reason) {
+  server->admit({.status = wire::AdmitStatus::refused, .reason = "robot 0 is driven by 'other'"});
+  EXPECT_EQ(client->end(), ClientEnd::refused);
+  EXPECT_NE(text_told().find("robot 0 is driven by 'other'"), std::string::npos);
+}
+
+TEST_P(ClientTest, the_server_ends_the_run) {
+  admit();
+  ask(0, 0.5);
+  server->report({.kind = wire::ReportKind::finished});
+  EXPECT_EQ(client->end(), ClientEnd::finished);
+  EXPECT_EQ(text_told(), "");
+}
+
+TEST_P(ClientTest, another_process_takes_over) {
+  admit();
+  server->report({.kind = wire::ReportKind::superseded, .text = "by 'other' on host h"});
+  EXPECT_EQ(client->end(), ClientEnd::superseded);
+  EXPECT_NE(text_told().find("by 'other' on host h"), std::string::npos);
+}
+
+TEST_P(ClientTest, a_rejected_answer_is_told_once_for_each_reason_and_the_run_goes_on) {
+  admit();
+  ask(0, 0.5);
+  for (std::uint64_t tick = 0; tick < 3; ++tick) {
+    server->report({.kind = wire::ReportKind::rejected, .tick = tick, .reason = "stale", .text = "too late"});
+  }
+  server->report({.kind = wire::ReportKind::rejected, .reason = "early"});
+  EXPECT_EQ(ask(1, 0.5), (Values{2, 1, 1.0, 0}));
+  server->report({.kind = wire::ReportKind::failed, .text = "enough"});
+  EXPECT_EQ(client->end(), ClientEnd::failed);
+  const std::string text = text_told();
+  EXPECT_NE(text.find("stale"), std::string::npos);
+  EXPECT_EQ(text.find("stale"), text.rfind("stale"));
+  EXPECT_NE(text.find("early"), std::string::npos);
+  EXPECT_NE(text.find("enough"), std::string::npos);
+}
+
+TEST_P(ClientTest, a_controller_that_throws_tells_the_server_and_the_user) {
+  admit();
+  ask(0, 0.5);
+  server->send(1, {-1.0});
+  EXPECT_EQ(client->end(), ClientEnd::failed);
+  ASSERT_TRUE(eventually([&] { return server->heard_report().has_value(); }));
+  const wire::Report report = *server->heard_report();
+  EXPECT_EQ(report.kind, wire::ReportKind::failed);
+  EXPECT_EQ(report.reason, "exception");
+  EXPECT_EQ(report.tick, 1u);
+  EXPECT_NE(report.text.find("robot 'r0' failed in step at tick 1: it hurts"), std::string::npos);
+  EXPECT_NE(text_told().find(report.text), std::string::npos);
+}
+
+TEST_P(ClientTest, a_server_that_leaves_without_a_word_is_missed) {
+  admit();
+  ask(0, 0.5);
+  server.reset();
+  EXPECT_EQ(client->end(), ClientEnd::server_lost);
+  EXPECT_NE(text_told().find("is gone"), std::string::npos);
+}
+
+TEST_P(ClientTest, a_stop_ends_the_client) {
+  admit();
+  ask(0, 0.5);
+  client->stop = true;
+  EXPECT_EQ(client->end(), ClientEnd::interrupted);
+}
+
+TEST(ClientAlone, waits_for_a_server_says_so_and_can_be_stopped) {
+  // A domain that is free for the moment: nobody answers there.
+  const std::uint32_t domain = test::take_free_domain().domain;
+  testing::internal::CaptureStderr();
+  RunningClient client(domain, false);
+  // Long enough for the notice that comes after three seconds, whose text nothing else shows.
+  EXPECT_FALSE(eventually([] { return false; }, std::chrono::milliseconds(3300)));
+  client.stop = true;
+  EXPECT_EQ(client.end(), ClientEnd::interrupted);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("waiting for a server at 127.0.0.1, domain"), std::string::npos);
+}
+
+TEST(ClientAlone, finds_a_server_that_comes_later) {
+  const std::uint32_t domain = test::take_free_domain().domain;
+  RunningClient client(domain, false);
+  // Its announcements go nowhere until then.
+  EXPECT_FALSE(eventually([] { return false; }, std::chrono::milliseconds(300)));
+  auto participant = wire::Participant::server(domain);
+  std::atomic<bool> joined{false};
+  wire::Reader<wire::Join> joins(participant, {[&](const wire::Join&, const wire::Sender&) { joined = true; }, nullptr});
+  EXPECT_TRUE(eventually([&] { return joined.load(); }, 3s));
+}
+
+}  // namespace
+}  // namespace cohort

@@ -1,0 +1,171 @@
+#include "client_sdk/src/frame_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <vector>
+
+namespace cohort {
+namespace {
+
+constexpr std::uint64_t client = 9;
+
+wire::Admit lease(std::uint32_t run, std::uint64_t epoch, std::uint64_t tick, std::vector<wire::AdmittedRobot> robots) {
+  return {.client = client, .run = run, .epoch = epoch, .tick = tick, .robots = std::move(robots)};
+}
+
+class FrameQueueTest : public testing::Test {
+ protected:
+  void arrive(std::uint64_t tick, std::uint64_t epoch = 1, std::uint32_t run = 0) {
+    const std::vector<std::uint32_t> robots{3};
+    const std::vector<double> values{static_cast<double>(tick)};
+    queue.arrive({.client = client, .run = run, .epoch = epoch, .tick = tick, .robots = robots, .values = values});
+  }
+  // Answers what can be answered now, with ten times the tick, and returns the ticks.
+  std::vector<std::uint64_t> answer_all() {
+    std::vector<std::uint64_t> ticks;
+    while (const wire::Observation* frame = queue.next()) {
+      EXPECT_EQ(frame->values[0], static_cast<double>(frame->tick));
+      const std::vector<double> answer{10.0 * frame->values[0]};
+      const wire::Command command = queue.finish(answer);
+      EXPECT_EQ(command.client, client);
+      EXPECT_EQ(command.robots.size(), 1u);
+      EXPECT_EQ(command.values[0], 10.0 * static_cast<double>(command.tick));
+      ticks.push_back(command.tick);
+    }
+    return ticks;
+  }
+  std::optional<std::uint64_t> repeat() {
+    const auto command = queue.next_repeat();
+    if (!command) return std::nullopt;
+    EXPECT_EQ(command->values[0], 10.0 * static_cast<double>(command->tick));
+    return command->tick;
+  }
+  using Ticks = std::vector<std::uint64_t>;
+
+  FrameQueue queue;
+};
+
+TEST_F(FrameQueueTest, frames_that_come_before_their_lease_wait_for_it) {
+  arrive(0);
+  EXPECT_EQ(queue.next(), nullptr);
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  EXPECT_EQ(answer_all(), Ticks{0});
+}
+
+TEST_F(FrameQueueTest, a_frame_that_comes_again_is_answered_once_and_then_from_memory) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  arrive(0);
+  arrive(0);
+  EXPECT_EQ(answer_all(), Ticks{0});
+  EXPECT_EQ(repeat(), std::nullopt);
+  arrive(0);
+  arrive(0);
+  EXPECT_EQ(repeat(), 0u);
+  EXPECT_EQ(repeat(), std::nullopt);
+}
+
+TEST_F(FrameQueueTest, a_frame_that_comes_again_while_it_is_being_answered_needs_nothing_more) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  arrive(0);
+  ASSERT_NE(queue.next(), nullptr);
+  arrive(0);
+  queue.finish(std::vector<double>{0.0});
+  EXPECT_EQ(queue.next(), nullptr);
+  EXPECT_EQ(repeat(), std::nullopt);
+}
+
+TEST_F(FrameQueueTest, the_last_eight_answers_are_kept) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  for (std::uint64_t tick = 0; tick < 20; ++tick) {
+    arrive(tick);
+    EXPECT_EQ(answer_all(), Ticks{tick});
+  }
+  arrive(11);
+  EXPECT_EQ(repeat(), std::nullopt);
+  arrive(12);
+  EXPECT_EQ(repeat(), 12u);
+}
+
+TEST_F(FrameQueueTest, as_many_answers_are_kept_as_frames_can_be_under_way) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 12}}));
+  for (std::uint64_t tick = 0; tick < 20; ++tick) {
+    arrive(tick);
+    EXPECT_EQ(answer_all(), Ticks{tick});
+  }
+  arrive(7);
+  EXPECT_EQ(repeat(), 7u);
+}
+
+TEST_F(FrameQueueTest, frames_of_an_earlier_run_or_epoch_are_dropped) {
+  queue.begin(lease(1, 5, 0, {{.robot = 3}}));
+  arrive(0, 9, 0);
+  arrive(0, 4, 1);
+  EXPECT_EQ(answer_all(), Ticks{});
+  arrive(0, 5, 1);
+  EXPECT_EQ(answer_all(), Ticks{0});
+}
+
+TEST_F(FrameQueueTest, a_new_lease_forgets_the_answers_and_keeps_the_frames_sent_under_it) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  arrive(0);
+  answer_all();
+  arrive(1);
+  arrive(0, 1, 1);
+  queue.begin(lease(1, 1, 0, {{.robot = 3}}));
+  EXPECT_EQ(answer_all(), Ticks{0});
+  arrive(0, 1, 0);
+  EXPECT_EQ(repeat(), std::nullopt);
+}
+
+TEST_F(FrameQueueTest, frames_before_the_first_of_the_lease_are_dropped) {
+  arrive(4);
+  queue.begin(lease(0, 1, 5, {{.robot = 3}}));
+  arrive(3);
+  arrive(5);
+  EXPECT_EQ(answer_all(), Ticks{5});
+}
+
+TEST_F(FrameQueueTest, with_a_delay_a_frame_that_was_lost_is_awaited_before_the_next_is_answered) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
+  arrive(1);
+  arrive(2);
+  EXPECT_EQ(answer_all(), Ticks{}) << "the server still wants the answer to 0 and will send it again";
+  arrive(0);
+  EXPECT_EQ(answer_all(), (Ticks{0, 1, 2}));
+}
+
+TEST_F(FrameQueueTest, a_frame_that_the_server_has_given_up_is_not_awaited) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
+  arrive(1);
+  arrive(2);
+  arrive(3);
+  EXPECT_EQ(answer_all(), (Ticks{1, 2, 3})) << "3 is out, so the server needs no answer to 0 any more";
+}
+
+TEST_F(FrameQueueTest, without_a_delay_nothing_is_awaited) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  arrive(7);
+  arrive(4);
+  EXPECT_EQ(answer_all(), (Ticks{4, 7}));
+}
+
+TEST_F(FrameQueueTest, ticks_at_which_no_robot_is_due_are_not_awaited) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3, .period = 4, .phase = 1, .delay = 8}, {.robot = 5, .period = 6, .delay = 8}}));
+  arrive(0);
+  arrive(1);
+  arrive(5);
+  arrive(9);
+  EXPECT_EQ(answer_all(), (Ticks{0, 1, 5})) << "due: 0, 1, 5, 6, 9";
+  arrive(6);
+  EXPECT_EQ(answer_all(), (Ticks{6, 9}));
+}
+
+TEST_F(FrameQueueTest, a_flood_of_frames_is_bounded) {
+  for (std::uint64_t tick = 0; tick < 1000; ++tick) arrive(tick);
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  EXPECT_EQ(answer_all().size(), 64u);
+}
+
+}  // namespace
+}  // namespace cohort

@@ -1,0 +1,159 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "server/core/random.hpp"
+#include "server/geometry/scene.hpp"
+
+namespace cohort::geometry {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d random_vector(const RandomStream& random, std::uint64_t n, double half_width) {
+  return {half_width * (2 * random.uniform(n, 0) - 1), half_width * (2 * random.uniform(n, 1) - 1),
+          half_width * (2 * random.uniform(n, 2) - 1)};
+}
+
+Pose random_pose(const RandomStream& random, std::uint64_t n, double half_width) {
+  const Vector3d axis = random_vector(random, n + 1'000'000, 1.0).normalized();
+  return {random_vector(random, n, half_width),
+          Eigen::Quaterniond(Eigen::AngleAxisd(6.0 * random.uniform(n, 3), axis))};
+}
+
+TEST(Ray, EntersABoxThroughTheFaceThatItMeetsFirst) {
+  const RayEntry entry = cast_ray(description::Box{{2, 4, 6}}, {-5, 1, 2}, {1, 0, 0});
+  EXPECT_DOUBLE_EQ(entry.distance, 4.0);
+  EXPECT_EQ(entry.normal, Vector3d(-1, 0, 0));
+  EXPECT_TRUE(std::isinf(cast_ray(description::Box{{2, 4, 6}}, {-5, 3, 2}, {1, 0, 0}).distance));
+  EXPECT_TRUE(std::isinf(cast_ray(description::Box{{2, 4, 6}}, {5, 1, 2}, {1, 0, 0}).distance)) << "it lies behind";
+}
+
+TEST(Ray, EntersACylinderThroughItsSideOrItsEnds) {
+  const description::Cylinder cylinder{0.5, 2.0};
+  const RayEntry side = cast_ray(cylinder, {-2, 0.3, 0.5}, {1, 0, 0});
+  EXPECT_NEAR(side.distance, 2.0 - 0.4, 1e-15);
+  EXPECT_LT((side.normal - Vector3d(-0.8, 0.6, 0)).norm(), 1e-12);
+  const RayEntry top = cast_ray(cylinder, {0.1, 0.2, 3.0}, {0, 0, -1});
+  EXPECT_DOUBLE_EQ(top.distance, 2.0);
+  EXPECT_EQ(top.normal, Vector3d(0, 0, 1));
+  const Vector3d slanted = Vector3d(1, 0, -1).normalized();
+  EXPECT_NEAR(cast_ray(cylinder, {-1.2, 0, 2.0}, slanted).distance, std::sqrt(2.0), 1e-12) << "through the top";
+  EXPECT_TRUE(std::isinf(cast_ray(cylinder, {-2, 0, 1.5}, {1, 0, 0}).distance)) << "passes above";
+}
+
+TEST(Ray, EntersASphereAndAPlane) {
+  EXPECT_NEAR(cast_ray(description::Sphere{1.0}, {-3, 0.6, 0}, {1, 0, 0}).distance, 3.0 - 0.8, 1e-15);
+  const RayEntry plane = cast_ray(description::Plane{}, {0, 0, 2}, Vector3d(3, 0, -4) / 5.0);
+  EXPECT_NEAR(plane.distance, 2.5, 1e-15);
+  EXPECT_EQ(plane.normal, Vector3d(0, 0, 1));
+}
+
+TEST(Ray, ThatStartsInsideASolidHitsItAtOnce) {
+  const std::vector<Shape> shapes = {description::Box{{1, 1, 1}}, description::Sphere{0.5},
+                                     description::Cylinder{0.5, 1.0}, description::Plane{}};
+  for (const Shape& shape : shapes)
+    EXPECT_EQ(cast_ray(shape, {0.1, 0.1, -0.1}, {1, 0, 0}).distance, 0.0) << shape.index();
+}
+
+// Marches along the ray in small steps and asks whether the point is inside: slow, and of another kind than the closed forms.
+double marched_distance(const Shape& shape, const Vector3d& origin, const Vector3d& direction, double range) {
+  const auto inside = [&](const Vector3d& p) {
+    if (const auto* box = std::get_if<description::Box>(&shape))
+      return (p.cwiseAbs().array() <= 0.5 * box->size.array()).all();
+    if (const auto* sphere = std::get_if<description::Sphere>(&shape)) return p.norm() <= sphere->radius;
+    const auto& cylinder = std::get<description::Cylinder>(shape);
+    return p.head<2>().norm() <= cylinder.radius && std::abs(p.z()) <= 0.5 * cylinder.length;
+  };
+  for (double d = 0.0; d < range; d += 1e-3)
+    if (inside(origin + d * direction)) return d;
+  return std::numeric_limits<double>::infinity();
+}
+
+TEST(Ray, AgreesWithMarchingAlongItForRandomRays) {
+  const RandomStream random(7, "geometry_test", "rays");
+  const std::vector<Shape> shapes = {description::Box{{1.0, 0.6, 0.4}}, description::Sphere{0.5},
+                                     description::Cylinder{0.4, 0.8}};
+  int hits = 0;
+  for (std::uint64_t n = 0; n < 600; ++n) {
+    const Shape& shape = shapes[n % 3];
+    const Vector3d origin = random_vector(random, n, 2.0);
+    const Vector3d direction = (random_vector(random, n + 5000, 0.4) - origin).normalized();
+    const double exact = cast_ray(shape, origin, direction).distance;
+    const double marched = marched_distance(shape, origin, direction, 4.0);
+    if (std::isinf(exact)) {
+      EXPECT_TRUE(std::isinf(marched)) << n;
+    } else if (!std::isinf(marched)) {  // a corner may slip between two marks
+      EXPECT_NEAR(exact, marched, 2e-3) << n;
+      ++hits;
+    }
+  }
+  EXPECT_GT(hits, 300);
+}
+
+class RandomScene : public ::testing::Test {
+ protected:
+  RandomScene() {
+    for (std::uint64_t n = 0; n < 400; ++n) {
+      const bool moves = n % 2 == 0;
+      const double size = n % 50 == 1 ? 2.0 : 0.05 + 0.1 * random.uniform(n, 9);
+      const std::vector<Shape> shapes = {description::Box{{size, 0.1, 0.2}}, description::Sphere{0.05},
+                                         description::Cylinder{0.06, 0.1}};
+      scene.add({shapes[n % 50 == 1 ? 0 : n % 3], {}, static_cast<std::uint32_t>(n), moves, random_pose(random, n, 1.5)});
+    }
+    scene.add({description::Plane{}, {}, 400, false, {{0, 0, -1.4}}});
+    scene.build();
+    for (std::uint32_t n = 0; n < 400; n += 2) scene.set_pose(n, random_pose(random, n + 9000, 1.5));
+    scene.update();
+  }
+
+  RandomStream random{11, "geometry_test", "scene"};
+  Scene scene;
+};
+
+TEST_F(RandomScene, FindsEverySolidNearbyExactlyOnce) {
+  for (std::uint64_t n = 0; n < 200; ++n) {
+    const Vector3d centre = random_vector(random, n + 20'000, 1.6);
+    const Bounds query{centre - Vector3d::Constant(0.3), centre + Vector3d::Constant(0.3)};
+    std::multiset<std::uint32_t> found;
+    scene.for_each_overlap(query, [&](std::uint32_t solid) { found.insert(solid); });
+    std::multiset<std::uint32_t> expected;
+    for (std::uint32_t solid = 0; solid < 400; ++solid)
+      if (scene.bounds(solid).overlaps(query)) expected.insert(solid);
+    if (query.lower.z() <= -1.4) expected.insert(400);
+    EXPECT_EQ(found, expected) << n;
+  }
+}
+
+TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
+  int hits = 0;
+  for (std::uint64_t n = 0; n < 500; ++n) {
+    const Vector3d origin = random_vector(random, n + 30'000, 1.6);
+    const Vector3d direction = random_vector(random, n + 40'000, 1.0).normalized();
+    const double range = 0.1 + random.uniform(n, 4);
+    const auto ignored = static_cast<std::uint32_t>(n % 400);
+    double nearest = range;
+    std::uint32_t expected = Scene::no_body;
+    for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
+      if (scene.solid(solid).body == ignored) continue;
+      const Pose X_CW = scene.solid(solid).X_WC.inverse();
+      const double distance =
+          cast_ray(scene.solid(solid).shape, X_CW * origin, X_CW.orientation * direction).distance;
+      if (distance < nearest) {
+        nearest = distance;
+        expected = solid;
+      }
+    }
+    const auto hit = scene.cast_ray(origin, direction, range, ignored);
+    ASSERT_EQ(hit.has_value(), expected != Scene::no_body) << n;
+    if (!hit) continue;
+    ++hits;
+    EXPECT_EQ(hit->solid, expected) << n;
+    EXPECT_DOUBLE_EQ(hit->distance, nearest) << n;
+  }
+  EXPECT_GT(hits, 100);
+}
+
+}  // namespace
+}  // namespace cohort::geometry

@@ -1,0 +1,244 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "server/lockstep/barrier.hpp"
+#include "server/lockstep/latency_histogram.hpp"
+#include "server/lockstep/leases.hpp"
+#include "server/lockstep/resend_timer.hpp"
+
+namespace cohort::lockstep {
+namespace {
+
+using description::OnLate;
+using description::Policy;
+using namespace std::chrono_literals;
+using Verdict = Barrier::Verdict;
+using Kind = Barrier::Outcome::Kind;
+using Robots = std::vector<std::uint32_t>;
+using Ticks = std::vector<std::uint64_t>;
+
+Policy policy(std::uint32_t period = 1, std::uint32_t phase = 0, std::uint32_t delay = 0, OnLate on_late = OnLate::wait,
+              Time deadline = 0ns) {
+  return {period, phase, delay, on_late, deadline};
+}
+
+Barrier barrier_of(std::vector<Policy> policies) {
+  const std::vector<std::size_t> sizes(policies.size(), 1);
+  return Barrier(std::move(policies), sizes);
+}
+
+void answer(Barrier& barrier, std::uint32_t robot, std::uint64_t frame, double value) {
+  ASSERT_EQ(barrier.judge(robot, frame), Verdict::accepted);
+  barrier.answer(robot, frame, std::vector<double>{value});
+}
+
+TEST(Barrier, WaitsUntilEveryRobotHasAnswered) {
+  Barrier barrier = barrier_of({policy(), policy()});
+  barrier.open(0, 0ns);
+  EXPECT_EQ(barrier.awaited(), (Robots{0, 1}));
+  answer(barrier, 1, 0, 7.0);
+  EXPECT_FALSE(barrier.complete());
+  EXPECT_EQ(barrier.awaited(), Robots{0});
+  answer(barrier, 0, 0, 3.0);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::command);
+  EXPECT_EQ(barrier.outcome(0).values[0], 3.0);
+  EXPECT_EQ(barrier.outcome(1).values[0], 7.0);
+}
+
+TEST(Barrier, NeverGivesUpUnderWait) {
+  Barrier barrier = barrier_of({policy()});
+  barrier.open(0, 0ns);
+  EXPECT_FALSE(barrier.next_deadline());
+  EXPECT_TRUE(barrier.expire(std::chrono::hours(1000)).empty());
+  EXPECT_FALSE(barrier.complete());
+}
+
+TEST(Barrier, AsksEveryPeriodFromThePhaseAndKeepsTheLastCommandBetween) {
+  Barrier barrier = barrier_of({policy(3, 1)});
+  Ticks due;
+  for (std::uint64_t tick = 0; tick < 8; ++tick) {
+    barrier.open(tick, 0ns);
+    if (barrier.is_due(0, tick)) {
+      due.push_back(tick);
+      answer(barrier, 0, tick, static_cast<double>(tick));
+      EXPECT_EQ(barrier.outcome(0).kind, Kind::command);
+    } else {
+      EXPECT_TRUE(barrier.complete()) << tick;
+      EXPECT_EQ(barrier.outcome(0).kind, Kind::keep) << tick;
+    }
+  }
+  EXPECT_EQ(due, (Ticks{1, 4, 7}));
+}
+
+TEST(Barrier, LetsAnAnswerActAtExactlyItsDelay) {
+  Barrier barrier = barrier_of({policy(1, 0, 2)});
+  for (std::uint64_t tick = 0; tick < 2; ++tick) {
+    barrier.open(tick, 0ns);
+    EXPECT_TRUE(barrier.complete()) << "nothing can act yet at tick " << tick;
+    EXPECT_EQ(barrier.outcome(0).kind, Kind::keep);
+  }
+  barrier.open(2, 0ns);
+  EXPECT_EQ(barrier.unanswered(0), (Ticks{0, 1, 2}));
+  answer(barrier, 0, 1, 11.0);  // answers may overtake each other
+  answer(barrier, 0, 2, 12.0);
+  EXPECT_FALSE(barrier.complete());
+  answer(barrier, 0, 0, 10.0);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_EQ(barrier.outcome(0).values[0], 10.0);
+  barrier.open(3, 0ns);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_EQ(barrier.outcome(0).values[0], 11.0);
+  barrier.open(4, 0ns);
+  EXPECT_EQ(barrier.outcome(0).values[0], 12.0);
+}
+
+TEST(Barrier, RejectsRepeatedStaleAndEarlyAnswers) {
+  Barrier barrier = barrier_of({policy(2)});
+  barrier.open(0, 0ns);
+  answer(barrier, 0, 0, 1.0);
+  EXPECT_EQ(barrier.judge(0, 0), Verdict::repeated);
+  EXPECT_EQ(barrier.judge(0, 2), Verdict::early);
+  barrier.open(1, 0ns);
+  EXPECT_EQ(barrier.judge(0, 1), Verdict::early) << "it was not asked at tick 1";
+  barrier.open(2, 0ns);
+  EXPECT_EQ(barrier.judge(0, 0), Verdict::stale);
+  EXPECT_EQ(barrier.judge(0, 2), Verdict::accepted);
+}
+
+class MissedDeadline : public ::testing::TestWithParam<std::pair<OnLate, Kind>> {};
+
+TEST_P(MissedDeadline, HasTheConsequenceOfItsPolicy) {
+  const auto [on_late, kind] = GetParam();
+  Barrier barrier = barrier_of({policy(1, 0, 0, on_late, 20ms), policy()});
+  barrier.open(0, 100ms);
+  EXPECT_EQ(barrier.next_deadline(), Time(120ms));
+  EXPECT_TRUE(barrier.expire(119ms).empty());
+  const auto misses = barrier.expire(121ms);
+  ASSERT_EQ(misses.size(), 1u);
+  EXPECT_EQ(misses[0].robot, 0u);
+  EXPECT_EQ(misses[0].frame_tick, 0u);
+  EXPECT_EQ(misses[0].consequence, on_late);
+  EXPECT_EQ(misses[0].waited, Time(21ms));
+  EXPECT_EQ(barrier.awaited(), Robots{1}) << "the other robot's policy is its own";
+  EXPECT_EQ(barrier.outcome(0).kind, kind);
+  EXPECT_EQ(barrier.judge(0, 0), Verdict::stale) << "the world went on without it";
+  answer(barrier, 1, 0, 1.0);
+  barrier.open(1, 200ms);
+  EXPECT_EQ(barrier.is_awaited(0), on_late != OnLate::detach);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, MissedDeadline,
+                         ::testing::Values(std::pair{OnLate::hold, Kind::keep}, std::pair{OnLate::zero, Kind::neutral},
+                                           std::pair{OnLate::detach, Kind::neutral},
+                                           std::pair{OnLate::stop, Kind::neutral}));
+
+TEST(Barrier, CountsAnAnswerThatCannotActAsAMissAtOnce) {
+  Barrier barrier = barrier_of({policy(1, 0, 0, OnLate::zero, 1s)});
+  barrier.open(0, 0ns);
+  barrier.refuse(0, 0);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
+  EXPECT_EQ(barrier.judge(0, 0), Verdict::repeated);
+}
+
+Leases::Decisions decide(Leases& leases) {
+  return leases.decide([](const Robots&) { return true; });
+}
+
+TEST(Leases, GrantsFreeRobots) {
+  Leases leases(4);
+  leases.claim(100, {0, 1});
+  const auto decisions = decide(leases);
+  ASSERT_EQ(decisions.granted.size(), 1u);
+  EXPECT_EQ(leases.holder(0), 100u);
+  EXPECT_EQ(leases.lease(100)->robots, (Robots{0, 1}));
+  EXPECT_FALSE(leases.holder(2));
+}
+
+TEST(Leases, GrantsNothingUntilItMay) {
+  Leases leases(1);
+  leases.claim(100, {0});
+  EXPECT_TRUE(leases.decide([](const Robots&) { return false; }).granted.empty());
+  EXPECT_TRUE(leases.has_claims());
+  EXPECT_EQ(decide(leases).granted.size(), 1u);
+}
+
+TEST(Leases, RefusesARobotWhoseHolderShowsThatItLives) {
+  Leases leases(2);
+  leases.claim(100, {0, 1});
+  decide(leases);
+  leases.note_answer(100);
+  leases.claim(200, {1});
+  EXPECT_TRUE(decide(leases).refused.empty()) << "an answer from before the claim proves nothing";
+  leases.note_answer(100);
+  const auto decisions = decide(leases);
+  ASSERT_EQ(decisions.refused.size(), 1u);
+  EXPECT_EQ(decisions.refused[0].client, 200u);
+  EXPECT_EQ(decisions.refused[0].robot, 1u);
+  EXPECT_EQ(decisions.refused[0].holder, 100u);
+  EXPECT_EQ(leases.holder(1), 100u);
+}
+
+TEST(Leases, HandsTheRobotsOfADeadHolderOverWithANewEpoch) {
+  Leases leases(3);
+  leases.claim(100, {0, 1});
+  decide(leases);
+  const std::uint64_t epoch = leases.lease(100)->epoch;
+  leases.claim(200, {1, 2});
+  EXPECT_TRUE(decide(leases).granted.empty());
+  leases.set_alive(100, false);
+  const auto decisions = decide(leases);
+  ASSERT_EQ(decisions.granted.size(), 1u);
+  EXPECT_EQ(decisions.granted[0].superseded, std::vector<std::uint64_t>{100});
+  EXPECT_GT(leases.lease(200)->epoch, epoch);
+  EXPECT_EQ(leases.lease(100), nullptr);
+  EXPECT_FALSE(leases.holder(0)) << "losing one robot ends the whole lease";
+}
+
+TEST(Leases, KeepsTheEpochOfAClientThatAsksForItsOwnRobotsAgain) {
+  Leases leases(2);
+  leases.claim(100, {0, 1});
+  decide(leases);
+  const std::uint64_t epoch = leases.lease(100)->epoch;
+  leases.claim(100, {0, 1});
+  const auto decisions = decide(leases);
+  ASSERT_EQ(decisions.granted.size(), 1u);
+  EXPECT_TRUE(decisions.granted[0].again);
+  EXPECT_EQ(leases.lease(100)->epoch, epoch);
+}
+
+TEST(ResendTimer, WaitsThreeTicksButAtLeastThreeMillisecondsAndThenBacksOff) {
+  ResendTimer timer;
+  timer.start(0ns, 100us);
+  EXPECT_EQ(timer.due(), Time(3ms));
+  timer.start(0ns, 4ms);
+  EXPECT_EQ(timer.due(), Time(12ms));
+  timer.resent(12ms);
+  EXPECT_EQ(timer.due(), Time(36ms));
+  for (int i = 0; i < 20; ++i) timer.resent(1s);
+  EXPECT_EQ(timer.due(), Time(1500ms));
+}
+
+TEST(MedianDuration, IsTheMiddleOfTheLastOnes) {
+  MedianDuration median;
+  EXPECT_EQ(median.value(), 0ns);
+  for (const auto value : {5ms, 1ms, 3ms}) median.add(value);
+  EXPECT_EQ(median.value(), Time(3ms));
+  for (int i = 0; i < 63; ++i) median.add(9ms);
+  EXPECT_EQ(median.value(), Time(9ms));
+}
+
+TEST(LatencyHistogram, GivesQuantilesToWithinThreePercent) {
+  LatencyHistogram histogram;
+  EXPECT_EQ(histogram.quantile(0.5), 0ns);
+  for (int i = 1; i <= 1000; ++i) histogram.add(std::chrono::microseconds(i));
+  EXPECT_NEAR(static_cast<double>(histogram.quantile(0.5).count()), 500e3, 16e3);
+  EXPECT_NEAR(static_cast<double>(histogram.quantile(0.99).count()), 990e3, 32e3);
+  EXPECT_EQ(histogram.quantile(1.0), 1000us);
+  EXPECT_EQ(histogram.max(), 1000us);
+}
+
+}  // namespace
+}  // namespace cohort::lockstep

@@ -1,0 +1,332 @@
+#include "idl/wire.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/free_domain.hpp"
+
+namespace cohort::wire {
+namespace {
+
+using std::chrono_literals::operator""s;
+using test::eventually;
+
+// Messages as they can be kept and compared: views become vectors.
+std::string show(const std::string& text) { return "'" + text + "'"; }
+template <class Number>
+  requires std::is_arithmetic_v<Number>
+std::string show(Number number) {
+  return std::to_string(number);
+}
+std::string show(const Channel& c) {
+  return show(c.name) + show(c.unit) + show(c.size) + show(c.lower) + show(c.upper) + show(c.neutral);
+}
+std::string show(const AdmittedRobot& r) {
+  return show(r.robot) + show(r.name) + show(r.description) + show(r.seed) + " " + show(r.period) + " " + show(r.phase) +
+         " " + show(r.delay);
+}
+template <class List>
+  requires requires(const List& list) { list.size(), list.data()[0]; }
+std::string show_list(const List& list) {
+  std::string text = "[";
+  for (const auto& element : list) text += show(element) + ",";
+  return text + "]";
+}
+template <class... Fields>
+std::string show_all(const Fields&... fields) {
+  return ((show(fields) + " ") + ...);
+}
+std::string show(const Join& m) {
+  return show_all(m.client, m.minor, m.controller, m.host, m.process) + show_list(m.robots);
+}
+std::string show(const Admit& m) {
+  return show_all(m.client, static_cast<std::uint32_t>(m.status), m.reason, m.run, m.epoch,
+                  static_cast<std::uint32_t>(m.start_reason), m.tick, m.step_ns) +
+         show_list(m.robots);
+}
+std::string show(const RobotDescription& m) {
+  return show_all(m.description, m.model) + show_list(m.observation) + show_list(m.command);
+}
+std::string show(const Observation& m) {
+  return show_all(m.client, m.run, m.resent, m.epoch, m.tick, m.time_ns) + show_list(m.robots) + show_list(m.values);
+}
+std::string show(const Command& m) {
+  return show_all(m.client, m.run, m.epoch, m.tick) + show_list(m.robots) + show_list(m.values);
+}
+std::string show(const WorldState& m) {
+  return show_all(m.run, m.tick, m.time_ns, m.state_hash) + show_list(m.robots) + show_list(m.poses);
+}
+std::string show(const Report& m) {
+  return show_all(m.client, m.run, static_cast<std::uint32_t>(m.kind), m.tick, m.reason, m.text);
+}
+
+// What a reader received, as text, in order.
+template <class Message>
+class Inbox {
+ public:
+  Inbox(Participant& participant, const std::string& partition = "", int depth = 8)
+      : reader_(participant, {[this](const Message& message, const Sender&) { add(show(message)); }, nullptr}, partition,
+                depth) {}
+
+  std::vector<std::string> received() const {
+    const std::lock_guard lock(mutex_);
+    return received_;
+  }
+  bool waits_for(std::size_t count) const {
+    return eventually([&] { return received().size() >= count; });
+  }
+  std::uint32_t matched() const { return reader_.matched(); }
+
+ private:
+  void add(std::string text) {
+    const std::lock_guard lock(mutex_);
+    received_.push_back(std::move(text));
+  }
+
+  mutable std::mutex mutex_;
+  std::vector<std::string> received_;
+  Reader<Message> reader_;
+};
+
+class WireTest : public testing::Test {
+ protected:
+  WireTest() : client(Participant::client(free.domain)) {}
+
+  // Writes the messages one after the other, each when the one before has arrived, and compares.
+  template <class Message>
+  void expect_round_trip(Participant& from, Participant& to, const std::vector<Message>& messages) {
+    Inbox<Message> inbox(to);
+    Writer<Message> writer(from);
+    ASSERT_TRUE(eventually([&] { return inbox.matched() == 1 && writer.matched() == 1; }));
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+      // The first message after a match may be lost where it is not transient local.
+      ASSERT_TRUE(eventually([&] {
+        writer.write(messages[i]);
+        return eventually([&] { return !inbox.received().empty() && inbox.received().back() == show(messages[i]); },
+                          std::chrono::milliseconds(200));
+      })) << show(messages[i]).substr(0, 1000);
+    }
+  }
+
+  test::FreeDomain free = test::take_free_domain();
+  Participant client;
+};
+
+const std::string long_text(100'000, 'x');
+
+TEST_F(WireTest, a_join_arrives_unchanged) {
+  expect_round_trip<Join>(client, free.server,
+                          {{.client = 0xfedcba9876543210, .controller = "Näherung", .host = "h", .process = 77,
+                            .robots = {"all", "", "team/sbot_*"}},
+                           {.client = 1},
+                           {.client = 1, .controller = long_text, .host = long_text, .robots = {long_text, "a"}},
+                           {.client = 1, .controller = "short again", .robots = {"b"}},
+                           {.client = 1, .robots = std::vector<std::string>(5000, "sbot")}});
+}
+
+TEST_F(WireTest, an_admit_arrives_unchanged) {
+  const AdmittedRobot robot{.robot = 3, .name = "team/sbot_3", .description = 1, .seed = ~std::uint64_t{0}, .period = 2,
+                            .phase = 1, .delay = 4};
+  expect_round_trip<Admit>(
+      free.server, client,
+      {{.client = 5, .run = 2, .epoch = 9, .start_reason = StartReason::takeover, .tick = 1'000'000'000'000,
+        .step_ns = 10'000'000, .robots = {robot, {}, robot}},
+       {.client = 5, .status = AdmitStatus::refused, .reason = "robot 3 is driven by 'sweeper' on host h"},
+       {.client = 5, .robots = std::vector<AdmittedRobot>(3000, robot)}});
+}
+
+TEST_F(WireTest, a_robot_description_arrives_unchanged) {
+  const Channel channel{.name = "proximity/0/reading", .unit = "1", .size = 3, .lower = -0.5, .upper = 1e300,
+                        .neutral = -0.0};
+  expect_round_trip<RobotDescription>(
+      free.server, client,
+      {{.description = 1, .model = "sbot", .observation = {channel, {}}, .command = {channel}},
+       {.description = 1},
+       {.description = 1, .model = long_text, .observation = std::vector<Channel>(2000, channel), .command = {channel}}});
+}
+
+TEST_F(WireTest, an_observation_arrives_unchanged) {
+  const std::vector<std::uint32_t> robots{0, 7, 4'000'000'000};
+  const std::vector<double> values{0.1, -0.0, 5e-324, 1.7976931348623157e308};
+  const std::vector<double> many(50'000, 0.3);
+  expect_round_trip<Observation>(free.server, client,
+                                 {{.client = 5, .run = 1, .resent = 2, .epoch = 3, .tick = 4, .time_ns = -5,
+                                   .robots = robots, .values = values},
+                                  {.client = 5},
+                                  {.client = 5, .tick = 1, .robots = robots, .values = many},
+                                  {.client = 5, .tick = 2, .values = values}});
+}
+
+TEST_F(WireTest, a_command_arrives_unchanged) {
+  const std::vector<std::uint32_t> robots{1, 2};
+  const std::vector<double> values{0.2, -0.2};
+  const std::vector<double> many(50'000, -0.3);
+  expect_round_trip<Command>(client, free.server,
+                             {{.client = 5, .run = 1, .epoch = 3, .tick = 4, .robots = robots, .values = values},
+                              {.client = 5, .tick = 5},
+                              {.client = 5, .tick = 6, .robots = robots, .values = many}});
+}
+
+TEST_F(WireTest, a_world_state_arrives_unchanged) {
+  const std::vector<std::uint32_t> robots{1};
+  const std::vector<double> poses{1, 2, 3, 0, 0, 0, 1};
+  const std::vector<double> many(20'000, 0.5);
+  expect_round_trip<WorldState>(
+      free.server, client,
+      {{.run = 1, .tick = 2, .time_ns = 3, .state_hash = 0x8000000000000001, .robots = robots, .poses = poses},
+       {.tick = 4},
+       {.tick = 5, .poses = many}});
+}
+
+TEST_F(WireTest, a_report_arrives_unchanged_either_way) {
+  const std::vector<Report> reports{
+      {.client = 5, .run = 1, .kind = ReportKind::rejected, .tick = 3, .reason = "not_finite", .text = "value 3 is NaN"},
+      {.client = 5, .kind = ReportKind::failed, .text = long_text},
+      {.client = 5}};
+  expect_round_trip(free.server, client, reports);
+  expect_round_trip(client, free.server, reports);
+}
+
+TEST_F(WireTest, a_late_reader_gets_what_the_server_has_to_say_to_late_joiners) {
+  Writer<RobotDescription> descriptions(free.server);
+  Writer<Report> reports(free.server);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    descriptions.write({.description = i});
+    reports.write({.client = 5, .tick = i});
+  }
+  Inbox<RobotDescription> late_descriptions(client);
+  Inbox<Report> late_reports(client);
+  EXPECT_TRUE(late_descriptions.waits_for(3)) << "one for each description";
+  EXPECT_TRUE(late_reports.waits_for(3)) << "the last 16";
+}
+
+TEST_F(WireTest, a_second_server_on_a_domain_is_told_what_to_do) {
+  testing::internal::CaptureStderr();
+  try {
+    Participant::server(free.domain);
+    ADD_FAILURE() << "two servers on one domain";
+  } catch (const DomainTaken& error) {
+    EXPECT_NE(std::string(error.what()).find("UDP port " + std::to_string(discovery_port(free.domain))),
+              std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("another domain"), std::string::npos);
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "the middleware's own complaints are not for users";
+}
+
+TEST(WireAddress, mistakes_are_named) {
+  const auto message_of = [](auto&& tried) -> std::string {
+    try {
+      tried();
+    } catch (const WireError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_NE(message_of([] { Participant::client(60, "no-such-host.invalid"); }).find("no-such-host.invalid"),
+            std::string::npos);
+  EXPECT_NE(message_of([] { Participant::server(60, "203.0.113.7"); }).find("no network interface"), std::string::npos);
+  EXPECT_NE(message_of([] { Participant::server(233); }).find("0 to 232"), std::string::npos);
+}
+
+TEST_F(WireTest, a_partition_keeps_clients_apart) {
+  auto second = Participant::client(free.domain);
+  Inbox<Report> first_inbox(client, partition_of(1));
+  Inbox<Report> second_inbox(second, partition_of(2));
+  Writer<Report> to_first(free.server, partition_of(1));
+  Writer<Report> to_second(free.server, partition_of(2));
+  to_first.write({.client = 1, .text = "first"});
+  to_second.write({.client = 2, .text = "second"});
+  ASSERT_TRUE(first_inbox.waits_for(1));
+  ASSERT_TRUE(second_inbox.waits_for(1));
+  EXPECT_EQ(first_inbox.received(), std::vector{show(Report{.client = 1, .text = "first"})});
+  EXPECT_EQ(second_inbox.received(), std::vector{show(Report{.client = 2, .text = "second"})});
+  EXPECT_EQ(to_first.matched(), 1u);
+}
+
+TEST_F(WireTest, no_callback_runs_once_a_reader_is_gone) {
+  Writer<Command> writer(client);
+  std::atomic<bool> done{false};
+  std::thread flood([&] {
+    for (std::uint64_t tick = 0; !done; ++tick) writer.write({.client = 5, .tick = tick});
+  });
+  for (int round = 0; round < 20; ++round) {
+    auto calls = std::make_unique<std::atomic<int>>(0);
+    std::optional<Reader<Command>> reader;
+    reader.emplace(free.server, Reader<Command>::Callbacks{[&](const Command&, const Sender&) { ++*calls; }, nullptr});
+    EXPECT_TRUE(eventually([&] { return *calls > 10; }));
+    reader.reset();
+    calls.reset();  // a callback that ran now would be a use after free
+  }
+  done = true;
+  flood.join();
+}
+
+TEST_F(WireTest, a_writer_that_leaves_is_reported_dead_at_once) {
+  std::atomic<std::uint64_t> alive{0};
+  std::atomic<std::uint64_t> dead{0};
+  std::atomic<std::uint64_t> sender_of_message{0};
+  Reader<Join> reader(free.server, {[&](const Join&, const Sender& sender) { sender_of_message = sender.writer; },
+                                    [&](const Sender& sender, bool lives) { (lives ? alive : dead) = sender.writer; }});
+  {
+    Writer<Join> writer(client);
+    writer.write({.client = 5});
+    ASSERT_TRUE(eventually([&] { return alive != 0 && sender_of_message != 0; }));
+  }
+  ASSERT_TRUE(eventually([&] { return dead != 0; }, 2s));
+  EXPECT_EQ(alive, dead);
+  EXPECT_EQ(alive, sender_of_message);
+}
+
+// The other process of the next test: joins, and stays until it is killed.
+TEST(WireTestProcess, DISABLED_joins_and_stays) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const char* domain = std::getenv("COHORT_TEST_DOMAIN");
+  ASSERT_NE(domain, nullptr);
+  auto client = Participant::client(static_cast<std::uint32_t>(std::stoul(domain)));
+  Writer<Join> writer(client);
+  writer.write({.client = 5});
+  for (;;) ::pause();
+}
+
+TEST(WireLiveliness, a_killed_client_is_noticed_within_three_seconds) {
+  auto free = test::take_free_domain();
+  std::atomic<bool> joined{false};
+  std::atomic<bool> dead{false};
+  Reader<Join> reader(free.server, {[&](const Join&, const Sender&) { joined = true; },
+                                    [&](const Sender&, bool alive) { dead = !alive; }});
+  ::setenv("COHORT_TEST_DOMAIN", std::to_string(free.domain).c_str(), 1);
+  std::string program = "/proc/self/exe";
+  std::string filter = "--gtest_filter=WireTestProcess.DISABLED_joins_and_stays";
+  std::string disabled_too = "--gtest_also_run_disabled_tests";
+  char* arguments[] = {program.data(), filter.data(), disabled_too.data(), nullptr};
+  pid_t process = 0;
+  ASSERT_EQ(::posix_spawn(&process, "/proc/self/exe", nullptr, nullptr, arguments, environ), 0);
+  const bool came = eventually([&] { return joined.load(); });
+  ::kill(process, SIGKILL);
+  ::waitpid(process, nullptr, 0);
+  ASSERT_TRUE(came);
+  EXPECT_TRUE(eventually([&] { return dead.load(); }, 3s));
+}
+
+TEST(WireNames, partition_and_port_are_those_of_the_protocol) {
+  EXPECT_EQ(partition_of(0x0123456789abcdef), "c0123456789abcdef");
+  EXPECT_EQ(partition_of(1), "c0000000000000001");
+  EXPECT_EQ(discovery_port(0), 7410);
+  EXPECT_EQ(discovery_port(79), 7410 + 250 * 79);
+}
+
+}  // namespace
+}  // namespace cohort::wire

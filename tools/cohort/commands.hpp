@@ -1,0 +1,50 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The commands of `cohort`, one file each. Every command returns the process's exit code.
+namespace cohort::tool {
+
+// docs/cli.md tells users what these mean.
+inline constexpr int exit_ok = 0;
+inline constexpr int exit_failed = 1;  // the run ended with an error
+inline constexpr int exit_usage = 2;   // bad command line, world, experiment or set-up: nothing was started
+inline constexpr int exit_interrupted = 130;
+
+enum class Controllers {
+  in_process,  ///< in the server's process
+  process,     ///< one process for each team
+  per_robot,   ///< one process for each robot
+  external,    ///< started by somebody else
+};
+
+struct RunCommand {
+  std::filesystem::path file;
+  unsigned threads = 0;  ///< 0: one for each core
+  std::optional<double> duration;
+  std::optional<std::uint64_t> seed;
+  Controllers controllers = Controllers::process;
+  double speed = 0.0;  ///< 0: as fast as it goes
+  std::filesystem::path summary;
+  bool quiet = false;
+  std::optional<std::uint32_t> domain;
+  std::string network = "127.0.0.1";
+};
+int run(const RunCommand& command, const std::atomic<bool>& stop);
+
+struct HostCommand {
+  std::string plugin;
+  std::vector<std::string> robots;
+  std::string server;
+  std::uint32_t domain = 0;
+};
+int host(const HostCommand& command, const std::atomic<bool>& stop);
+
+int check(const std::filesystem::path& file);
+
+}  // namespace cohort::tool

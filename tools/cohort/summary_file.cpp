@@ -1,0 +1,52 @@
+#include "tools/cohort/summary_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace cohort::tool {
+namespace {
+
+double seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
+double microseconds(std::chrono::nanoseconds duration) {
+  return std::chrono::duration<double, std::micro>(duration).count();
+}
+
+}  // namespace
+
+void write_summary(const std::filesystem::path& file, const session::RunResult& result, double cpu_seconds) {
+  const double wall = seconds(result.wall_time);
+  nlohmann::ordered_json events = nlohmann::ordered_json::array();
+  for (const session::Event& event : result.events)
+    events.push_back({{"tick", event.tick}, {"kind", event.kind}, {"text", event.text}, {"count", event.count}});
+  const nlohmann::ordered_json summary = {
+      {"ticks", result.ticks},
+      {"sim_time_ns", result.sim_time.count()},
+      {"wall_s", wall},
+      {"cpu_s", cpu_seconds},
+      {"real_time_factor", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0},
+      {"state_hash", fmt::format("{:016x}", result.state_hash)},
+      {"robots", result.robots},
+      {"barrier_us",
+       {{"p50", microseconds(result.barrier.quantile(0.5))},
+        {"p99", microseconds(result.barrier.quantile(0.99))},
+        {"max", microseconds(result.barrier.max())}}},
+      {"late", result.late},
+      {"events", events},
+      {"touches",
+       {{"robot_ticks", result.touches.robot_ticks},
+        {"obstacles", result.touches.obstacles},
+        {"robots", result.touches.robots}}},
+  };
+  std::ofstream out(file);
+  out << summary.dump(2) << '\n';
+  out.close();
+  if (!out)
+    throw std::runtime_error("the summary could not be written to " + file.string() + ": " + std::strerror(errno));
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+
+#include "server/session/run.hpp"
+
+namespace cohort::tool {
+
+/// Writes the summary as JSON; docs/cli.md lists its keys. Throws std::runtime_error that says what to do.
+void write_summary(const std::filesystem::path& file, const session::RunResult& result, double cpu_seconds);
+
+}  // namespace cohort::tool

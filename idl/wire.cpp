@@ -1,6 +1,8 @@
 #include "idl/wire.hpp"
 
 #include <array>
+#include <cstring>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -98,18 +100,18 @@ struct Reader<Message>::State {
   }
 
   // DDS calls the functions of one reader one at a time, so the samples need no lock.
-  static void on_data(dds_entity_t reader, void* argument) noexcept {
+  static void on_data(dds_entity_t handle, void* argument) noexcept {
     State& state = *static_cast<State*>(argument);
     dds_return_t taken = 0;
     do {
-      taken = dds_take(reader, state.samples.data(), state.infos.data(), state.samples.size(),
+      taken = dds_take(handle, state.samples.data(), state.infos.data(), state.samples.size(),
                        static_cast<std::uint32_t>(state.samples.size()));
       for (dds_return_t i = 0; i < taken; ++i) {
         const auto index = static_cast<std::size_t>(i);
         // An invalid sample only tells of a writer's end, which on_liveliness tells better.
         if (!state.infos[index].valid_data) continue;
         state.callbacks.message(Codec<Message>::decode(*static_cast<const Sample*>(state.samples[index])),
-                                Sender{state.infos[index].publication_handle});
+                                state.sender_of(state.infos[index].publication_handle));
       }
     } while (taken == static_cast<dds_return_t>(state.samples.size()));
   }
@@ -119,10 +121,27 @@ struct Reader<Message>::State {
     State& state = *static_cast<State*>(argument);
     const bool alive = status.alive_count_change > 0;
     const bool dead = status.alive_count_change < 0 || status.not_alive_count_change > 0;
-    if (alive || dead) state.callbacks.liveliness(Sender{status.last_publication_handle}, alive);
+    if (alive || dead) state.callbacks.liveliness(state.sender_of(status.last_publication_handle), alive);
   }
 
+  Sender sender_of(dds_instance_handle_t writer) {
+    if (const auto known = participants.find(writer); known != participants.end()) return {writer, known->second};
+    dds_builtintopic_endpoint_t* endpoint = dds_get_matched_publication_data(reader.handle(), writer);
+    if (endpoint == nullptr) return {writer, 0};  // it has just gone
+    // By its GUID, which stays when the participant is lost and found again.
+    std::array<std::uint64_t, 2> guid{};
+    std::memcpy(guid.data(), endpoint->participant_key.v, sizeof guid);
+    const Sender sender{writer, guid[0] * 0x9e3779b97f4a7c15u ^ guid[1]};
+    dds_builtintopic_free_endpoint(endpoint);
+    if (participants.size() >= most_participants) participants.clear();
+    participants.emplace(writer, sender.participant);
+    return sender;
+  }
+
+  static constexpr std::size_t most_participants = 10'000;  // looked up again if there were ever more
+
   Callbacks callbacks;
+  std::map<dds_instance_handle_t, std::uint64_t> participants;  // of writers
   std::array<void*, 8> samples{};
   std::array<dds_sample_info_t, 8> infos{};
   Entity topic;

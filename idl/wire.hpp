@@ -81,7 +81,8 @@ class Writer {
 
 /// What came with a message.
 struct Sender {
-  std::uint64_t writer = 0;  ///< identifies the DDS writer within this process
+  std::uint64_t writer = 0;       ///< identifies the DDS writer within this process
+  std::uint64_t participant = 0;  ///< identifies its participant likewise: DDS says it, the sender cannot choose it
 };
 
 /// Reads messages of one type. All callbacks run on a thread of DDS, one at a time for each reader and perhaps before the

@@ -31,16 +31,26 @@ std::string text_of(const sdf::ElementPtr& element) {
 
 std::string expected(ExtensionValue kind) {
   switch (kind) {
-    case ExtensionValue::name: return "a name";
-    case ExtensionValue::uri: return "model://NAME or a path";
-    case ExtensionValue::real: return "a number";
-    case ExtensionValue::non_negative: return "a number >= 0";
-    case ExtensionValue::positive: return "a number > 0";
-    case ExtensionValue::count: return "a whole number from 1 to " + std::to_string(most_instances);
-    case ExtensionValue::whole: return "a whole number >= 0";
-    case ExtensionValue::point: return "two numbers 'x y'";
-    case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw'";
-    case ExtensionValue::group: return "elements";
+    case ExtensionValue::name:
+      return "a name";
+    case ExtensionValue::uri:
+      return "model://NAME or a path";
+    case ExtensionValue::real:
+      return "a number";
+    case ExtensionValue::non_negative:
+      return "a number >= 0";
+    case ExtensionValue::positive:
+      return "a number > 0";
+    case ExtensionValue::count:
+      return "a whole number from 1 to " + std::to_string(most_instances);
+    case ExtensionValue::whole:
+      return "a whole number >= 0";
+    case ExtensionValue::point:
+      return "two numbers 'x y'";
+    case ExtensionValue::pose:
+      return "six numbers 'x y z roll pitch yaw'";
+    case ExtensionValue::group:
+      return "elements";
   }
   return {};
 }
@@ -189,8 +199,7 @@ std::optional<ExtensionValues::Value> ExtensionValues::parse(std::string_view te
     case ExtensionValue::count:
     case ExtensionValue::whole: {
       const std::optional<std::uint64_t> number = parse_whole(text);
-      if (!number || (kind == ExtensionValue::count && (*number == 0 || *number > most_instances)))
-        return std::nullopt;
+      if (!number || (kind == ExtensionValue::count && (*number == 0 || *number > most_instances))) return std::nullopt;
       return Value(*number);
     }
     case ExtensionValue::point: {

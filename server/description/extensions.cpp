@@ -9,8 +9,8 @@ using enum ExtensionValue;
 
 constexpr ExtensionKey treel_drive[] = {
     {"link", name, "", "", "the body of the tracks; the root link"},
-    {"half_gauge", positive, "m", "", "|y| of the ground points in the link"},
-    {"half_contact_length", positive, "m", "", "|x| of the ground points in the link"},
+    {"half_gauge", positive, "m", "", "distance of the ground points from the x axis of the link"},
+    {"half_contact_length", positive, "m", "", "distance of the ground points from the y axis of the link"},
     {"ground_height", real, "m", "", "z of the ground points in the link"},
     {"wheel_radius", positive, "m", "", "from the torque of a motor to traction"},
     {"max_torque", positive, "N m", "", "of each side's motor"},

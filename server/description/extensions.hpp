@@ -3,8 +3,8 @@
 #include <span>
 #include <string_view>
 
-/// The `cohort:` elements that extend SDFormat, as a table: the reader checks files against it, and manuals and help are
-/// made from it.
+/// The `cohort:` elements that extend SDFormat, as a table: the reader checks files against it, and manuals and help
+/// are made from it.
 namespace cohort::description {
 
 enum class ExtensionValue {

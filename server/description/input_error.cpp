@@ -1,9 +1,25 @@
 #include "server/description/input_error.hpp"
 
+#include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace cohort::description {
 namespace {
+
+// Files in the order in which they come up, each from its first line to its last. What is found twice, in a file that
+// is read twice, is said once.
+std::vector<Problem> in_order(std::vector<Problem> problems) {
+  std::set<std::string> said;
+  std::erase_if(problems, [&](const Problem& problem) { return !said.insert(problem.text()).second; });
+  std::map<std::filesystem::path, std::size_t> rank;
+  for (const Problem& problem : problems) rank.emplace(problem.file, rank.size());
+  std::stable_sort(problems.begin(), problems.end(), [&](const Problem& a, const Problem& b) {
+    return std::pair(rank[a.file], a.line) < std::pair(rank[b.file], b.line);
+  });
+  return problems;
+}
 
 std::string in_lines(const std::vector<Problem>& problems) {
   std::string text;
@@ -25,6 +41,6 @@ std::string Problem::text() const {
 }
 
 InputError::InputError(std::vector<Problem> problems)
-    : std::runtime_error(in_lines(problems)), problems_(std::move(problems)) {}
+    : std::runtime_error(in_lines(in_order(problems))), problems_(in_order(std::move(problems))) {}
 
 }  // namespace cohort::description

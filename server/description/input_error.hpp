@@ -18,7 +18,8 @@ struct Problem {
   std::string text() const;
 };
 
-/// A world or experiment that cannot be used; `what()` has a line for each problem.
+/// A world or experiment that cannot be used; `what()` has a line for each problem. Problems are ordered by file and
+/// line, and the same one is kept once.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Problem> problems);

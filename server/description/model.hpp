@@ -42,8 +42,8 @@ struct Collision {
 };
 
 struct Inertial {
-  double mass = 1.0;                                     ///< [kg], > 0
-  Pose X_LI;                                             ///< I: the centre of mass and the axes of `inertia`
+  double mass = 1.0;                                      ///< [kg], > 0
+  Pose X_LI;                                              ///< I: the centre of mass and the axes of `inertia`
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, in I [kg m^2]
 };
 
@@ -61,10 +61,10 @@ enum class JointType { fixed, revolute, prismatic };
 struct Joint {
   std::string name;
   JointType type = JointType::fixed;
-  std::size_t parent = 0;  ///< index into Model::links
-  std::size_t child = 0;   ///< index into Model::links
-  Pose X_LJ;               ///< in the child link
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit vector in J
+  std::size_t parent = 0;                                   ///< index into Model::links
+  std::size_t child = 0;                                    ///< index into Model::links
+  Pose X_LJ;                                                ///< in the child link
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();          ///< unit vector in J
   double lower = -std::numeric_limits<double>::infinity();  ///< [rad] or [m]
   double upper = std::numeric_limits<double>::infinity();
   double damping = 0.0;  ///< [N m s/rad] or [N s/m]

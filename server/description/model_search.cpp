@@ -19,8 +19,8 @@ constexpr std::string_view model_scheme = "model://";
 constexpr std::string_view file_scheme = "file://";
 constexpr int parent_levels = 4;
 
-// The SDF file of a model's folder. libsdformat chooses among the versions that model.config offers, but takes for granted
-// that the file has all its elements.
+// The SDF file of a model's folder. libsdformat chooses among the versions that model.config offers, but takes for
+// granted that the file has all its elements.
 fs::path sdf_file_of(const fs::path& folder) {
   const fs::path config = folder / "model.config";
   std::ifstream stream(config);

@@ -13,10 +13,10 @@ struct FoundModel {
   std::string folder_uri;        ///< what of the URI stands for `folder`
 };
 
-/// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these that
-/// has one: the folders of the environment variable COHORT_MODEL_PATH (separated by colons), then `robots` and `objects`
-/// in the folder of the world file and in its parents, four levels up. Any other URI is a path relative to the world
-/// file, to a model's folder or to an SDF file.
+/// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these
+/// that has one: the folders of the environment variable COHORT_MODEL_PATH (separated by colons), then `robots` and
+/// `objects` in the folder of the world file and in its parents, four levels up. Any other URI is a path relative to
+/// the world file, to a model's folder or to an SDF file.
 class ModelSearch {
  public:
   explicit ModelSearch(const std::filesystem::path& world_file);

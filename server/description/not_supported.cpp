@@ -57,7 +57,7 @@ constexpr Unsupported table[] = {
 };
 
 // What is looked into; all else is of no consequence or read elsewhere.
-constexpr std::string_view containers[] = {"link",    "joint",  "axis",     "dynamics", "limit", "collision",
+constexpr std::string_view containers[] = {"link",    "joint",  "axis",     "dynamics", "limit",  "collision",
                                            "surface", "bounce", "friction", "ode",      "contact"};
 
 bool is_container(std::string_view name) {

@@ -58,11 +58,9 @@ class Occupied {
   }
 
   bool is_free(const Eigen::Vector2d& point) const {
-    const std::size_t cell =
-        index(point.y() - lower_.y(), rows_) * columns_ + index(point.x() - lower_.x(), columns_);
-    return std::none_of(cells_[cell].begin(), cells_[cell].end(), [&](const Footprint& footprint) {
-      return footprint.distance(point) < clearance_;
-    });
+    const std::size_t cell = index(point.y() - lower_.y(), rows_) * columns_ + index(point.x() - lower_.x(), columns_);
+    return std::none_of(cells_[cell].begin(), cells_[cell].end(),
+                        [&](const Footprint& footprint) { return footprint.distance(point) < clearance_; });
   }
 
  private:

@@ -122,10 +122,8 @@ std::optional<Device> DeviceReader::read_proximity_ring(const ExtensionValues& v
 std::optional<Device> DeviceReader::read(const ExtensionValues& values, std::string_view kind) {
   using Read = std::optional<Device> (DeviceReader::*)(const ExtensionValues&);
   constexpr std::pair<std::string_view, Read> readers[] = {
-      {"treel_drive", &DeviceReader::read_treel_drive},
-      {"velocity_motor", &DeviceReader::read_velocity_motor},
-      {"joint_encoder", &DeviceReader::read_joint_encoder},
-      {"treel_encoder", &DeviceReader::read_treel_encoder},
+      {"treel_drive", &DeviceReader::read_treel_drive},       {"velocity_motor", &DeviceReader::read_velocity_motor},
+      {"joint_encoder", &DeviceReader::read_joint_encoder},   {"treel_encoder", &DeviceReader::read_treel_encoder},
       {"proximity_ring", &DeviceReader::read_proximity_ring},
   };
   for (const auto& [name, reader] : readers)
@@ -133,8 +131,8 @@ std::optional<Device> DeviceReader::read(const ExtensionValues& values, std::str
   throw std::logic_error("no reader for the device " + std::string(kind));
 }
 
-// Commands and observations are named after their device, so two devices that command, or two that observe, cannot share
-// a name.
+// Commands and observations are named after their device, so two devices that command, or two that observe, cannot
+// share a name.
 bool commands(std::string_view kind) { return kind == "treel_drive" || kind == "velocity_motor"; }
 
 }  // namespace

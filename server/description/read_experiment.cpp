@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>::max();
 
 const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "teams"};
-const std::vector<std::string> team_keys = {"name",  "robots",  "controller", "period",
-                                            "phase", "delay",   "on_late",    "deadline"};
+const std::vector<std::string> team_keys = {"name",  "robots", "controller", "period",
+                                            "phase", "delay",  "on_late",    "deadline"};
 
 const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLate::wait},
                                                                    {"hold", OnLate::hold},
@@ -50,18 +50,21 @@ std::optional<std::chrono::nanoseconds> read_seconds(const YamlMap& map, const s
 
 Policy read_policy(const YamlMap& team) {
   Policy policy;
+  // False if the key is there and its value is wrong.
   const auto ticks = [&](const char* key, std::uint64_t least, std::uint32_t& value) {
-    if (const auto read = team.whole(key, least, greatest_tick_count)) value = static_cast<std::uint32_t>(*read);
+    const auto read = team.whole(key, least, greatest_tick_count);
+    if (read) value = static_cast<std::uint32_t>(*read);
+    return read || !team.has(key);
   };
-  ticks("period", 1, policy.period);
+  const bool period_is_right = ticks("period", 1, policy.period);
   ticks("phase", 0, policy.phase);
   ticks("delay", 0, policy.delay);
-  if (policy.phase >= policy.period)
+  if (period_is_right && policy.phase >= policy.period)
     team.problem("phase", "expected less than the period, " + std::to_string(policy.period));
 
   const std::string on_late = team.text("on_late").value_or("wait");
-  const auto found = std::find_if(late_policies.begin(), late_policies.end(),
-                                  [&](const auto& each) { return each.first == on_late; });
+  const auto found =
+      std::find_if(late_policies.begin(), late_policies.end(), [&](const auto& each) { return each.first == on_late; });
   if (found == late_policies.end()) {
     team.problem("on_late", "unknown policy '" + on_late + "'" + suggestion(on_late, names_of_policies()));
     return policy;
@@ -91,16 +94,17 @@ class ExperimentReader {
   void claim(const YAML::Node& node, const std::string& path, const std::string& team,
              const std::set<std::uint32_t>& selected);
   void report_robots_without_team(const YamlMap& top);
+  std::string listed(const std::vector<std::uint32_t>& robots) const;
 
   Experiment experiment_;
   std::vector<Problem> problems_;
   YamlReport report_;
   bool world_is_read_ = false;
+  bool selectors_are_right_ = true;
   std::vector<std::string> team_of_;  // by robot; empty if none
 };
 
-Experiment ExperimentReader::read(std::optional<std::uint64_t> seed,
-                                  std::optional<std::chrono::nanoseconds> duration) {
+Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration) {
   const YAML::Node node = load();
   const YamlMap top(node, "", experiment_keys, report_);
   experiment_.name = experiment_.file.stem().string();
@@ -156,7 +160,8 @@ void ExperimentReader::read_teams(const YamlMap& top) {
     return;
   }
   for (std::size_t i = 0; i < teams.size(); ++i) read_team(teams[i], "teams[" + std::to_string(i) + "]");
-  report_robots_without_team(top);
+  // A misspelt selector leaves robots without a team.
+  if (selectors_are_right_) report_robots_without_team(top);
 }
 
 void ExperimentReader::read_team(const YAML::Node& node, const std::string& path) {
@@ -189,8 +194,8 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
 
 void ExperimentReader::select(const YAML::Node& selector, const std::string& path, std::set<std::uint32_t>& selected) {
   if (!selector.IsScalar()) {
-    report_.problem(selector, path, "expected a robot's name, an id, a range 0..7, all, or a list of these, not " +
-                                        shown(selector));
+    report_.problem(selector, path,
+                    "expected a robot's name, an id, a range 0..7, all, or a list of these, not " + shown(selector));
     return;
   }
   if (!world_is_read_) return;
@@ -198,32 +203,36 @@ void ExperimentReader::select(const YAML::Node& selector, const std::string& pat
     for (const std::uint32_t robot : select_robots(experiment_.world, selector.Scalar())) selected.insert(robot);
   } catch (const std::invalid_argument& error) {
     report_.problem(selector, path, error.what());
+    selectors_are_right_ = false;
   }
 }
 
 void ExperimentReader::claim(const YAML::Node& node, const std::string& path, const std::string& team,
                              const std::set<std::uint32_t>& selected) {
+  std::vector<std::uint32_t> taken;
   for (const std::uint32_t robot : selected) {
-    if (team_of_[robot].empty()) {
+    if (team_of_[robot].empty())
       team_of_[robot] = team.empty() ? path : team;
-      continue;
-    }
-    report_.problem(node, path, "the robot '" + experiment_.world.robot(robot).name + "' is in the team '" +
-                                    team_of_[robot] + "' already");
+    else
+      taken.push_back(robot);
   }
+  if (!taken.empty())
+    report_.problem(node, path, "already in another team: " + listed(taken) + " ('" + team_of_[taken[0]] + "')");
 }
 
 void ExperimentReader::report_robots_without_team(const YamlMap& top) {
-  constexpr std::size_t most_names = 5;
-  std::size_t count = 0;
+  std::vector<std::uint32_t> without;
+  for (std::uint32_t robot = 0; robot < team_of_.size(); ++robot)
+    if (team_of_[robot].empty()) without.push_back(robot);
+  if (!without.empty()) top.problem("teams", "in no team: " + listed(without));
+}
+
+std::string ExperimentReader::listed(const std::vector<std::uint32_t>& robots) const {
+  constexpr std::size_t most = 5;
   std::string names;
-  for (std::uint32_t robot = 0; robot < team_of_.size(); ++robot) {
-    if (!team_of_[robot].empty()) continue;
-    if (count++ < most_names) names += (names.empty() ? "'" : ", '") + experiment_.world.robot(robot).name + "'";
-  }
-  if (count == 0) return;
-  if (count > most_names) names += " and " + std::to_string(count - most_names) + " more";
-  top.problem("teams", count == 1 ? "the robot " + names + " is in no team" : "the robots " + names + " are in no team");
+  for (std::size_t i = 0; i < std::min(robots.size(), most); ++i)
+    names += (i == 0 ? "'" : ", '") + experiment_.world.robot(robots[i]).name + "'";
+  return robots.size() <= most ? names : names + " and " + std::to_string(robots.size() - most) + " more";
 }
 
 }  // namespace

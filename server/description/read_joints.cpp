@@ -40,6 +40,11 @@ void read_axis(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
     report.problem(sdf_joint.Element(), "missing: the direction of the axis, <axis><xyz>", "axis");
     return;
   }
+  if (const sdf::ElementPtr xyz = axis->Element()->FindElement("xyz");
+      xyz && xyz->Get<ignition::math::Vector3d>() == ignition::math::Vector3d::Zero) {
+    report.problem(xyz, "expected a direction that is not zero");
+    return;
+  }
   ignition::math::Vector3d direction;
   const sdf::Errors errors = axis->ResolveXyz(direction);
   if (!errors.empty()) {
@@ -48,7 +53,7 @@ void read_axis(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
   }
   joint.axis = to_eigen(direction).normalized();
   joint.damping = axis->Damping();
-  if (!(joint.damping >= 0.0) || !std::isfinite(joint.damping))
+  if (joint.damping < 0.0 || std::isinf(joint.damping))
     report.problem(find(axis->Element(), {"dynamics", "damping"}), "expected a damping >= 0");
   if (sdf_joint.Type() == sdf::JointType::CONTINUOUS) return;
   if (axis->Lower() > -no_limit) joint.lower = axis->Lower();

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* geometries = "box, sphere, cylinder or plane";
 
+// Here and below, NaN passes: check_numbers has reported it.
 Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
   const sdf::ElementPtr element = link.Element();
   const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
@@ -24,7 +25,7 @@ Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
   Inertial inertial;
   inertial.X_LI = to_pose(link.Inertial().Pose());
   if (mass) inertial.mass = mass->Get<double>();
-  if (!(inertial.mass > 0.0) || !std::isfinite(inertial.mass))
+  if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
     report.problem(mass, "expected a mass > 0 kg, not " + mass->GetValue()->GetAsString());
   if (!inertia) return inertial;
 
@@ -33,7 +34,7 @@ Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
   const double xy = component("ixy"), xz = component("ixz"), yz = component("iyz");
   inertial.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   if (!inertial.inertia.allFinite()) {
-    report.problem(inertia, "expected finite moments of inertia");
+    if (!inertial.inertia.hasNaN()) report.problem(inertia, "expected finite moments of inertia");
     return inertial;
   }
   const Eigen::Vector3d moments =
@@ -49,9 +50,8 @@ Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
 
 void check_size(const sdf::ElementPtr& geometry, std::initializer_list<const char*> path, double least,
                 const SdfReport& report) {
-  if (least > 0.0 && std::isfinite(least)) return;
   const sdf::ElementPtr element = find(geometry, path);
-  report.problem(element ? element : geometry, "expected a size > 0 m");
+  if (least <= 0.0 || std::isinf(least)) report.problem(element ? element : geometry, "expected a size > 0 m");
 }
 
 std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading) {
@@ -59,7 +59,7 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   const SdfReport& report = reading.report;
   if (const sdf::Box* const box = geometry.BoxShape()) {
     const Eigen::Vector3d size = to_eigen(box->Size());
-    check_size(element, {"box", "size"}, size.allFinite() ? size.minCoeff() : 0.0, report);
+    check_size(element, {"box", "size"}, size.minCoeff(), report);
     return Box{size};
   }
   if (const sdf::Sphere* const sphere = geometry.SphereShape()) {
@@ -74,7 +74,7 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   if (const sdf::Plane* const plane = geometry.PlaneShape()) {
     const Eigen::Vector3d normal = to_eigen(plane->Normal());
     if (!reading.is_static) report.problem(element, "a plane needs <static>true</static> in its model");
-    if (!normal.allFinite() || normal.isZero()) report.problem(element, "expected a normal that is not zero");
+    if (normal.isZero()) report.problem(element, "expected a normal that is not zero");
     return Plane{normal.normalized()};
   }
   const sdf::ElementPtr kind = element->GetFirstElement();
@@ -87,7 +87,7 @@ double read_coefficient(const sdf::ElementPtr& element, double by_default, doubl
                         const SdfReport& report) {
   if (!element) return by_default;
   const double value = element->Get<double>();
-  if (!(value >= 0.0 && value <= greatest)) report.problem(element, expected);
+  if (value < 0.0 || value > greatest) report.problem(element, expected);
   return value;
 }
 

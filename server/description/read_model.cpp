@@ -15,9 +15,9 @@ bool every_link_has_one_parent(const sdf::Model& sdf_model, const Model& model, 
   for (const Joint& joint : model.joints) {
     const Joint*& above = joint_above[joint.child];
     if (above != nullptr) {
-      report.problem(sdf_model.JointByName(joint.name)->Element(),
-                     "the link '" + model.links[joint.child].name + "' is the child of joint '" + above->name +
-                         "' already; closed loops are not supported");
+      report.problem(sdf_model.JointByName(joint.name)->Element(), "the link '" + model.links[joint.child].name +
+                                                                       "' is the child of joint '" + above->name +
+                                                                       "' already; closed loops are not supported");
       valid = false;
     }
     above = &joint;
@@ -43,8 +43,8 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   if (roots.size() > 1) {
     std::string names;
     for (const std::size_t root : roots) names += (names.empty() ? "'" : ", '") + model.links[root].name + "'";
-    report.problem(sdf_model.Element(), "the links " + names +
-                                            " have no joint to a parent; a model that moves has one such root");
+    report.problem(sdf_model.Element(),
+                   "the links " + names + " have no joint to a parent; a model that moves has one such root");
     return false;
   }
   for (const std::size_t root : roots) put(root);
@@ -95,10 +95,9 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
     return model;
   }
   model.joints = read_joints(sdf_model, model.links, reading);
-  const bool is_tree = reading.frames_resolve && sdf_model.ModelCount() == 0 &&
-                       model.joints.size() == sdf_model.JointCount() &&
-                       every_link_has_one_parent(sdf_model, model, reading.report) &&
-                       order_links(sdf_model, model, reading.report);
+  const bool is_tree =
+      reading.frames_resolve && sdf_model.ModelCount() == 0 && model.joints.size() == sdf_model.JointCount() &&
+      every_link_has_one_parent(sdf_model, model, reading.report) && order_links(sdf_model, model, reading.report);
   // Devices name links and joints: with some of those missing, each device would be reported for it.
   if (is_tree) model.devices = read_devices(element, model, reading.report);
   return model;

@@ -28,7 +28,8 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading);
 Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
 
 /// The joints between `links`, in document order.
-std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const ModelReading& reading);
+std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links,
+                               const ModelReading& reading);
 
 /// The `cohort:` devices of a model whose links and joints are read. `model_element` is where they stand.
 std::vector<Device> read_devices(const sdf::ElementPtr& model_element, const Model& model, const SdfReport& report);

@@ -39,7 +39,6 @@ class WorldReader {
   std::size_t shared_model(const SdfFile& file, bool is_static);
   /// False if the name is taken.
   bool add_instance(std::string name, std::size_t model, const Pose& X_WM);
-  [[noreturn]] void throw_problems();
 
   std::uint64_t seed_;
   World world_;
@@ -52,17 +51,17 @@ class WorldReader {
 
 World WorldReader::read() {
   const SdfFile& file = files_.world();
-  if (!file.loaded) throw_problems();
+  if (!file.loaded) throw InputError(std::move(problems_));
   if (file.root.WorldCount() != 1) {
-    problems_.push_back({file.shown, file.xml.line, "", "expected one <world>, not " +
-                                                            std::to_string(file.root.WorldCount())});
-    throw_problems();
+    problems_.push_back(
+        {file.shown, file.xml.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+    throw InputError(std::move(problems_));
   }
   const sdf::World& sdf_world = *file.root.WorldByIndex(0);
   read_settings(sdf_world);
   read_models(sdf_world, file);
   read_populations(sdf_world);
-  if (!problems_.empty()) throw_problems();
+  if (!problems_.empty()) throw InputError(std::move(problems_));
 
   for (std::size_t i = 0; i < world_.instances.size(); ++i)
     if (world_.models[world_.instances[i].model].is_robot()) world_.robots.push_back(i);
@@ -85,7 +84,7 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
   constexpr double longest = 1.0;
   const double seconds = step->Get<double>();
   if (!(seconds > 0.0 && seconds <= longest)) {
-    report_.problem(step, "expected a step > 0 s and <= 1 s");
+    if (!std::isnan(seconds)) report_.problem(step, "expected a step > 0 s and <= 1 s");
     return;
   }
   const double count = std::round(seconds * nanoseconds);
@@ -171,12 +170,11 @@ void WorldReader::expand(const Population& population) {
     for (const Footprint& part : footprints_of(world_.models[instance.model], instance.X_WM)) obstacles.push_back(part);
   const std::vector<Pose> poses = place_uniformly(population.placement, world_.models[model], obstacles);
   if (poses.size() < population.placement.count)
-    report_.problem(population.placement_element,
-                    "only " + std::to_string(poses.size()) + " of " + std::to_string(population.placement.count) +
-                        " fit; enlarge the rectangle, or lower the count or the gap");
+    report_.problem(population.placement_element, "only " + std::to_string(poses.size()) + " of " +
+                                                      std::to_string(population.placement.count) +
+                                                      " fit; enlarge the rectangle, or lower the count or the gap");
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::string name =
-        population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(i);
+    const std::string name = population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(i);
     if (add_instance(name, model, poses[i])) continue;
     report_.problem(population.uri_element->GetParent(), "another instance has the name '" + name + "'");
     return;
@@ -187,15 +185,6 @@ bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& 
   if (!names_.insert(name).second) return false;
   world_.instances.push_back({std::move(name), model, X_WM});
   return true;
-}
-
-void WorldReader::throw_problems() {
-  // A file that is read twice, as static and not, is found at fault twice.
-  std::set<std::string> said;
-  std::vector<Problem> problems;
-  for (Problem& problem : problems_)
-    if (said.insert(problem.text()).second) problems.push_back(std::move(problem));
-  throw InputError(std::move(problems));
 }
 
 }  // namespace

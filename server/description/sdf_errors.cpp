@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <optional>
 #include <sdf/Error.hh>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace cohort::description {
 namespace {
@@ -49,10 +51,26 @@ bool is_said_by_us(const sdf::Error& error) {
     case sdf::ErrorCode::LINK_INERTIA_INVALID:
     case sdf::ErrorCode::URI_LOOKUP:
       return true;
+    case sdf::ErrorCode::DUPLICATE_NAME:
+      return error.Message().starts_with("model with name[");
     case sdf::ErrorCode::ELEMENT_INVALID:
-      return error.Message() == "Failed to load a world.";
+      return error.Message() == "Failed to load a world." || error.Message().starts_with("The norm of the xyz vector");
     default:
       return false;
+  }
+}
+
+// Follows from an error before it: a whole that has a bad part, a graph that has a bad edge.
+bool is_consequence(const sdf::Error& error, const std::string& path, const std::string& last_path) {
+  switch (error.Code()) {
+    case sdf::ErrorCode::ELEMENT_INVALID:
+      return (is_cannot_read_element(error) && last_path.starts_with(path)) ||
+             error.Message().starts_with("Unable to parse sdf element");
+    case sdf::ErrorCode::FRAME_ATTACHED_TO_GRAPH_ERROR:
+    case sdf::ErrorCode::POSE_RELATIVE_TO_GRAPH_ERROR:
+      return true;
+    default:
+      return error.Message().starts_with("FrameAttachedToGraph") || error.Message().starts_with("PoseRelativeToGraph");
   }
 }
 
@@ -75,9 +93,9 @@ std::optional<Place> find_named(const XmlNode& from, const std::string& path, st
   return found;
 }
 
-// The name in the first `KIND with name[NAME]` of a message, for a kind after `start`.
+// The name in the first `KIND with name[NAME]` of a message, or in the first `name[NAME]` if the kind is empty.
 std::optional<std::string> name_in(std::string_view message, std::string_view kind, std::size_t start = 0) {
-  const std::string before = std::string(kind) + " with name[";
+  const std::string before = kind.empty() ? "name[" : std::string(kind) + " with name[";
   const std::size_t found = message.find(before, start);
   if (found == std::string_view::npos) return std::nullopt;
   const std::size_t begin = found + before.size();
@@ -103,25 +121,33 @@ std::optional<Place> place_named_in(std::string message, const XmlNode& xml) {
   return scope;
 }
 
-const XmlNode* find_on_line(const XmlNode& node, int line) {
-  const XmlNode* found = node.line == line ? &node : nullptr;
-  for (const XmlNode& child : node.children)
-    if (const XmlNode* const deeper = find_on_line(child, line)) found = deeper;
-  return found;
+void find_on_line(const XmlNode& node, std::string_view name, int line, std::vector<const XmlNode*>& found) {
+  if (node.line == line && node.name == name) found.push_back(&node);
+  for (const XmlNode& child : node.children) find_on_line(child, name, line, found);
+}
+
+// For `Error reading element <NAME>`: what the value is that libsdformat says nothing about.
+std::string message_with_value(const sdf::Error& error, int line, const XmlNode& xml) {
+  std::string name = error.Message().substr(error.Message().find('<') + 1);
+  name.resize(std::min(name.find('>'), name.size()));
+  std::vector<const XmlNode*> found;
+  find_on_line(xml, name, line, found);
+  if (found.size() != 1 || !found[0]->children.empty()) return "<" + name + "> cannot be read";
+  return "<" + name + "> cannot have the value '" + found[0]->text + "'";
 }
 
 }  // namespace
 
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file) {
   std::vector<Problem> problems;
+  std::set<std::pair<std::string, std::string>> named;  // places, and the names that are wrong there
   std::string last_path;
   for (const sdf::Error& error : errors) {
     if (is_said_by_us(error)) continue;
-    // An element that cannot be read makes every element around it one that cannot be read.
     const std::string path = error.XmlPath().value_or("");
-    const bool is_consequence = is_cannot_read_element(error) && !problems.empty() && last_path.starts_with(path);
+    const bool follows = !problems.empty() && is_consequence(error, path, last_path);
     last_path = path;
-    if (is_consequence) continue;
+    if (follows) continue;
 
     Problem problem{file.shown, error.LineNumber().value_or(0), readable_path(path), readable_message(error)};
     if (problem.line == 0 && path.empty()) {
@@ -129,10 +155,11 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
         problem.line = place->node->line;
         problem.element = place->path;
       }
+      // One unknown name is reported as a frame, as a link and as what a pose is relative to.
+      const std::string name = name_in(problem.message, "").value_or(problem.message);
+      if (!named.emplace(problem.element, name).second) continue;
     } else if (is_cannot_read_element(error)) {
-      const XmlNode* const node = find_on_line(file.xml, problem.line);
-      if (node != nullptr && node->children.empty())
-        problem.message = "<" + node->name + "> cannot have the value '" + node->text + "'";
+      problem.message = message_with_value(error, problem.line, file.xml);
     }
     problems.push_back(std::move(problem));
   }

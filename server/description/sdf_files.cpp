@@ -4,6 +4,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <sdf/Console.hh>
 #include <sdf/SDFImpl.hh>
 #include <sdf/parser.hh>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "server/description/sdf_errors.hpp"
+#include "server/description/text.hpp"
 
 namespace cohort::description {
 namespace {
@@ -41,7 +43,7 @@ const XmlNode* find_on_line(const XmlNode& node, std::string_view name, int line
 
 std::string step_of(const sdf::ElementPtr& element) {
   std::string step = element->GetName();
-  if (step != "world" && element->HasAttribute("name"))
+  if (step != "world" && element->GetAttributeSet("name"))
     step += "[" + element->GetAttribute("name")->GetAsString() + "]";
   return step;
 }
@@ -59,6 +61,34 @@ const XmlNode* nth_child(const XmlNode& node, std::string_view name, std::size_t
   for (const XmlNode& child : node.children)
     if (child.name == name && n-- == 0) return &child;
   return nullptr;
+}
+
+// What libsdformat would stumble over in an <include>: it copies the children without a look at what it is given, and
+// an attribute that it does not know, or a value that is not there, ends the process. The child and what is wrong with
+// it.
+std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlNode& include) {
+  const std::map<std::string, std::vector<std::string>> attributes_of = {
+      {"uri", {}},
+      {"name", {}},
+      {"static", {}},
+      {"placement_frame", {}},
+      {"pose", {"relative_to", "degrees", "rotation_format"}},
+      {"plugin", {"name", "filename"}}};
+  std::vector<std::string> names;
+  for (const auto& [name, attributes] : attributes_of) names.push_back(name);
+  for (const XmlNode& child : include.children) {
+    if (child.name == "experimental:params") return std::pair{&child, "parameters of an include are not supported"};
+    if (child.name.find(':') != std::string::npos) continue;
+    const auto known = attributes_of.find(child.name);
+    if (known == attributes_of.end()) return std::pair{&child, "unknown element" + suggestion(child.name, names)};
+    for (const auto& [attribute, value] : child.attributes)
+      if (std::find(known->second.begin(), known->second.end(), attribute) == known->second.end())
+        return std::pair{&child, "unknown attribute '" + attribute + "'" + suggestion(attribute, known->second)};
+    if (child.name == "plugin" && !child.text.empty()) return std::pair{&child, "unexpected text"};
+    if (child.name != "plugin" && child.name != "pose" && child.text.empty())
+      return std::pair{&child, "expected a value"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -88,20 +118,30 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
   file->path = absolute;
   file->shown = shown;
   opening_.push_back(absolute);
-  if (read_outline(*file) && follow_includes(file->xml, "", *file)) load(*file);
+  if (const auto text = read_text(*file); text && read_outline(*text, *file) && follow_includes(file->xml, "", *file))
+    load(*text, *file);
   opening_.pop_back();
   return *file;
 }
 
-bool SdfFiles::read_outline(SdfFile& file) {
+std::optional<std::string> SdfFiles::read_text(const SdfFile& file) {
+  const char* failure = "there is no such file";
+  if (fs::is_regular_file(file.path)) {
+    std::ifstream stream(file.path);
+    std::string text(std::istreambuf_iterator<char>(stream), {});
+    if (stream) return text;
+    failure = "the file cannot be read";
+  }
+  problems_.push_back({file.shown, 0, "", failure});
+  return std::nullopt;
+}
+
+bool SdfFiles::read_outline(const std::string& text, SdfFile& file) {
   const auto fail = [&](int line, std::string message) {
     problems_.push_back({file.shown, line, "", std::move(message)});
     return false;
   };
-  if (!fs::is_regular_file(file.path)) return fail(0, "there is no such file");
-  std::ifstream stream(file.path);
-  XmlOutline outline = outline_xml(std::string(std::istreambuf_iterator<char>(stream), {}));
-  if (!stream) return fail(0, "the file cannot be read");
+  XmlOutline outline = outline_xml(text);
   if (outline.error) return fail(outline.error->line, outline.error->message);
   file.xml = std::move(outline.root);
 
@@ -111,37 +151,36 @@ bool SdfFiles::read_outline(SdfFile& file) {
                                    file.xml.name + ">");
   // libsdformat would read a newer file as if it were of its own version.
   if (version_of(*version) > version_of(sdf::SDF::Version()) || version_of(*version) == std::pair{0, 0})
-    return fail(file.xml.line, "SDF version '" + *version + "' cannot be read, only versions up to " +
-                                   sdf::SDF::Version());
+    return fail(file.xml.line,
+                "SDF version '" + *version + "' cannot be read, only versions up to " + sdf::SDF::Version());
   return true;
 }
 
 bool SdfFiles::follow_includes(const XmlNode& node, const std::string& path, SdfFile& file) {
   bool usable = true;
   for (const XmlNode& child : node.children) {
-    const std::string* const name = child.attribute("name");
     std::string child_path = (path.empty() ? "" : path + "/") + child.name;
-    if (name != nullptr && child.name != "world") child_path += "[" + *name + "]";
-    if (child.name == "include")
+    if (child.name == "include") {
+      if (const XmlNode* const name = child.child("name")) child_path += "[" + name->text + "]";
       usable = follow_include(child, child_path, node.name == "world", file) && usable;
-    else if (child.name == "world" || child.name == "model")
+    } else if (child.name == "world") {
       usable = follow_includes(child, child_path, file) && usable;
+    } else if (child.name == "model") {
+      if (const std::string* const name = child.attribute("name")) child_path += "[" + *name + "]";
+      usable = follow_includes(child, child_path, file) && usable;
+    }
   }
   return usable;
 }
 
 bool SdfFiles::follow_include(const XmlNode& include, const std::string& path, bool in_world, SdfFile& file) {
   const auto problem = [&](const XmlNode& where, std::string message) {
-    problems_.push_back({file.shown, where.line, &where == &include ? path : path + "/" + where.name,
-                         std::move(message)});
+    problems_.push_back(
+        {file.shown, where.line, &where == &include ? path : path + "/" + where.name, std::move(message)});
   };
-  for (const char* const name : {"uri", "name", "static", "placement_frame"})
-    if (const XmlNode* const child = include.child(name); child != nullptr && child->text.empty()) {
-      problem(*child, "expected a value");
-      return false;
-    }
-  if (const XmlNode* const parameters = include.child("experimental:params")) {
-    problem(*parameters, "parameters of an include are not supported");
+  const auto flaw = flaw_of_include(include);
+  if (flaw) {
+    problem(*flaw->first, flaw->second);
     return false;
   }
   const XmlNode* const uri = include.child("uri");
@@ -169,11 +208,15 @@ bool SdfFiles::follow_include(const XmlNode& include, const std::string& path, b
   return true;
 }
 
-void SdfFiles::load(SdfFile& file) {
+void SdfFiles::load(const std::string& text, SdfFile& file) {
   sdf::Errors errors;
   try {
-    const sdf::SDFPtr sdf = sdf::readFile(file.path.string(), libsdformat_.config(), errors);
-    file.loaded = sdf != nullptr;
+    const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+    sdf::init(sdf);
+    sdf->SetFilePath(file.path.string());
+    // Into an element: what reads into an SDFPtr tries anything that is not SDF as URDF, whose parser prints on its
+    // own.
+    file.loaded = sdf::readString(text, libsdformat_.config(), sdf->Root(), errors);
     if (file.loaded) {
       const sdf::Errors more = file.root.Load(sdf, libsdformat_.config());
       errors.insert(errors.end(), more.begin(), more.end());
@@ -187,9 +230,8 @@ void SdfFiles::load(SdfFile& file) {
   if (!file.loaded && found.empty() && problems_.empty())
     found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
   // Left out by libsdformat, because we have reported it already.
-  const bool includes_missing = std::any_of(errors.begin(), errors.end(), [](const sdf::Error& error) {
-    return error.Code() == sdf::ErrorCode::URI_LOOKUP;
-  });
+  const bool includes_missing = std::any_of(
+      errors.begin(), errors.end(), [](const sdf::Error& error) { return error.Code() == sdf::ErrorCode::URI_LOOKUP; });
   file.sound = file.loaded && found.empty() && !includes_missing;
   problems_.insert(problems_.end(), found.begin(), found.end());
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <sdf/Element.hh>
 #include <sdf/ParserConfig.hh>
 #include <sdf/Root.hh>
@@ -79,11 +80,12 @@ class SdfFiles {
 
  private:
   SdfFile& open(const std::filesystem::path& path, const std::filesystem::path& shown);
-  bool read_outline(SdfFile& file);
+  std::optional<std::string> read_text(const SdfFile& file);
+  bool read_outline(const std::string& text, SdfFile& file);
   /// False if libsdformat would stumble over it.
   bool follow_includes(const XmlNode& node, const std::string& path, SdfFile& file);
   bool follow_include(const XmlNode& include, const std::string& path, bool in_world, SdfFile& file);
-  void load(SdfFile& file);
+  void load(const std::string& text, SdfFile& file);
   const SdfFile* find(const std::string& path) const;
   int line_of(const sdf::ElementPtr& element) const;
 

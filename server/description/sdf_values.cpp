@@ -11,8 +11,8 @@
 namespace cohort::description {
 namespace {
 
-// How many numbers a value of this type has; 0 for types that are not numbers. libsdformat itself counts those of a pose,
-// whose number depends on its attributes.
+// How many numbers a value of this type has; 0 for types that are not numbers. libsdformat itself counts those of a
+// pose, whose number depends on its attributes.
 std::size_t numbers_in(std::string_view type) {
   if (type == "double" || type == "float" || type == "int" || type == "unsigned int") return 1;
   if (type == "vector2d") return 2;
@@ -21,9 +21,9 @@ std::size_t numbers_in(std::string_view type) {
 }
 
 bool is_simulated(const std::string& name) {
-  constexpr std::string_view ignored[] = {"visual", "light",      "sensor", "plugin",           "scene",
-                                          "gui",    "atmosphere", "actor",  "particle_emitter", "state",
-                                          "audio",  "road",       "magnetic_field", "projector", "population"};
+  constexpr std::string_view ignored[] = {"visual", "light",      "sensor",         "plugin",           "scene",
+                                          "gui",    "atmosphere", "actor",          "particle_emitter", "state",
+                                          "audio",  "road",       "magnetic_field", "projector",        "population"};
   return std::find(std::begin(ignored), std::end(ignored), name) == std::end(ignored) &&
          name.find(':') == std::string::npos;
 }

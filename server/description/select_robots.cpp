@@ -60,8 +60,7 @@ std::vector<std::uint32_t> select_robots(const World& world, const std::string& 
 
   const std::size_t dots = text.find("..");
   const std::optional<std::uint64_t> first = parse_whole(text.substr(0, dots));
-  const std::optional<std::uint64_t> last =
-      dots == std::string_view::npos ? first : parse_whole(text.substr(dots + 2));
+  const std::optional<std::uint64_t> last = dots == std::string_view::npos ? first : parse_whole(text.substr(dots + 2));
   if (first && last) {
     if (*first > *last) throw std::invalid_argument("the range " + quoted + " ends before it starts");
     if (*last >= count) throw std::invalid_argument(quoted + " reaches beyond the last robot; " + robots_of(world));

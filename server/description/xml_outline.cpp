@@ -231,7 +231,8 @@ bool Scanner::close_element() {
 }  // namespace
 
 const XmlNode* XmlNode::child(std::string_view child_name) const {
-  const auto found = std::find_if(children.begin(), children.end(), [&](const XmlNode& c) { return c.name == child_name; });
+  const auto found =
+      std::find_if(children.begin(), children.end(), [&](const XmlNode& c) { return c.name == child_name; });
   return found == children.end() ? nullptr : &*found;
 }
 

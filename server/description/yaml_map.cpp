@@ -26,7 +26,7 @@ YamlMap::YamlMap(const YAML::Node& node, std::string path, const std::vector<std
   }
 }
 
-const YAML::Node YamlMap::value(const std::string& key) const {
+YAML::Node YamlMap::value(const std::string& key) const {
   // A const node is looked into, a mutable one would get the key.
   const YAML::Node& map = node_;
   return map.IsMap() ? map[key] : YAML::Node(YAML::NodeType::Undefined);
@@ -53,8 +53,7 @@ std::optional<double> YamlMap::real(const std::string& key) const {
   return std::nullopt;
 }
 
-std::optional<std::uint64_t> YamlMap::whole(const std::string& key, std::uint64_t least,
-                                            std::uint64_t greatest) const {
+std::optional<std::uint64_t> YamlMap::whole(const std::string& key, std::uint64_t least, std::uint64_t greatest) const {
   if (!has(key)) return std::nullopt;
   const YAML::Node node = value(key);
   const std::optional<std::uint64_t> number = node.IsScalar() ? parse_whole(node.Scalar()) : std::nullopt;
@@ -66,10 +65,14 @@ std::optional<std::uint64_t> YamlMap::whole(const std::string& key, std::uint64_
 
 std::string shown(const YAML::Node& node) {
   switch (node.Type()) {
-    case YAML::NodeType::Scalar: return "'" + node.Scalar() + "'";
-    case YAML::NodeType::Sequence: return "a list";
-    case YAML::NodeType::Map: return "a map";
-    default: return "nothing";
+    case YAML::NodeType::Scalar:
+      return "'" + node.Scalar() + "'";
+    case YAML::NodeType::Sequence:
+      return "a list";
+    case YAML::NodeType::Map:
+      return "a map";
+    default:
+      return "nothing";
   }
 }
 

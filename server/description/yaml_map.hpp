@@ -36,7 +36,7 @@ class YamlMap {
 
   bool has(const std::string& key) const { return static_cast<bool>(value(key)); }
   /// Of the key, or of the map if the key is absent.
-  const YAML::Node where(const std::string& key) const { return has(key) ? value(key) : node_; }
+  YAML::Node where(const std::string& key) const { return has(key) ? value(key) : node_; }
   std::string path_to(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   /// Reports the key if it is absent.
   void require(const std::string& key, const std::string& doc) const;
@@ -52,7 +52,7 @@ class YamlMap {
   std::optional<std::uint64_t> whole(const std::string& key, std::uint64_t least, std::uint64_t greatest) const;
 
  private:
-  const YAML::Node value(const std::string& key) const;
+  YAML::Node value(const std::string& key) const;
 
   YAML::Node node_;
   std::string path_;

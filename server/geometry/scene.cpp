@@ -44,24 +44,41 @@ void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
   bounds_[index] = bounds_of(solids_[index].shape, X_WC);
 }
 
+double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
+                      const Eigen::Vector3d& direction_W, double range) const {
+  const double reach = best ? best->distance : range;
+  const RayEntry entry = geometry::cast_ray(solids_[index].shape, X_CW_[index] * origin_W,
+                                            X_CW_[index].orientation * direction_W);
+  if (!(entry.distance < reach || (entry.distance == reach && (!best || index < best->solid)))) return reach;
+  best = RayHit{entry.distance, index, solids_[index].X_WC.orientation * entry.normal};
+  return entry.distance;
+}
+
 std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
                                       double range, std::uint32_t ignored_body) const {
   std::optional<RayHit> best;
-  double reach = range;
   const auto test = [&](std::uint32_t index) {
-    const Solid& solid = solids_[index];
-    if (solid.body == ignored_body) return reach;
-    const RayEntry entry = geometry::cast_ray(solid.shape, X_CW_[index] * origin_W,
-                                              X_CW_[index].orientation * direction_W);
-    if (entry.distance < reach || (entry.distance == reach && (!best || index < best->solid))) {
-      reach = entry.distance;
-      best = RayHit{entry.distance, index, solid.X_WC.orientation * entry.normal};
-    }
-    return reach;
+    if (solids_[index].body == ignored_body) return best ? best->distance : range;
+    return improve(best, index, origin_W, direction_W, range);
   };
   for (const std::uint32_t index : large_) test(index);
-  static_grid_.for_each_along(origin_W, direction_W, reach, test);
-  moving_grid_.for_each_along(origin_W, direction_W, reach, test);
+  static_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
+  moving_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
+  return best;
+}
+
+std::vector<std::uint32_t> Scene::solids_in(const Bounds& region, std::uint32_t ignored_body) const {
+  std::vector<std::uint32_t> found;
+  for_each_overlap(region, [&](std::uint32_t index) {
+    if (solids_[index].body != ignored_body) found.push_back(index);
+  });
+  return found;
+}
+
+std::optional<RayHit> Scene::cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
+                                            const Eigen::Vector3d& direction_W, double range) const {
+  std::optional<RayHit> best;
+  for (const std::uint32_t index : candidates) improve(best, index, origin_W, direction_W, range);
   return best;
 }
 

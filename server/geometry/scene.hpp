@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "server/geometry/grid.hpp"
@@ -49,6 +50,12 @@ class Scene {
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
                                  std::uint32_t ignored_body = no_body) const;
 
+  /// The solids that a ray inside `region` can hit, for `cast_ray_among`: several rays from one place find them once.
+  std::vector<std::uint32_t> solids_in(const Bounds& region, std::uint32_t ignored_body = no_body) const;
+  /// As `cast_ray`, among `candidates` only. The same answer, bit for bit, if the ray stays inside their region.
+  std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
+                                       const Eigen::Vector3d& direction_W, double range) const;
+
   /// Calls `visit(index)` once for each solid whose bounds overlap `query` (for a plane: that it reaches into).
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
@@ -60,6 +67,9 @@ class Scene {
 
  private:
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
+  /// Makes `best` the solid's hit if that is nearer. Returns how far a nearer hit may be.
+  double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
+                 const Eigen::Vector3d& direction_W, double range) const;
 
   std::vector<Solid> solids_;
   std::vector<Pose> X_CW_;  // inverse of each solid's pose

@@ -51,7 +51,10 @@ const Leases::Lease* Leases::lease(std::uint64_t client) const {
   return found == leases_.end() ? nullptr : &found->second;
 }
 
-void Leases::note_answer(std::uint64_t client) { ++answers_[client]; }
+void Leases::note_answer(std::uint64_t client) {
+  ++answers_[client];
+  set_alive(client, true);
+}
 
 void Leases::set_alive(std::uint64_t client, bool alive) {
   if (const auto found = leases_.find(client); found != leases_.end()) found->second.alive = alive;

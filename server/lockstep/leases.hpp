@@ -55,7 +55,7 @@ class Leases {
   std::optional<std::uint64_t> holder(std::uint32_t robot) const { return holder_[robot]; }
   bool has_claims() const { return !claims_.empty(); }
 
-  /// The client answered a frame: it lives.
+  /// The client, which has a lease, answered a frame: it lives, whatever liveliness said last.
   void note_answer(std::uint64_t client);
   /// What liveliness says.
   void set_alive(std::uint64_t client, bool alive);

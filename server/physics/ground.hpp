@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "server/geometry/scene.hpp"
 
@@ -13,10 +14,24 @@ struct Ground {
   double friction = 0.0;
 };
 
-/// Finds the ground under a point of `body`: the first solid of any other body that does not move, looked for along
-/// `-up_W` from `climb` above the point to `reach` below it. A surface higher than `climb` is a wall and not ground.
-/// Any shape that can be hit by a ray can be ground.
-std::optional<Ground> find_ground(const geometry::Scene& scene, std::uint32_t body, const Eigen::Vector3d& point_W,
-                                  const Eigen::Vector3d& up_W, double climb, double reach);
+/// Finds the ground under points of one body, for as long as nothing moves. Any shape that a ray can hit can be ground;
+/// a solid that moves is none yet.
+class GroundFinder {
+ public:
+  /// All points lie within `radius` of `centre_W`. The ground is looked for along `-up_W`, from `climb` above a point to
+  /// `reach` below it: a surface higher than `climb` is a wall.
+  GroundFinder(const geometry::Scene& scene, std::uint32_t body, const Eigen::Vector3d& centre_W, double radius,
+               const Eigen::Vector3d& up_W, double climb, double reach);
+
+  /// The first solid of any other body.
+  std::optional<Ground> below(const Eigen::Vector3d& point_W) const;
+
+ private:
+  const geometry::Scene& scene_;
+  Eigen::Vector3d up_W_;
+  double climb_;
+  double reach_;
+  std::vector<std::uint32_t> near_;
+};
 
 }  // namespace cohort::physics

@@ -74,6 +74,10 @@ void TreelDrive::add_normal_rows(btMultiBodyConstraintArray& rows, btMultiBodyJa
   const btTransform X_WB = m_bodyA->getBaseWorldTransform();
   const btTransform X_WL = X_WB * to_bullet(X_BL_);
   const Eigen::Vector3d up_W = to_eigen(X_WL.getBasis().getColumn(2));
+  const Eigen::Vector3d centre_W = to_eigen(X_WL * btVector3(0.0, 0.0, drive_.ground_height));
+  const GroundFinder ground_finder(*scene_, body_index_, centre_W,
+                                   drive_.half_gauge + drive_.half_contact_length, up_W,
+                                   drive_.wheel_radius, reach);
   btVector3 normal_sum(0, 0, 0);
   int slot = 0;
   for (const Side side : {Side::left, Side::right}) {
@@ -85,7 +89,7 @@ void TreelDrive::add_normal_rows(btMultiBodyConstraintArray& rows, btMultiBodyJa
     for (const double along : {drive_.half_contact_length, -drive_.half_contact_length}) {
       const double y = side == Side::left ? drive_.half_gauge : -drive_.half_gauge;
       const btVector3 point_W = X_WL * btVector3(along, y, drive_.ground_height);
-      const auto ground = find_ground(*scene_, body_index_, to_eigen(point_W), up_W, drive_.wheel_radius, reach);
+      const auto ground = ground_finder.below(to_eigen(point_W));
       if (ground) {
         // Above the surface: may close the gap within the step. Below: pushed out gently.
         const double target = ground->gap > 0.0

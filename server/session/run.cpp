@@ -18,6 +18,11 @@ void RunBook::start() {
   last_report_ = start_;
 }
 
+void RunBook::stop() {
+  if (started_ && !stopped_) result_.wall_time = Clock::now() - start_;
+  stopped_ = true;
+}
+
 RunBook::Clock::time_point RunBook::due_time() const {
   if (options_.speed <= 0.0) return start_;
   const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulation_.time().count()) / options_.speed);
@@ -43,11 +48,11 @@ void RunBook::add_event(const std::string& kind, const std::string& text, std::u
 }
 
 RunResult RunBook::finish(RunResult::End end, std::string error) {
+  stop();
   result_.end = end;
   result_.error = std::move(error);
   result_.ticks = simulation_.tick();
   result_.sim_time = simulation_.time();
-  result_.wall_time = started_ ? Clock::now() - start_ : Clock::duration::zero();
   result_.state_hash = simulation_.state_hash();
   result_.robots = simulation_.robot_count();
   result_.touches = simulation_.touches();

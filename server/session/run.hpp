@@ -63,6 +63,7 @@ class RunBook {
 
   std::uint64_t total_ticks() const { return total_ticks_; }
   void start();  ///< the first frame is about to go out
+  void stop();   ///< the last step is done
   /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
   template <class Complete>
   void report(bool now_anyway, Complete&& complete) {
@@ -91,6 +92,7 @@ class RunBook {
   std::chrono::nanoseconds step_;
   std::uint64_t total_ticks_;
   bool started_ = false;
+  bool stopped_ = false;
   Clock::time_point start_;
   Clock::time_point last_report_;
   std::chrono::nanoseconds last_report_time_{0};  // simulated

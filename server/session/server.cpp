@@ -28,7 +28,8 @@ Server::Server(const description::Experiment& experiment, Simulation& simulation
       world_state_(participant, view_partition),
       joins_(participant, {[this](const wire::Join& join, const wire::Sender& sender) { on_join(join, sender); },
                            [this](const wire::Sender& sender, bool alive) { on_liveliness(sender, alive); }}),
-      commands_(participant, {[this](const wire::Command& command, const wire::Sender&) { on_command(command); }, {}}),
+      commands_(participant,
+                {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); }, {}}),
       reports_(participant, {[this](const wire::Report& report, const wire::Sender&) { on_report(report); }, {}}) {
   std::iota(all_robots_.begin(), all_robots_.end(), 0u);
   for (const wire::RobotDescription& description : describe_kinds(simulation)) descriptions_.write(description);
@@ -51,6 +52,8 @@ std::string Server::error() {
 RunResult Server::run(const std::atomic<bool>& stop) {
   using End = RunResult::End;
   const auto end = [&](End how, const std::string& error = {}) {
+    book_.stop();
+    handle_inbox();
     end_clients(how == End::finished ? "complete" : how == End::interrupted ? "interrupted" : "failed", error);
     report_progress(true);
     return book_.finish(how, error);
@@ -263,11 +266,13 @@ void Server::on_report(const wire::Report& report) {
   wake_.notify_all();
 }
 
-void Server::on_command(const wire::Command& command) {
+void Server::on_command(const wire::Command& command, const wire::Sender& sender) {
   const std::lock_guard lock(mutex_);
   const lockstep::Leases::Lease* lease = leases_.lease(command.client);
   const std::string answer = "an answer to tick " + std::to_string(command.tick);
   if (lease == nullptr) return reject(command.client, "foreign", "commands come from a client that drives no robot");
+  if (participant_of_client_.at(command.client) != sender.participant)
+    return reject(sender.participant, "foreign", "commands come in the name of " + wire::partition_of(command.client));
   if (command.run != run_number_) return reject(command.client, "stale", answer + " of another run");
   if (command.epoch != lease->epoch) return reject(command.client, "stale", answer + " of another lease");
 

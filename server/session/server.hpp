@@ -40,15 +40,15 @@ class Server {
 
   struct Client {
     std::string label;  // for people: controller, process and host
-    std::vector<std::uint32_t> robots;  // that it last asked for
+    std::vector<std::uint32_t> robots{};  // that it last asked for
     bool claims = false;                // and was neither granted nor refused
     wire::Writer<wire::Admit> admit;
     wire::Writer<wire::Observation> observation;
     wire::Writer<wire::Report> report;
-    lockstep::ResendTimer resend;
+    lockstep::ResendTimer resend{};
     std::uint32_t times_resent = 0;
-    Exchange::Frame frame;                      // reused
-    std::set<std::string> reported_rejections;  // reasons that it was told of
+    Exchange::Frame frame{};                      // reused
+    std::set<std::string> reported_rejections{};  // reasons that it was told of
   };
   struct Liveliness {
     wire::Sender sender;
@@ -66,7 +66,7 @@ class Server {
   // On DDS's threads.
   void on_join(const wire::Join& join, const wire::Sender& sender);
   void on_liveliness(const wire::Sender& sender, bool alive);
-  void on_command(const wire::Command& command);
+  void on_command(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report);
   void reject(std::uint64_t client, const std::string& reason, const std::string& text);
 
@@ -76,6 +76,8 @@ class Server {
   void handle_inbox();
   void handle_join(const wire::Join& join, const wire::Sender& sender);
   void handle_liveliness(std::uint64_t client, bool alive);
+  Client* attach(const wire::Join& join, const wire::Sender& sender, const std::set<std::uint32_t>& robots);
+  void refuse(std::uint64_t client_id, Client& client, const std::string& reason);
   void decide_claims();
   void admit(const lockstep::Leases::Granted& granted);
   void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
@@ -100,14 +102,17 @@ class Server {
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  // Under the lock: what answers need, and the inbox.
+  // Under the lock: what answers need, and the inbox. `participant_of_client_`: who joined under an id; DDS says it, so that
+  // nobody can answer in another's name.
   Exchange exchange_;
   lockstep::Leases leases_;
   Inbox inbox_;
   bool attention_ = false;  // wake up before the tick is complete
   std::string error_;
 
-  std::map<std::uint64_t, Client> clients_;                // by id
+  std::map<std::uint64_t, std::uint64_t> participant_of_client_;
+
+  std::map<std::uint64_t, Client> clients_;                  // by id
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of Join
   lockstep::MedianDuration median_tick_;
   std::vector<std::uint32_t> all_robots_;

@@ -60,7 +60,10 @@ void Server::handle_liveliness(std::uint64_t client_id, bool alive) {
       useless = !alive;
     }
   }
-  if (useless) clients_.erase(client);
+  if (!useless) return;
+  clients_.erase(client);
+  const std::lock_guard lock(mutex_);
+  participant_of_client_.erase(client_id);
 }
 
 void Server::handle_join(const wire::Join& join, const wire::Sender& sender) {
@@ -76,40 +79,52 @@ void Server::handle_join(const wire::Join& join, const wire::Sender& sender) {
   }
   if (robots.empty() && refusal.empty()) refusal = "it asks for no robot";
 
-  if (!clients_.contains(join.client)) {
-    const std::string partition = wire::partition_of(join.client);
-    int depth = 1;
-    for (const std::uint32_t robot : robots)
-      depth = std::max(depth, static_cast<int>(simulation_.policy(robot).delay) + 1);
-    Client client{join.controller + " (process " + std::to_string(join.process) + " on " + join.host + ")",
-                  {},
-                  false,
-                  wire::Writer<wire::Admit>(participant_, partition),
-                  wire::Writer<wire::Observation>(participant_, partition, depth),
-                  wire::Writer<wire::Report>(participant_, partition),
-                  {},
-                  0,
-                  {},
-                  {}};
-    clients_.emplace(join.client, std::move(client));
-  }
-  client_of_writer_[sender.writer] = join.client;
-
-  Client& client = clients_.at(join.client);
+  Client* client = attach(join, sender, robots);
+  if (client == nullptr) return;
   if (!refusal.empty()) {
-    wire::Admit answer;
-    answer.client = join.client;
-    answer.status = wire::AdmitStatus::refused;
-    answer.reason = refusal;
-    answer.run = run_number_;
-    client.admit.write(answer);
-    book_.add_event("refused", client.label + ": " + refusal);
+    refuse(join.client, *client, refusal);
     return;
   }
-  client.robots.assign(robots.begin(), robots.end());
-  client.claims = true;
+  client->robots.assign(robots.begin(), robots.end());
+  client->claims = true;
   const std::lock_guard lock(mutex_);
-  leases_.claim(join.client, client.robots);
+  leases_.claim(join.client, client->robots);
+}
+
+// The client of this Join, with its writers. Null if somebody else has that id.
+Server::Client* Server::attach(const wire::Join& join, const wire::Sender& sender,
+                               const std::set<std::uint32_t>& robots) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto [known, is_new] = participant_of_client_.emplace(join.client, sender.participant);
+    if (!is_new && known->second != sender.participant) {
+      book_.add_event("rejected", "foreign: a Join comes in the name of " + label_of(join.client));
+      return nullptr;
+    }
+  }
+  client_of_writer_[sender.writer] = join.client;
+  if (const auto known = clients_.find(join.client); known != clients_.end()) return &known->second;
+
+  int depth = 1;  // as many frames as can be under way
+  for (const std::uint32_t robot : robots)
+    depth = std::max(depth, static_cast<int>(simulation_.policy(robot).delay) + 1);
+  const std::string partition = wire::partition_of(join.client);
+  Client client{.label = join.controller + " (process " + std::to_string(join.process) + " on " + join.host + ")",
+                .admit = wire::Writer<wire::Admit>(participant_, partition),
+                .observation = wire::Writer<wire::Observation>(participant_, partition, depth),
+                .report = wire::Writer<wire::Report>(participant_, partition)};
+  return &clients_.emplace(join.client, std::move(client)).first->second;
+}
+
+void Server::refuse(std::uint64_t client_id, Client& client, const std::string& reason) {
+  wire::Admit answer;
+  answer.client = client_id;
+  answer.status = wire::AdmitStatus::refused;
+  answer.reason = reason;
+  answer.run = run_number_;
+  client.admit.write(answer);
+  client.claims = false;
+  book_.add_event("refused", client.label + ": " + reason);
 }
 
 // Claims are granted at boundaries, and in the midst of a tick to whoever takes over a robot that it waits for.
@@ -124,17 +139,9 @@ void Server::decide_claims() {
       return at_boundary || std::ranges::any_of(robots, [&](auto robot) { return barrier.is_awaited(robot); });
     });
   }
-  for (const auto& refused : decisions.refused) {
-    wire::Admit answer;
-    answer.client = refused.client;
-    answer.status = wire::AdmitStatus::refused;
-    answer.reason = simulation_.robot_name(refused.robot) + " is driven by " + label_of(refused.holder);
-    answer.run = run_number_;
-    Client& client = clients_.at(refused.client);
-    client.admit.write(answer);
-    client.claims = false;
-    book_.add_event("refused", label_of(refused.client) + ": " + answer.reason);
-  }
+  for (const auto& refused : decisions.refused)
+    refuse(refused.client, clients_.at(refused.client),
+           simulation_.robot_name(refused.robot) + " is driven by " + label_of(refused.holder));
   for (const auto& granted : decisions.granted) admit(granted);
 }
 
@@ -179,27 +186,30 @@ std::vector<std::uint64_t> Server::frames_under_way(const std::vector<std::uint3
   return {ticks.begin(), ticks.end()};
 }
 
-// Says that the run is over and gives the clients a little time to hear it: what is not delivered when the participant
+// Says that the run is over, and waits a little until the clients have left: what is not delivered when the participant
 // goes is lost.
 void Server::end_clients(const std::string& reason, const std::string& text) {
-  std::vector<std::uint64_t> told;
-  for (auto& [id, client] : clients_) {
-    if (leases_.lease(id) == nullptr || !leases_.lease(id)->alive) continue;
-    client.report.write({id, run_number_, wire::ReportKind::finished, simulation_.tick(), reason, text});
-    told.push_back(id);
-  }
-  const Clock::time_point until = Clock::now() + farewell;
-  while (Clock::now() < until) {
-    {
-      std::unique_lock lock(mutex_);
-      for (const Liveliness& change : inbox_.liveliness) {
-        const auto found = client_of_writer_.find(change.sender.writer);
-        if (found != client_of_writer_.end() && !change.alive) std::erase(told, found->second);
-      }
-      inbox_.liveliness.clear();
-      if (told.empty()) return;
-      wake_.wait_until(lock, until, [&] { return !inbox_.liveliness.empty(); });
+  std::set<std::uint64_t> drivers;
+  std::set<std::uint64_t> staying;  // of those, the ones that can hear it
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, lease] : leases_.all()) {
+      drivers.insert(id);
+      if (lease.alive) staying.insert(id);
     }
+  }
+  for (const std::uint64_t id : drivers)
+    clients_.at(id).report.write({id, run_number_, wire::ReportKind::finished, simulation_.tick(), reason, text});
+
+  const Clock::time_point until = Clock::now() + farewell;
+  std::unique_lock lock(mutex_);
+  while (!staying.empty() && Clock::now() < until) {
+    wake_.wait_until(lock, until, [&] { return !inbox_.liveliness.empty(); });
+    for (const Liveliness& change : inbox_.liveliness) {
+      const auto found = client_of_writer_.find(change.sender.writer);
+      if (found != client_of_writer_.end() && !change.alive) staying.erase(found->second);
+    }
+    inbox_.liveliness.clear();
   }
 }
 

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <thread>
+
+#include "idl/wire.hpp"
+#include "tests/support/process.hpp"
+
+namespace cohort::testing {
+namespace {
+
+constexpr std::uint64_t own_id = 0xabcdef;  // of a client that these tests play themselves
+
+nlohmann::json read_json(const std::filesystem::path& file) { return nlohmann::json::parse(std::ifstream(file)); }
+
+// How often commands were rejected, by reason.
+std::map<std::string, std::uint64_t> rejections(const nlohmann::json& summary) {
+  std::map<std::string, std::uint64_t> counts;
+  for (const auto& event : summary["events"]) {
+    const std::string text = event["text"];
+    if (event["kind"] == "rejected") counts[text.substr(0, text.find_first_of(" :"))] += event["count"].get<std::uint64_t>();
+  }
+  return counts;
+}
+
+// A client written from docs/protocol.md alone: claims robots and answers each frame as it is told to.
+class HandWrittenClient {
+ public:
+  using Answer = std::function<void(wire::Writer<wire::Command>&, const wire::Observation&)>;
+
+  HandWrittenClient(std::uint32_t domain, const std::string& robots, Answer answer)
+      : participant_(wire::Participant::client(domain)),
+        commands_(participant_),
+        join_(participant_),
+        observations_(participant_,
+                      {[this, answer](const wire::Observation& frame, const wire::Sender&) { answer(commands_, frame); },
+                       {}},
+                      wire::partition_of(own_id)) {
+    wire::Join join;
+    join.client = own_id;
+    join.controller = "hand-written";
+    join.host = "here";
+    join.robots = {robots};
+    join_.write(join);
+  }
+
+ private:
+  wire::Participant participant_;
+  wire::Writer<wire::Command> commands_;
+  wire::Writer<wire::Join> join_;
+  wire::Reader<wire::Observation> observations_;
+};
+
+TEST(StrangersNeverCount, MalformedStaleForeignAndNanCommandsOfAStrangerLeaveTheRunItsBits) {
+  const ReservedDomain domain;
+  const ScratchFolder folder;
+  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain",
+                  domain.text(), "--summary", folder / "summary.json"});
+  Process stranger({COHORT_BUILD_DIR "/bin/send_bad_commands", domain.text(), "4660"});
+  ASSERT_TRUE(stranger.wait_for_output("sending")) << stranger.output();
+  Process controllers({cohort_program(), "host", "obstacle_avoidance", "--robots", "all", "--domain", domain.text()});
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(controllers.wait_for_exit(), 0) << controllers.output();
+
+  const auto summary = read_json(folder / "summary.json");
+  EXPECT_EQ(summary["state_hash"], reference_hash(10));
+  EXPECT_GT(rejections(summary)["foreign"], 1000u) << summary.dump(1);
+  EXPECT_NE(server.output().find("rejected: foreign"), std::string::npos) << "it is named: " << server.output();
+}
+
+TEST(StrangersNeverCount, CommandsInTheNameOfAnotherClientLeaveTheRunItsBits) {
+  const auto run = [](bool forged) {
+    const ReservedDomain domain;
+    const ScratchFolder folder;
+    Process server({cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain",
+                    domain.text(), "--summary", folder / "summary.json"});
+    Process controllers({cohort_program(), "host", "obstacle_avoidance", "--robots", "1..15", "--domain", domain.text()});
+    const std::vector<double> drive = {0.1, 0.15, 0.0};
+    HandWrittenClient client(domain.number(), "0", [&](auto& commands, const wire::Observation& frame) {
+      commands.write({own_id, frame.run, frame.epoch, frame.tick, frame.robots, drive});
+    });
+    std::unique_ptr<Process> forger;
+    if (forged) {
+      EXPECT_TRUE(server.wait_for_output("simulated")) << server.output();
+      forger = std::make_unique<Process>(std::vector<std::string>{COHORT_BUILD_DIR "/bin/send_bad_commands",
+                                                                  domain.text(), std::to_string(own_id)});
+    }
+    EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+    return read_json(folder / "summary.json");
+  };
+  const auto quiet = run(false);
+  const auto disturbed = run(true);
+  EXPECT_EQ(disturbed["state_hash"], quiet["state_hash"]);
+  EXPECT_EQ(rejections(quiet)["foreign"], 0u);
+  EXPECT_GT(rejections(disturbed)["foreign"], 100u) << disturbed.dump(1);
+}
+
+TEST(StrangersNeverCount, AHoldersStaleEarlyRepeatedAndMalformedCommandsAreRejectedByNameToo) {
+  const ReservedDomain domain;
+  const ScratchFolder folder;
+  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "2", "--domain", domain.text(),
+                  "--summary", folder / "summary.json"});
+  Process controllers({cohort_program(), "host", "obstacle_avoidance", "--robots", "1..15", "--domain", domain.text()});
+  const std::vector<std::uint32_t> own = {0}, others = {0, 1};
+  const std::vector<double> still(3, 0.0);
+  HandWrittenClient client(domain.number(), "0", [&](auto& commands, const wire::Observation& frame) {
+    const auto send = [&](std::uint64_t tick, std::uint64_t epoch, std::span<const std::uint32_t> robots) {
+      commands.write({own_id, frame.run, epoch, tick, robots, still});
+    };
+    if (frame.tick > 0) send(frame.tick - 1, frame.epoch, own);  // stale
+    send(frame.tick + 5, frame.epoch, own);                      // early
+    send(frame.tick, frame.epoch + 1, own);                      // of another lease
+    send(frame.tick, frame.epoch, others);                       // for a robot that it does not hold
+    send(frame.tick, frame.epoch, own);                          // right
+    send(frame.tick, frame.epoch, own);                          // repeated
+  });
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  const auto summary = read_json(folder / "summary.json");
+  EXPECT_EQ(summary["ticks"], 200);
+  auto counts = rejections(summary);
+  for (const char* reason : {"stale", "early", "malformed"}) EXPECT_GT(counts[reason], 50u) << summary.dump(1);
+  // A repeated answer is repeated or stale, as the others' answers are still awaited or not.
+  EXPECT_GT(counts["repeated"] + counts["stale"], 300u) << summary.dump(1);
+}
+
+class FaultyHolder : public ::testing::TestWithParam<std::pair<const char*, double>> {};
+
+TEST_P(FaultyHolder, StopsTheRunUnderWaitWithTheChannelAndTheReason) {
+  const auto [reason, value] = GetParam();
+  const ReservedDomain domain;
+  const ScratchFolder folder;
+  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "2", "--domain", domain.text(),
+                  "--summary", folder / "summary.json"});
+  std::vector<double> values(48, 0.0);
+  values[3 * 5 + 1] = value;  // right track of robot 5
+  HandWrittenClient client(domain.number(), "all", [&](auto& commands, const wire::Observation& frame) {
+    commands.write({own_id, frame.run, frame.epoch, frame.tick, frame.robots, values});
+  });
+  EXPECT_EQ(server.wait_for_exit(), 1) << server.output();
+  EXPECT_NE(server.output().find("explorers/sbot_5: treel/right/velocity is"), std::string::npos) << server.output();
+  const auto summary = read_json(folder / "summary.json");
+  EXPECT_EQ(summary["ticks"], 0);
+  EXPECT_EQ(rejections(summary)[reason], 1u) << summary.dump(1);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FaultyHolder,
+                         ::testing::Values(std::pair{"not_finite", std::nan("")},
+                                           std::pair{"not_finite", std::numeric_limits<double>::infinity()},
+                                           std::pair{"out_of_range", 0.3}),
+                         [](const auto& fault) { return fault.param.first + std::to_string(fault.index); });
+
+}  // namespace
+}  // namespace cohort::testing

@@ -66,6 +66,14 @@ class FakeServer {
     return join();
   }
 
+  /// Goes without a word, but keeps the domain so that no other test's server is taken for it.
+  void leave() {
+    descriptions_.reset();
+    admits_.reset();
+    frames_.reset();
+    own_reports_.reset();
+  }
+
   void describe(const wire::RobotDescription& description) { descriptions_->write(description); }
 
   void admit(wire::Admit admit) {

@@ -2,28 +2,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "idl/wire.hpp"
 
 namespace cohort::test {
-
-/// A server on a domain that nobody else has, so that tests may run side by side.
-struct FreeDomain {
-  std::uint32_t domain;
-  wire::Participant server;
-};
-
-inline FreeDomain take_free_domain() {
-  for (std::uint32_t domain = 60; domain < 80; ++domain) {
-    try {
-      return {domain, wire::Participant::server(domain)};
-    } catch (const wire::DomainTaken&) {
-    }
-  }
-  throw std::runtime_error("domains 60 to 79 are all taken");
-}
 
 /// Polls until `condition` holds; false if it does not within `at_most`.
 template <class Condition>
@@ -35,5 +21,29 @@ bool eventually(Condition condition, std::chrono::milliseconds at_most = std::ch
   }
   return true;
 }
+
+/// A server on a domain that nobody else has, so that tests may run side by side.
+struct FreeDomain {
+  std::uint32_t domain;
+  wire::Participant server;
+};
+
+inline FreeDomain take_free_domain(std::uint32_t first = 60, std::uint32_t last = 74) {
+  std::optional<FreeDomain> found;
+  const auto look = [&] {
+    for (std::uint32_t domain = first; domain <= last && !found; ++domain) {
+      try {
+        found.emplace(FreeDomain{domain, wire::Participant::server(domain)});
+      } catch (const wire::DomainTaken&) {
+      }
+    }
+    return found.has_value();
+  };
+  if (!eventually(look)) throw std::runtime_error("all domains for tests are taken");
+  return std::move(*found);
+}
+
+/// A domain without a server, apart from those that tests with a server take.
+inline std::uint32_t find_empty_domain() { return take_free_domain(75, 79).domain; }
 
 }  // namespace cohort::test

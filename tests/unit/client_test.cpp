@@ -4,11 +4,11 @@
 
 #include <atomic>
 #include <future>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tests/support/captured_stderr.hpp"
 #include "tests/support/counting_controller.hpp"
 #include "tests/support/fake_server.hpp"
 
@@ -47,27 +47,17 @@ class RunningClient {
 class ClientTest : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
-    testing::internal::CaptureStderr();
-    client.emplace(server->domain(), GetParam());
-    ASSERT_TRUE(server->accept());
-  }
-  void TearDown() override {
-    client.reset();
-    if (!told) testing::internal::GetCapturedStderr();
+    client.emplace(server.domain(), GetParam());
+    ASSERT_TRUE(server.accept());
   }
 
-  // What the user was told.
-  std::string text_told() {
-    told = true;
-    return testing::internal::GetCapturedStderr();
-  }
   void admit(std::uint64_t epoch = 1, wire::StartReason reason = wire::StartReason::first) {
-    server->describe(CountingController::description());
-    server->admit({.epoch = epoch, .start_reason = reason, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0"}}});
+    server.describe(CountingController::description());
+    server.admit({.epoch = epoch, .start_reason = reason, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0"}}});
   }
   // The answer to a frame: steps made, tick, twice the reading, reason to start.
   std::vector<double> ask(std::uint64_t tick, double reading, std::uint64_t epoch = 1) {
-    const auto answer = server->ask(tick, {reading}, epoch);
+    const auto answer = server.ask(tick, {reading}, epoch);
     if (!answer || answer->values.size() != 6) return {};
     EXPECT_EQ(answer->tick, tick);
     EXPECT_EQ(answer->epoch, epoch);
@@ -75,9 +65,9 @@ class ClientTest : public testing::TestWithParam<bool> {
   }
   using Values = std::vector<double>;
 
-  std::unique_ptr<test::FakeServer> server = std::make_unique<test::FakeServer>();
+  test::CapturedStderr told;  // what the user is told
+  test::FakeServer server;
   std::optional<RunningClient> client;
-  bool told = false;
 };
 
 INSTANTIATE_TEST_SUITE_P(, ClientTest, testing::Values(false, true), [](const auto& parameter) {
@@ -85,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(, ClientTest, testing::Values(false, true), [](const au
 });
 
 TEST_P(ClientTest, a_join_says_who_wants_which_robots) {
-  const auto join = server->join();
+  const auto join = server.join();
   EXPECT_EQ(join->controller, "counting");
   EXPECT_EQ(join->robots, (std::vector<std::string>{"0", "team/*"}));
   EXPECT_NE(join->client, 0u);
@@ -104,9 +94,9 @@ TEST_P(ClientTest, every_frame_is_answered_and_one_sent_again_gets_the_same_answ
 
 TEST_P(ClientTest, frames_may_come_before_the_admission_and_that_before_the_descriptions) {
   // Until the frame is known to have arrived: the channel to the client may not be open at first.
-  server->send(0, {0.5});
-  server->admit({.epoch = 1, .robots = {{.robot = 0, .name = "r0", .description = 7}}});
-  server->describe(CountingController::description(7));
+  server.send(0, {0.5});
+  server.admit({.epoch = 1, .robots = {{.robot = 0, .name = "r0", .description = 7}}});
+  server.describe(CountingController::description(7));
   EXPECT_EQ(ask(0, 0.5), (Values{1, 0, 1.0, 0}));
 }
 
@@ -115,44 +105,44 @@ TEST_P(ClientTest, a_new_epoch_starts_the_controllers_again_and_the_old_one_is_n
   EXPECT_EQ(ask(0, 0.5, 1), (Values{1, 0, 1.0, 0}));
   admit(2, wire::StartReason::reset);
   EXPECT_EQ(ask(0, 0.5, 2), (Values{2, 0, 1.0, 2})) << "the same controller";
-  server->send(1, {0.5}, 1);
+  server.send(1, {0.5}, 1);
   admit(3, wire::StartReason::takeover);
   EXPECT_EQ(ask(5, 0.5, 3), (Values{1, 5, 1.0, 1})) << "a new controller";
-  for (const auto& answer : server->answers()) EXPECT_FALSE(answer.epoch == 1 && answer.tick == 1);
+  for (const auto& answer : server.answers()) EXPECT_FALSE(answer.epoch == 1 && answer.tick == 1);
 }
 
 TEST_P(ClientTest, a_refused_claim_ends_the_client_with_the_reason) {
-  server->admit({.status = wire::AdmitStatus::refused, .reason = "robot 0 is driven by 'other'"});
+  server.admit({.status = wire::AdmitStatus::refused, .reason = "robot 0 is driven by 'other'"});
   EXPECT_EQ(client->end(), ClientEnd::refused);
-  EXPECT_NE(text_told().find("robot 0 is driven by 'other'"), std::string::npos);
+  EXPECT_TRUE(told.contains("robot 0 is driven by 'other'")) << told.text();
 }
 
 TEST_P(ClientTest, the_server_ends_the_run) {
   admit();
   ask(0, 0.5);
-  server->report({.kind = wire::ReportKind::finished});
+  server.report({.kind = wire::ReportKind::finished});
   EXPECT_EQ(client->end(), ClientEnd::finished);
-  EXPECT_EQ(text_told(), "");
+  EXPECT_EQ(told.text(), "");
 }
 
 TEST_P(ClientTest, another_process_takes_over) {
   admit();
-  server->report({.kind = wire::ReportKind::superseded, .text = "by 'other' on host h"});
+  server.report({.kind = wire::ReportKind::superseded, .text = "by 'other' on host h"});
   EXPECT_EQ(client->end(), ClientEnd::superseded);
-  EXPECT_NE(text_told().find("by 'other' on host h"), std::string::npos);
+  EXPECT_TRUE(told.contains("by 'other' on host h")) << told.text();
 }
 
 TEST_P(ClientTest, a_rejected_answer_is_told_once_for_each_reason_and_the_run_goes_on) {
   admit();
   ask(0, 0.5);
   for (std::uint64_t tick = 0; tick < 3; ++tick) {
-    server->report({.kind = wire::ReportKind::rejected, .tick = tick, .reason = "stale", .text = "too late"});
+    server.report({.kind = wire::ReportKind::rejected, .tick = tick, .reason = "stale", .text = "too late"});
   }
-  server->report({.kind = wire::ReportKind::rejected, .reason = "early"});
+  server.report({.kind = wire::ReportKind::rejected, .reason = "early"});
   EXPECT_EQ(ask(1, 0.5), (Values{2, 1, 1.0, 0}));
-  server->report({.kind = wire::ReportKind::failed, .text = "enough"});
+  server.report({.kind = wire::ReportKind::failed, .text = "enough"});
   EXPECT_EQ(client->end(), ClientEnd::failed);
-  const std::string text = text_told();
+  const std::string text = told.text();
   EXPECT_NE(text.find("stale"), std::string::npos);
   EXPECT_EQ(text.find("stale"), text.rfind("stale"));
   EXPECT_NE(text.find("early"), std::string::npos);
@@ -162,23 +152,23 @@ TEST_P(ClientTest, a_rejected_answer_is_told_once_for_each_reason_and_the_run_go
 TEST_P(ClientTest, a_controller_that_throws_tells_the_server_and_the_user) {
   admit();
   ask(0, 0.5);
-  server->send(1, {-1.0});
+  server.send(1, {-1.0});
   EXPECT_EQ(client->end(), ClientEnd::failed);
-  ASSERT_TRUE(eventually([&] { return server->heard_report().has_value(); }));
-  const wire::Report report = *server->heard_report();
+  ASSERT_TRUE(eventually([&] { return server.heard_report().has_value(); }));
+  const wire::Report report = *server.heard_report();
   EXPECT_EQ(report.kind, wire::ReportKind::failed);
   EXPECT_EQ(report.reason, "exception");
   EXPECT_EQ(report.tick, 1u);
   EXPECT_NE(report.text.find("robot 'r0' failed in step at tick 1: it hurts"), std::string::npos);
-  EXPECT_NE(text_told().find(report.text), std::string::npos);
+  EXPECT_TRUE(told.contains(report.text)) << told.text();
 }
 
 TEST_P(ClientTest, a_server_that_leaves_without_a_word_is_missed) {
   admit();
   ask(0, 0.5);
-  server.reset();
+  server.leave();
   EXPECT_EQ(client->end(), ClientEnd::server_lost);
-  EXPECT_NE(text_told().find("is gone"), std::string::npos);
+  EXPECT_TRUE(told.contains("is gone")) << told.text();
 }
 
 TEST_P(ClientTest, a_stop_ends_the_client) {
@@ -188,27 +178,22 @@ TEST_P(ClientTest, a_stop_ends_the_client) {
   EXPECT_EQ(client->end(), ClientEnd::interrupted);
 }
 
-TEST(ClientAlone, waits_for_a_server_says_so_and_can_be_stopped) {
-  // A domain that is free for the moment: nobody answers there.
-  const std::uint32_t domain = test::take_free_domain().domain;
-  testing::internal::CaptureStderr();
+TEST(ClientAlone, waits_for_a_server_says_so_and_finds_it_when_it_comes) {
+  const std::uint32_t domain = test::find_empty_domain();
+  const test::CapturedStderr told;
   RunningClient client(domain, false);
-  // Long enough for the notice that comes after three seconds, whose text nothing else shows.
-  EXPECT_FALSE(eventually([] { return false; }, std::chrono::milliseconds(3300)));
-  client.stop = true;
-  EXPECT_EQ(client.end(), ClientEnd::interrupted);
-  EXPECT_NE(testing::internal::GetCapturedStderr().find("waiting for a server at 127.0.0.1, domain"), std::string::npos);
-}
-
-TEST(ClientAlone, finds_a_server_that_comes_later) {
-  const std::uint32_t domain = test::take_free_domain().domain;
-  RunningClient client(domain, false);
-  // Its announcements go nowhere until then.
-  EXPECT_FALSE(eventually([] { return false; }, std::chrono::milliseconds(300)));
-  auto participant = wire::Participant::server(domain);
+  ASSERT_TRUE(eventually([&] { return told.contains("waiting for a server at 127.0.0.1, domain"); }));
+  auto participant = test::take_free_domain(domain, domain).server;
   std::atomic<bool> joined{false};
   wire::Reader<wire::Join> joins(participant, {[&](const wire::Join&, const wire::Sender&) { joined = true; }, nullptr});
-  EXPECT_TRUE(eventually([&] { return joined.load(); }, 3s));
+  EXPECT_TRUE(eventually([&] { return joined.load(); }));
+}
+
+TEST(ClientAlone, can_be_stopped_while_it_waits_for_a_server) {
+  const test::CapturedStderr told;
+  RunningClient client(test::find_empty_domain(), false);
+  client.stop = true;
+  EXPECT_EQ(client.end(), ClientEnd::interrupted);
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
                       UnaryCase{"asin", &::asin, -1, 1}, UnaryCase{"acos", &::acos, -1, 1},
                       UnaryCase{"exp", &::exp, -700, 700}, UnaryCase{"exp", &::exp, -1, 1},
                       UnaryCase{"log", &::log, 0, 1e-3}, UnaryCase{"log", &::log, 0.5, 2}),
-    [](const auto& info) { return std::string(info.param.name) + std::to_string(info.index); });
+    [](const auto& unary) { return std::string(unary.param.name) + std::to_string(unary.index); });
 
 TEST(PortableMath, Atan2AgreesWithTheCLibraryInEveryQuadrantAndCorner) {
   const auto theirs = of_c_library<double (*)(double, double)>("atan2");

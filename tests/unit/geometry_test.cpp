@@ -151,6 +151,12 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
     ++hits;
     EXPECT_EQ(hit->solid, expected) << n;
     EXPECT_DOUBLE_EQ(hit->distance, nearest) << n;
+    const Vector3d reach = Vector3d::Constant(range);
+    const auto among =
+        scene.cast_ray_among(scene.solids_in({origin - reach, origin + reach}, ignored), origin, direction, range);
+    ASSERT_TRUE(among.has_value()) << n;
+    EXPECT_EQ(among->solid, hit->solid) << n;
+    EXPECT_EQ(among->distance, hit->distance) << n;
   }
   EXPECT_GT(hits, 100);
 }

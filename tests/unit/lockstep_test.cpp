@@ -107,6 +107,11 @@ TEST(Barrier, RejectsRepeatedStaleAndEarlyAnswers) {
   EXPECT_EQ(barrier.judge(0, 2), Verdict::accepted);
 }
 
+std::string name_of(OnLate on_late) {
+  constexpr const char* names[] = {"wait", "hold", "zero", "detach", "stop"};
+  return names[static_cast<int>(on_late)];
+}
+
 class MissedDeadline : public ::testing::TestWithParam<std::pair<OnLate, Kind>> {};
 
 TEST_P(MissedDeadline, HasTheConsequenceOfItsPolicy) {
@@ -132,7 +137,8 @@ TEST_P(MissedDeadline, HasTheConsequenceOfItsPolicy) {
 INSTANTIATE_TEST_SUITE_P(All, MissedDeadline,
                          ::testing::Values(std::pair{OnLate::hold, Kind::keep}, std::pair{OnLate::zero, Kind::neutral},
                                            std::pair{OnLate::detach, Kind::neutral},
-                                           std::pair{OnLate::stop, Kind::neutral}));
+                                           std::pair{OnLate::stop, Kind::neutral}),
+                         [](const auto& tested) { return name_of(tested.param.first); });
 
 TEST(Barrier, CountsAnAnswerThatCannotActAsAMissAtOnce) {
   Barrier barrier = barrier_of({policy(1, 0, 0, OnLate::zero, 1s)});
@@ -195,6 +201,19 @@ TEST(Leases, HandsTheRobotsOfADeadHolderOverWithANewEpoch) {
   EXPECT_GT(leases.lease(200)->epoch, epoch);
   EXPECT_EQ(leases.lease(100), nullptr);
   EXPECT_FALSE(leases.holder(0)) << "losing one robot ends the whole lease";
+}
+
+TEST(Leases, TakesAnAnswerAsASignOfLifeThoughLivelinessSaidOtherwise) {
+  Leases leases(1);
+  leases.claim(100, {0});
+  decide(leases);
+  leases.set_alive(100, false);
+  leases.claim(200, {0});
+  leases.note_answer(100);
+  const auto decisions = decide(leases);
+  EXPECT_TRUE(decisions.granted.empty());
+  ASSERT_EQ(decisions.refused.size(), 1u);
+  EXPECT_EQ(decisions.refused[0].client, 200u);
 }
 
 TEST(Leases, KeepsTheEpochOfAClientThatAsksForItsOwnRobotsAgain) {

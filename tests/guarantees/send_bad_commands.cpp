@@ -1,0 +1,55 @@
+// A stranger on the network: sends every kind of bad command in the name of the given client, about a thousand a second,
+// until it is killed. send_bad_commands DOMAIN CLIENT
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "idl/wire.hpp"
+
+int main(int argc, char** argv) {
+  using namespace cohort;
+  if (argc != 3) return 2;
+  const std::uint64_t client = std::stoull(argv[2]);
+  auto participant = wire::Participant::client(static_cast<std::uint32_t>(std::stoul(argv[1])));
+  std::atomic<std::uint64_t> tick = 0;
+  wire::Reader<wire::WorldState> states(
+      participant, {[&](const wire::WorldState& state, const wire::Sender&) { tick = state.tick; }, {}}, "view");
+  wire::Writer<wire::Command> commands(participant);
+  wire::Writer<wire::Join> joins(participant);
+  while (commands.matched() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::puts("sending");
+  std::fflush(stdout);
+
+  std::vector<std::uint32_t> all(16);
+  std::iota(all.begin(), all.end(), 0u);
+  const std::vector<std::uint32_t> first = {0}, nonsense = {99, 3, 3}, none;
+  const std::vector<double> nan(48, std::nan("")), infinite(48, std::numeric_limits<double>::infinity()),
+      fast(48, 1e9), fitting(48, 0.1), fitting_one(3, 0.1), nothing;
+  for (;;) {
+    for (const std::uint64_t ahead : {0u, 1u, 2u, 1000u}) {
+      const std::uint64_t at = tick + ahead;
+      commands.write({client, 1, 1, at, all, nan});
+      commands.write({client, 1, 1, at, all, infinite});
+      commands.write({client, 1, 2, at, first, fast});
+      commands.write({client, 1, 1, at, all, fitting});
+      commands.write({client, 1, 1, at, first, fitting_one});
+      commands.write({client, 1, 2, at, first, fitting_one});
+      commands.write({client, 1, 1, at, nonsense, fitting_one});
+      commands.write({client, 1, 1, at, none, nothing});
+      commands.write({client, 2, 1, 0, all, fitting});
+    }
+    wire::Join join;
+    join.client = client;
+    join.controller = "stranger";
+    join.robots = {"explorers/nobody"};
+    joins.write(join);
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  }
+}

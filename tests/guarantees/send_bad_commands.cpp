@@ -32,18 +32,22 @@ int main(int argc, char** argv) {
   const std::vector<std::uint32_t> first = {0}, nonsense = {99, 3, 3}, none;
   const std::vector<double> nan(48, std::nan("")), infinite(48, std::numeric_limits<double>::infinity()),
       fast(48, 1e9), fitting(48, 0.1), fitting_one(3, 0.1), nothing;
-  for (;;) {
+  for (int round = 0;; ++round) {
     for (const std::uint64_t ahead : {0u, 1u, 2u, 1000u}) {
       const std::uint64_t at = tick + ahead;
       commands.write({client, 1, 1, at, all, nan});
       commands.write({client, 1, 1, at, all, infinite});
       commands.write({client, 1, 2, at, first, fast});
       commands.write({client, 1, 1, at, all, fitting});
-      commands.write({client, 1, 1, at, first, fitting_one});
       commands.write({client, 1, 2, at, first, fitting_one});
       commands.write({client, 1, 1, at, nonsense, fitting_one});
       commands.write({client, 1, 1, at, none, nothing});
+      commands.write({client, 1, 1, at, first, fitting_one});
       commands.write({client, 2, 1, 0, all, fitting});
+    }
+    if (round == 1000 / (4 * 9)) {
+      std::puts("sent a thousand");
+      std::fflush(stdout);
     }
     wire::Join join;
     join.client = client;

@@ -79,15 +79,15 @@ struct Place {
   std::string path;
 };
 
-// The last element of this kind and name under `from`: of two of the same name, the second is the one too many.
+// The last element of this kind and name under `from`: of two of the same name, the second is the one too many. An
+// include is a model.
 std::optional<Place> find_named(const XmlNode& from, const std::string& path, std::string_view kind,
                                 std::string_view name) {
   std::optional<Place> found;
   for (const XmlNode& child : from.children) {
-    const std::string* const child_name = child.attribute("name");
-    std::string child_path = path + (path.empty() ? "" : "/") + child.name;
-    if (child_name != nullptr && child.name != "world") child_path += "[" + *child_name + "]";
-    if (child.name == kind && child_name != nullptr && *child_name == name) found = Place{&child, child_path};
+    const std::string child_path = path + (path.empty() ? "" : "/") + step_of(child);
+    const bool is_kind = child.name == kind || (child.name == "include" && kind == "model");
+    if (is_kind && name_of(child) == name) found = Place{&child, child_path};
     if (auto deeper = find_named(child, child_path, kind, name)) found = std::move(deeper);
   }
   return found;

@@ -41,11 +41,14 @@ const XmlNode* find_on_line(const XmlNode& node, std::string_view name, int line
   return nullptr;
 }
 
+// There is one world, whose name does not matter.
+std::string step_of(const std::string& element, const std::string& name) {
+  return name.empty() || element == "world" ? element : element + "[" + name + "]";
+}
+
 std::string step_of(const sdf::ElementPtr& element) {
-  std::string step = element->GetName();
-  if (step != "world" && element->GetAttributeSet("name"))
-    step += "[" + element->GetAttribute("name")->GetAsString() + "]";
-  return step;
+  const bool has_name = element->GetAttributeSet("name");
+  return step_of(element->GetName(), has_name ? element->GetAttribute("name")->GetAsString() : "");
 }
 
 // How many elements of the same name and file stand before it.
@@ -92,6 +95,14 @@ std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlN
 }
 
 }  // namespace
+
+std::string name_of(const XmlNode& node) {
+  if (const std::string* const name = node.attribute("name")) return *name;
+  const XmlNode* const name = node.name == "include" ? node.child("name") : nullptr;
+  return name != nullptr ? name->text : "";
+}
+
+std::string step_of(const XmlNode& node) { return step_of(node.name, name_of(node)); }
 
 LibsdformatScope::LibsdformatScope() : lock_(libsdformat_mutex()), saved_(sdf::ParserConfig::GlobalConfig()) {
   config() = sdf::ParserConfig();
@@ -159,16 +170,11 @@ bool SdfFiles::read_outline(const std::string& text, SdfFile& file) {
 bool SdfFiles::follow_includes(const XmlNode& node, const std::string& path, SdfFile& file) {
   bool usable = true;
   for (const XmlNode& child : node.children) {
-    std::string child_path = (path.empty() ? "" : path + "/") + child.name;
-    if (child.name == "include") {
-      if (const XmlNode* const name = child.child("name")) child_path += "[" + name->text + "]";
+    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    if (child.name == "include")
       usable = follow_include(child, child_path, node.name == "world", file) && usable;
-    } else if (child.name == "world") {
+    else if (child.name == "world" || child.name == "model")
       usable = follow_includes(child, child_path, file) && usable;
-    } else if (child.name == "model") {
-      if (const std::string* const name = child.attribute("name")) child_path += "[" + *name + "]";
-      usable = follow_includes(child, child_path, file) && usable;
-    }
   }
   return usable;
 }

@@ -18,6 +18,12 @@
 
 namespace cohort::description {
 
+/// The name of the element, or the one that an <include> gives; empty if there is none.
+std::string name_of(const XmlNode& node);
+
+/// The element as a step of a path, such as `model[NAME]`.
+std::string step_of(const XmlNode& node);
+
 struct SdfFile;
 
 /// An <include> of a world.

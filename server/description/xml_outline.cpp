@@ -13,6 +13,16 @@ constexpr std::string_view white_space = " \t\r\n";
 
 bool ends_name(char c) { return white_space.find(c) != std::string_view::npos || c == '/' || c == '>' || c == '='; }
 
+bool is_name(std::string_view name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
+           static_cast<unsigned char>(c) > 127;
+  };
+  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.';
+  });
+}
+
 void append_utf8(std::string& text, std::uint32_t code) {
   const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
   const auto put_tail = [&](int shift) { put(0x80 | (code >> shift & 0x3f)); };
@@ -166,7 +176,7 @@ bool Scanner::opening_tag() {
   node.line = line_;
   take(1);
   node.name = take_name();
-  if (node.name.empty()) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
+  if (!is_name(node.name)) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
   if (open_.empty() && has_root_)
     return fail(node.line, "<" + node.name + "> is a second root element; a file has one");
   has_root_ = true;
@@ -191,7 +201,7 @@ bool Scanner::attribute(XmlNode& node) {
   const int line = line_;
   const std::string name(take_name());
   skip_space();
-  if (name.empty() || !at("=")) return fail(line, "in the tag <" + node.name + ", expected ATTRIBUTE=\"VALUE\"");
+  if (!is_name(name) || !at("=")) return fail(line, "in the tag <" + node.name + ", expected ATTRIBUTE=\"VALUE\"");
   take(1);
   skip_space();
   if (!at("\"") && !at("'"))

@@ -89,11 +89,13 @@ TEST(CommandValues, are_brought_into_their_range_but_nan_is_passed_on) {
   EXPECT_TRUE(std::isnan(values[1]));
 }
 
+std::string name_of(std::uint32_t robot) { return std::string("r").append(std::to_string(robot)); }
+
 class ControllerHostTest : public testing::Test {
  protected:
   void start(wire::StartReason reason = wire::StartReason::first, std::vector<std::uint32_t> robots = {2, 5}) {
     wire::Admit admit{.start_reason = reason, .tick = 100, .step_ns = 10'000'000};
-    for (const std::uint32_t robot : robots) admit.robots.push_back({.robot = robot, .name = "r" + std::to_string(robot)});
+    for (const std::uint32_t robot : robots) admit.robots.push_back({.robot = robot, .name = name_of(robot)});
     host.start(admit, descriptions);
   }
   std::vector<double> answer(std::uint64_t tick, std::vector<std::uint32_t> robots, std::vector<double> values) {

@@ -31,8 +31,8 @@ std::vector<cohort_v1_Channel> encode(const std::vector<Channel>& channels) {
   std::vector<cohort_v1_Channel> result;
   result.reserve(channels.size());
   for (const Channel& channel : channels) {
-    result.push_back({lent(channel.name), lent(channel.unit), channel.size, channel.lower, channel.upper,
-                      channel.neutral});
+    result.push_back(
+        {lent(channel.name), lent(channel.unit), channel.size, channel.lower, channel.upper, channel.neutral});
   }
   return result;
 }
@@ -86,8 +86,8 @@ Join Codec<Join>::decode(const Sample& sample) {
 
 Codec<Admit>::Outgoing::Outgoing(const Admit& message) {
   for (const AdmittedRobot& robot : message.robots) {
-    robots.push_back({robot.robot, lent(robot.name), robot.description, robot.seed, robot.period, robot.phase,
-                      robot.delay});
+    robots.push_back(
+        {robot.robot, lent(robot.name), robot.description, robot.seed, robot.period, robot.phase, robot.delay});
   }
   sample.client = message.client;
   sample.status = static_cast<std::uint32_t>(message.status);
@@ -111,8 +111,8 @@ Admit Codec<Admit>::decode(const Sample& sample) {
   message.tick = sample.tick;
   message.step_ns = sample.step_ns;
   for (const cohort_v1_AdmittedRobot& robot : to_span(sample.robots)) {
-    message.robots.push_back({robot.robot, to_string(robot.name), robot.description, robot.seed, robot.period,
-                              robot.phase, robot.delay});
+    message.robots.push_back(
+        {robot.robot, to_string(robot.name), robot.description, robot.seed, robot.period, robot.phase, robot.delay});
   }
   return message;
 }
@@ -142,8 +142,8 @@ Codec<Observation>::Outgoing::Outgoing(const Observation& message) {
 }
 
 Observation Codec<Observation>::decode(const Sample& sample) {
-  return {sample.client,  sample.run,  sample.resent,           sample.epoch,
-          sample.tick, sample.time_ns, to_span(sample.robots), to_span(sample.values)};
+  return {sample.client, sample.run,     sample.resent,          sample.epoch,
+          sample.tick,   sample.time_ns, to_span(sample.robots), to_span(sample.values)};
 }
 
 Codec<Command>::Outgoing::Outgoing(const Command& message) {
@@ -182,8 +182,9 @@ Codec<Report>::Outgoing::Outgoing(const Report& message) {
 }
 
 Report Codec<Report>::decode(const Sample& sample) {
-  return {sample.client, sample.run, static_cast<ReportKind>(sample.kind), sample.tick, to_string(sample.reason),
-          to_string(sample.text)};
+  return {
+      sample.client,         sample.run, static_cast<ReportKind>(sample.kind), sample.tick, to_string(sample.reason),
+      to_string(sample.text)};
 }
 
 }  // namespace cohort::wire

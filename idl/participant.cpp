@@ -121,9 +121,7 @@ std::string to_text(in_addr address) {
 
 bool is_loopback(in_addr address) { return (ntohl(address.s_addr) >> 24) == 127; }
 
-bool is_taken(std::uint16_t port) {
-  return UdpSocket().bind(socket_address(in_addr{INADDR_ANY}, port)) == EADDRINUSE;
-}
+bool is_taken(std::uint16_t port) { return UdpSocket().bind(socket_address(in_addr{INADDR_ANY}, port)) == EADDRINUSE; }
 
 in_addr own_address_towards(in_addr server, std::uint16_t port) {
   const UdpSocket socket;
@@ -133,21 +131,20 @@ in_addr own_address_towards(in_addr server, std::uint16_t port) {
   return socket.local_address();
 }
 
-// Large fragments are good on the loopback only: on a network a lost packet would cost the whole of one.
 std::string configuration(std::uint32_t domain, in_addr own_address, const std::string& discovery) {
-  const std::string fragments =
-      is_loopback(own_address) ? "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>60000B</FragmentSize>" : "";
-  return "<CycloneDDS><Domain Id=\"any\">"
-         "<General><Interfaces><NetworkInterface address=\"" + to_text(own_address) + "\"/></Interfaces>"
-         "<AllowMulticast>false</AllowMulticast>" + fragments + "</General>"
-         "<Discovery><ExternalDomainId>" + std::to_string(domain) + "</ExternalDomainId>"
-         "<LeaseDuration>5s</LeaseDuration>" + discovery + "</Discovery>"
-         // Below the watermark a write never waits for acknowledgements, which arrive on the thread that may be writing.
-         // The receive buffer has no minimum: where the kernel allows less, that would be an error.
-         // Leaving waits only so long for a reader that is dead but not yet known to be.
-         "<Internal><Watermarks><WhcHigh>16MB</WhcHigh><WhcHighInit>16MB</WhcHighInit></Watermarks>"
-         "<SocketReceiveBufferSize max=\"4MB\"/><WriterLingerDuration>100ms</WriterLingerDuration></Internal>"
-         "</Domain></CycloneDDS>";
+  std::string xml = R"(<CycloneDDS><Domain Id="any"><General><AllowMulticast>false</AllowMulticast>)";
+  xml += R"(<Interfaces><NetworkInterface address=")" + to_text(own_address) + R"("/></Interfaces>)";
+  // Large fragments are good on the loopback only: on a network a lost packet would cost the whole of one.
+  if (is_loopback(own_address)) xml += "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>60000B</FragmentSize>";
+  xml += "</General><Discovery><LeaseDuration>5s</LeaseDuration>" + discovery;
+  xml += "<ExternalDomainId>" + std::to_string(domain) + "</ExternalDomainId></Discovery><Internal>";
+  // Below the watermark a write never waits for acknowledgements, which arrive on the thread that may be writing.
+  xml += "<Watermarks><WhcHigh>16MB</WhcHigh><WhcHighInit>16MB</WhcHighInit></Watermarks>";
+  // No minimum: where the kernel allows less, that would be an error.
+  xml += R"(<SocketReceiveBufferSize max="4MB"/>)";
+  // How long a writer that goes waits for readers which may be dead.
+  xml += "<WriterLingerDuration>100ms</WriterLingerDuration></Internal></Domain></CycloneDDS>";
+  return xml;
 }
 
 // Cyclone allows one participant configuration for each domain number in a process. Others of the same domain use a
@@ -213,12 +210,15 @@ Participant Participant::client(std::uint32_t domain, const std::string& address
   const in_addr server = resolve(address);
   // A client announces itself every second, to the server alone: so a server that starts later is found within one, and
   // one small packet each second harms nobody. The server need not repeat itself: it answers each announcement.
-  const std::string discovery = "<ParticipantIndex>none</ParticipantIndex><SPDPInterval>1s</SPDPInterval>"
-                                "<Peers><Peer address=\"" + to_text(server) + ":" + std::to_string(port) + "\"/></Peers>";
+  const std::string discovery =
+      "<ParticipantIndex>none</ParticipantIndex><SPDPInterval>1s</SPDPInterval>"
+      "<Peers><Peer address=\"" +
+      to_text(server) + ":" + std::to_string(port) + "\"/></Peers>";
   LogCapture log;
   auto state = join(domain, configuration(domain, own_address_towards(server, port), discovery));
   if (state == nullptr) {
-    throw WireError("cannot join domain " + std::to_string(domain) + " of the server at " + address + ": " + log.text());
+    throw WireError("cannot join domain " + std::to_string(domain) + " of the server at " + address + ": " +
+                    log.text());
   }
   return Participant(std::move(state));
 }

@@ -39,9 +39,9 @@ Qos qos_of(const Topic& topic, const std::string& partition, int depth) {
 }
 
 Entity create_topic(const Participant& participant, const Topic& topic) {
-  return Entity(check(dds_create_topic(participant.state().participant.handle(), topic.type, topic.name, nullptr,
-                                       nullptr),
-                      "create the topic", topic.name));
+  return Entity(
+      check(dds_create_topic(participant.state().participant.handle(), topic.type, topic.name, nullptr, nullptr),
+            "create the topic", topic.name));
 }
 
 }  // namespace
@@ -111,22 +111,24 @@ struct Reader<Message>::State {
         // An invalid sample only tells of a writer's end, which on_liveliness tells better.
         if (!state.infos[index].valid_data) continue;
         state.callbacks.message(Codec<Message>::decode(*static_cast<const Sample*>(state.samples[index])),
-                                state.sender_of(state.infos[index].publication_handle));
+                                state.sender_of(handle, state.infos[index].publication_handle));
       }
     } while (taken == static_cast<dds_return_t>(state.samples.size()));
   }
 
   // Called once for each change of one writer, also when it is matched and unmatched.
-  static void on_liveliness(dds_entity_t, const dds_liveliness_changed_status_t status, void* argument) noexcept {
+  static void on_liveliness(dds_entity_t handle, const dds_liveliness_changed_status_t status,
+                            void* argument) noexcept {
     State& state = *static_cast<State*>(argument);
     const bool alive = status.alive_count_change > 0;
     const bool dead = status.alive_count_change < 0 || status.not_alive_count_change > 0;
-    if (alive || dead) state.callbacks.liveliness(state.sender_of(status.last_publication_handle), alive);
+    if (alive || dead) state.callbacks.liveliness(state.sender_of(handle, status.last_publication_handle), alive);
   }
 
-  Sender sender_of(dds_instance_handle_t writer) {
+  // By the handle that DDS hands in: a callback may come before the constructor has got its own.
+  Sender sender_of(dds_entity_t handle, dds_instance_handle_t writer) {
     if (const auto known = participants.find(writer); known != participants.end()) return {writer, known->second};
-    dds_builtintopic_endpoint_t* endpoint = dds_get_matched_publication_data(reader.handle(), writer);
+    dds_builtintopic_endpoint_t* endpoint = dds_get_matched_publication_data(handle, writer);
     if (endpoint == nullptr) return {writer, 0};  // it has just gone
     // By its GUID, which stays when the participant is lost and found again.
     std::array<std::uint64_t, 2> guid{};

@@ -60,8 +60,8 @@ class Participant {
 template <class Message>
 class Writer {
  public:
-  /// `partition`: empty for the default one. `depth`: frames kept for readers that are behind (KEEP_LAST); for Observation
-  /// and Command, the depth of the other messages is fixed. Throws WireError.
+  /// `partition`: empty for the default one. `depth`: frames kept for readers that are behind (KEEP_LAST); for
+  /// Observation and Command, the depth of the other messages is fixed. Throws WireError.
   explicit Writer(Participant& participant, const std::string& partition = "", int depth = 1);
   Writer(Writer&&) noexcept;
   Writer& operator=(Writer&&) noexcept;
@@ -85,8 +85,8 @@ struct Sender {
   std::uint64_t participant = 0;  ///< identifies its participant likewise: DDS says it, the sender cannot choose it
 };
 
-/// Reads messages of one type. All callbacks run on a thread of DDS, one at a time for each reader and perhaps before the
-/// constructor returns: they must not throw, block for long, or create or destroy entities. Set at construction, so
+/// Reads messages of one type. All callbacks run on a thread of DDS, one at a time for each reader and perhaps before
+/// the constructor returns: they must not throw, block for long, or create or destroy entities. Set at construction, so
 /// nothing is missed; the destructor waits until none runs, so it must not be called with a lock that a callback takes.
 template <class Message>
 class Reader {

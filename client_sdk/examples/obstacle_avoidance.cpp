@@ -1,18 +1,19 @@
-// Obstacle avoidance after Braitenberg (thesis, section 5.2.1), for the s-bot: each track slows down for what is near on
-// the other side, so the robot turns away from it.
+// Obstacle avoidance after Braitenberg (thesis, section 5.2.1), for the s-bot: each track slows down for what is near
+// on the other side, so the robot turns away from it.
 //
-// It keeps nothing from one step to the next. So a copy that takes over in the middle of a run drives on as if nothing had
-// happened.
+// It keeps nothing from one step to the next. So a copy that takes over in the middle of a run drives on as if nothing
+// had happened.
 
 #include <algorithm>
 #include <array>
 #include <cohort/controller.hpp>
 #include <stdexcept>
+#include <vector>
 
 namespace {
 
-// Of the four sensors on each side that look ahead, at 12, 36, 60 and 84 degrees from straight ahead: what is beside the
-// robot matters less than what is in its way.
+// Of the four sensors on each side that look ahead, at 12, 36, 60 and 84 degrees from straight ahead: what is beside
+// the robot matters less than what is in its way.
 constexpr std::array weights{1.0, 0.8, 0.6, 0.3};
 
 constexpr double full_speed = 0.2;      // of a track [m/s]
@@ -24,7 +25,7 @@ class ObstacleAvoidance final : public cohort::Controller {
  public:
   void start(const cohort::Start& start) override {
     proximity_ = start.observations("proximity/*/reading");
-    if (proximity_.size() != 15) throw std::runtime_error("this controller is for the s-bot and its 15 proximity sensors");
+    if (proximity_.size() != 15) throw std::runtime_error("this controller wants the 15 proximity sensors of an s-bot");
     turret_position_ = start.observation("turret/0/position");
     turret_velocity_ = start.command("turret/0/velocity");
     left_track_ = start.command("treel/left/velocity");
@@ -41,7 +42,8 @@ class ObstacleAvoidance final : public cohort::Controller {
     }
 
     if (std::max(left, right) > too_near) {
-      // On the spot, and always the same way: one that chose the freer side would swing to and fro in a corner for ever.
+      // On the spot, and always the same way: one that chose the freer side would swing to and fro in a corner for
+      // ever.
       command.set(left_track_, -turning_speed);
       command.set(right_track_, turning_speed);
     } else {

@@ -57,8 +57,8 @@ class Unlocked {
 // `run` does the rest (with `inline_step`, the one that brought a frame answers it, if nobody is at it).
 class Client {
  public:
-  Client(const Plugin& plugin, const ClientOptions& options);
-  ClientEnd run(const std::atomic<bool>& stop);
+  Client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop);
+  ClientEnd run();
 
  private:
   using Lock = std::unique_lock<std::mutex>;
@@ -82,13 +82,14 @@ class Client {
   void answer_frames(Lock& lock);
 
   bool is_described(const wire::Admit& admit) const;
-  std::optional<ClientEnd> reason_to_leave(const std::atomic<bool>& stop);
+  std::optional<ClientEnd> reason_to_leave();
   ClientEnd fail(Lock& lock);
   void explain(const std::string& text) const;
 
   const ClientOptions options_;
   const std::string name_;
   const std::uint64_t id_ = random_id();
+  const std::atomic<bool>& stop_;
 
   std::mutex driving_;  // held by whoever uses the controllers
   ControllerHost host_;
@@ -120,9 +121,10 @@ class Client {
   wire::Reader<wire::Observation> frame_reader_;
 };
 
-Client::Client(const Plugin& plugin, const ClientOptions& options)
+Client::Client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop)
     : options_(options),
       name_(options.name.empty() ? plugin.name : options.name),
+      stop_(stop),
       host_(plugin),
       participant_(wire::Participant::client(options.domain, options.server)),
       joins_(participant_),
@@ -138,8 +140,11 @@ Client::Client(const Plugin& plugin, const ClientOptions& options)
       frame_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr},
                     wire::partition_of(id_), frames_kept_by_dds) {}
 
-ClientEnd Client::run(const std::atomic<bool>& stop) {
-  joins_.write({.client = id_, .controller = name_, .host = host_name(), .process = static_cast<std::uint32_t>(::getpid()),
+ClientEnd Client::run() {
+  joins_.write({.client = id_,
+                .controller = name_,
+                .host = host_name(),
+                .process = static_cast<std::uint32_t>(::getpid()),
                 .robots = options_.robots});
   for (;;) {
     {
@@ -150,7 +155,7 @@ ClientEnd Client::run(const std::atomic<bool>& stop) {
       if (end_) return *end_;
     }
     Lock lock(mutex_);
-    if (const auto end = reason_to_leave(stop)) return *end;
+    if (const auto end = reason_to_leave()) return *end;
     wake_.wait_for(lock, stop_is_polled_every, [&] { return news_; });
     news_ = false;
   }
@@ -260,7 +265,8 @@ void Client::heed(Offer offer, Lock& lock) {
 }
 
 void Client::answer_frames(Lock& lock) {
-  while (!end_ && !failure_) {
+  // Frames may come faster than they can be answered, so what is more urgent is looked for between them.
+  while (!end_ && !failure_ && !stop_ && !offered_ && reports_.empty()) {
     if (const auto repeat = frames_.next_repeat()) {
       const Unlocked unlocked(lock);
       commands_.write(*repeat);
@@ -287,9 +293,9 @@ bool Client::is_described(const wire::Admit& admit) const {
   });
 }
 
-std::optional<ClientEnd> Client::reason_to_leave(const std::atomic<bool>& stop) {
+std::optional<ClientEnd> Client::reason_to_leave() {
   const auto now = Clock::now();
-  if (stop) {
+  if (stop_) {
     explain("interrupted");
     return ClientEnd::interrupted;
   }
@@ -299,17 +305,21 @@ std::optional<ClientEnd> Client::reason_to_leave(const std::atomic<bool>& stop) 
   }
   if (!current_ && !notice_given_ && now - since_ > patience_before_notice) {
     notice_given_ = true;
-    explain(joins_.matched() == 0 ? "waiting for a server at " + options_.server + ", domain " +
-                                        std::to_string(options_.domain)
-                                  : "waiting for the server to admit this client");
+    explain(joins_.matched() == 0
+                ? "waiting for a server at " + options_.server + ", domain " + std::to_string(options_.domain)
+                : "waiting for the server to admit this client");
   }
   return std::nullopt;
 }
 
 ClientEnd Client::fail(Lock& lock) {
   explain(*failure_);
-  const wire::Report report{.client = id_, .run = current_ ? current_->admit.run : 0, .kind = wire::ReportKind::failed,
-                            .tick = tick_, .reason = "exception", .text = *failure_};
+  const wire::Report report{.client = id_,
+                            .run = current_ ? current_->admit.run : 0,
+                            .kind = wire::ReportKind::failed,
+                            .tick = tick_,
+                            .reason = "exception",
+                            .text = *failure_};
   const Unlocked unlocked(lock);
   if (own_reports_.write(report)) own_reports_.wait_until_received(time_for_last_words);
   return ClientEnd::failed;
@@ -320,7 +330,7 @@ void Client::explain(const std::string& text) const { std::fprintf(stderr, "%s: 
 }  // namespace
 
 ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop) {
-  return Client(plugin, options).run(stop);
+  return Client(plugin, options, stop).run();
 }
 
 }  // namespace cohort

@@ -15,23 +15,24 @@ struct ClientOptions {
   std::uint32_t domain = 0;
   std::vector<std::string> robots{"all"};  ///< selectors, see docs/protocol.md
   std::string name;                        ///< shown by the server; the plugin's name if empty
-  /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and latency.
-  /// Only for controllers that never block, since DDS stands still meanwhile.
+  /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
+  /// latency. Only for controllers that never block, since DDS stands still meanwhile.
   bool inline_step = false;
 };
 
 enum class ClientEnd {
-  finished,      ///< the server ended the run
-  refused,       ///< the claim was refused
-  superseded,    ///< another process took these robots over
-  failed,        ///< a controller threw, or the server rejected an answer for good
-  server_lost,   ///< the server died or left
-  interrupted,   ///< `stop` was set
+  finished,     ///< the server ended the run
+  refused,      ///< the claim was refused
+  superseded,   ///< another process took these robots over
+  failed,       ///< a controller threw, or the server rejected an answer for good
+  server_lost,  ///< the server died or left
+  interrupted,  ///< `stop` was set
 };
 
 /// Attaches to a server, drives robots until the run ends, and says why it ended; explains anything but `finished` on
 /// standard error. Waits for a server that is not there yet. Blocks; controllers run on the calling thread, unless
-/// `inline_step`. `stop` may be set from a signal handler. Throws wire::WireError if the server's address cannot be used.
+/// `inline_step`. `stop` may be set from a signal handler. Throws wire::WireError if the server's address cannot be
+/// used.
 ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop);
 
 }  // namespace cohort

@@ -36,8 +36,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 ChannelError no_channel(const Start& start, std::string_view kind, std::string_view name,
                         const std::vector<ChannelInfo>& channels) {
-  std::string message = "robot '" + start.name + "' (" + start.model + ") has no " + std::string(kind) + " '" +
-                        std::string(name) + "'";
+  std::string message =
+      "robot '" + start.name + "' (" + start.model + ") has no " + std::string(kind) + " '" + std::string(name) + "'";
   if (channels.empty()) return ChannelError(message + ", and no other " + std::string(kind) + " either");
   std::vector<const ChannelInfo*> nearest;
   for (const ChannelInfo& channel : channels) nearest.push_back(&channel);

@@ -17,8 +17,8 @@ class ControllerFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The controllers of some robots in this process: turns frames into answers. Knows nothing of the network, so a process
-/// of its own and a run in the server's process do the very same. One thread at a time.
+/// The controllers of some robots in this process: turns frames into answers. Knows nothing of the network, so a
+/// process of its own and a run in the server's process do the very same. One thread at a time.
 class ControllerHost {
  public:
   explicit ControllerHost(const Plugin& plugin);

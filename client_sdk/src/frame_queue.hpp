@@ -12,8 +12,8 @@
 namespace cohort {
 
 /// The frames of one client between arrival and answer (docs/protocol.md, "Frames and answers"): answers each one of a
-/// lease once, in tick order, and keeps the latest answers for frames that the server sends again. Pure logic, no thread
-/// of its own, no clock; allocates nothing once the frames have their size.
+/// lease once, in tick order, and keeps the latest answers for frames that the server sends again. Pure logic, no
+/// thread of its own, no clock; allocates nothing once the frames have their size.
 class FrameQueue {
  public:
   /// A lease begins: forgets the answers, and drops the frames of other leases but those of later ones.
@@ -36,6 +36,7 @@ class FrameQueue {
     wire::Observation head;  // its spans are those of the vectors below
     std::vector<std::uint32_t> robots;
     std::vector<double> values;
+    int came_again = 0;
   };
   struct Answer {
     std::uint64_t tick = 0;

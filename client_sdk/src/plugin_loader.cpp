@@ -37,7 +37,8 @@ fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path
 }  // namespace
 
 LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs::path>& directories)
-    : path_(find_plugin(name_or_path, directories)), library_(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL), ::dlclose) {
+    : path_(find_plugin(name_or_path, directories)),
+      library_(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL), ::dlclose) {
   if (library_ == nullptr) {
     const char* reason = ::dlerror();
     throw std::runtime_error("cannot load " + path_.string() + ": " + (reason != nullptr ? reason : "unknown error"));
@@ -52,7 +53,8 @@ LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs
   if (plugin_->abi != Plugin::current_abi) {
     throw std::runtime_error(path_.string() + " was built for version " + std::to_string(plugin_->abi) +
                              " of the controller interface, and this program has version " +
-                             std::to_string(Plugin::current_abi) + ". Build it again with the headers of this version.");
+                             std::to_string(Plugin::current_abi) +
+                             ". Build it again with the headers of this version.");
   }
 }
 

@@ -12,8 +12,8 @@ namespace cohort {
 class LoadedPlugin {
  public:
   /// `name_or_path`: a path to a shared object, or a name such as `obstacle_avoidance`, looked for as `NAME.so` in
-  /// `directories` in order. Throws std::runtime_error that says what was tried and what is wrong with it (not found, not
-  /// a controller plugin, built for another version).
+  /// `directories` in order. Throws std::runtime_error that says what was tried and what is wrong with it (not found,
+  /// not a controller plugin, built for another version).
   LoadedPlugin(const std::string& name_or_path, const std::vector<std::filesystem::path>& directories);
   LoadedPlugin(LoadedPlugin&&) noexcept = default;
   LoadedPlugin& operator=(LoadedPlugin&&) noexcept = default;

@@ -7,6 +7,9 @@
 namespace cohort::description {
 namespace {
 
+// libsdformat takes 1e-6 for zero, and then the z axis for the direction.
+constexpr double shortest_axis = 1e-5;
+
 // SDF writes "no limit" as a number this large.
 constexpr double no_limit = 1e16;
 
@@ -25,8 +28,6 @@ std::optional<JointType> read_type(const sdf::Joint& joint, const SdfReport& rep
       return JointType::revolute;
     case sdf::JointType::PRISMATIC:
       return JointType::prismatic;
-    case sdf::JointType::INVALID:
-      return std::nullopt;  // libsdformat has said so
     default:
       report.problem(joint.Element(), "the joint type '" + joint.Element()->Get<std::string>("type") +
                                           "' is not supported; expected fixed, revolute, continuous or prismatic");
@@ -41,7 +42,7 @@ void read_axis(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
     return;
   }
   if (const sdf::ElementPtr xyz = axis->Element()->FindElement("xyz");
-      xyz && xyz->Get<ignition::math::Vector3d>() == ignition::math::Vector3d::Zero) {
+      xyz && xyz->Get<ignition::math::Vector3d>().Length() < shortest_axis) {
     report.problem(xyz, "expected a direction that is not zero");
     return;
   }

@@ -102,8 +102,6 @@ void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) 
       if (included == file.includes.size()) break;
       include = &file.includes[included++];
     }
-    if (child->GetName() == "actor" && include != nullptr)
-      world_.warnings.push_back(Problem{file.shown, include->line, "world/include", "actors are not supported"}.text());
     if (child->GetName() != "model") continue;
     const auto name = child->Get<std::string>("name");
     // libsdformat drops the second of two with the same name, and the first one is found here again.

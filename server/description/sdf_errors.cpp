@@ -53,6 +53,8 @@ bool is_said_by_us(const sdf::Error& error) {
       return true;
     case sdf::ErrorCode::DUPLICATE_NAME:
       return error.Message().starts_with("model with name[");
+    case sdf::ErrorCode::ATTRIBUTE_INVALID:
+      return error.Message().starts_with("Joint type of");
     case sdf::ErrorCode::ELEMENT_INVALID:
       return error.Message() == "Failed to load a world." || error.Message().starts_with("The norm of the xyz vector");
     default:

@@ -51,6 +51,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       book.add_barrier(RunBook::Clock::now() - begin);
       exchange.apply();
       simulation.step();
+      book.stepped();
       book.report(false, [](Progress&) {});
       std::this_thread::sleep_until(book.due_time());
     }

@@ -13,12 +13,14 @@ RunBook::RunBook(const description::Experiment& experiment, const Simulation& si
       last_report_(start_) {}
 
 void RunBook::start() {
+  if (listener_.boundary) listener_.boundary();
   started_ = true;
   start_ = Clock::now();
   last_report_ = start_;
 }
 
 void RunBook::stop() {
+  if (!stopped_ && listener_.ending) listener_.ending();
   if (started_ && !stopped_) result_.wall_time = Clock::now() - start_;
   stopped_ = true;
 }

@@ -28,10 +28,12 @@ struct Progress {
   std::chrono::nanoseconds waiting{0};   ///< wall time since the wait began
 };
 
-/// Told what happens, on the thread that runs. Either may be empty.
+/// Told what happens, on the thread that runs. Each may be empty.
 struct RunListener {
-  std::function<void(const Progress&)> progress;  ///< a few times a second, also while waiting
-  std::function<void(const Event&)> event;        ///< the first of its kind and text
+  std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
+  std::function<void(const Event&)> event{};        ///< the first of its kind and text
+  std::function<void()> boundary{};                 ///< the first frame is about to go out, or a step is done
+  std::function<void()> ending{};                   ///< the run is over, controllers are about to be told
 };
 
 struct RunResult {
@@ -63,7 +65,11 @@ class RunBook {
 
   std::uint64_t total_ticks() const { return total_ticks_; }
   void start();  ///< the first frame is about to go out
-  void stop();   ///< the last step is done
+  void stop();   ///< the last step is done, or there will be none
+  /// A step is done.
+  void stepped() {
+    if (listener_.boundary) listener_.boundary();
+  }
   /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
   template <class Complete>
   void report(bool now_anyway, Complete&& complete) {

@@ -54,7 +54,7 @@ RunResult Server::run(const std::atomic<bool>& stop) {
   const auto end = [&](End how, const std::string& error = {}) {
     book_.stop();
     handle_inbox();
-    end_clients(how == End::finished ? "complete" : how == End::interrupted ? "interrupted" : "failed", error);
+    end_clients(how, error);
     report_progress(true);
     return book_.finish(how, error);
   };
@@ -73,6 +73,7 @@ RunResult Server::run(const std::atomic<bool>& stop) {
       book_.add_event("stopped", error.what());
       return end(End::failed, error.what());
     }
+    book_.stepped();
     publish_world_state();
     std::this_thread::sleep_until(book_.due_time());
   }

@@ -89,7 +89,7 @@ class Server {
   std::vector<std::uint64_t> frames_under_way(const std::vector<std::uint32_t>& robots) const;
   void report_progress(bool now_anyway);
   void publish_world_state();
-  void end_clients(const std::string& reason, const std::string& text);
+  void end_clients(RunResult::End end, const std::string& text);
   std::string robots_text(const std::vector<std::uint32_t>& robots) const;
   std::string label_of(std::uint64_t client) const;
 

@@ -35,6 +35,7 @@ void Server::handle_inbox() {
     const auto& [client_id, reason] = key;
     const auto& [text, count] = value;
     book_.add_event("rejected", reason + " from " + label_of(client_id) + ": " + text, count);
+    if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
     const auto client = clients_.find(client_id);
     if (client == clients_.end() || !client->second.reported_rejections.insert(reason).second) continue;
     client->second.report.write({client_id, run_number_, wire::ReportKind::rejected, simulation_.tick(), reason, text});
@@ -188,7 +189,10 @@ std::vector<std::uint64_t> Server::frames_under_way(const std::vector<std::uint3
 
 // Says that the run is over, and waits a little until the clients have left: what is not delivered when the participant
 // goes is lost.
-void Server::end_clients(const std::string& reason, const std::string& text) {
+void Server::end_clients(RunResult::End end, const std::string& text) {
+  const bool failed = end == RunResult::End::failed;
+  const wire::ReportKind kind = failed ? wire::ReportKind::failed : wire::ReportKind::finished;
+  const std::string reason = failed ? "failed" : end == RunResult::End::finished ? "complete" : "interrupted";
   std::set<std::uint64_t> drivers;
   std::set<std::uint64_t> staying;  // of those, the ones that can hear it
   {
@@ -199,7 +203,7 @@ void Server::end_clients(const std::string& reason, const std::string& text) {
     }
   }
   for (const std::uint64_t id : drivers)
-    clients_.at(id).report.write({id, run_number_, wire::ReportKind::finished, simulation_.tick(), reason, text});
+    clients_.at(id).report.write({id, run_number_, kind, simulation_.tick(), reason, text});
 
   const Clock::time_point until = Clock::now() + farewell;
   std::unique_lock lock(mutex_);

@@ -14,8 +14,8 @@
 
 namespace cohort::test {
 
-/// The server's side of the protocol, one message at a time, for tests of clients: says what it is told to say and keeps
-/// what it hears.
+/// The server's side of the protocol, one message at a time, for tests of clients: says what it is told to say and
+/// keeps what it hears.
 class FakeServer {
  public:
   struct Answer {
@@ -38,7 +38,8 @@ class FakeServer {
         free_.server,
         wire::Reader<wire::Command>::Callbacks{[this](const wire::Command& command, const wire::Sender&) {
                                                  const std::lock_guard lock(mutex_);
-                                                 answers_.push_back({command.epoch, command.tick,
+                                                 answers_.push_back({command.epoch,
+                                                                     command.tick,
                                                                      {command.robots.begin(), command.robots.end()},
                                                                      {command.values.begin(), command.values.end()}});
                                                },
@@ -97,7 +98,8 @@ class FakeServer {
     const std::size_t before = answers().size();
     for (int attempt = 0; attempt < 50; ++attempt) {
       send(tick, values, epoch, robots);
-      if (eventually([&] { return answers().size() > before; }, std::chrono::milliseconds(200))) return answers()[before];
+      if (eventually([&] { return answers().size() > before; }, std::chrono::milliseconds(200)))
+        return answers()[before];
     }
     return std::nullopt;
   }

@@ -16,8 +16,8 @@ class FlatArena {
   static constexpr double robot_radius = 0.058;  // [m]
   static constexpr double track_distance = 0.08;
   static constexpr double sensor_range = 0.2;
-  static constexpr double step = 0.01;          // [s]
-  static constexpr double track_lag = 0.1;      // time constant [s]
+  static constexpr double step = 0.01;      // [s]
+  static constexpr double track_lag = 0.1;  // time constant [s]
   static constexpr std::size_t sensor_count = 15;
 
   struct Disc {

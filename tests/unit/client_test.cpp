@@ -27,7 +27,8 @@ class RunningClient {
     options.domain = domain;
     options.robots = {"0", "team/*"};
     options.inline_step = inline_step;
-    end_ = std::async(std::launch::async, [this, options] { return run_client(CountingController::plugin(), options, stop); });
+    end_ = std::async(std::launch::async,
+                      [this, options] { return run_client(CountingController::plugin(), options, stop); });
   }
   ~RunningClient() { stop = true; }
 
@@ -53,7 +54,8 @@ class ClientTest : public testing::TestWithParam<bool> {
 
   void admit(std::uint64_t epoch = 1, wire::StartReason reason = wire::StartReason::first) {
     server.describe(CountingController::description());
-    server.admit({.epoch = epoch, .start_reason = reason, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0"}}});
+    server.admit(
+        {.epoch = epoch, .start_reason = reason, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0"}}});
   }
   // The answer to a frame: steps made, tick, twice the reading, reason to start.
   std::vector<double> ask(std::uint64_t tick, double reading, std::uint64_t epoch = 1) {
@@ -185,7 +187,8 @@ TEST(ClientAlone, waits_for_a_server_says_so_and_finds_it_when_it_comes) {
   ASSERT_TRUE(eventually([&] { return told.contains("waiting for a server at 127.0.0.1, domain"); }));
   auto participant = test::take_free_domain(domain, domain).server;
   std::atomic<bool> joined{false};
-  wire::Reader<wire::Join> joins(participant, {[&](const wire::Join&, const wire::Sender&) { joined = true; }, nullptr});
+  wire::Reader<wire::Join> joins(participant,
+                                 {[&](const wire::Join&, const wire::Sender&) { joined = true; }, nullptr});
   EXPECT_TRUE(eventually([&] { return joined.load(); }));
 }
 

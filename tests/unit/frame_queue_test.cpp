@@ -143,6 +143,15 @@ TEST_F(FrameQueueTest, a_frame_that_the_server_has_given_up_is_not_awaited) {
   EXPECT_EQ(answer_all(), (Ticks{1, 2, 3})) << "3 is out, so the server needs no answer to 0 any more";
 }
 
+TEST_F(FrameQueueTest, a_frame_that_keeps_coming_without_the_one_before_it_is_answered_in_the_end) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
+  arrive(1);
+  for (int i = 0; i < 7; ++i) arrive(1);
+  EXPECT_EQ(answer_all(), Ticks{});
+  arrive(1);
+  EXPECT_EQ(answer_all(), Ticks{1});
+}
+
 TEST_F(FrameQueueTest, without_a_delay_nothing_is_awaited) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(7);
@@ -151,7 +160,8 @@ TEST_F(FrameQueueTest, without_a_delay_nothing_is_awaited) {
 }
 
 TEST_F(FrameQueueTest, ticks_at_which_no_robot_is_due_are_not_awaited) {
-  queue.begin(lease(0, 1, 0, {{.robot = 3, .period = 4, .phase = 1, .delay = 8}, {.robot = 5, .period = 6, .delay = 8}}));
+  queue.begin(
+      lease(0, 1, 0, {{.robot = 3, .period = 4, .phase = 1, .delay = 8}, {.robot = 5, .period = 6, .delay = 8}}));
   arrive(0);
   arrive(1);
   arrive(5);

@@ -192,8 +192,9 @@ class PluginLoaderTest : public testing::Test {
 };
 
 TEST_F(PluginLoaderTest, a_plugin_that_is_nowhere_is_answered_with_the_places_tried) {
-  const std::string message =
-      message_of<std::runtime_error>([&] { LoadedPlugin("no_such", {folder, folder / "deeper"}); });
+  const std::string message = message_of<std::runtime_error>([&] {
+    LoadedPlugin("no_such", {folder, folder / "deeper"});
+  });
   EXPECT_TRUE(contains(message, (folder / "no_such.so").string()));
   EXPECT_TRUE(contains(message, (folder / "deeper/no_such.so").string()));
   EXPECT_TRUE(contains(message, "COHORT_PLUGIN_PATH"));
@@ -208,7 +209,8 @@ TEST_F(PluginLoaderTest, a_library_that_is_no_plugin_is_refused) {
   Dl_info libc{};
   ASSERT_NE(::dladdr(reinterpret_cast<void*>(&std::atoi), &libc), 0);
   std::filesystem::create_symlink(std::filesystem::absolute(libc.dli_fname), folder / "libc.so");
-  EXPECT_TRUE(contains(message_of<std::runtime_error>([&] { LoadedPlugin("libc", {folder}); }), "not a controller plugin"));
+  EXPECT_TRUE(
+      contains(message_of<std::runtime_error>([&] { LoadedPlugin("libc", {folder}); }), "not a controller plugin"));
 }
 
 TEST_F(PluginLoaderTest, a_plugin_of_another_version_is_refused) {

@@ -10,8 +10,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,19 +29,16 @@ using test::eventually;
 // Messages as they can be kept and compared: views become vectors.
 std::string show(const std::string& text) { return "'" + text + "'"; }
 template <class Number>
-  requires std::is_arithmetic_v<Number>
-std::string show(Number number) {
-  return std::to_string(number);
-}
+requires std::is_arithmetic_v<Number> std::string show(Number number) { return std::to_string(number); }
 std::string show(const Channel& c) {
   return show(c.name) + show(c.unit) + show(c.size) + show(c.lower) + show(c.upper) + show(c.neutral);
 }
 std::string show(const AdmittedRobot& r) {
-  return show(r.robot) + show(r.name) + show(r.description) + show(r.seed) + " " + show(r.period) + " " + show(r.phase) +
-         " " + show(r.delay);
+  return show(r.robot) + show(r.name) + show(r.description) + show(r.seed) + " " + show(r.period) + " " +
+         show(r.phase) + " " + show(r.delay);
 }
 template <class List>
-  requires requires(const List& list) { list.size(), list.data()[0]; }
+requires requires(const List& list) { list.size(), list.data()[0]; }
 std::string show_list(const List& list) {
   std::string text = "[";
   for (const auto& element : list) text += show(element) + ",";
@@ -78,8 +77,8 @@ template <class Message>
 class Inbox {
  public:
   Inbox(Participant& participant, const std::string& partition = "", int depth = 8)
-      : reader_(participant, {[this](const Message& message, const Sender&) { add(show(message)); }, nullptr}, partition,
-                depth) {}
+      : reader_(participant, {[this](const Message& message, const Sender&) { add(show(message)); }, nullptr},
+                partition, depth) {}
 
   std::vector<std::string> received() const {
     const std::lock_guard lock(mutex_);
@@ -129,7 +128,10 @@ const std::string long_text(100'000, 'x');
 
 TEST_F(WireTest, a_join_arrives_unchanged) {
   expect_round_trip<Join>(client, free.server,
-                          {{.client = 0xfedcba9876543210, .controller = "Näherung", .host = "h", .process = 77,
+                          {{.client = 0xfedcba9876543210,
+                            .controller = "Näherung",
+                            .host = "h",
+                            .process = 77,
                             .robots = {"all", "", "team/sbot_*"}},
                            {.client = 1},
                            {.client = 1, .controller = long_text, .host = long_text, .robots = {long_text, "a"}},
@@ -138,36 +140,49 @@ TEST_F(WireTest, a_join_arrives_unchanged) {
 }
 
 TEST_F(WireTest, an_admit_arrives_unchanged) {
-  const AdmittedRobot robot{.robot = 3, .name = "team/sbot_3", .description = 1, .seed = ~std::uint64_t{0}, .period = 2,
-                            .phase = 1, .delay = 4};
+  const AdmittedRobot robot{.robot = 3,
+                            .name = "team/sbot_3",
+                            .description = 1,
+                            .seed = ~std::uint64_t{0},
+                            .period = 2,
+                            .phase = 1,
+                            .delay = 4};
   expect_round_trip<Admit>(
       free.server, client,
-      {{.client = 5, .run = 2, .epoch = 9, .start_reason = StartReason::takeover, .tick = 1'000'000'000'000,
-        .step_ns = 10'000'000, .robots = {robot, {}, robot}},
+      {{.client = 5,
+        .run = 2,
+        .epoch = 9,
+        .start_reason = StartReason::takeover,
+        .tick = 1'000'000'000'000,
+        .step_ns = 10'000'000,
+        .robots = {robot, {}, robot}},
        {.client = 5, .status = AdmitStatus::refused, .reason = "robot 3 is driven by 'sweeper' on host h"},
        {.client = 5, .robots = std::vector<AdmittedRobot>(3000, robot)}});
 }
 
 TEST_F(WireTest, a_robot_description_arrives_unchanged) {
-  const Channel channel{.name = "proximity/0/reading", .unit = "1", .size = 3, .lower = -0.5, .upper = 1e300,
-                        .neutral = -0.0};
+  const Channel channel{
+      .name = "proximity/0/reading", .unit = "1", .size = 3, .lower = -0.5, .upper = 1e300, .neutral = -0.0};
   expect_round_trip<RobotDescription>(
       free.server, client,
       {{.description = 1, .model = "sbot", .observation = {channel, {}}, .command = {channel}},
        {.description = 1},
-       {.description = 1, .model = long_text, .observation = std::vector<Channel>(2000, channel), .command = {channel}}});
+       {.description = 1,
+        .model = long_text,
+        .observation = std::vector<Channel>(2000, channel),
+        .command = {channel}}});
 }
 
 TEST_F(WireTest, an_observation_arrives_unchanged) {
   const std::vector<std::uint32_t> robots{0, 7, 4'000'000'000};
   const std::vector<double> values{0.1, -0.0, 5e-324, 1.7976931348623157e308};
   const std::vector<double> many(50'000, 0.3);
-  expect_round_trip<Observation>(free.server, client,
-                                 {{.client = 5, .run = 1, .resent = 2, .epoch = 3, .tick = 4, .time_ns = -5,
-                                   .robots = robots, .values = values},
-                                  {.client = 5},
-                                  {.client = 5, .tick = 1, .robots = robots, .values = many},
-                                  {.client = 5, .tick = 2, .values = values}});
+  expect_round_trip<Observation>(
+      free.server, client,
+      {{.client = 5, .run = 1, .resent = 2, .epoch = 3, .tick = 4, .time_ns = -5, .robots = robots, .values = values},
+       {.client = 5},
+       {.client = 5, .tick = 1, .robots = robots, .values = many},
+       {.client = 5, .tick = 2, .values = values}});
 }
 
 TEST_F(WireTest, a_command_arrives_unchanged) {
@@ -192,10 +207,14 @@ TEST_F(WireTest, a_world_state_arrives_unchanged) {
 }
 
 TEST_F(WireTest, a_report_arrives_unchanged_either_way) {
-  const std::vector<Report> reports{
-      {.client = 5, .run = 1, .kind = ReportKind::rejected, .tick = 3, .reason = "not_finite", .text = "value 3 is NaN"},
-      {.client = 5, .kind = ReportKind::failed, .text = long_text},
-      {.client = 5}};
+  const std::vector<Report> reports{{.client = 5,
+                                     .run = 1,
+                                     .kind = ReportKind::rejected,
+                                     .tick = 3,
+                                     .reason = "not_finite",
+                                     .text = "value 3 is NaN"},
+                                    {.client = 5, .kind = ReportKind::failed, .text = long_text},
+                                    {.client = 5}};
   expect_round_trip(free.server, client, reports);
   expect_round_trip(client, free.server, reports);
 }
@@ -288,6 +307,37 @@ TEST_F(WireTest, a_writer_that_leaves_is_reported_dead_at_once) {
   ASSERT_TRUE(eventually([&] { return dead != 0; }, 2s));
   EXPECT_EQ(alive, dead);
   EXPECT_EQ(alive, sender_of_message);
+}
+
+TEST_F(WireTest, what_a_client_sends_is_known_to_be_of_one_participant) {
+  auto second = Participant::client(free.domain);
+  std::mutex mutex;
+  std::map<std::uint64_t, std::set<std::uint64_t>> participants;  // by client
+  const auto note = [&](std::uint64_t id, const Sender& sender) {
+    const std::lock_guard lock(mutex);
+    participants[id].insert(sender.participant);
+  };
+  std::atomic<int> messages{0};
+  Reader<Join> joins(free.server, {[&](const Join& join, const Sender& sender) {
+                                     note(join.client, sender);
+                                     ++messages;
+                                   },
+                                   nullptr});
+  Reader<Report> reports(free.server, {[&](const Report& report, const Sender& sender) {
+                                         note(report.client, sender);
+                                         ++messages;
+                                       },
+                                       nullptr});
+  Writer<Join> first_join(client);
+  Writer<Report> first_report(client);
+  Writer<Join> second_join(second);
+  first_join.write({.client = 1});
+  first_report.write({.client = 1});
+  second_join.write({.client = 2});
+  ASSERT_TRUE(eventually([&] { return messages == 3; }));
+  EXPECT_EQ(participants[1].size(), 1u);
+  EXPECT_FALSE(participants[1].contains(0));
+  EXPECT_NE(participants[1], participants[2]);
 }
 
 // The other process of the next test: joins, and stays until it is killed.

@@ -121,7 +121,7 @@ void Children::handle_end(Child& child, int status) {
   child.pid = -1;
   child.pidfd = -1;
   const bool failed = !WIFEXITED(status) || WEXITSTATUS(status) != 0;
-  if (!failed || finishing_) return;
+  if (!failed || !restarting_ || finishing_) return;
   if (child.restarts == most_restarts) {
     listener_.gave_up(text + ", and was restarted " + std::to_string(most_restarts) + " times before");
     return;

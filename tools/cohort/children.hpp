@@ -26,7 +26,9 @@ class Children {
   /// Ends them: first by SIGTERM, after two seconds by SIGKILL.
   ~Children();
 
-  /// Gives them a moment to end by themselves; restarts nothing any more.
+  /// From now on a child may end as it likes.
+  void stop_restarting() { restarting_ = false; }
+  /// Gives them a moment to end by themselves.
   void let_finish();
 
  private:
@@ -44,6 +46,7 @@ class Children {
   std::vector<Child> children_;
   Listener listener_;
   int wake_pipe_[2];
+  std::atomic<bool> restarting_ = true;
   std::atomic<bool> finishing_ = false;
   std::thread watcher_;
 };

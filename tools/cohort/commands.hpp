@@ -12,7 +12,7 @@ namespace cohort::tool {
 
 // docs/cli.md tells users what these mean.
 inline constexpr int exit_ok = 0;
-inline constexpr int exit_failed = 1;  // the run ended with an error
+inline constexpr int exit_failed = 1;  // the run ended with an error, or what it found could not be written
 inline constexpr int exit_usage = 2;   // bad command line, world, experiment or set-up: nothing was started
 inline constexpr int exit_interrupted = 130;
 
@@ -30,7 +30,8 @@ struct RunCommand {
   std::optional<std::uint64_t> seed;
   Controllers controllers = Controllers::process;
   double speed = 0.0;  ///< 0: as fast as it goes
-  std::filesystem::path summary;
+  std::filesystem::path summary;  ///< file to write; empty: none
+  std::filesystem::path plot;     ///< the same
   bool quiet = false;
   std::optional<std::uint32_t> domain;
   std::string network = "127.0.0.1";

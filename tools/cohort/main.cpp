@@ -29,6 +29,7 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed) {
   app.add_option("--seed", options.seed, "Seed, instead of the experiment's");
   app.add_option("--speed", speed, "Simulated seconds per second: max, or a number")->default_str("max");
   app.add_option("--summary", options.summary, "Write the summary to this file as JSON");
+  app.add_option("--plot", options.plot, "Draw arena, paths and contacts to this file as SVG");
   app.add_option("--domain", options.domain, "DDS domain (default: $COHORT_DOMAIN, or a free one, or 0 for outsiders)")
       ->envname("COHORT_DOMAIN")
       ->check(CLI::Range(0u, 230u));

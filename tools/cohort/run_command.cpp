@@ -15,6 +15,9 @@
 #include "tools/cohort/children.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/controller_plugins.hpp"
+#include "tools/cohort/output_file.hpp"
+#include "tools/cohort/plot.hpp"
+#include "tools/cohort/run_trace.hpp"
 #include "tools/cohort/summary_file.hpp"
 #include "tools/cohort/terminal.hpp"
 
@@ -91,18 +94,23 @@ RunResult run_over_dds(const RunCommand& command, const description::Experiment&
                        const std::vector<LoadedPlugin>& plugins, Terminal& terminal,
                        const session::RunListener& listener, const std::atomic<bool>& stop) {
   Served served = open_domain(command);
-  session::Server server(experiment, simulation, served.participant, {command.speed}, listener);
+  std::optional<Children> children;
+  session::RunListener own_listener = listener;
+  own_listener.ending = [&] {
+    if (children) children->stop_restarting();
+  };
+  session::Server server(experiment, simulation, served.participant, {command.speed}, own_listener);
   if (command.controllers == Controllers::external) {
     terminal.say(fmt::format("serving {} robots on {}, domain {}", simulation.robot_count(), command.network,
                              served.domain));
     return server.run(stop);
   }
   const bool per_robot = command.controllers == Controllers::per_robot;
-  Children children(controller_commands(experiment, plugins, per_robot, served.domain),
-                    {[](const std::string& text) { spdlog::warn("{}", text); },
-                     [&](const std::string& text) { server.fail(text); }});
+  children.emplace(controller_commands(experiment, plugins, per_robot, served.domain),
+                   Children::Listener{[](const std::string& text) { spdlog::warn("{}", text); },
+                                      [&](const std::string& text) { server.fail(text); }});
   RunResult result = server.run(stop);
-  children.let_finish();
+  children.reset();
   return result;
 }
 
@@ -121,10 +129,35 @@ void warn_if_not_portable() {
     spdlog::warn("this run's hash may differ on another CPU: the C library's{} are in use instead of ours", names);
 }
 
+// Whether all that was asked for is written.
+bool write_files(const RunCommand& command, const description::Experiment& experiment, const RunResult& result,
+                 double cpu, std::optional<TraceRecorder>& recorder) {
+  const auto try_to = [](const auto& write) {
+    try {
+      write();
+      return true;
+    } catch (const std::exception& error) {
+      std::cerr << "cohort: " << error.what() << "\n";
+      return false;
+    }
+  };
+  bool written = true;
+  if (!command.summary.empty()) written &= try_to([&] { write_summary(command.summary, result, cpu); });
+  if (recorder)
+    written &= try_to([&] {
+      const PlotCaption caption = {experiment.name, result.sim_time, result.state_hash};
+      write_file("the plot", command.plot, draw_plot(recorder->finish(), caption));
+    });
+  return written;
+}
+
 }  // namespace
 
 int run(const RunCommand& command, const std::atomic<bool>& stop) {
+  const double cpu_before = cpu_seconds();  // a shell that became this process may have had children
   try {
+    if (!command.summary.empty()) check_writable("the summary", command.summary);
+    if (!command.plot.empty()) check_writable("the plot", command.plot);
     std::optional<std::chrono::nanoseconds> duration;
     if (command.duration)
       duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
@@ -137,19 +170,23 @@ int run(const RunCommand& command, const std::atomic<bool>& stop) {
     Simulation simulation(experiment, command.threads == 0 ? cores : command.threads);
     warn_if_not_portable();
 
+    std::optional<TraceRecorder> recorder;
+    if (!command.plot.empty()) recorder.emplace(experiment.world, simulation);
     Terminal terminal(command.quiet);
     const session::RunListener listener = {
-        [&](const session::Progress& progress) { terminal.progress(progress); },
-        [&](const session::Event& event) { terminal.event(event); }};
+        .progress = [&](const session::Progress& progress) { terminal.progress(progress); },
+        .event = [&](const session::Event& event) { terminal.event(event); },
+        .boundary = recorder ? std::function<void()>([&] { recorder->boundary(); }) : nullptr,
+    };
     const RunResult result =
         command.controllers == Controllers::in_process
             ? run_here(command, experiment, simulation, plugins, listener, stop)
             : run_over_dds(command, experiment, simulation, plugins, terminal, listener, stop);
-    const double cpu = cpu_seconds();
+    const double cpu = cpu_seconds() - cpu_before;
     terminal.summary(result, cpu);
-    if (!command.summary.empty()) write_summary(command.summary, result, cpu);
+    const bool written = write_files(command, experiment, result, cpu, recorder);
     switch (result.end) {
-      case RunResult::End::finished: return exit_ok;
+      case RunResult::End::finished: return written ? exit_ok : exit_failed;
       case RunResult::End::interrupted: return exit_interrupted;
       case RunResult::End::failed: spdlog::error("the run ended at tick {}: {}", result.ticks, result.error);
     }

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+
+#include "tools/cohort/output_file.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -42,11 +40,7 @@ void write_summary(const std::filesystem::path& file, const session::RunResult& 
         {"obstacles", result.touches.obstacles},
         {"robots", result.touches.robots}}},
   };
-  std::ofstream out(file);
-  out << summary.dump(2) << '\n';
-  out.close();
-  if (!out)
-    throw std::runtime_error("the summary could not be written to " + file.string() + ": " + std::strerror(errno));
+  write_file("the summary", file, summary.dump(2) + "\n");
 }
 
 }  // namespace cohort::tool

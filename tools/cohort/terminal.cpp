@@ -70,7 +70,10 @@ void Terminal::progress(const session::Progress& progress) {
 void Terminal::event(const session::Event& event) {
   if (quiet_) return;
   clear_line();
-  const bool expected = event.kind == "joined" || event.kind == "back";
+  // A resent frame may be answered twice.
+  const bool answered_twice =
+      event.kind == "rejected" && (event.text.starts_with("repeated") || event.text.starts_with("stale"));
+  const bool expected = event.kind == "joined" || event.kind == "back" || answered_twice;
   spdlog::log(expected ? spdlog::level::info : spdlog::level::warn, "tick {}: {}: {}", event.tick, event.kind,
               event.text);
 }

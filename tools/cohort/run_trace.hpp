@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <chrono>
+#include <compare>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/description/world.hpp"
+#include "server/geometry/shapes.hpp"
+#include "server/simulation/simulation.hpp"
+
+/// What a run leaves behind for a picture of it from above.
+namespace cohort::tool {
+
+/// Where a robot was, in the plane of W.
+struct RobotTrace {
+  std::string name;
+  double radius = 0.0;                  ///< about the root link's origin, around all of its collisions at tick 0 [m]
+  std::vector<Eigen::Vector2f> path_W;  ///< [m], first the start, last the end
+  double end_heading = 0.0;             ///< of the root link's x axis, from that of W [rad]
+};
+
+struct TracedSolid {
+  enum class Kind {
+    floor,     ///< static, and no higher than the lowest point of any robot
+    obstacle,  ///< static
+    object,    ///< moves, and belongs to no robot; where it is at the end
+  };
+  Kind kind;
+  geometry::Shape shape;
+  Pose X_WC;
+};
+
+/// Where robots touched something. A robot has at most one mark of each kind within a square of `contact_spacing`.
+struct ContactMark {
+  enum class Kind { obstacle, robot };
+  Kind kind;
+  Eigen::Vector2d position_W;
+};
+
+struct RunTrace {
+  std::vector<TracedSolid> solids;  ///< the lowest first; planes are not among them
+  std::vector<RobotTrace> robots;   ///< by id
+  std::vector<ContactMark> contacts;
+};
+
+/// Watches a run. Reads from the simulation and changes nothing, so the run's hash is the same without it. Keeps 80
+/// bytes for each robot and simulated second.
+class TraceRecorder {
+ public:
+  static constexpr std::chrono::milliseconds sample_interval{100};  ///< simulated
+  static constexpr double contact_spacing = 0.05;                   ///< [m]
+
+  /// `simulation` stands at tick 0. Both must outlive this.
+  TraceRecorder(const description::World& world, const Simulation& simulation);
+
+  /// At every boundary.
+  void boundary();
+
+  /// Once, at the end: as of the present boundary, or of the last sample for a robot whose state is no longer finite.
+  RunTrace finish();
+
+ private:
+  struct ContactCell {
+    std::uint32_t robot;
+    ContactMark::Kind kind;
+    std::int64_t x, y;
+    auto operator<=>(const ContactCell&) const = default;
+  };
+
+  void sample();
+  void note_contacts();
+
+  const description::World& world_;
+  const Simulation& simulation_;
+  std::uint64_t sample_ticks_;
+  std::uint64_t next_sample_;
+  std::vector<std::uint32_t> robot_of_body_;
+  std::vector<char> is_floor_;  // by body: nothing of it is in a robot's way
+  std::set<ContactCell> touched_;
+  RunTrace trace_;
+};
+
+}  // namespace cohort::tool

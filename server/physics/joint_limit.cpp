@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "server/physics/one_body_row.hpp"
-
 namespace cohort::physics {
 namespace {
 
@@ -13,9 +11,7 @@ constexpr double unlimited = std::numeric_limits<double>::max();
 }  // namespace
 
 JointLimit::JointLimit(btMultiBody* body, int link, double lower, double upper)
-    : btMultiBodyConstraint(body, nullptr, link, -1, 2, true, MULTIBODY_CONSTRAINT_LIMIT), lower_(lower), upper_(upper) {
-  m_data.resize(2, 0.0);  // impulses kept for the warm start: lower, upper
-}
+    : OneBodyConstraint(body, link, 2, MULTIBODY_CONSTRAINT_LIMIT), lower_(lower), upper_(upper) {}
 
 void JointLimit::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
                                       const btContactSolverInfo& info) {

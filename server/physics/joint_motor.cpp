@@ -1,14 +1,9 @@
 #include "server/physics/joint_motor.hpp"
 
-#include "server/physics/one_body_row.hpp"
-
 namespace cohort::physics {
 
 JointMotor::JointMotor(btMultiBody* body, int link, double max_effort)
-    : btMultiBodyConstraint(body, nullptr, link, -1, 1, false, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR),
-      max_effort_(max_effort) {
-  m_data.resize(1, 0.0);  // the impulse kept for the warm start
-}
+    : OneBodyConstraint(body, link, 1, MULTIBODY_CONSTRAINT_1DOF_JOINT_MOTOR), max_effort_(max_effort) {}
 
 void JointMotor::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
                                       const btContactSolverInfo& info) {

@@ -4,6 +4,21 @@
 
 namespace cohort::physics {
 
+/// What our constraints on one multibody have in common. `impulses`: how many rows it can have; each keeps its impulse for
+/// the next step's warm start.
+class OneBodyConstraint : public btMultiBodyConstraint {
+ public:
+  OneBodyConstraint(btMultiBody* body, int link, int impulses, int type)
+      : btMultiBodyConstraint(body, nullptr, link, -1, impulses, false, type) {
+    m_data.resize(impulses, 0.0);
+  }
+
+  void finalizeMultiDof() override {}
+  int getIslandIdA() const override { return -1; }  // islands are our own
+  int getIslandIdB() const override { return -1; }
+  void debugDraw(btIDebugDraw*) override {}
+};
+
 /// A solver row that acts on one multibody only, ready but for its limits. `right_hand_side` is to be set with
 /// `drive_towards`.
 struct OneBodyRow {

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "server/physics/ground.hpp"
-#include "server/physics/one_body_row.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -26,15 +25,13 @@ constexpr int reserved_rows = 512;
 
 TreelDrive::TreelDrive(btMultiBody* body, std::uint32_t body_index, const description::TreelDrive& drive,
                        const Pose& X_BL, const geometry::Scene& scene)
-    : btMultiBodyConstraint(body, nullptr, -1, -1, slots, false, type),
+    : OneBodyConstraint(body, -1, slots, type),
       body_index_(body_index),
       drive_(drive),
       X_BL_(X_BL),
       scene_(&scene),
       forward_W_(0, 0, 0),
-      normal_W_(0, 0, 0) {
-  m_data.resize(slots, 0.0);
-}
+      normal_W_(0, 0, 0) {}
 
 void TreelDrive::createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
                                       const btContactSolverInfo& info) {

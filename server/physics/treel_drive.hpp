@@ -4,7 +4,7 @@
 
 #include "server/description/model.hpp"
 #include "server/geometry/scene.hpp"
-#include "server/physics/bullet.hpp"
+#include "server/physics/one_body_row.hpp"
 #include "server/physics/world.hpp"
 
 namespace cohort::physics {
@@ -13,7 +13,7 @@ namespace cohort::physics {
 /// side and one row against sliding sideways, 7 rows in all. Traction is limited by the motor and by friction under the
 /// normal impulses of the same iteration. Against wheels with contacts it needs a quarter of the rows, and a robot told
 /// to stand still stands still.
-class TreelDrive final : public btMultiBodyConstraint {
+class TreelDrive final : public OneBodyConstraint {
  public:
   static constexpr int type = MAX_MULTIBODY_CONSTRAINT_TYPE + 1;
 
@@ -30,12 +30,8 @@ class TreelDrive final : public btMultiBodyConstraint {
   /// Takes the tracks' motion from the solved velocities. After the step's velocities are final.
   void advance_tracks(double step);
 
-  void finalizeMultiDof() override {}
   void createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
                             const btContactSolverInfo& info) override;
-  int getIslandIdA() const override { return -1; }  // islands are our own
-  int getIslandIdB() const override { return -1; }
-  void debugDraw(btIDebugDraw*) override {}
 
  private:
   struct Track {

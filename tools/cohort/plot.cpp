@@ -211,7 +211,7 @@ class Drawing {
                    number(path_width()), number(0.85 * crowd_factor()));
     for (std::size_t i = 0; i < trace_.robots.size(); ++i) {
       svg::Points points;
-      for (const Eigen::Vector2f& point_W : trace_.robots[i].path_W) points.push_back(view_(point_W.cast<double>()));
+      for (const Eigen::Vector2d& point_W : trace_.robots[i].path_W) points.push_back(view_(point_W));
       fmt::format_to(out_, "<path stroke=\"{}\" d=\"{}\"/>\n", colour(i),
                      svg::path_data(svg::simplified(points, path_tolerance)));
     }
@@ -224,7 +224,7 @@ class Drawing {
     for (std::size_t i = 0; i < trace_.robots.size(); ++i) {
       const RobotTrace& robot = trace_.robots[i];
       if (robot.path_W.empty()) continue;
-      const Vector2d at = view_(robot.path_W.front().cast<double>());
+      const Vector2d at = view_(robot.path_W.front());
       fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" stroke=\"{}\"/>\n", number(at.x()), number(at.y()),
                      number(shown_radius(robot)), colour(i));
     }
@@ -236,7 +236,7 @@ class Drawing {
     for (std::size_t i = 0; i < trace_.robots.size(); ++i) {
       const RobotTrace& robot = trace_.robots[i];
       if (robot.path_W.empty()) continue;
-      draw_robot(view_(robot.path_W.back().cast<double>()), shown_radius(robot), robot.end_heading, colour(i),
+      draw_robot(view_(robot.path_W.back()), shown_radius(robot), robot.end_heading, colour(i),
                  robot.name);
     }
     text_ += "</g>\n";

@@ -20,7 +20,7 @@ Range range_of(const RunTrace& trace) {
     }
   };
   for (const RobotTrace& robot : trace.robots)
-    for (const Eigen::Vector2f& point_W : robot.path_W) range.add(point_W.cast<double>(), robot.radius);
+    for (const Eigen::Vector2d& point_W : robot.path_W) range.add(point_W, robot.radius);
   add_solids(false);
   if (range.empty()) add_solids(true);
   if (range.empty()) range.add(Eigen::Vector2d::Zero());

@@ -89,7 +89,7 @@ void TraceRecorder::sample() {
     const Eigen::Vector3d forward_W = X_WL.orientation * Eigen::Vector3d::UnitX();
     if (!X_WL.position.allFinite() || !forward_W.allFinite()) continue;
     RobotTrace& trace = trace_.robots[robot];
-    trace.path_W.push_back(X_WL.position.head<2>().cast<float>());
+    trace.path_W.push_back(X_WL.position.head<2>());
     trace.end_heading = std::atan2(forward_W.y(), forward_W.x());
   }
 }

@@ -19,7 +19,7 @@ namespace cohort::tool {
 struct RobotTrace {
   std::string name;
   double radius = 0.0;                  ///< about the root link's origin, around all of its collisions at tick 0 [m]
-  std::vector<Eigen::Vector2f> path_W;  ///< [m], first the start, last the end
+  std::vector<Eigen::Vector2d> path_W;  ///< [m], first the start, last the end
   double end_heading = 0.0;             ///< of the root link's x axis, from that of W [rad]
 };
 
@@ -47,7 +47,7 @@ struct RunTrace {
   std::vector<ContactMark> contacts;
 };
 
-/// Watches a run. Reads from the simulation and changes nothing, so the run's hash is the same without it. Keeps 80
+/// Watches a run. Reads from the simulation and changes nothing, so the run's hash is the same without it. Keeps 160
 /// bytes for each robot and simulated second.
 class TraceRecorder {
  public:

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "client_sdk/src/controller_host.hpp"
@@ -54,6 +56,7 @@ class DemoRun : public ::testing::Test {
       for (std::uint32_t robot = 0; robot < robots; ++robot) watch(simulation.robot_pose(robot));
     }
     touches = simulation.touches();
+    state_hash = simulation.state_hash();
   }
 
   static void watch(const Pose& pose) {
@@ -72,6 +75,7 @@ class DemoRun : public ::testing::Test {
   static inline double least_upright = 1.0;
   static inline std::set<std::pair<int, int>> visited;
   static inline TouchCounts touches;
+  static inline std::uint64_t state_hash = 0;
 };
 
 TEST_F(DemoRun, NoRobotLeavesTheArena) { EXPECT_LE(farthest, half_arena - turret_radius + 0.005); }
@@ -95,6 +99,18 @@ TEST_F(DemoRun, RobotsCoverTheArena) {
   std::printf("visited %zu of %.0f cells; touched obstacles in %.3f %% and robots in %.3f %% of robot-ticks\n",
               visited.size(), cells, 100.0 * static_cast<double>(touches.obstacles) / static_cast<double>(touches.robot_ticks),
               100.0 * static_cast<double>(touches.robots) / static_cast<double>(touches.robot_ticks));
+}
+
+TEST_F(DemoRun, HasTheHashThatTheReadmeAndItsPictureSay) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016lx", static_cast<unsigned long>(state_hash));
+  for (const char* file : {"README.md", "docs/images/obstacle_avoidance.svg"}) {
+    std::ifstream in(std::string(COHORT_SOURCE_DIR "/") + file);
+    const std::string content(std::istreambuf_iterator<char>(in), {});
+    EXPECT_NE(content.find(text), std::string::npos)
+        << file << " is out of date: tools/demo --plot docs/images/obstacle_avoidance.svg gives the new picture, hash "
+        << text;
+  }
 }
 
 }  // namespace

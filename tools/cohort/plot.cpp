@@ -23,7 +23,7 @@ using Output = std::back_insert_iterator<std::string>;
 // The page, in its units; one is a CSS pixel when the picture is shown in its own size.
 constexpr double header = 66.0;
 constexpr double footer = 36.0;
-constexpr double legend_width = 222.0;
+constexpr double legend_width = 230.0;
 constexpr double legend_row = 25.0;
 constexpr double margin = 16.0;
 constexpr double digit_width = 7.5;
@@ -236,8 +236,7 @@ class Drawing {
     for (std::size_t i = 0; i < trace_.robots.size(); ++i) {
       const RobotTrace& robot = trace_.robots[i];
       if (robot.path_W.empty()) continue;
-      draw_robot(view_(robot.path_W.back()), shown_radius(robot), robot.end_heading, colour(i),
-                 robot.name);
+      draw_robot(view_(robot.path_W.back()), shown_radius(robot), robot.end_heading, colour(i), robot.name);
     }
     text_ += "</g>\n";
   }
@@ -312,7 +311,7 @@ class Drawing {
   }
 
   void draw_scale_bar(double left) {
-    const double length = round_length((legend_width - 50.0) / view_.scale);
+    const double length = round_length((legend_width - 60.0) / view_.scale);
     const double y = view_.origin.y() + view_.size.y() - 6.0;
     const double end = left + view_.scale * length;
     const bool small = length < 1.0 - 1e-9;

@@ -119,7 +119,8 @@ RunTrace TraceRecorder::finish() {
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const bool of_robot = robot_of_body_[solid.body] != none;
-    if (!of_robot && !is_plane(solid) && solid.X_WC.position.allFinite()) order.push_back(i);
+    if (!of_robot && !is_plane(solid) && scene.bounds(i).lower.allFinite() && scene.bounds(i).upper.allFinite())
+      order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return scene.bounds(a).upper.z() < scene.bounds(b).upper.z();

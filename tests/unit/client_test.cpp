@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(, ClientTest, testing::Values(false, true), [](const au
   return std::string(parameter.param ? "stepping_inline" : "stepping_on_its_own_thread");
 });
 
-TEST_P(ClientTest, a_join_says_who_wants_which_robots) {
+TEST_P(ClientTest, AJoinSaysWhoWantsWhichRobots) {
   const auto join = server.join();
   EXPECT_EQ(join->controller, "counting");
   EXPECT_EQ(join->robots, (std::vector<std::string>{"0", "team/*"}));
@@ -85,7 +85,7 @@ TEST_P(ClientTest, a_join_says_who_wants_which_robots) {
   EXPECT_FALSE(join->host.empty());
 }
 
-TEST_P(ClientTest, every_frame_is_answered_and_one_sent_again_gets_the_same_answer) {
+TEST_P(ClientTest, EveryFrameIsAnsweredAndOneSentAgainGetsTheSameAnswer) {
   admit();
   EXPECT_EQ(ask(0, 0.5), (Values{1, 0, 1.0, 0}));
   EXPECT_EQ(ask(1, 0.25), (Values{2, 1, 0.5, 0}));
@@ -94,7 +94,7 @@ TEST_P(ClientTest, every_frame_is_answered_and_one_sent_again_gets_the_same_answ
   EXPECT_EQ(ask(2, 0.0), (Values{3, 2, 0.0, 0}));
 }
 
-TEST_P(ClientTest, frames_may_come_before_the_admission_and_that_before_the_descriptions) {
+TEST_P(ClientTest, FramesMayComeBeforeTheAdmissionAndThatBeforeTheDescriptions) {
   // Until the frame is known to have arrived: the channel to the client may not be open at first.
   server.send(0, {0.5});
   server.admit({.epoch = 1, .robots = {{.robot = 0, .name = "r0", .description = 7}}});
@@ -102,7 +102,7 @@ TEST_P(ClientTest, frames_may_come_before_the_admission_and_that_before_the_desc
   EXPECT_EQ(ask(0, 0.5), (Values{1, 0, 1.0, 0}));
 }
 
-TEST_P(ClientTest, a_new_epoch_starts_the_controllers_again_and_the_old_one_is_not_answered) {
+TEST_P(ClientTest, ANewEpochStartsTheControllersAgainAndTheOldOneIsNotAnswered) {
   admit(1);
   EXPECT_EQ(ask(0, 0.5, 1), (Values{1, 0, 1.0, 0}));
   admit(2, wire::StartReason::reset);
@@ -113,13 +113,13 @@ TEST_P(ClientTest, a_new_epoch_starts_the_controllers_again_and_the_old_one_is_n
   for (const auto& answer : server.answers()) EXPECT_FALSE(answer.epoch == 1 && answer.tick == 1);
 }
 
-TEST_P(ClientTest, a_refused_claim_ends_the_client_with_the_reason) {
+TEST_P(ClientTest, ARefusedClaimEndsTheClientWithTheReason) {
   server.admit({.status = wire::AdmitStatus::refused, .reason = "robot 0 is driven by 'other'"});
   EXPECT_EQ(client->end(), ClientEnd::refused);
   EXPECT_TRUE(told.contains("robot 0 is driven by 'other'")) << told.text();
 }
 
-TEST_P(ClientTest, the_server_ends_the_run) {
+TEST_P(ClientTest, TheServerEndsTheRun) {
   admit();
   ask(0, 0.5);
   server.report({.kind = wire::ReportKind::finished});
@@ -127,14 +127,14 @@ TEST_P(ClientTest, the_server_ends_the_run) {
   EXPECT_EQ(told.text(), "");
 }
 
-TEST_P(ClientTest, another_process_takes_over) {
+TEST_P(ClientTest, AnotherProcessTakesOver) {
   admit();
   server.report({.kind = wire::ReportKind::superseded, .text = "by 'other' on host h"});
   EXPECT_EQ(client->end(), ClientEnd::superseded);
   EXPECT_TRUE(told.contains("by 'other' on host h")) << told.text();
 }
 
-TEST_P(ClientTest, a_rejected_answer_is_told_once_for_each_reason_and_the_run_goes_on) {
+TEST_P(ClientTest, ARejectedAnswerIsToldOnceForEachReasonAndTheRunGoesOn) {
   admit();
   ask(0, 0.5);
   for (std::uint64_t tick = 0; tick < 3; ++tick) {
@@ -151,7 +151,7 @@ TEST_P(ClientTest, a_rejected_answer_is_told_once_for_each_reason_and_the_run_go
   EXPECT_NE(text.find("enough"), std::string::npos);
 }
 
-TEST_P(ClientTest, a_controller_that_throws_tells_the_server_and_the_user) {
+TEST_P(ClientTest, AControllerThatThrowsTellsTheServerAndTheUser) {
   admit();
   ask(0, 0.5);
   server.send(1, {-1.0});
@@ -165,7 +165,7 @@ TEST_P(ClientTest, a_controller_that_throws_tells_the_server_and_the_user) {
   EXPECT_TRUE(told.contains(report.text)) << told.text();
 }
 
-TEST_P(ClientTest, a_server_that_leaves_without_a_word_is_missed) {
+TEST_P(ClientTest, AServerThatLeavesWithoutAWordIsMissed) {
   admit();
   ask(0, 0.5);
   server.leave();
@@ -173,14 +173,14 @@ TEST_P(ClientTest, a_server_that_leaves_without_a_word_is_missed) {
   EXPECT_TRUE(told.contains("is gone")) << told.text();
 }
 
-TEST_P(ClientTest, a_stop_ends_the_client) {
+TEST_P(ClientTest, AStopEndsTheClient) {
   admit();
   ask(0, 0.5);
   client->stop = true;
   EXPECT_EQ(client->end(), ClientEnd::interrupted);
 }
 
-TEST(ClientAlone, waits_for_a_server_says_so_and_finds_it_when_it_comes) {
+TEST(ClientAlone, WaitsForAServerSaysSoAndFindsItWhenItComes) {
   const std::uint32_t domain = test::find_empty_domain();
   const test::CapturedStderr told;
   RunningClient client(domain, false);
@@ -192,7 +192,7 @@ TEST(ClientAlone, waits_for_a_server_says_so_and_finds_it_when_it_comes) {
   EXPECT_TRUE(eventually([&] { return joined.load(); }));
 }
 
-TEST(ClientAlone, can_be_stopped_while_it_waits_for_a_server) {
+TEST(ClientAlone, CanBeStoppedWhileItWaitsForAServer) {
   const test::CapturedStderr told;
   RunningClient client(test::find_empty_domain(), false);
   client.stop = true;

@@ -46,14 +46,14 @@ class FrameQueueTest : public testing::Test {
   FrameQueue queue;
 };
 
-TEST_F(FrameQueueTest, frames_that_come_before_their_lease_wait_for_it) {
+TEST_F(FrameQueueTest, FramesThatComeBeforeTheirLeaseWaitForIt) {
   arrive(0);
   EXPECT_EQ(queue.next(), nullptr);
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   EXPECT_EQ(answer_all(), Ticks{0});
 }
 
-TEST_F(FrameQueueTest, a_frame_that_comes_again_is_answered_once_and_then_from_memory) {
+TEST_F(FrameQueueTest, AFrameThatComesAgainIsAnsweredOnceAndThenFromMemory) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(0);
   arrive(0);
@@ -65,7 +65,7 @@ TEST_F(FrameQueueTest, a_frame_that_comes_again_is_answered_once_and_then_from_m
   EXPECT_EQ(repeat(), std::nullopt);
 }
 
-TEST_F(FrameQueueTest, a_frame_that_comes_again_while_it_is_being_answered_needs_nothing_more) {
+TEST_F(FrameQueueTest, AFrameThatComesAgainWhileItIsBeingAnsweredNeedsNothingMore) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(0);
   ASSERT_NE(queue.next(), nullptr);
@@ -75,7 +75,7 @@ TEST_F(FrameQueueTest, a_frame_that_comes_again_while_it_is_being_answered_needs
   EXPECT_EQ(repeat(), std::nullopt);
 }
 
-TEST_F(FrameQueueTest, the_last_eight_answers_are_kept) {
+TEST_F(FrameQueueTest, TheLastEightAnswersAreKept) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   for (std::uint64_t tick = 0; tick < 20; ++tick) {
     arrive(tick);
@@ -87,7 +87,7 @@ TEST_F(FrameQueueTest, the_last_eight_answers_are_kept) {
   EXPECT_EQ(repeat(), 12u);
 }
 
-TEST_F(FrameQueueTest, as_many_answers_are_kept_as_frames_can_be_under_way) {
+TEST_F(FrameQueueTest, AsManyAnswersAreKeptAsFramesCanBeUnderWay) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 12}}));
   for (std::uint64_t tick = 0; tick < 20; ++tick) {
     arrive(tick);
@@ -97,7 +97,7 @@ TEST_F(FrameQueueTest, as_many_answers_are_kept_as_frames_can_be_under_way) {
   EXPECT_EQ(repeat(), 7u);
 }
 
-TEST_F(FrameQueueTest, frames_of_an_earlier_run_or_epoch_are_dropped) {
+TEST_F(FrameQueueTest, FramesOfAnEarlierRunOrEpochAreDropped) {
   queue.begin(lease(1, 5, 0, {{.robot = 3}}));
   arrive(0, 9, 0);
   arrive(0, 4, 1);
@@ -106,7 +106,7 @@ TEST_F(FrameQueueTest, frames_of_an_earlier_run_or_epoch_are_dropped) {
   EXPECT_EQ(answer_all(), Ticks{0});
 }
 
-TEST_F(FrameQueueTest, a_new_lease_forgets_the_answers_and_keeps_the_frames_sent_under_it) {
+TEST_F(FrameQueueTest, ANewLeaseForgetsTheAnswersAndKeepsTheFramesSentUnderIt) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(0);
   answer_all();
@@ -118,7 +118,7 @@ TEST_F(FrameQueueTest, a_new_lease_forgets_the_answers_and_keeps_the_frames_sent
   EXPECT_EQ(repeat(), std::nullopt);
 }
 
-TEST_F(FrameQueueTest, frames_before_the_first_of_the_lease_are_dropped) {
+TEST_F(FrameQueueTest, FramesBeforeTheFirstOfTheLeaseAreDropped) {
   arrive(4);
   queue.begin(lease(0, 1, 5, {{.robot = 3}}));
   arrive(3);
@@ -126,7 +126,7 @@ TEST_F(FrameQueueTest, frames_before_the_first_of_the_lease_are_dropped) {
   EXPECT_EQ(answer_all(), Ticks{5});
 }
 
-TEST_F(FrameQueueTest, with_a_delay_a_frame_that_was_lost_is_awaited_before_the_next_is_answered) {
+TEST_F(FrameQueueTest, WithADelayAFrameThatWasLostIsAwaitedBeforeTheNextIsAnswered) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
   arrive(1);
   arrive(2);
@@ -135,7 +135,7 @@ TEST_F(FrameQueueTest, with_a_delay_a_frame_that_was_lost_is_awaited_before_the_
   EXPECT_EQ(answer_all(), (Ticks{0, 1, 2}));
 }
 
-TEST_F(FrameQueueTest, a_frame_that_the_server_has_given_up_is_not_awaited) {
+TEST_F(FrameQueueTest, AFrameThatTheServerHasGivenUpIsNotAwaited) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
   arrive(1);
   arrive(2);
@@ -143,7 +143,7 @@ TEST_F(FrameQueueTest, a_frame_that_the_server_has_given_up_is_not_awaited) {
   EXPECT_EQ(answer_all(), (Ticks{1, 2, 3})) << "3 is out, so the server needs no answer to 0 any more";
 }
 
-TEST_F(FrameQueueTest, a_frame_that_keeps_coming_without_the_one_before_it_is_answered_in_the_end) {
+TEST_F(FrameQueueTest, AFrameThatKeepsComingWithoutTheOneBeforeItIsAnsweredInTheEnd) {
   queue.begin(lease(0, 1, 0, {{.robot = 3, .delay = 2}}));
   arrive(1);
   for (int i = 0; i < 7; ++i) arrive(1);
@@ -152,14 +152,14 @@ TEST_F(FrameQueueTest, a_frame_that_keeps_coming_without_the_one_before_it_is_an
   EXPECT_EQ(answer_all(), Ticks{1});
 }
 
-TEST_F(FrameQueueTest, without_a_delay_nothing_is_awaited) {
+TEST_F(FrameQueueTest, WithoutADelayNothingIsAwaited) {
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   arrive(7);
   arrive(4);
   EXPECT_EQ(answer_all(), (Ticks{4, 7}));
 }
 
-TEST_F(FrameQueueTest, ticks_at_which_no_robot_is_due_are_not_awaited) {
+TEST_F(FrameQueueTest, TicksAtWhichNoRobotIsDueAreNotAwaited) {
   queue.begin(
       lease(0, 1, 0, {{.robot = 3, .period = 4, .phase = 1, .delay = 8}, {.robot = 5, .period = 6, .delay = 8}}));
   arrive(0);
@@ -171,7 +171,7 @@ TEST_F(FrameQueueTest, ticks_at_which_no_robot_is_due_are_not_awaited) {
   EXPECT_EQ(answer_all(), (Ticks{6, 9}));
 }
 
-TEST_F(FrameQueueTest, a_flood_of_frames_is_bounded) {
+TEST_F(FrameQueueTest, AFloodOfFramesIsBounded) {
   for (std::uint64_t tick = 0; tick < 1000; ++tick) arrive(tick);
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));
   EXPECT_EQ(answer_all().size(), 64u);

@@ -68,7 +68,7 @@ class ObstacleAvoidanceTest : public testing::Test {
   std::vector<std::uint32_t> ids;
 };
 
-TEST_F(ObstacleAvoidanceTest, sixteen_robots_cover_an_arena_with_obstacles_and_hardly_touch_anything) {
+TEST_F(ObstacleAvoidanceTest, SixteenRobotsCoverAnArenaWithObstaclesAndHardlyTouchAnything) {
   std::mt19937 random(1);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
   while (arena.obstacles.size() < 24) {
@@ -96,7 +96,7 @@ TEST_F(ObstacleAvoidanceTest, sixteen_robots_cover_an_arena_with_obstacles_and_h
   EXPECT_GT(visited.size(), 280u) << "of 400, some of which are within obstacles";
 }
 
-TEST_F(ObstacleAvoidanceTest, a_robot_that_drives_straight_into_a_corner_gets_out_of_it) {
+TEST_F(ObstacleAvoidanceTest, ARobotThatDrivesStraightIntoACornerGetsOutOfIt) {
   place(1.5, 1.5, pi / 4);
   start();
   bool was_in_it = false;
@@ -111,7 +111,7 @@ TEST_F(ObstacleAvoidanceTest, a_robot_that_drives_straight_into_a_corner_gets_ou
   EXPECT_TRUE(left_it);
 }
 
-TEST_F(ObstacleAvoidanceTest, two_robots_that_meet_head_on_pass_each_other) {
+TEST_F(ObstacleAvoidanceTest, TwoRobotsThatMeetHeadOnPassEachOther) {
   place(-0.5, 0.0, 0.0);
   place(0.5, 0.0, pi);
   start();
@@ -122,7 +122,7 @@ TEST_F(ObstacleAvoidanceTest, two_robots_that_meet_head_on_pass_each_other) {
   EXPECT_GT(std::hypot(arena.robots[0].x - arena.robots[1].x, arena.robots[0].y - arena.robots[1].y), 0.5);
 }
 
-TEST_F(ObstacleAvoidanceTest, what_is_on_the_left_slows_the_right_track) {
+TEST_F(ObstacleAvoidanceTest, WhatIsOnTheLeftSlowsTheRightTrack) {
   place(0.0, 0.0, 0.0);
   start();
   std::vector<double> observed(16, 0.0);
@@ -132,7 +132,7 @@ TEST_F(ObstacleAvoidanceTest, what_is_on_the_left_slows_the_right_track) {
   EXPECT_LT(command(observed)[1], 0.2);
 }
 
-TEST_F(ObstacleAvoidanceTest, the_answer_depends_on_the_observation_alone) {
+TEST_F(ObstacleAvoidanceTest, TheAnswerDependsOnTheObservationAlone) {
   place(0.0, 0.0, 0.0);
   start();
   std::vector<double> near(16, 0.9);
@@ -142,7 +142,7 @@ TEST_F(ObstacleAvoidanceTest, the_answer_depends_on_the_observation_alone) {
   EXPECT_EQ(command(clear), at_first);
 }
 
-TEST_F(ObstacleAvoidanceTest, the_turret_is_turned_back_to_the_front) {
+TEST_F(ObstacleAvoidanceTest, TheTurretIsTurnedBackToTheFront) {
   place(0.0, 0.0, 0.0);
   start();
   std::vector<double> observed(16, 0.0);

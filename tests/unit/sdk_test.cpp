@@ -49,7 +49,7 @@ Start sbot_start() {
   return start;
 }
 
-TEST(StartLookup, finds_a_channel_by_its_name) {
+TEST(StartLookup, FindsAChannelByItsName) {
   const Start start = sbot_start();
   EXPECT_EQ(start.observation("imu/0/acceleration").offset, 15u);
   EXPECT_EQ(start.observation("imu/0/acceleration").size, 3u);
@@ -58,7 +58,7 @@ TEST(StartLookup, finds_a_channel_by_its_name) {
   EXPECT_EQ(right.upper, 0.2);
 }
 
-TEST(StartLookup, a_star_stands_for_any_run_of_characters_but_a_slash) {
+TEST(StartLookup, AStarStandsForAnyRunOfCharactersButASlash) {
   const Start start = sbot_start();
   EXPECT_EQ(start.observations("proximity/*/reading").size(), 15u);
   EXPECT_EQ(start.observations("proximity/*/reading")[3].offset, 3u);
@@ -69,7 +69,7 @@ TEST(StartLookup, a_star_stands_for_any_run_of_characters_but_a_slash) {
   EXPECT_THROW(start.observations("proximity/*"), ChannelError);
 }
 
-TEST(StartLookup, a_misspelt_name_is_answered_with_the_nearest_ones) {
+TEST(StartLookup, AMisspeltNameIsAnsweredWithTheNearestOnes) {
   const Start start = sbot_start();
   const std::string message = message_of<ChannelError>([&] { start.observation("proximty/3/reading"); });
   EXPECT_TRUE(contains(message, "robot 'explorers/sbot_7' (sbot) has no observation channel 'proximty/3/reading'"));
@@ -77,7 +77,7 @@ TEST(StartLookup, a_misspelt_name_is_answered_with_the_nearest_ones) {
   EXPECT_TRUE(contains(message_of<ChannelError>([&] { start.commands("treels/*/velocity"); }), "treel/left/velocity"));
 }
 
-TEST(CommandValues, are_brought_into_their_range_but_nan_is_passed_on) {
+TEST(CommandValues, AreBroughtIntoTheirRangeButNanIsPassedOn) {
   std::vector<double> values(2);
   Command command(values);
   const CommandChannel right = sbot_start().command("treel/right/velocity");
@@ -107,14 +107,14 @@ class ControllerHostTest : public testing::Test {
   ControllerHost host{CountingController::plugin()};
 };
 
-TEST_F(ControllerHostTest, answers_robot_after_robot_in_the_order_of_the_frame) {
+TEST_F(ControllerHostTest, AnswersRobotAfterRobotInTheOrderOfTheFrame) {
   start();
   EXPECT_EQ(answer(100, {2, 5}, {0.5, -0.5}),
             (std::vector<double>{1, 100, 1.0, 0, 0.25, 0.25, 1, 100, -1.0, 0, 0.25, 0.25}));
   EXPECT_EQ(answer(101, {5}, {0.25}), (std::vector<double>{2, 101, 0.5, 0, 0.25, 0.25}));
 }
 
-TEST_F(ControllerHostTest, every_step_begins_with_neutral_values) {
+TEST_F(ControllerHostTest, EveryStepBeginsWithNeutralValues) {
   struct OnceController final : Controller {
     void start(const Start& start) override { channel = start.command("count/0/unused"); }
     void step(const Observation& observation, Command& command) override {
@@ -131,7 +131,7 @@ TEST_F(ControllerHostTest, every_step_begins_with_neutral_values) {
   EXPECT_EQ(once.answer({.tick = 1, .robots = robots, .values = values})[5], 0.25);
 }
 
-TEST_F(ControllerHostTest, a_reset_and_a_restore_keep_the_controllers_and_a_takeover_makes_new_ones) {
+TEST_F(ControllerHostTest, AResetAndARestoreKeepTheControllersAndATakeoverMakesNewOnes) {
   start();
   answer(100, {2, 5}, {0, 0});
   start(wire::StartReason::reset);
@@ -143,13 +143,13 @@ TEST_F(ControllerHostTest, a_reset_and_a_restore_keep_the_controllers_and_a_take
   EXPECT_EQ(answer(102, {2}, {0}), (std::vector<double>{1, 102, 0, 1, 0.25, 0.25}));
 }
 
-TEST_F(ControllerHostTest, a_controller_that_throws_is_named_with_robot_tick_and_reason) {
+TEST_F(ControllerHostTest, AControllerThatThrowsIsNamedWithRobotTickAndReason) {
   start();
   const std::string message = message_of<ControllerFailure>([&] { answer(123, {2, 5}, {0, -1}); });
   EXPECT_TRUE(contains(message, "robot 'r5' failed in step at tick 123: it hurts"));
 }
 
-TEST_F(ControllerHostTest, whatever_a_controller_throws_is_a_controller_failure) {
+TEST_F(ControllerHostTest, WhateverAControllerThrowsIsAControllerFailure) {
   struct OddController final : Controller {
     void start(const Start&) override { throw 42; }
     void step(const Observation&, Command&) override {}
@@ -161,12 +161,12 @@ TEST_F(ControllerHostTest, whatever_a_controller_throws_is_a_controller_failure)
   EXPECT_TRUE(contains(message, "robot 'r0' failed in start"));
 }
 
-TEST_F(ControllerHostTest, a_channel_that_the_robot_lacks_fails_the_start_with_the_nearest_names) {
+TEST_F(ControllerHostTest, AChannelThatTheRobotLacksFailsTheStartWithTheNearestNames) {
   descriptions[0].observation[0].name = "sensor/0/readin";
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { start(); }), "the nearest are sensor/0/readin"));
 }
 
-TEST_F(ControllerHostTest, a_frame_that_does_not_fit_the_descriptions_is_refused) {
+TEST_F(ControllerHostTest, AFrameThatDoesNotFitTheDescriptionsIsRefused) {
   start();
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { answer(100, {2, 5}, {0}); }), "has 1 values"));
   EXPECT_TRUE(contains(message_of<ControllerFailure>([&] { answer(100, {4}, {0}); }), "robot 4"));
@@ -191,7 +191,7 @@ class PluginLoaderTest : public testing::Test {
       std::filesystem::temp_directory_path() / ("cohort_plugins_" + std::to_string(::getpid()));
 };
 
-TEST_F(PluginLoaderTest, a_plugin_that_is_nowhere_is_answered_with_the_places_tried) {
+TEST_F(PluginLoaderTest, APluginThatIsNowhereIsAnsweredWithThePlacesTried) {
   const std::string message = message_of<std::runtime_error>([&] {
     LoadedPlugin("no_such", {folder, folder / "deeper"});
   });
@@ -200,12 +200,12 @@ TEST_F(PluginLoaderTest, a_plugin_that_is_nowhere_is_answered_with_the_places_tr
   EXPECT_TRUE(contains(message, "COHORT_PLUGIN_PATH"));
 }
 
-TEST_F(PluginLoaderTest, a_file_that_is_no_library_is_refused) {
+TEST_F(PluginLoaderTest, AFileThatIsNoLibraryIsRefused) {
   std::ofstream(folder / "text.so") << "hello";
   EXPECT_TRUE(contains(message_of<std::runtime_error>([&] { LoadedPlugin("text", {folder}); }), "cannot load"));
 }
 
-TEST_F(PluginLoaderTest, a_library_that_is_no_plugin_is_refused) {
+TEST_F(PluginLoaderTest, ALibraryThatIsNoPluginIsRefused) {
   Dl_info libc{};
   ASSERT_NE(::dladdr(reinterpret_cast<void*>(&std::atoi), &libc), 0);
   std::filesystem::create_symlink(std::filesystem::absolute(libc.dli_fname), folder / "libc.so");
@@ -213,7 +213,7 @@ TEST_F(PluginLoaderTest, a_library_that_is_no_plugin_is_refused) {
       contains(message_of<std::runtime_error>([&] { LoadedPlugin("libc", {folder}); }), "not a controller plugin"));
 }
 
-TEST_F(PluginLoaderTest, a_plugin_of_another_version_is_refused) {
+TEST_F(PluginLoaderTest, APluginOfAnotherVersionIsRefused) {
   if (!compile("old", "const struct { unsigned abi; const char* name; void *a, *b; } cohort_plugin = {77, 0, 0, 0};")) {
     GTEST_SKIP() << "no C compiler at hand";
   }
@@ -222,7 +222,7 @@ TEST_F(PluginLoaderTest, a_plugin_of_another_version_is_refused) {
   EXPECT_TRUE(contains(message, "Build it again"));
 }
 
-TEST_F(PluginLoaderTest, the_path_of_plugins_comes_before_the_folders_beside_the_program) {
+TEST_F(PluginLoaderTest, ThePathOfPluginsComesBeforeTheFoldersBesideTheProgram) {
   ::setenv("COHORT_PLUGIN_PATH", "/first::/second", 1);
   const auto directories = default_plugin_directories();
   ::unsetenv("COHORT_PLUGIN_PATH");

@@ -126,7 +126,7 @@ class WireTest : public testing::Test {
 
 const std::string long_text(100'000, 'x');
 
-TEST_F(WireTest, a_join_arrives_unchanged) {
+TEST_F(WireTest, AJoinArrivesUnchanged) {
   expect_round_trip<Join>(client, free.server,
                           {{.client = 0xfedcba9876543210,
                             .controller = "Näherung",
@@ -139,7 +139,7 @@ TEST_F(WireTest, a_join_arrives_unchanged) {
                            {.client = 1, .robots = std::vector<std::string>(5000, "sbot")}});
 }
 
-TEST_F(WireTest, an_admit_arrives_unchanged) {
+TEST_F(WireTest, AnAdmitArrivesUnchanged) {
   const AdmittedRobot robot{.robot = 3,
                             .name = "team/sbot_3",
                             .description = 1,
@@ -160,7 +160,7 @@ TEST_F(WireTest, an_admit_arrives_unchanged) {
        {.client = 5, .robots = std::vector<AdmittedRobot>(3000, robot)}});
 }
 
-TEST_F(WireTest, a_robot_description_arrives_unchanged) {
+TEST_F(WireTest, ARobotDescriptionArrivesUnchanged) {
   const Channel channel{
       .name = "proximity/0/reading", .unit = "1", .size = 3, .lower = -0.5, .upper = 1e300, .neutral = -0.0};
   expect_round_trip<RobotDescription>(
@@ -173,7 +173,7 @@ TEST_F(WireTest, a_robot_description_arrives_unchanged) {
         .command = {channel}}});
 }
 
-TEST_F(WireTest, an_observation_arrives_unchanged) {
+TEST_F(WireTest, AnObservationArrivesUnchanged) {
   const std::vector<std::uint32_t> robots{0, 7, 4'000'000'000};
   const std::vector<double> values{0.1, -0.0, 5e-324, 1.7976931348623157e308};
   const std::vector<double> many(50'000, 0.3);
@@ -185,7 +185,7 @@ TEST_F(WireTest, an_observation_arrives_unchanged) {
        {.client = 5, .tick = 2, .values = values}});
 }
 
-TEST_F(WireTest, a_command_arrives_unchanged) {
+TEST_F(WireTest, ACommandArrivesUnchanged) {
   const std::vector<std::uint32_t> robots{1, 2};
   const std::vector<double> values{0.2, -0.2};
   const std::vector<double> many(50'000, -0.3);
@@ -195,7 +195,7 @@ TEST_F(WireTest, a_command_arrives_unchanged) {
                               {.client = 5, .tick = 6, .robots = robots, .values = many}});
 }
 
-TEST_F(WireTest, a_world_state_arrives_unchanged) {
+TEST_F(WireTest, AWorldStateArrivesUnchanged) {
   const std::vector<std::uint32_t> robots{1};
   const std::vector<double> poses{1, 2, 3, 0, 0, 0, 1};
   const std::vector<double> many(20'000, 0.5);
@@ -206,7 +206,7 @@ TEST_F(WireTest, a_world_state_arrives_unchanged) {
        {.tick = 5, .poses = many}});
 }
 
-TEST_F(WireTest, a_report_arrives_unchanged_either_way) {
+TEST_F(WireTest, AReportArrivesUnchangedEitherWay) {
   const std::vector<Report> reports{{.client = 5,
                                      .run = 1,
                                      .kind = ReportKind::rejected,
@@ -219,7 +219,7 @@ TEST_F(WireTest, a_report_arrives_unchanged_either_way) {
   expect_round_trip(client, free.server, reports);
 }
 
-TEST_F(WireTest, a_late_reader_gets_what_the_server_has_to_say_to_late_joiners) {
+TEST_F(WireTest, ALateReaderGetsWhatTheServerHasToSayToLateJoiners) {
   Writer<RobotDescription> descriptions(free.server);
   Writer<Report> reports(free.server);
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -232,7 +232,7 @@ TEST_F(WireTest, a_late_reader_gets_what_the_server_has_to_say_to_late_joiners) 
   EXPECT_TRUE(late_reports.waits_for(3)) << "the last 16";
 }
 
-TEST_F(WireTest, a_second_server_on_a_domain_is_told_what_to_do) {
+TEST_F(WireTest, ASecondServerOnADomainIsToldWhatToDo) {
   testing::internal::CaptureStderr();
   try {
     Participant::server(free.domain);
@@ -245,7 +245,7 @@ TEST_F(WireTest, a_second_server_on_a_domain_is_told_what_to_do) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "the middleware's own complaints are not for users";
 }
 
-TEST(WireAddress, mistakes_are_named) {
+TEST(WireAddress, MistakesAreNamed) {
   const auto message_of = [](auto&& tried) -> std::string {
     try {
       tried();
@@ -260,7 +260,7 @@ TEST(WireAddress, mistakes_are_named) {
   EXPECT_NE(message_of([] { Participant::server(233); }).find("0 to 232"), std::string::npos);
 }
 
-TEST_F(WireTest, a_partition_keeps_clients_apart) {
+TEST_F(WireTest, APartitionKeepsClientsApart) {
   auto second = Participant::client(free.domain);
   Inbox<Report> first_inbox(client, partition_of(1));
   Inbox<Report> second_inbox(second, partition_of(2));
@@ -275,7 +275,7 @@ TEST_F(WireTest, a_partition_keeps_clients_apart) {
   EXPECT_EQ(to_first.matched(), 1u);
 }
 
-TEST_F(WireTest, no_callback_runs_once_a_reader_is_gone) {
+TEST_F(WireTest, NoCallbackRunsOnceAReaderIsGone) {
   Writer<Command> writer(client);
   std::atomic<bool> done{false};
   std::thread flood([&] {
@@ -293,7 +293,7 @@ TEST_F(WireTest, no_callback_runs_once_a_reader_is_gone) {
   flood.join();
 }
 
-TEST_F(WireTest, a_writer_that_leaves_is_reported_dead_at_once) {
+TEST_F(WireTest, AWriterThatLeavesIsReportedDeadAtOnce) {
   std::atomic<std::uint64_t> alive{0};
   std::atomic<std::uint64_t> dead{0};
   std::atomic<std::uint64_t> sender_of_message{0};
@@ -309,7 +309,7 @@ TEST_F(WireTest, a_writer_that_leaves_is_reported_dead_at_once) {
   EXPECT_EQ(alive, sender_of_message);
 }
 
-TEST_F(WireTest, what_a_client_sends_is_known_to_be_of_one_participant) {
+TEST_F(WireTest, WhatAClientSendsIsKnownToBeOfOneParticipant) {
   auto second = Participant::client(free.domain);
   std::mutex mutex;
   std::map<std::uint64_t, std::set<std::uint64_t>> participants;  // by client
@@ -341,7 +341,7 @@ TEST_F(WireTest, what_a_client_sends_is_known_to_be_of_one_participant) {
 }
 
 // The other process of the next test: joins, and stays until it is killed.
-TEST(WireTestProcess, DISABLED_joins_and_stays) {
+TEST(WireTestProcess, DISABLED_JoinsAndStays) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const char* domain = std::getenv("COHORT_TEST_DOMAIN");
   ASSERT_NE(domain, nullptr);
@@ -351,7 +351,7 @@ TEST(WireTestProcess, DISABLED_joins_and_stays) {
   for (;;) ::pause();
 }
 
-TEST(WireLiveliness, a_killed_client_is_noticed_within_three_seconds) {
+TEST(WireLiveliness, AKilledClientIsNoticedWithinThreeSeconds) {
   auto free = test::take_free_domain();
   std::atomic<bool> joined{false};
   std::atomic<bool> dead{false};
@@ -359,7 +359,7 @@ TEST(WireLiveliness, a_killed_client_is_noticed_within_three_seconds) {
                                     [&](const Sender&, bool alive) { dead = !alive; }});
   ::setenv("COHORT_TEST_DOMAIN", std::to_string(free.domain).c_str(), 1);
   std::string program = "/proc/self/exe";
-  std::string filter = "--gtest_filter=WireTestProcess.DISABLED_joins_and_stays";
+  std::string filter = "--gtest_filter=WireTestProcess.DISABLED_JoinsAndStays";
   std::string disabled_too = "--gtest_also_run_disabled_tests";
   char* arguments[] = {program.data(), filter.data(), disabled_too.data(), nullptr};
   pid_t process = 0;
@@ -371,7 +371,7 @@ TEST(WireLiveliness, a_killed_client_is_noticed_within_three_seconds) {
   EXPECT_TRUE(eventually([&] { return dead.load(); }, 3s));
 }
 
-TEST(WireNames, partition_and_port_are_those_of_the_protocol) {
+TEST(WireNames, PartitionAndPortAreThoseOfTheProtocol) {
   EXPECT_EQ(partition_of(0x0123456789abcdef), "c0123456789abcdef");
   EXPECT_EQ(partition_of(1), "c0000000000000001");
   EXPECT_EQ(discovery_port(0), 7410);

@@ -1,0 +1,53 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace cohort {
+namespace {
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::set<std::string> tests_in_the_sources() {
+  const std::regex definition(R"(\bTEST(?:_F|_P)?\((\w+),\s*(\w+)\))");
+  std::set<std::string> tests;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(COHORT_SOURCE_DIR "/tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string source = read(entry.path());
+    for (std::sregex_iterator match(source.begin(), source.end(), definition), end; match != end; ++match)
+      tests.insert((*match)[1].str() + "." + (*match)[2].str());
+  }
+  return tests;
+}
+
+TEST(Documents, TheSemanticsNameTestsThatExistAndEveryLineHasOne) {
+  const std::set<std::string> tests = tests_in_the_sources();
+  std::ifstream document(COHORT_SOURCE_DIR "/docs/semantics.md");
+  const std::regex name(R"(`([A-Z]\w+)\.(\w+|\*)`)");
+  int named = 0;
+  bool in_lines = true;
+  for (std::string line; std::getline(document, line);) {
+    if (line.starts_with("## Decided, not built yet")) in_lines = false;
+    const bool is_row = line.starts_with("| ") && !line.starts_with("| what") && !line.starts_with("| `on_late` | what");
+    if (!in_lines || !is_row) continue;
+    const std::sregex_iterator first(line.begin(), line.end(), name);
+    EXPECT_NE(first, std::sregex_iterator()) << "no test holds this line: " << line;
+    for (std::sregex_iterator match = first; match != std::sregex_iterator(); ++match) {
+      const std::string suite = (*match)[1], test = (*match)[2];
+      const auto found = test == "*" ? tests.lower_bound(suite + ".") : tests.find(suite + "." + test);
+      EXPECT_TRUE(found != tests.end() && found->starts_with(suite + ".")) << suite << "." << test << " does not exist";
+      ++named;
+    }
+  }
+  EXPECT_GT(named, 40);
+}
+
+}  // namespace
+}  // namespace cohort

@@ -226,9 +226,7 @@ void Client::drive(Lock& lock) {
 
 void Client::heed(const wire::Report& report) {
   switch (report.kind) {
-    case wire::ReportKind::finished:
-      end_ = ClientEnd::finished;
-      break;
+    case wire::ReportKind::finished: end_ = ClientEnd::finished; break;
     case wire::ReportKind::superseded:
       explain("another process has taken these robots over. " + report.text);
       end_ = ClientEnd::superseded;

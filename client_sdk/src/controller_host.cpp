@@ -42,14 +42,10 @@ std::size_t size_of(const std::vector<ChannelInfo>& channels) {
 
 StartReason reason_of(wire::StartReason reason) {
   switch (reason) {
-    case wire::StartReason::first:
-      return StartReason::first;
-    case wire::StartReason::takeover:
-      return StartReason::takeover;
-    case wire::StartReason::reset:
-      return StartReason::reset;
-    case wire::StartReason::restored:
-      return StartReason::restored;
+    case wire::StartReason::first: return StartReason::first;
+    case wire::StartReason::takeover: return StartReason::takeover;
+    case wire::StartReason::reset: return StartReason::reset;
+    case wire::StartReason::restored: return StartReason::restored;
   }
   throw ControllerFailure("the server gives a reason to start that this version does not know");
 }

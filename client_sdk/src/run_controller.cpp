@@ -106,16 +106,12 @@ Arguments parse(int argc, char** argv) {
 
 int exit_code(ClientEnd end) {
   switch (end) {
-    case ClientEnd::finished:
-      return exit_finished;
-    case ClientEnd::refused:
-      return exit_usage;
-    case ClientEnd::interrupted:
-      return exit_interrupted;
+    case ClientEnd::finished: return exit_finished;
+    case ClientEnd::refused: return exit_usage;
+    case ClientEnd::interrupted: return exit_interrupted;
     case ClientEnd::failed:
     case ClientEnd::superseded:
-    case ClientEnd::server_lost:
-      break;
+    case ClientEnd::server_lost: break;
   }
   return exit_failed;
 }

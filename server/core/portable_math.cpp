@@ -1,6 +1,6 @@
 // sin, cos, tan, asin, acos, atan, atan2, exp and log in + - * / and sqrt. Algorithms and coefficients are those of
-// fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_rem_pio2.c, e_asin.c, s_atan.c, e_exp.c, e_log.c). Within 2 ulp of
-// the C library's for |x| < 10^6, which covers every angle of a simulation. pow and fmod are left to the C library:
+// fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_rem_pio2.c, e_asin.c, s_atan.c, e_exp.c, e_log.c). Within 2 ulp
+// of the C library's for |x| < 10^6, which covers every angle of a simulation. pow and fmod are left to the C library:
 // fmod is exact in any correct implementation, and pow is called on no path of a step.
 
 #include "server/core/portable_math.hpp"
@@ -24,22 +24,21 @@ double sqrt_of(double x) { return __builtin_sqrt(x); }
 double sin_kernel(double x, double tail) {
   const double z = x * x;
   const double v = z * x;
-  const double r = 8.33333333332248946124e-03 +
-                   z * (-1.98412698298579493134e-04 +
-                        z * (2.75573137070700676789e-06 +
-                             z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
+  const double r =
+      8.33333333332248946124e-03 +
+      z * (-1.98412698298579493134e-04 +
+           z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)));
   return x - ((z * (0.5 * tail - v * r) - tail) - v * -1.66666666666666324348e-01);
 }
 
 // cos(x + tail) for |x| <= pi/4.
 double cos_kernel(double x, double tail) {
   const double z = x * x;
-  const double r =
-      z * (4.16666666666666019037e-02 +
-           z * (-1.38888888888741095749e-03 +
-                z * (2.48015872894767294178e-05 +
-                     z * (-2.75573143513906633035e-07 +
-                          z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+  const double r = z * (4.16666666666666019037e-02 +
+                        z * (-1.38888888888741095749e-03 +
+                             z * (2.48015872894767294178e-05 +
+                                  z * (-2.75573143513906633035e-07 +
+                                       z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
   const double half = 0.5 * z;
   const double w = 1.0 - half;
   return w + (((1.0 - w) - half) + (z * r - x * tail));
@@ -160,9 +159,9 @@ double asin_ratio(double z) {
                              z * (2.01212532134862925881e-01 +
                                   z * (-4.00555345006794114027e-02 +
                                        z * (7.91534994289814532176e-04 + z * 3.47933107596021167570e-05)))));
-  const double q = 1.0 + z * (-2.40339491173441421878e+00 +
-                              z * (2.02094576023350569471e+00 +
-                                   z * (-6.88283971605453293030e-01 + z * 7.70381505559019352791e-02)));
+  const double q =
+      1.0 + z * (-2.40339491173441421878e+00 +
+                 z * (2.02094576023350569471e+00 + z * (-6.88283971605453293030e-01 + z * 7.70381505559019352791e-02)));
   return p / q;
 }
 
@@ -210,10 +209,11 @@ double portable_exp(double x) {
   const double low = k * ln2_low;
   const double r = high - low;
   const double t = r * r;
-  const double c = r - t * (1.66666666666666019037e-01 +
-                            t * (-2.77777777770155933842e-03 +
-                                 t * (6.61375632143793436117e-05 +
-                                      t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
+  const double c =
+      r -
+      t * (1.66666666666666019037e-01 +
+           t * (-2.77777777770155933842e-03 +
+                t * (6.61375632143793436117e-05 + t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
   const double result = 1.0 - ((low - (r * c) / (2.0 - c)) - high);
   return scale_by_power_of_two(result, static_cast<int>(k));
 }
@@ -240,9 +240,9 @@ double portable_log(double x) {
   const double z = s * s;
   const double w = z * z;
   const double even = w * (3.999999999940941908e-01 + w * (2.222219843214978396e-01 + w * 1.531383769920937332e-01));
-  const double odd = z * (6.666666666666735130e-01 +
-                          w * (2.857142874366239149e-01 +
-                               w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
+  const double odd =
+      z * (6.666666666666735130e-01 +
+           w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
   const double half_square = 0.5 * f * f;
   return k * ln2_high - ((half_square - (s * (half_square + (even + odd)) + k * ln2_low)) - f);
 }

@@ -24,8 +24,7 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view owner, std::stri
 }
 
 std::uint64_t RandomStream::bits(std::uint64_t tick, std::uint32_t draw) const {
-  const r123::Philox4x32::key_type key{
-      {static_cast<std::uint32_t>(key_), static_cast<std::uint32_t>(key_ >> 32)}};
+  const r123::Philox4x32::key_type key{{static_cast<std::uint32_t>(key_), static_cast<std::uint32_t>(key_ >> 32)}};
   const r123::Philox4x32::ctr_type counter{
       {static_cast<std::uint32_t>(tick), static_cast<std::uint32_t>(tick >> 32), draw, 0}};
   const auto block = r123::Philox4x32{}(counter, key);

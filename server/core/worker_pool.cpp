@@ -19,8 +19,8 @@ struct WorkerPool::Threads {
 
   tbb::global_control allowance;  // oneTBB starts no more threads than cores without it
   tbb::task_arena arena;
-  // What oneTBB guarantees already, said once more so that ThreadSanitizer, which cannot see into it, knows too: chunks come
-  // after the loop's begin, its end after them, and chunks with one worker's scratch memory after each other.
+  // What oneTBB guarantees already, said once more so that ThreadSanitizer, which cannot see into it, knows too: chunks
+  // come after the loop's begin, its end after them, and chunks with one worker's scratch memory after each other.
   std::atomic<std::size_t> begun = 0;
   std::atomic<std::size_t> done = 0;
   std::vector<std::atomic<std::size_t>> handed_over;  // by worker

@@ -22,9 +22,12 @@ class WorkerPool {
   template <class Body>
   void for_each_chunk(std::size_t count, std::size_t grain, Body&& body) {
     using Plain = std::remove_reference_t<Body>;
-    run(count, grain, [](void* b, std::size_t begin, std::size_t end, unsigned worker) {
-      (*static_cast<Plain*>(b))(begin, end, worker);
-    }, const_cast<void*>(static_cast<const void*>(&body)));
+    run(
+        count, grain,
+        [](void* b, std::size_t begin, std::size_t end, unsigned worker) {
+          (*static_cast<Plain*>(b))(begin, end, worker);
+        },
+        const_cast<void*>(static_cast<const void*>(&body)));
   }
 
  private:

@@ -31,26 +31,16 @@ std::string text_of(const sdf::ElementPtr& element) {
 
 std::string expected(ExtensionValue kind) {
   switch (kind) {
-    case ExtensionValue::name:
-      return "a name";
-    case ExtensionValue::uri:
-      return "model://NAME or a path";
-    case ExtensionValue::real:
-      return "a number";
-    case ExtensionValue::non_negative:
-      return "a number >= 0";
-    case ExtensionValue::positive:
-      return "a number > 0";
-    case ExtensionValue::count:
-      return "a whole number from 1 to " + std::to_string(most_instances);
-    case ExtensionValue::whole:
-      return "a whole number >= 0";
-    case ExtensionValue::point:
-      return "two numbers 'x y'";
-    case ExtensionValue::pose:
-      return "six numbers 'x y z roll pitch yaw'";
-    case ExtensionValue::group:
-      return "elements";
+    case ExtensionValue::name: return "a name";
+    case ExtensionValue::uri: return "model://NAME or a path";
+    case ExtensionValue::real: return "a number";
+    case ExtensionValue::non_negative: return "a number >= 0";
+    case ExtensionValue::positive: return "a number > 0";
+    case ExtensionValue::count: return "a whole number from 1 to " + std::to_string(most_instances);
+    case ExtensionValue::whole: return "a whole number >= 0";
+    case ExtensionValue::point: return "two numbers 'x y'";
+    case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw'";
+    case ExtensionValue::group: return "elements";
   }
   return {};
 }
@@ -212,8 +202,7 @@ std::optional<ExtensionValues::Value> ExtensionValues::parse(std::string_view te
       if (!numbers) return std::nullopt;
       return Value(pose_of(*numbers));
     }
-    case ExtensionValue::group:
-      break;
+    case ExtensionValue::group: break;
   }
   return std::nullopt;
 }

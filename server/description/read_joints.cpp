@@ -21,13 +21,10 @@ std::optional<std::size_t> index_of(const std::vector<Link>& links, const std::s
 
 std::optional<JointType> read_type(const sdf::Joint& joint, const SdfReport& report) {
   switch (joint.Type()) {
-    case sdf::JointType::FIXED:
-      return JointType::fixed;
+    case sdf::JointType::FIXED: return JointType::fixed;
     case sdf::JointType::REVOLUTE:
-    case sdf::JointType::CONTINUOUS:
-      return JointType::revolute;
-    case sdf::JointType::PRISMATIC:
-      return JointType::prismatic;
+    case sdf::JointType::CONTINUOUS: return JointType::revolute;
+    case sdf::JointType::PRISMATIC: return JointType::prismatic;
     default:
       report.problem(joint.Element(), "the joint type '" + joint.Element()->Get<std::string>("type") +
                                           "' is not supported; expected fixed, revolute, continuous or prismatic");

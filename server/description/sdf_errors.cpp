@@ -49,16 +49,12 @@ bool is_cannot_read_element(const sdf::Error& error) {
 bool is_said_by_us(const sdf::Error& error) {
   switch (error.Code()) {
     case sdf::ErrorCode::LINK_INERTIA_INVALID:
-    case sdf::ErrorCode::URI_LOOKUP:
-      return true;
-    case sdf::ErrorCode::DUPLICATE_NAME:
-      return error.Message().starts_with("model with name[");
-    case sdf::ErrorCode::ATTRIBUTE_INVALID:
-      return error.Message().starts_with("Joint type of");
+    case sdf::ErrorCode::URI_LOOKUP: return true;
+    case sdf::ErrorCode::DUPLICATE_NAME: return error.Message().starts_with("model with name[");
+    case sdf::ErrorCode::ATTRIBUTE_INVALID: return error.Message().starts_with("Joint type of");
     case sdf::ErrorCode::ELEMENT_INVALID:
       return error.Message() == "Failed to load a world." || error.Message().starts_with("The norm of the xyz vector");
-    default:
-      return false;
+    default: return false;
   }
 }
 
@@ -69,8 +65,7 @@ bool is_consequence(const sdf::Error& error, const std::string& path, const std:
       return (is_cannot_read_element(error) && last_path.starts_with(path)) ||
              error.Message().starts_with("Unable to parse sdf element");
     case sdf::ErrorCode::FRAME_ATTACHED_TO_GRAPH_ERROR:
-    case sdf::ErrorCode::POSE_RELATIVE_TO_GRAPH_ERROR:
-      return true;
+    case sdf::ErrorCode::POSE_RELATIVE_TO_GRAPH_ERROR: return true;
     default:
       return error.Message().starts_with("FrameAttachedToGraph") || error.Message().starts_with("PoseRelativeToGraph");
   }

@@ -26,7 +26,8 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];
   entries_.resize(begin_[buckets]);
   std::vector<std::uint32_t> fill(begin_.begin(), begin_.end() - 1);
-  for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { entries_[fill[bucket]++] = item; });
+  for (const std::uint32_t item : items)
+    for_each_cell(item, [&](std::size_t bucket) { entries_[fill[bucket]++] = item; });
 }
 
 }  // namespace cohort::geometry

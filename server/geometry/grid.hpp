@@ -49,8 +49,8 @@ class Grid {
           const Bounds& other = bounds[item];
           if (!query.overlaps(other)) continue;
           // Of the cells that both touch, the lowest one reports.
-          const Cell first = cell_at(std::max(query.lower.x(), other.lower.x()),
-                                     std::max(query.lower.y(), other.lower.y()));
+          const Cell first =
+              cell_at(std::max(query.lower.x(), other.lower.x()), std::max(query.lower.y(), other.lower.y()));
           if (first == Cell{x, y}) visit(item);
         }
       }

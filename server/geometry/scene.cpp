@@ -47,15 +47,15 @@ void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
 double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                       const Eigen::Vector3d& direction_W, double range) const {
   const double reach = best ? best->distance : range;
-  const RayEntry entry = geometry::cast_ray(solids_[index].shape, X_CW_[index] * origin_W,
-                                            X_CW_[index].orientation * direction_W);
+  const RayEntry entry =
+      geometry::cast_ray(solids_[index].shape, X_CW_[index] * origin_W, X_CW_[index].orientation * direction_W);
   if (!(entry.distance < reach || (entry.distance == reach && (!best || index < best->solid)))) return reach;
   best = RayHit{entry.distance, index, solids_[index].X_WC.orientation * entry.normal};
   return entry.distance;
 }
 
-std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
-                                      double range, std::uint32_t ignored_body) const {
+std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+                                      std::uint32_t ignored_body) const {
   std::optional<RayHit> best;
   const auto test = [&](std::uint32_t index) {
     if (solids_[index].body == ignored_body) return best ? best->distance : range;

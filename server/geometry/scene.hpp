@@ -20,7 +20,7 @@ struct Solid {
 };
 
 struct RayHit {
-  double distance = 0.0;     ///< [m], 0 if the ray starts inside the solid
+  double distance = 0.0;  ///< [m], 0 if the ray starts inside the solid
   std::uint32_t solid = 0;
   Eigen::Vector3d normal_W;  ///< outward; zero if the ray starts inside
 };

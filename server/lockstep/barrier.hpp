@@ -13,17 +13,18 @@ namespace cohort::lockstep {
 /// A point on whatever clock the caller uses; only differences count.
 using Time = std::chrono::nanoseconds;
 
-/// Decides, tick by tick, whose answers the world waits for and what it does without them. Pure logic: it reads no clock,
-/// knows no network and never blocks. Not thread-safe.
+/// Decides, tick by tick, whose answers the world waits for and what it does without them. Pure logic: it reads no
+/// clock, knows no network and never blocks. Not thread-safe.
 ///
-/// At tick k a robot's answer to frame k - delay is needed, if that frame was due; up to delay + 1 frames are under way.
+/// At tick k a robot's answer to frame k - delay is needed, if that frame was due; up to delay + 1 frames are under
+/// way.
 class Barrier {
  public:
   /// `policies` and `command_sizes` (float64 values) by robot.
   Barrier(std::vector<description::Policy> policies, const std::vector<std::size_t>& command_sizes);
 
-  /// Starts tick `tick` at time `now`; the first call has tick 0, each further one the next tick. The tick before must be
-  /// complete.
+  /// Starts tick `tick` at time `now`; the first call has tick 0, each further one the next tick. The tick before must
+  /// be complete.
   void open(std::uint64_t tick, Time now);
 
   std::uint64_t tick() const { return tick_; }

@@ -8,8 +8,8 @@
 
 namespace cohort::lockstep {
 
-/// Who drives which robots. One client has one lease for all its robots, with an epoch that is never used again; a client
-/// that loses one robot loses its lease. Pure logic, like the barrier. Not thread-safe.
+/// Who drives which robots. One client has one lease for all its robots, with an epoch that is never used again; a
+/// client that loses one robot loses its lease. Pure logic, like the barrier. Not thread-safe.
 ///
 /// A claim on free robots is granted. A claim on a robot that somebody holds waits: it is granted once every holder is
 /// known to be dead, and refused once a holder shows that it lives by answering. So a controller that was killed can be
@@ -34,7 +34,7 @@ class Leases {
   };
   struct Refused {
     std::uint64_t client;
-    std::uint32_t robot;   ///< one that is held
+    std::uint32_t robot;  ///< one that is held
     std::uint64_t holder;
   };
   struct Decisions {

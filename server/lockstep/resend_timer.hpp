@@ -28,8 +28,8 @@ class MedianDuration {
   std::size_t count_ = 0;
 };
 
-/// When to send an unanswered frame again: after max(3 ms, 3 median ticks), then at twice the interval each time, at most
-/// every 0.5 s. DDS's own repair of a lost sample takes 100 ms and more, since nothing follows it in lockstep.
+/// When to send an unanswered frame again: after max(3 ms, 3 median ticks), then at twice the interval each time, at
+/// most every 0.5 s. DDS's own repair of a lost sample takes 100 ms and more, since nothing follows it in lockstep.
 class ResendTimer {
  public:
   using Time = std::chrono::nanoseconds;

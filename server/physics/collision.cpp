@@ -18,8 +18,8 @@ std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-// Bullet's dispatcher hands out manifolds and algorithms from pools that are not safe for several threads, and lists all
-// manifolds in one array; ours takes memory from the allocator and keeps no list.
+// Bullet's dispatcher hands out manifolds and algorithms from pools that are not safe for several threads, and lists
+// all manifolds in one array; ours takes memory from the allocator and keeps no list.
 class Collision::Dispatcher final : public btCollisionDispatcher {
  public:
   using btCollisionDispatcher::btCollisionDispatcher;

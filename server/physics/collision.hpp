@@ -11,8 +11,8 @@
 namespace cohort::physics {
 
 /// Contact manifolds between the solids of a scene. Keeps Bullet's algorithm for each pair of solids that are near each
-/// other, as long as they are; pairs and manifolds are always in the order of the solids' indices, so nothing depends on
-/// the number of workers or on what was near before.
+/// other, as long as they are; pairs and manifolds are always in the order of the solids' indices, so nothing depends
+/// on the number of workers or on what was near before.
 class Collision {
  public:
   /// `objects[i]` is Bullet's object for solid i of the scene; both must outlive this.
@@ -41,7 +41,7 @@ class Collision {
   std::vector<std::uint32_t> moving_;
   std::unique_ptr<btCollisionConfiguration> configuration_;
   std::unique_ptr<Dispatcher> dispatcher_;
-  std::vector<Pair> pairs_;  // ascending
+  std::vector<Pair> pairs_;                        // ascending
   std::vector<std::vector<std::uint64_t>> found_;  // for each moving solid, keys of its pairs
   std::vector<PairContact> contacts_;
 };

@@ -18,8 +18,8 @@ struct Ground {
 /// a solid that moves is none yet.
 class GroundFinder {
  public:
-  /// All points lie within `radius` of `centre_W`. The ground is looked for along `-up_W`, from `climb` above a point to
-  /// `reach` below it: a surface higher than `climb` is a wall.
+  /// All points lie within `radius` of `centre_W`. The ground is looked for along `-up_W`, from `climb` above a point
+  /// to `reach` below it: a surface higher than `climb` is a wall.
   GroundFinder(const geometry::Scene& scene, std::uint32_t body, const Eigen::Vector3d& centre_W, double radius,
                const Eigen::Vector3d& up_W, double climb, double reach);
 

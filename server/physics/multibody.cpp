@@ -111,16 +111,14 @@ void Multibody::build_devices(const geometry::Scene& scene) {
       if (drive->link != 0)
         throw std::invalid_argument("treel drive '" + drive->name + "' is not on the root link '" +
                                     model_->links[0].name + "'");
-      drives_[device] =
-          std::make_unique<TreelDrive>(multibody_.get(), body_, *drive, X_LB_[0].inverse(), scene);
+      drives_[device] = std::make_unique<TreelDrive>(multibody_.get(), body_, *drive, X_LB_[0].inverse(), scene);
       constraints_.push_back(drives_[device].get());
     }
   }
 }
 
 Pose Multibody::bullet_link_pose(std::size_t link) const {
-  if (link == 0)
-    return {to_eigen(multibody_->getBasePos()), to_eigen(multibody_->getWorldToBaseRot()).conjugate()};
+  if (link == 0) return {to_eigen(multibody_->getBasePos()), to_eigen(multibody_->getWorldToBaseRot()).conjugate()};
   const btTransform& X_WB = multibody_->getLink(bullet_link(link)).m_cachedWorldTransform;
   return {to_eigen(X_WB.getOrigin()), to_eigen(X_WB.getRotation())};
 }
@@ -177,8 +175,8 @@ void Multibody::apply_forces(const Eigen::Vector3d& gravity, double step, Scratc
   const bool feedback_in_world = false;
   const bool feedback_in_joint_frame = false;
   multibody_->computeAccelerationsArticulatedBodyAlgorithmMultiDof(step, scratch.scalars, scratch.vectors,
-                                                                   scratch.matrices, constraint_pass,
-                                                                   feedback_in_world, feedback_in_joint_frame);
+                                                                   scratch.matrices, constraint_pass, feedback_in_world,
+                                                                   feedback_in_joint_frame);
 }
 
 bool Multibody::integrate(double step, Scratch& scratch) {

@@ -71,9 +71,9 @@ class Multibody {
   std::vector<Pose> X_LB_;  // B: Bullet's frame of a link, its centre of mass and principal axes
   std::unique_ptr<btMultiBody> multibody_;
   btMultiBodyLinkCollider handle_;
-  std::vector<std::unique_ptr<JointMotor>> motors_;                      // by joint
+  std::vector<std::unique_ptr<JointMotor>> motors_;  // by joint
   std::vector<std::unique_ptr<JointLimit>> limits_;
-  std::vector<std::unique_ptr<TreelDrive>> drives_;                      // by device
+  std::vector<std::unique_ptr<TreelDrive>> drives_;  // by device
   std::vector<btMultiBodyConstraint*> constraints_;
 };
 

@@ -4,8 +4,8 @@
 
 namespace cohort::physics {
 
-/// What our constraints on one multibody have in common. `impulses`: how many rows it can have; each keeps its impulse for
-/// the next step's warm start.
+/// What our constraints on one multibody have in common. `impulses`: how many rows it can have; each keeps its impulse
+/// for the next step's warm start.
 class OneBodyConstraint : public btMultiBodyConstraint {
  public:
   OneBodyConstraint(btMultiBody* body, int link, int impulses, int type)
@@ -33,8 +33,8 @@ struct OneBodyRow {
   }
 };
 
-/// Adds a row for a force at `point_W` of the root link along the unit vector `direction_W`. `slot`: where `owner` keeps
-/// the row's impulse for the next step's warm start.
+/// Adds a row for a force at `point_W` of the root link along the unit vector `direction_W`. `slot`: where `owner`
+/// keeps the row's impulse for the next step's warm start.
 OneBodyRow add_force_row(btMultiBodyConstraint& owner, btMultiBody& body, const btVector3& point_W,
                          const btVector3& direction_W, int slot, btMultiBodyConstraintArray& rows,
                          btMultiBodyJacobianData& data);

@@ -72,8 +72,7 @@ void TreelDrive::add_normal_rows(btMultiBodyConstraintArray& rows, btMultiBodyJa
   const btTransform X_WL = X_WB * to_bullet(X_BL_);
   const Eigen::Vector3d up_W = to_eigen(X_WL.getBasis().getColumn(2));
   const Eigen::Vector3d centre_W = to_eigen(X_WL * btVector3(0.0, 0.0, drive_.ground_height));
-  const GroundFinder ground_finder(*scene_, body_index_, centre_W,
-                                   drive_.half_gauge + drive_.half_contact_length, up_W,
+  const GroundFinder ground_finder(*scene_, body_index_, centre_W, drive_.half_gauge + drive_.half_contact_length, up_W,
                                    drive_.wheel_radius, reach);
   btVector3 normal_sum(0, 0, 0);
   int slot = 0;
@@ -140,8 +139,7 @@ void TreelDrive::advance_tracks(double step) {
     const double grip = track.friction * (side == Side::left ? load_left : load_right);
     // A track that slips or hangs in the air turns as commanded; one that grips turns as the ground goes by.
     const bool slips = track.row < 0 || (grip < motor_limit_ && std::abs(impulse) >= grip);
-    track.state.velocity =
-        slips ? track.target : forward_W_.dot(linear_W + angular_W.cross(track.point_W - origin_W));
+    track.state.velocity = slips ? track.target : forward_W_.dot(linear_W + angular_W.cross(track.point_W - origin_W));
     track.state.position += track.state.velocity * step;
     track.state.traction = impulse / step;
   }

@@ -9,10 +9,10 @@
 
 namespace cohort::physics {
 
-/// Both tracks of a robot as one constraint on its root link: up to four ground points that push, one drive row for each
-/// side and one row against sliding sideways, 7 rows in all. Traction is limited by the motor and by friction under the
-/// normal impulses of the same iteration. Against wheels with contacts it needs a quarter of the rows, and a robot told
-/// to stand still stands still.
+/// Both tracks of a robot as one constraint on its root link: up to four ground points that push, one drive row for
+/// each side and one row against sliding sideways, 7 rows in all. Traction is limited by the motor and by friction
+/// under the normal impulses of the same iteration. Against wheels with contacts it needs a quarter of the rows, and a
+/// robot told to stand still stands still.
 class TreelDrive final : public OneBodyConstraint {
  public:
   static constexpr int type = MAX_MULTIBODY_CONSTRAINT_TYPE + 1;
@@ -25,7 +25,8 @@ class TreelDrive final : public OneBodyConstraint {
   double target(Side side) const { return side_of(side).target; }
   const TrackState& track(Side side) const { return side_of(side).state; }
 
-  /// Sets the limits of the drive and lateral rows from the normal impulses so far. Before each iteration of the solver.
+  /// Sets the limits of the drive and lateral rows from the normal impulses so far. Before each iteration of the
+  /// solver.
   void limit_traction(btMultiBodyConstraintArray& rows) const;
   /// Takes the tracks' motion from the solved velocities. After the step's velocities are final.
   void advance_tracks(double step);
@@ -55,7 +56,7 @@ class TreelDrive final : public OneBodyConstraint {
   std::array<Track, 2> tracks_;
   // Of the current step:
   btVector3 forward_W_;
-  btVector3 normal_W_;  // mean over the ground points that touch; zero if none does
+  btVector3 normal_W_;        // mean over the ground points that touch; zero if none does
   double motor_limit_ = 0.0;  // [N s] a side
   int lateral_row_ = -1;
 };

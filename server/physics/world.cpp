@@ -24,8 +24,7 @@ std::unique_ptr<btCollisionShape> make_shape(const description::Shape& shape) {
       return std::make_unique<btSphereShape>(sphere.radius);
     }
     std::unique_ptr<btCollisionShape> operator()(const description::Cylinder& cylinder) const {
-      return std::make_unique<btCylinderShapeZ>(
-          btVector3(cylinder.radius, cylinder.radius, 0.5 * cylinder.length));
+      return std::make_unique<btCylinderShapeZ>(btVector3(cylinder.radius, cylinder.radius, 0.5 * cylinder.length));
     }
     std::unique_ptr<btCollisionShape> operator()(const description::Plane& plane) const {
       return std::make_unique<btStaticPlaneShape>(to_bullet(plane.normal), 0.0);
@@ -38,8 +37,8 @@ btContactSolverInfo solver_info(double step) {
   btContactSolverInfo info;
   info.m_timeStep = step;
   info.m_numIterations = solver_iterations;
-  info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_USE_ARTICULATED_WARMSTARTING |
-                      SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_IMPLICIT_CONE_FRICTION;
+  info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_USE_ARTICULATED_WARMSTARTING | SOLVER_USE_2_FRICTION_DIRECTIONS |
+                      SOLVER_DISABLE_IMPLICIT_CONE_FRICTION;
   info.m_leastSquaresResidualThreshold = 0.0;  // an early end of one batch would depend on who else is in it
   return info;
 }
@@ -132,14 +131,13 @@ void World::Implementation::add_solids(std::uint32_t body) {
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     for (const description::Collision& collision : model.links[link].collisions) {
       const Pose X_WC = instance.X_WM * model.links[link].X_ML * collision.X_LC;
-      const std::uint32_t solid =
-          scene_.add({collision.shape, collision.surface, body, !model.is_static, X_WC});
+      const std::uint32_t solid = scene_.add({collision.shape, collision.surface, body, !model.is_static, X_WC});
       shapes_.push_back(make_shape(collision.shape));
       if (model.is_static) {
         objects_.push_back(std::make_unique<btCollisionObject>());
       } else {
-        objects_.push_back(std::make_unique<btMultiBodyLinkCollider>(&multibodies_[body]->bullet(),
-                                                                     static_cast<int>(link) - 1));
+        objects_.push_back(
+            std::make_unique<btMultiBodyLinkCollider>(&multibodies_[body]->bullet(), static_cast<int>(link) - 1));
         parts_[member_of_body_[body]].push_back({solid, link, collision.X_LC});
       }
       objects_.back()->setCollisionShape(shapes_.back().get());
@@ -152,12 +150,11 @@ void World::Implementation::add_solids(std::uint32_t body) {
 void World::Implementation::step() {
   collision_->detect(workers_, step_);
   build_batches();
-  workers_.for_each_chunk(moving_bodies_.size(), bodies_a_chunk,
-                          [&](std::size_t begin, std::size_t end, unsigned worker) {
-                            for (std::size_t i = begin; i < end; ++i)
-                              multibodies_[moving_bodies_[i]]->apply_forces(description_.gravity, step_,
-                                                                            scratch_[worker]);
-                          });
+  workers_.for_each_chunk(
+      moving_bodies_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        for (std::size_t i = begin; i < end; ++i)
+          multibodies_[moving_bodies_[i]]->apply_forces(description_.gravity, step_, scratch_[worker]);
+      });
   solve();
   integrate();
   report_contacts();
@@ -193,10 +190,10 @@ void World::Implementation::solve() {
   workers_.for_each_chunk(islands_.batch_count(), 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (std::size_t i = begin; i < end; ++i) {
       Batch& batch = batches_[i];
-      solvers_[worker]->solveMultiBodyGroup(
-          batch.bodies.data(), static_cast<int>(batch.bodies.size()), batch.manifolds.data(),
-          static_cast<int>(batch.manifolds.size()), nullptr, 0, batch.constraints.data(),
-          static_cast<int>(batch.constraints.size()), info_, nullptr, nullptr);
+      solvers_[worker]->solveMultiBodyGroup(batch.bodies.data(), static_cast<int>(batch.bodies.size()),
+                                            batch.manifolds.data(), static_cast<int>(batch.manifolds.size()), nullptr,
+                                            0, batch.constraints.data(), static_cast<int>(batch.constraints.size()),
+                                            info_, nullptr, nullptr);
     }
   });
 }

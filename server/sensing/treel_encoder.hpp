@@ -8,8 +8,7 @@ namespace cohort::sensing {
 /// its motor does.
 class TreelEncoder final : public Sensor {
  public:
-  TreelEncoder(const description::TreelEncoder& encoder, Mount mount)
-      : encoder_(encoder), mount_(std::move(mount)) {}
+  TreelEncoder(const description::TreelEncoder& encoder, Mount mount) : encoder_(encoder), mount_(std::move(mount)) {}
   std::vector<Channel> channels() const override;
   void sense(std::uint64_t tick, std::span<double> values) const override;
 

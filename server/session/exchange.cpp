@@ -7,8 +7,7 @@ namespace {
 
 std::vector<description::Policy> policies_of(const Simulation& simulation) {
   std::vector<description::Policy> policies;
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
-    policies.push_back(simulation.policy(robot));
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) policies.push_back(simulation.policy(robot));
   return policies;
 }
 
@@ -43,7 +42,8 @@ void Exchange::open(lockstep::Time now) {
   for (std::uint32_t robot = 0; robot < history_.size(); ++robot) {
     if (!barrier_.is_due(robot, tick)) continue;
     const auto values = kept(robot, tick);
-    std::ranges::copy(simulation_.observation(robot), history_[robot].begin() + (values.data() - history_[robot].data()));
+    std::ranges::copy(simulation_.observation(robot),
+                      history_[robot].begin() + (values.data() - history_[robot].data()));
   }
 }
 

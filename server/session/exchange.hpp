@@ -22,8 +22,8 @@ class Exchange {
   /// Opens the simulation's current tick and keeps the observations of all robots due.
   void open(lockstep::Time now);
 
-  /// The robots of `robots` that are due at `tick`, and their observations in a row. `tick` is the current one or one of
-  /// the delay before it.
+  /// The robots of `robots` that are due at `tick`, and their observations in a row. `tick` is the current one or one
+  /// of the delay before it.
   struct Frame {
     std::vector<std::uint32_t> robots;
     std::vector<double> values;
@@ -35,10 +35,10 @@ class Exchange {
     std::string text;
   };
   struct Taken {
-    std::size_t accepted = 0;             ///< robots whose answer was taken
-    std::optional<Rejection> rejection;   ///< the first thing wrong, if anything is
-    bool is_fault = false;                ///< the values cannot act on some robot: a miss at once
-    bool ends_run = false;                ///< and that robot's policy has no way to go on
+    std::size_t accepted = 0;            ///< robots whose answer was taken
+    std::optional<Rejection> rejection;  ///< the first thing wrong, if anything is
+    bool is_fault = false;               ///< the values cannot act on some robot: a miss at once
+    bool ends_run = false;               ///< and that robot's policy has no way to go on
   };
   /// Takes the answer to a frame that was sent to the holder of `held`.
   Taken take(std::span<const std::uint32_t> held, std::uint64_t frame_tick, std::span<const std::uint32_t> robots,

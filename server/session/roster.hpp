@@ -14,8 +14,8 @@ namespace cohort::session {
 /// One for each kind of robot; RobotDescription::description is its index in Simulation::kinds().
 std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation);
 
-/// What an Admit says of each robot. The seed for a controller's own randomness depends on the experiment's seed and the
-/// robot's name only.
+/// What an Admit says of each robot. The seed for a controller's own randomness depends on the experiment's seed and
+/// the robot's name only.
 std::vector<wire::AdmittedRobot> admit_robots(const description::Experiment& experiment, const Simulation& simulation,
                                               std::span<const std::uint32_t> robots);
 

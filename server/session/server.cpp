@@ -28,8 +28,9 @@ Server::Server(const description::Experiment& experiment, Simulation& simulation
       world_state_(participant, view_partition),
       joins_(participant, {[this](const wire::Join& join, const wire::Sender& sender) { on_join(join, sender); },
                            [this](const wire::Sender& sender, bool alive) { on_liveliness(sender, alive); }}),
-      commands_(participant,
-                {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); }, {}}),
+      commands_(
+          participant,
+          {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); }, {}}),
       reports_(participant, {[this](const wire::Report& report, const wire::Sender&) { on_report(report); }, {}}) {
   std::iota(all_robots_.begin(), all_robots_.end(), 0u);
   for (const wire::RobotDescription& description : describe_kinds(simulation)) descriptions_.write(description);
@@ -242,8 +243,8 @@ void Server::publish_world_state() {
     const auto& q = X_WL.orientation;
     poses_.insert(poses_.end(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
   }
-  world_state_.write({run_number_, simulation_.tick(), simulation_.time().count(), simulation_.state_hash(),
-                      all_robots_, poses_});
+  world_state_.write(
+      {run_number_, simulation_.tick(), simulation_.time().count(), simulation_.state_hash(), all_robots_, poses_});
 }
 
 void Server::on_join(const wire::Join& join, const wire::Sender& sender) {

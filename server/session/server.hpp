@@ -18,8 +18,8 @@
 namespace cohort::session {
 
 /// Runs an experiment whose controllers are DDS clients: docs/protocol.md, the server's side. Callbacks of DDS put
-/// control messages aside and take answers at once under one lock; everything else happens on the thread of `run`, which
-/// alone creates and destroys entities and steps the world.
+/// control messages aside and take answers at once under one lock; everything else happens on the thread of `run`,
+/// which alone creates and destroys entities and steps the world.
 class Server {
  public:
   Server(const description::Experiment& experiment, Simulation& simulation, wire::Participant& participant,
@@ -39,9 +39,9 @@ class Server {
   using Clock = RunBook::Clock;
 
   struct Client {
-    std::string label;  // for people: controller, process and host
+    std::string label;                    // for people: controller, process and host
     std::vector<std::uint32_t> robots{};  // that it last asked for
-    bool claims = false;                // and was neither granted nor refused
+    bool claims = false;                  // and was neither granted nor refused
     wire::Writer<wire::Admit> admit;
     wire::Writer<wire::Observation> observation;
     wire::Writer<wire::Report> report;
@@ -102,8 +102,8 @@ class Server {
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  // Under the lock: what answers need, and the inbox. `participant_of_client_`: who joined under an id; DDS says it, so that
-  // nobody can answer in another's name.
+  // Under the lock: what answers need, and the inbox. `participant_of_client_`: who joined under an id; DDS says it, so
+  // that nobody can answer in another's name.
   Exchange exchange_;
   lockstep::Leases leases_;
   Inbox inbox_;

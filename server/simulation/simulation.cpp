@@ -57,8 +57,8 @@ void Simulation::build_robot(std::uint32_t id) {
 
   RobotKind kind{model.name, {}, {}, 0, 0};
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    if (auto sensor = sensing::make_sensor(model.devices[device], model,
-                                           {world_, robot.body, instance.name, experiment_.seed})) {
+    if (auto sensor =
+            sensing::make_sensor(model.devices[device], model, {world_, robot.body, instance.name, experiment_.seed})) {
       const std::vector<Channel> channels = sensor->channels();
       kind.observation.insert(kind.observation.end(), channels.begin(), channels.end());
       robot.sensors.push_back(std::move(sensor));
@@ -142,8 +142,7 @@ void Simulation::sense() {
     for (std::size_t id = begin; id < end; ++id) {
       if (!is_due(static_cast<std::uint32_t>(id), tick_)) continue;
       const Robot& robot = robots_[id];
-      std::span<double> values(observations_.data() + robot.observation_offset,
-                               kinds_[robot.kind].observation_size);
+      std::span<double> values(observations_.data() + robot.observation_offset, kinds_[robot.kind].observation_size);
       for (std::size_t i = 0; i < robot.sensors.size(); ++i) {
         robot.sensors[i]->sense(tick_, values.first(robot.sensor_sizes[i]));
         values = values.subspan(robot.sensor_sizes[i]);

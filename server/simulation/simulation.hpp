@@ -46,8 +46,8 @@ struct TouchCounts {
 /// experiment and of the commands, for any number of threads. One thread calls it.
 class Simulation {
  public:
-  /// Builds the world and senses tick 0. The experiment must outlive this. Throws std::invalid_argument for a world that
-  /// cannot be simulated.
+  /// Builds the world and senses tick 0. The experiment must outlive this. Throws std::invalid_argument for a world
+  /// that cannot be simulated.
   Simulation(const description::Experiment& experiment, unsigned threads);
   ~Simulation();
 

@@ -46,9 +46,9 @@ class DisturbedRun : public ::testing::Test {
   }
 
   ReservedDomain domain;
-  Process server{{cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain",
-                  domain.text()},
-                 {{"COHORT_LOG", "info"}}};
+  Process server{
+      {cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain", domain.text()},
+      {{"COHORT_LOG", "info"}}};
   Observer observer{domain.number()};
 };
 
@@ -83,7 +83,8 @@ TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
   const std::string expected = reference_hash(10);
   Process run({cohort_program(), "run", demo_experiment(), "--duration", "10", "--speed", "5"});
   const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (children_of(run.pid()).empty() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(1ms);
+  while (children_of(run.pid()).empty() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(1ms);
   const auto children = children_of(run.pid());
   ASSERT_EQ(children.size(), 1u);
   ASSERT_TRUE(run.wait_for_output("simulated")) << run.output();

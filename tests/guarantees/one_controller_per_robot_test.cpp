@@ -7,8 +7,8 @@ namespace {
 
 TEST(OneControllerPerRobot, ASecondClaimIsRefusedByNameAndTheRunGoesOn) {
   const ReservedDomain domain;
-  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain",
-                  domain.text()});
+  Process server(
+      {cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain", domain.text()});
   Process holder({cohort_program(), "host", "obstacle_avoidance", "--robots", "all", "--domain", domain.text()});
   ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
   Process second({cohort_program(), "host", "obstacle_avoidance", "--robots", "3", "--domain", domain.text()});
@@ -22,8 +22,8 @@ TEST(OneControllerPerRobot, ASecondClaimIsRefusedByNameAndTheRunGoesOn) {
 TEST(OneControllerPerRobot, AClaimOnARobotThatDoesNotExistIsRefusedByName) {
   const ReservedDomain domain;
   Process server({cohort_program(), "serve", demo_experiment(), "--domain", domain.text()});
-  Process stranger({cohort_program(), "host", "obstacle_avoidance", "--robots", "explorers/sbot_99", "--domain",
-                    domain.text()});
+  Process stranger(
+      {cohort_program(), "host", "obstacle_avoidance", "--robots", "explorers/sbot_99", "--domain", domain.text()});
   EXPECT_EQ(stranger.wait_for_exit(), 2) << stranger.output();
   EXPECT_NE(stranger.output().find("explorers/sbot_99"), std::string::npos) << stranger.output();
 }

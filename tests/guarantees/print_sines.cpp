@@ -1,5 +1,5 @@
-// Prints bits of the C library's own sine, cosine and arc tangent for many arguments, so that a test can see whether the
-// library's variant has changed.
+// Prints bits of the C library's own sine, cosine and arc tangent for many arguments, so that a test can see whether
+// the library's variant has changed.
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// A stranger on the network: sends every kind of bad command in the name of the given client, about a thousand a second,
-// until it is killed. send_bad_commands DOMAIN CLIENT
+// A stranger on the network: sends every kind of bad command in the name of the given client, about a thousand a
+// second, until it is killed. send_bad_commands DOMAIN CLIENT
 
 #include <atomic>
 #include <chrono>
@@ -30,8 +30,8 @@ int main(int argc, char** argv) {
   std::vector<std::uint32_t> all(16);
   std::iota(all.begin(), all.end(), 0u);
   const std::vector<std::uint32_t> first = {0}, nonsense = {99, 3, 3}, none;
-  const std::vector<double> nan(48, std::nan("")), infinite(48, std::numeric_limits<double>::infinity()),
-      fast(48, 1e9), fitting(48, 0.1), fitting_one(3, 0.1), nothing;
+  const std::vector<double> nan(48, std::nan("")), infinite(48, std::numeric_limits<double>::infinity()), fast(48, 1e9),
+      fitting(48, 0.1), fitting_one(3, 0.1), nothing;
   for (int round = 0;; ++round) {
     for (const std::uint64_t ahead : {0u, 1u, 2u, 1000u}) {
       const std::uint64_t at = tick + ahead;

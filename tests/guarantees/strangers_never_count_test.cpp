@@ -22,7 +22,8 @@ std::map<std::string, std::uint64_t> rejections(const nlohmann::json& summary) {
   std::map<std::string, std::uint64_t> counts;
   for (const auto& event : summary["events"]) {
     const std::string text = event["text"];
-    if (event["kind"] == "rejected") counts[text.substr(0, text.find_first_of(" :"))] += event["count"].get<std::uint64_t>();
+    if (event["kind"] == "rejected")
+      counts[text.substr(0, text.find_first_of(" :"))] += event["count"].get<std::uint64_t>();
   }
   return counts;
 }
@@ -36,10 +37,10 @@ class HandWrittenClient {
       : participant_(wire::Participant::client(domain)),
         commands_(participant_),
         join_(participant_),
-        observations_(participant_,
-                      {[this, answer](const wire::Observation& frame, const wire::Sender&) { answer(commands_, frame); },
-                       {}},
-                      wire::partition_of(own_id)) {
+        observations_(
+            participant_,
+            {[this, answer](const wire::Observation& frame, const wire::Sender&) { answer(commands_, frame); }, {}},
+            wire::partition_of(own_id)) {
     wire::Join join;
     join.client = own_id;
     join.controller = "hand-written";
@@ -76,8 +77,10 @@ TEST(StrangersNeverCount, CommandsInTheNameOfAnotherClientLeaveTheRunItsBits) {
   const auto run = [](bool forged) {
     const ReservedDomain domain;
     const ScratchFolder folder;
-    Process server({cohort_program(), "serve", demo_experiment(), "--duration", "5", "--domain", domain.text(), "--summary", (folder / "summary.json").string()});
-    Process controllers({cohort_program(), "host", "obstacle_avoidance", "--robots", "1..15", "--domain", domain.text()});
+    Process server({cohort_program(), "serve", demo_experiment(), "--duration", "5", "--domain", domain.text(),
+                    "--summary", (folder / "summary.json").string()});
+    Process controllers(
+        {cohort_program(), "host", "obstacle_avoidance", "--robots", "1..15", "--domain", domain.text()});
     // Holds its answer to tick 300 back until the forger has tried to give it a thousand times.
     const std::vector<double> drive = {0.1, 0.15, 0.0};
     std::atomic<bool> answers = true;
@@ -94,8 +97,8 @@ TEST(StrangersNeverCount, CommandsInTheNameOfAnotherClientLeaveTheRunItsBits) {
     if (forged) {
       EXPECT_TRUE(server.wait_for_output("waiting for explorers/sbot_0: hand-written")) << server.output();
       EXPECT_TRUE(holds_back);
-      forger = std::make_unique<Process>(std::vector<std::string>{COHORT_BUILD_DIR "/bin/send_bad_commands",
-                                                                  domain.text(), std::to_string(own_id)});
+      forger = std::make_unique<Process>(
+          std::vector<std::string>{COHORT_BUILD_DIR "/bin/send_bad_commands", domain.text(), std::to_string(own_id)});
       EXPECT_TRUE(forger->wait_for_output("sent a thousand")) << forger->output();
       answers = true;
     }

@@ -18,7 +18,7 @@ namespace {
 // The whole minute of the demo, watched at every tick.
 class DemoRun : public ::testing::Test {
  protected:
-  static constexpr double half_arena = 2.0;      // inner half width of worlds/arenas/obstacles.sdf [m]
+  static constexpr double half_arena = 2.0;       // inner half width of worlds/arenas/obstacles.sdf [m]
   static constexpr double turret_radius = 0.058;  // [m]
   static constexpr double cell = 0.25;            // of the coverage map [m]
 
@@ -97,7 +97,8 @@ TEST_F(DemoRun, RobotsCoverTheArena) {
   EXPECT_GT(static_cast<double>(visited.size()), 0.85 * cells) << "of " << cells;
   RecordProperty("cells_visited", static_cast<int>(visited.size()));
   std::printf("visited %zu of %.0f cells; touched obstacles in %.3f %% and robots in %.3f %% of robot-ticks\n",
-              visited.size(), cells, 100.0 * static_cast<double>(touches.obstacles) / static_cast<double>(touches.robot_ticks),
+              visited.size(), cells,
+              100.0 * static_cast<double>(touches.obstacles) / static_cast<double>(touches.robot_ticks),
               100.0 * static_cast<double>(touches.robots) / static_cast<double>(touches.robot_ticks));
 }
 

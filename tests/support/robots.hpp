@@ -20,8 +20,10 @@ inline description::Model tracked_robot(double noise = 0.0) {
   using namespace description;
   Model model;
   model.name = "tracked_robot";
-  model.links.push_back(
-      {"chassis", {}, solid_cylinder(0.4, 0.05, 0.05, 0.033), {{"hull", {{0, 0, 0.034}}, Cylinder{0.05, 0.04}, {0.3, 0}}}});
+  model.links.push_back({"chassis",
+                         {},
+                         solid_cylinder(0.4, 0.05, 0.05, 0.033),
+                         {{"hull", {{0, 0, 0.034}}, Cylinder{0.05, 0.04}, {0.3, 0}}}});
   model.links.push_back({"turret",
                          {{0, 0, 0.055}},
                          solid_cylinder(0.3, 0.058, 0.04, 0.02),

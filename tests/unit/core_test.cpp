@@ -137,15 +137,14 @@ TEST_P(PortableUnary, AgreesWithTheCLibraryWithinTwoUlp) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, PortableUnary,
-    ::testing::Values(UnaryCase{"sin", &::sin, -100, 100}, UnaryCase{"sin", &::sin, -1e6, 1e6},
-                      UnaryCase{"cos", &::cos, -100, 100}, UnaryCase{"cos", &::cos, -1e6, 1e6},
-                      UnaryCase{"tan", &::tan, -1.5, 1.5}, UnaryCase{"atan", &::atan, -20, 20},
-                      UnaryCase{"asin", &::asin, -1, 1}, UnaryCase{"acos", &::acos, -1, 1},
-                      UnaryCase{"exp", &::exp, -700, 700}, UnaryCase{"exp", &::exp, -1, 1},
-                      UnaryCase{"log", &::log, 0, 1e-3}, UnaryCase{"log", &::log, 0.5, 2}),
-    [](const auto& unary) { return std::string(unary.param.name) + std::to_string(unary.index); });
+INSTANTIATE_TEST_SUITE_P(All, PortableUnary,
+                         ::testing::Values(UnaryCase{"sin", &::sin, -100, 100}, UnaryCase{"sin", &::sin, -1e6, 1e6},
+                                           UnaryCase{"cos", &::cos, -100, 100}, UnaryCase{"cos", &::cos, -1e6, 1e6},
+                                           UnaryCase{"tan", &::tan, -1.5, 1.5}, UnaryCase{"atan", &::atan, -20, 20},
+                                           UnaryCase{"asin", &::asin, -1, 1}, UnaryCase{"acos", &::acos, -1, 1},
+                                           UnaryCase{"exp", &::exp, -700, 700}, UnaryCase{"exp", &::exp, -1, 1},
+                                           UnaryCase{"log", &::log, 0, 1e-3}, UnaryCase{"log", &::log, 0.5, 2}),
+                         [](const auto& unary) { return std::string(unary.param.name) + std::to_string(unary.index); });
 
 TEST(PortableMath, Atan2AgreesWithTheCLibraryInEveryQuadrantAndCorner) {
   const auto theirs = of_c_library<double (*)(double, double)>("atan2");

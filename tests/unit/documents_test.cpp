@@ -35,7 +35,8 @@ TEST(Documents, TheSemanticsNameTestsThatExistAndEveryLineHasOne) {
   bool in_lines = true;
   for (std::string line; std::getline(document, line);) {
     if (line.starts_with("## Decided, not built yet")) in_lines = false;
-    const bool is_row = line.starts_with("| ") && !line.starts_with("| what") && !line.starts_with("| `on_late` | what");
+    const bool is_row =
+        line.starts_with("| ") && !line.starts_with("| what") && !line.starts_with("| `on_late` | what");
     if (!in_lines || !is_row) continue;
     const std::sregex_iterator first(line.begin(), line.end(), name);
     EXPECT_NE(first, std::sregex_iterator()) << "no test holds this line: " << line;

@@ -57,7 +57,8 @@ TEST(Ray, ThatStartsInsideASolidHitsItAtOnce) {
     EXPECT_EQ(cast_ray(shape, {0.1, 0.1, -0.1}, {1, 0, 0}).distance, 0.0) << shape.index();
 }
 
-// Marches along the ray in small steps and asks whether the point is inside: slow, and of another kind than the closed forms.
+// Marches along the ray in small steps and asks whether the point is inside: slow, and of another kind than the closed
+// forms.
 double marched_distance(const Shape& shape, const Vector3d& origin, const Vector3d& direction, double range) {
   const auto inside = [&](const Vector3d& p) {
     if (const auto* box = std::get_if<description::Box>(&shape))
@@ -100,7 +101,8 @@ class RandomScene : public ::testing::Test {
       const double size = n % 50 == 1 ? 2.0 : 0.05 + 0.1 * random.uniform(n, 9);
       const std::vector<Shape> shapes = {description::Box{{size, 0.1, 0.2}}, description::Sphere{0.05},
                                          description::Cylinder{0.06, 0.1}};
-      scene.add({shapes[n % 50 == 1 ? 0 : n % 3], {}, static_cast<std::uint32_t>(n), moves, random_pose(random, n, 1.5)});
+      scene.add(
+          {shapes[n % 50 == 1 ? 0 : n % 3], {}, static_cast<std::uint32_t>(n), moves, random_pose(random, n, 1.5)});
     }
     scene.add({description::Plane{}, {}, 400, false, {{0, 0, -1.4}}});
     scene.build();
@@ -138,8 +140,7 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
     for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
       if (scene.solid(solid).body == ignored) continue;
       const Pose X_CW = scene.solid(solid).X_WC.inverse();
-      const double distance =
-          cast_ray(scene.solid(solid).shape, X_CW * origin, X_CW.orientation * direction).distance;
+      const double distance = cast_ray(scene.solid(solid).shape, X_CW * origin, X_CW.orientation * direction).distance;
       if (distance < nearest) {
         nearest = distance;
         expected = solid;

@@ -1,8 +1,7 @@
-#include "server/physics/world.hpp"
-
 #include <gtest/gtest.h>
 
 #include "server/physics/islands.hpp"
+#include "server/physics/world.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::physics {
@@ -189,8 +188,7 @@ TEST(World, KeepsRobotsFromPassingThroughEachOther) {
   command(world, second, {0.2, 0.2});
   for (int i = 0; i < 400; ++i) {
     world.step();
-    const double apart =
-        (world.link_pose(first, 0).position - world.link_pose(second, 0).position).head<2>().norm();
+    const double apart = (world.link_pose(first, 0).position - world.link_pose(second, 0).position).head<2>().norm();
     ASSERT_GT(apart, 2 * 0.058 - 0.002) << "at step " << i;
   }
 }
@@ -245,8 +243,7 @@ TEST(World, GivesTheSameBitsForAnyNumberOfWorkers) {
       place(description, tracked_robot(), "r" + std::to_string(i), at(0.14 * (i % 8), 0.14 * (i / 8), 0, 0.7 * i));
     WorkerPool workers(threads);
     World world(description, workers);
-    for (std::uint32_t body = 1; body <= 60; ++body)
-      command(world, body, {0.05 + 0.002 * body, 0.2 - 0.002 * body});
+    for (std::uint32_t body = 1; body <= 60; ++body) command(world, body, {0.05 + 0.002 * body, 0.2 - 0.002 * body});
     run(world, 200);
     StateHash hash;
     for (std::uint32_t body = 0; body < world.body_count(); ++body) world.hash_body(body, hash);

@@ -61,7 +61,8 @@ TEST(Exchange, AnAnswerActsExactlyItsDelayLaterAndNeutralValuesUntilThen) {
 }
 
 TEST(Exchange, FramesHoldTheRobotsThatAreDueAndTheirObservationsAsTheyWere) {
-  const auto experiment = experiment_of({{1, 0, 2, description::OnLate::wait, {}}, {2, 1, 0, description::OnLate::wait, {}}});
+  const auto experiment =
+      experiment_of({{1, 0, 2, description::OnLate::wait, {}}, {2, 1, 0, description::OnLate::wait, {}}});
   Simulation simulation(experiment, 1);
   Exchange exchange(simulation);
   Exchange::Frame frame;
@@ -107,8 +108,7 @@ TEST(Exchange, ReadsNothingBeyondAnAnswerThatIsTooShort) {
 }
 
 TEST(Exchange, AFaultyAnswerUnderZeroGivesNeutralValuesAndTheRunGoesOn) {
-  const auto experiment =
-      experiment_of({{1, 0, 0, description::OnLate::zero, std::chrono::seconds(1)}});
+  const auto experiment = experiment_of({{1, 0, 0, description::OnLate::zero, std::chrono::seconds(1)}});
   Simulation simulation(experiment, 1);
   simulation.set_command(0, forward);
   Exchange exchange(simulation);

@@ -30,8 +30,7 @@ std::string describe(const std::vector<std::string>& command, pid_t pid, int sta
 
 }  // namespace
 
-Children::Children(std::vector<std::vector<std::string>> commands, Listener listener)
-    : listener_(std::move(listener)) {
+Children::Children(std::vector<std::vector<std::string>> commands, Listener listener) : listener_(std::move(listener)) {
   if (pipe2(wake_pipe_, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   for (auto& command : commands) children_.push_back({std::move(command)});
   // The watcher starts them: a child's parent-death signal follows the thread that started it, and this one stays until

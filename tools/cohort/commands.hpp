@@ -29,7 +29,7 @@ struct RunCommand {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   Controllers controllers = Controllers::process;
-  double speed = 0.0;  ///< 0: as fast as it goes
+  double speed = 0.0;             ///< 0: as fast as it goes
   std::filesystem::path summary;  ///< file to write; empty: none
   std::filesystem::path plot;     ///< the same
   bool quiet = false;

@@ -90,7 +90,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0u, 230u));
 
   std::filesystem::path checked_file;
-  CLI::App* check_app = app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
+  CLI::App* check_app =
+      app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
   check_app->add_option("FILE", checked_file, "Experiment (.yaml) or world (.sdf)")->required();
 
   try {

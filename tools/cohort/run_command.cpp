@@ -46,8 +46,8 @@ struct Served {
   std::uint32_t domain;
 };
 
-// Outsiders need to know the domain: it is the one given, or 0. Nobody but our own children needs to know ours: it is any
-// free one, so that several runs on one machine do not meet.
+// Outsiders need to know the domain: it is the one given, or 0. Nobody but our own children needs to know ours: it is
+// any free one, so that several runs on one machine do not meet.
 Served open_domain(const RunCommand& command) {
   if (command.domain || command.controllers == Controllers::external) {
     const std::uint32_t domain = command.domain.value_or(0);
@@ -101,8 +101,8 @@ RunResult run_over_dds(const RunCommand& command, const description::Experiment&
   };
   session::Server server(experiment, simulation, served.participant, {command.speed}, own_listener);
   if (command.controllers == Controllers::external) {
-    terminal.say(fmt::format("serving {} robots on {}, domain {}", simulation.robot_count(), command.network,
-                             served.domain));
+    terminal.say(
+        fmt::format("serving {} robots on {}, domain {}", simulation.robot_count(), command.network, served.domain));
     return server.run(stop);
   }
   const bool per_robot = command.controllers == Controllers::per_robot;
@@ -178,10 +178,9 @@ int run(const RunCommand& command, const std::atomic<bool>& stop) {
         .event = [&](const session::Event& event) { terminal.event(event); },
         .boundary = recorder ? std::function<void()>([&] { recorder->boundary(); }) : nullptr,
     };
-    const RunResult result =
-        command.controllers == Controllers::in_process
-            ? run_here(command, experiment, simulation, plugins, listener, stop)
-            : run_over_dds(command, experiment, simulation, plugins, terminal, listener, stop);
+    const RunResult result = command.controllers == Controllers::in_process
+                                 ? run_here(command, experiment, simulation, plugins, listener, stop)
+                                 : run_over_dds(command, experiment, simulation, plugins, terminal, listener, stop);
     const double cpu = cpu_seconds() - cpu_before;
     terminal.summary(result, cpu);
     const bool written = write_files(command, experiment, result, cpu, recorder);

@@ -10,8 +10,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr std::chrono::seconds line_interval{2};               // where lines cannot be rewritten
-constexpr std::chrono::milliseconds worth_mentioning{300};     // a wait
+constexpr std::chrono::seconds line_interval{2};            // where lines cannot be rewritten
+constexpr std::chrono::milliseconds worth_mentioning{300};  // a wait
 
 double seconds(std::chrono::nanoseconds duration) { return Seconds(duration).count(); }
 
@@ -92,9 +92,8 @@ void Terminal::summary(const session::RunResult& result, double cpu_seconds) {
               seconds(result.sim_time), result.robots);
   std::printf("real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0,
               wall, cpu_seconds);
-  std::printf("barrier latency   p50 %s us, p99 %s us, max %s us\n",
-              microseconds(result.barrier.quantile(0.5)).c_str(), microseconds(result.barrier.quantile(0.99)).c_str(),
-              microseconds(result.barrier.max()).c_str());
+  std::printf("barrier latency   p50 %s us, p99 %s us, max %s us\n", microseconds(result.barrier.quantile(0.5)).c_str(),
+              microseconds(result.barrier.quantile(0.99)).c_str(), microseconds(result.barrier.max()).c_str());
   std::printf("contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
               percent(result.touches.obstacles, result.touches.robot_ticks),
               percent(result.touches.robots, result.touches.robot_ticks));

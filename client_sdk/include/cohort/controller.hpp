@@ -56,20 +56,21 @@ enum class StartReason {
 /// What a controller is told before its first step, and again after each reset, restore and takeover.
 class Start {
  public:
-  std::uint32_t robot = 0;       ///< id in this run
-  std::string name;              ///< scoped name, such as `explorers/sbot_7`
-  std::string model;             ///< such as `sbot`
+  std::uint32_t robot = 0;  ///< id in this run
+  std::string name;         ///< scoped name, such as `explorers/sbot_7`
+  std::string model;        ///< such as `sbot`
   StartReason reason = StartReason::first;
-  std::uint64_t tick = 0;        ///< of the first observation to come
-  std::uint64_t seed = 0;        ///< for the controller's own random numbers: fixed by experiment seed and robot name
-  std::chrono::nanoseconds step{0};    ///< simulated time between ticks
-  std::uint32_t period = 1;      ///< ticks from one observation to the next
+  std::uint64_t tick = 0;  ///< of the first observation to come
+  std::uint64_t seed = 0;  ///< for the controller's own random numbers: fixed by experiment seed and robot name
+  std::chrono::nanoseconds step{0};  ///< simulated time between ticks
+  std::uint32_t period = 1;          ///< ticks from one observation to the next
   std::vector<ChannelInfo> observation_channels;
   std::vector<ChannelInfo> command_channels;
 
   /// Throws ChannelError if there is no such channel.
   ObservationChannel observation(std::string_view name) const;
-  /// All channels that match, in their order; `*` stands for any run of characters but `/`. Throws ChannelError if none.
+  /// All channels that match, in their order; `*` stands for any run of characters but `/`. Throws ChannelError if
+  /// none.
   std::vector<ObservationChannel> observations(std::string_view pattern) const;
   /// Throws ChannelError if there is no such channel.
   CommandChannel command(std::string_view name) const;
@@ -148,8 +149,8 @@ int run_controller(const Plugin& plugin, int argc, char** argv);
 #endif
 
 /// Once, at the end of a controller's source file.
-#define COHORT_CONTROLLER(Class)                                                                          \
-  extern "C" __attribute__((visibility("default"))) const ::cohort::Plugin cohort_plugin = {             \
-      ::cohort::Plugin::current_abi, #Class, []() -> ::cohort::Controller* { return new Class; },        \
-      [](::cohort::Controller* controller) { delete controller; }};                                      \
+#define COHORT_CONTROLLER(Class)                                                                  \
+  extern "C" __attribute__((visibility("default"))) const ::cohort::Plugin cohort_plugin = {      \
+      ::cohort::Plugin::current_abi, #Class, []() -> ::cohort::Controller* { return new Class; }, \
+      [](::cohort::Controller* controller) { delete controller; }};                               \
   COHORT_CONTROLLER_MAIN

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by a signal, which wakes nobody
 constexpr std::chrono::milliseconds observer_count_interval{100};
+constexpr int answers_kept = 8;  // of each client, by DDS, until they are taken
 const std::string view_partition = "view";
 
 }  // namespace
@@ -28,9 +29,9 @@ Server::Server(const description::Experiment& experiment, Simulation& simulation
       world_state_(participant, view_partition),
       joins_(participant, {[this](const wire::Join& join, const wire::Sender& sender) { on_join(join, sender); },
                            [this](const wire::Sender& sender, bool alive) { on_liveliness(sender, alive); }}),
-      commands_(
-          participant,
-          {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); }, {}}),
+      commands_(participant,
+                {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); }, {}},
+                "", answers_kept),
       reports_(participant, {[this](const wire::Report& report, const wire::Sender&) { on_report(report); }, {}}) {
   std::iota(all_robots_.begin(), all_robots_.end(), 0u);
   for (const wire::RobotDescription& description : describe_kinds(simulation)) descriptions_.write(description);

@@ -81,7 +81,7 @@ TEST_F(DisturbedRun, AControllerStoppedForThreeSecondsBringsTheRunToTheSameBits)
 
 TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
   const std::string expected = reference_hash(10);
-  Process run({cohort_program(), "run", demo_experiment(), "--duration", "10", "--speed", "5"});
+  Process run({cohort_program(), "run", demo_experiment(), "--duration", "10", "--speed", "2.5"});
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (children_of(run.pid()).empty() && std::chrono::steady_clock::now() < deadline)
     std::this_thread::sleep_for(1ms);

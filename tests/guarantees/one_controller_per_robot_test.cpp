@@ -5,13 +5,18 @@
 namespace cohort::testing {
 namespace {
 
-TEST(OneControllerPerRobot, ASecondClaimIsRefusedByNameAndTheRunGoesOn) {
+TEST(OneControllerPerRobot, ASecondClaimWaitsWhileTheHolderIsSilentAndIsRefusedByNameOnceItAnswers) {
   const ReservedDomain domain;
-  Process server(
-      {cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain", domain.text()});
-  Process holder({cohort_program(), "host", "obstacle_avoidance", "--robots", "all", "--domain", domain.text()});
-  ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
-  Process second({cohort_program(), "host", "obstacle_avoidance", "--robots", "3", "--domain", domain.text()});
+  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "10", "--domain", domain.text()});
+  const auto controllers_of = [&](const char* robots) {
+    return std::vector<std::string>{cohort_program(), "host",     "obstacle_avoidance", "--robots",
+                                    robots,           "--domain", domain.text()};
+  };
+  Process holder(controllers_of("0..14"));
+  ASSERT_TRUE(server.wait_for_output("waiting for explorers/sbot_15")) << server.output();
+  Process second(controllers_of("3"));
+  ASSERT_TRUE(second.wait_for_output("waiting for the server to admit")) << second.output();
+  Process last(controllers_of("15"));  // now the run begins, and the holder answers
   EXPECT_EQ(second.wait_for_exit(), 2) << second.output();
   EXPECT_NE(second.output().find("explorers/sbot_3 is driven by"), std::string::npos) << second.output();
   EXPECT_EQ(server.wait_for_exit(), 0) << server.output();

@@ -94,10 +94,10 @@ RunResult run_over_dds(const RunCommand& command, const description::Experiment&
                        const std::vector<LoadedPlugin>& plugins, Terminal& terminal,
                        const session::RunListener& listener, const std::atomic<bool>& stop) {
   Served served = open_domain(command);
-  std::optional<Children> children;
+  Children* own_controllers = nullptr;
   session::RunListener own_listener = listener;
   own_listener.ending = [&] {
-    if (children) children->stop_restarting();
+    if (own_controllers != nullptr) own_controllers->stop_restarting();
   };
   session::Server server(experiment, simulation, served.participant, {command.speed}, own_listener);
   if (command.controllers == Controllers::external) {
@@ -106,11 +106,12 @@ RunResult run_over_dds(const RunCommand& command, const description::Experiment&
     return server.run(stop);
   }
   const bool per_robot = command.controllers == Controllers::per_robot;
-  children.emplace(controller_commands(experiment, plugins, per_robot, served.domain),
-                   Children::Listener{[](const std::string& text) { spdlog::warn("{}", text); },
-                                      [&](const std::string& text) { server.fail(text); }});
+  Children children(
+      controller_commands(experiment, plugins, per_robot, served.domain),
+      {[](const std::string& text) { spdlog::warn("{}", text); }, [&](const std::string& text) { server.fail(text); }});
+  own_controllers = &children;
   RunResult result = server.run(stop);
-  children.reset();
+  children.let_finish();
   return result;
 }
 

@@ -44,8 +44,4 @@ struct Experiment {
 Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
                            std::optional<std::chrono::nanoseconds> duration = {});
 
-/// Ids, ascending, of the robots that `selector` names: `all`, an id, an id range `A..B`, a scoped name, or a name with
-/// `*`. Throws std::invalid_argument if it is malformed or matches none.
-std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector);
-
 }  // namespace cohort::description

@@ -32,7 +32,8 @@ Server::Server(const description::Experiment& experiment, Simulation& simulation
       commands_(participant,
                 {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); }, {}},
                 "", answers_kept),
-      reports_(participant, {[this](const wire::Report& report, const wire::Sender&) { on_report(report); }, {}}) {
+      reports_(participant,
+               {[this](const wire::Report& report, const wire::Sender& sender) { on_report(report, sender); }, {}}) {
   std::iota(all_robots_.begin(), all_robots_.end(), 0u);
   for (const wire::RobotDescription& description : describe_kinds(simulation)) descriptions_.write(description);
 }
@@ -262,11 +263,20 @@ void Server::on_liveliness(const wire::Sender& sender, bool alive) {
   wake_.notify_all();
 }
 
-void Server::on_report(const wire::Report& report) {
+void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
+  if (report.kind != wire::ReportKind::failed) return;  // a client has nothing else to report
   const std::lock_guard lock(mutex_);
+  if (!is_in_own_name(report.client, sender))
+    return reject(sender.participant, "foreign", "a Report comes in the name of " + wire::partition_of(report.client));
   inbox_.reports.push_back(report);
   attention_ = true;
   wake_.notify_all();
+}
+
+// Under the lock: whether DDS says that this comes from the process that joined under that id.
+bool Server::is_in_own_name(std::uint64_t client, const wire::Sender& sender) const {
+  const auto joined = participant_of_client_.find(client);
+  return joined != participant_of_client_.end() && joined->second == sender.participant;
 }
 
 void Server::on_command(const wire::Command& command, const wire::Sender& sender) {
@@ -274,7 +284,7 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
   const lockstep::Leases::Lease* lease = leases_.lease(command.client);
   const std::string answer = "an answer to tick " + std::to_string(command.tick);
   if (lease == nullptr) return reject(command.client, "foreign", "commands come from a client that drives no robot");
-  if (participant_of_client_.at(command.client) != sender.participant)
+  if (!is_in_own_name(command.client, sender))
     return reject(sender.participant, "foreign", "commands come in the name of " + wire::partition_of(command.client));
   if (command.run != run_number_) return reject(command.client, "stale", answer + " of another run");
   if (command.epoch != lease->epoch) return reject(command.client, "stale", answer + " of another lease");

@@ -67,7 +67,8 @@ class Server {
   void on_join(const wire::Join& join, const wire::Sender& sender);
   void on_liveliness(const wire::Sender& sender, bool alive);
   void on_command(const wire::Command& command, const wire::Sender& sender);
-  void on_report(const wire::Report& report);
+  void on_report(const wire::Report& report, const wire::Sender& sender);
+  bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
   void reject(std::uint64_t client, const std::string& reason, const std::string& text);
 
   // On the thread of `run`; those that take the lock must not hold it.

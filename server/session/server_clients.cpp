@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "server/description/experiment.hpp"
+#include "server/description/select_robots.hpp"
 #include "server/session/roster.hpp"
 #include "server/session/server.hpp"
 
@@ -25,9 +25,8 @@ void Server::handle_inbox() {
     if (found != client_of_writer_.end()) handle_liveliness(found->second, change.alive);
   }
   for (const wire::Report& report : inbox.reports) {
-    if (report.kind != wire::ReportKind::failed) continue;
     const std::lock_guard lock(mutex_);
-    if (leases_.lease(report.client) == nullptr) continue;  // a stranger's troubles are its own
+    if (leases_.lease(report.client) == nullptr) continue;  // it drives nothing: its troubles are its own
     book_.add_event("failed", label_of(report.client) + ": " + report.text);
     if (error_.empty()) error_ = report.text;
   }
@@ -63,6 +62,7 @@ void Server::handle_liveliness(std::uint64_t client_id, bool alive) {
   }
   if (!useless) return;
   clients_.erase(client);
+  std::erase_if(client_of_writer_, [&](const auto& writer) { return writer.second == client_id; });
   const std::lock_guard lock(mutex_);
   participant_of_client_.erase(client_id);
 }

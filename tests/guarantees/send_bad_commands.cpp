@@ -1,5 +1,5 @@
-// A stranger on the network: sends every kind of bad command in the name of the given client, about a thousand a
-// second, until it is killed. send_bad_commands DOMAIN CLIENT
+// A stranger on the network: sends every kind of bad command, Join and Report in the name of the given client, about a
+// thousand a second, until it is killed. send_bad_commands DOMAIN CLIENT
 
 #include <atomic>
 #include <chrono>
@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
       participant, {[&](const wire::WorldState& state, const wire::Sender&) { tick = state.tick; }, {}}, "view");
   wire::Writer<wire::Command> commands(participant);
   wire::Writer<wire::Join> joins(participant);
+  wire::Writer<wire::Report> reports(participant);
   while (commands.matched() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   std::puts("sending");
   std::fflush(stdout);
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
     join.controller = "stranger";
     join.robots = {"explorers/nobody"};
     joins.write(join);
+    reports.write({client, 1, wire::ReportKind::failed, tick, "exception", "forged"});
     std::this_thread::sleep_for(std::chrono::milliseconds(30));
   }
 }

@@ -1,9 +1,15 @@
 #pragma once
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -43,7 +49,15 @@ inline FreeDomain take_free_domain(std::uint32_t first = 60, std::uint32_t last 
   return std::move(*found);
 }
 
-/// A domain without a server, apart from those that tests with a server take.
-inline std::uint32_t find_empty_domain() { return take_free_domain(75, 79).domain; }
+/// A domain without a server, which no other test of this machine takes until this process ends.
+inline std::uint32_t find_empty_domain() {
+  for (std::uint32_t domain = 75; domain <= 79; ++domain) {
+    const auto file = std::filesystem::temp_directory_path() / ("cohort-test-domain-" + std::to_string(domain));
+    const int lock = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0) return domain;
+    if (lock >= 0) close(lock);
+  }
+  throw std::runtime_error("all empty domains for tests are taken");
+}
 
 }  // namespace cohort::test

@@ -16,8 +16,9 @@
 namespace cohort::testing {
 namespace {
 
-// Apart from the domains that `cohort run` takes by itself (1 to 59), and below those whose ports are ephemeral ones.
-constexpr std::uint32_t first_domain = 60;
+// Apart from the domains that `cohort run` takes by itself (1 to 59) and those of tests/support/free_domain.hpp (60 to
+// 79), and below those whose ports are ephemeral ones.
+constexpr std::uint32_t first_domain = 80;
 constexpr std::uint32_t last_domain = 99;
 
 std::string read_file(const std::filesystem::path& file) {

@@ -27,6 +27,12 @@ auto to_span(const Sequence& sequence) {
   return std::span<const Element>(sequence._buffer, sequence._buffer == nullptr ? 0 : sequence._length);
 }
 
+std::vector<std::string> to_strings(const dds_sequence_string& texts) {
+  std::vector<std::string> result;
+  for (const char* text : to_span(texts)) result.push_back(to_string(text));
+  return result;
+}
+
 std::vector<cohort_v1_Channel> encode(const std::vector<Channel>& channels) {
   std::vector<cohort_v1_Channel> result;
   result.reserve(channels.size());
@@ -80,14 +86,27 @@ Join Codec<Join>::decode(const Sample& sample) {
   message.controller = to_string(sample.controller);
   message.host = to_string(sample.host);
   message.process = sample.process;
-  for (const char* robot : to_span(sample.robots)) message.robots.push_back(to_string(robot));
+  message.robots = to_strings(sample.robots);
   return message;
 }
 
 Codec<Admit>::Outgoing::Outgoing(const Admit& message) {
+  // Sequences borrow what the vectors hold, which stays where it is when an outer vector grows.
+  for (const Team& team : message.teams) {
+    auto& team_parameters = parameters.emplace_back();
+    auto& team_values = values.emplace_back();
+    for (const Parameter& parameter : team.parameters) {
+      auto& texts = team_values.emplace_back();
+      for (const std::string& value : parameter.values) texts.push_back(lent(value));
+      team_parameters.push_back({lent(parameter.name), {}});
+      lend(texts, team_parameters.back().values);
+    }
+    teams.push_back({lent(team.name), lent(team.controller), {}});
+    lend(team_parameters, teams.back().parameters);
+  }
   for (const AdmittedRobot& robot : message.robots) {
-    robots.push_back(
-        {robot.robot, lent(robot.name), robot.description, robot.seed, robot.period, robot.phase, robot.delay});
+    robots.push_back({robot.robot, lent(robot.name), robot.team, robot.description, robot.seed, robot.period,
+                      robot.phase, robot.delay});
   }
   sample.client = message.client;
   sample.status = static_cast<std::uint32_t>(message.status);
@@ -97,6 +116,7 @@ Codec<Admit>::Outgoing::Outgoing(const Admit& message) {
   sample.start_reason = static_cast<std::uint32_t>(message.start_reason);
   sample.tick = message.tick;
   sample.step_ns = message.step_ns;
+  lend(teams, sample.teams);
   lend(robots, sample.robots);
 }
 
@@ -110,9 +130,14 @@ Admit Codec<Admit>::decode(const Sample& sample) {
   message.start_reason = static_cast<StartReason>(sample.start_reason);
   message.tick = sample.tick;
   message.step_ns = sample.step_ns;
+  for (const cohort_v1_Team& sent : to_span(sample.teams)) {
+    Team& team = message.teams.emplace_back(Team{to_string(sent.name), to_string(sent.controller), {}});
+    for (const cohort_v1_Parameter& parameter : to_span(sent.parameters))
+      team.parameters.push_back({to_string(parameter.name), to_strings(parameter.values)});
+  }
   for (const cohort_v1_AdmittedRobot& robot : to_span(sample.robots)) {
-    message.robots.push_back(
-        {robot.robot, to_string(robot.name), robot.description, robot.seed, robot.period, robot.phase, robot.delay});
+    message.robots.push_back({robot.robot, to_string(robot.name), robot.team, robot.description, robot.seed,
+                              robot.period, robot.phase, robot.delay});
   }
   return message;
 }

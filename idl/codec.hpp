@@ -44,6 +44,9 @@ struct Codec<Admit> {
   struct Outgoing {
     explicit Outgoing(const Admit& message);
     Sample sample{};
+    std::vector<cohort_v1_Team> teams;
+    std::vector<std::vector<cohort_v1_Parameter>> parameters;  // of each team
+    std::vector<std::vector<std::vector<char*>>> values;       // of each of them
     std::vector<cohort_v1_AdmittedRobot> robots;
   };
   static const Topic topic;

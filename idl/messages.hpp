@@ -29,9 +29,21 @@ struct Join {
   std::vector<std::string> robots{};
 };
 
+struct Parameter {
+  std::string name{};
+  std::vector<std::string> values{};
+};
+
+struct Team {
+  std::string name{};
+  std::string controller{};
+  std::vector<Parameter> parameters{};
+};
+
 struct AdmittedRobot {
   std::uint32_t robot = 0;
   std::string name{};
+  std::uint32_t team = 0;
   std::uint32_t description = 0;
   std::uint64_t seed = 0;
   std::uint32_t period = 1;
@@ -51,6 +63,7 @@ struct Admit {
   StartReason start_reason = StartReason::first;
   std::uint64_t tick = 0;
   std::int64_t step_ns = 0;
+  std::vector<Team> teams{};
   std::vector<AdmittedRobot> robots{};
 };
 

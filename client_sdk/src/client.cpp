@@ -12,7 +12,6 @@
 #include <set>
 #include <utility>
 
-#include "client_sdk/src/controller_host.hpp"
 #include "client_sdk/src/frame_queue.hpp"
 #include "idl/wire.hpp"
 
@@ -57,7 +56,7 @@ class Unlocked {
 // `run` does the rest (with `inline_step`, the one that brought a frame answers it, if nobody is at it).
 class Client {
  public:
-  Client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop);
+  Client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop);
   ClientEnd run();
 
  private:
@@ -121,11 +120,11 @@ class Client {
   wire::Reader<wire::Observation> frame_reader_;
 };
 
-Client::Client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop)
+Client::Client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop)
     : options_(options),
-      name_(options.name.empty() ? plugin.name : options.name),
+      name_(options.name.empty() ? kind.name : options.name),
       stop_(stop),
-      host_(plugin),
+      host_(kind),
       participant_(wire::Participant::client(options.domain, options.server)),
       joins_(participant_),
       commands_(participant_, "", frames_kept_by_dds),
@@ -327,8 +326,8 @@ void Client::explain(const std::string& text) const { std::fprintf(stderr, "%s: 
 
 }  // namespace
 
-ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop) {
-  return Client(plugin, options, stop).run();
+ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop) {
+  return Client(kind, options, stop).run();
 }
 
 }  // namespace cohort

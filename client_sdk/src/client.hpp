@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "client_sdk/include/cohort/controller.hpp"
+#include "client_sdk/src/controller_host.hpp"
 
 namespace cohort {
 
@@ -14,7 +14,7 @@ struct ClientOptions {
   std::string server = "127.0.0.1";
   std::uint32_t domain = 0;
   std::vector<std::string> robots{"all"};  ///< selectors, see docs/protocol.md
-  std::string name;                        ///< shown by the server; the plugin's name if empty
+  std::string name;                        ///< shown by the server; the controller's if empty
   /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
   /// latency. Only for controllers that never block, since DDS stands still meanwhile.
   bool inline_step = false;
@@ -33,6 +33,10 @@ enum class ClientEnd {
 /// standard error. Waits for a server that is not there yet. Blocks; controllers run on the calling thread, unless
 /// `inline_step`. `stop` may be set from a signal handler. Throws wire::WireError if the server's address cannot be
 /// used.
-ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop);
+ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop);
+
+inline ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop) {
+  return run_client(kind_of(plugin), options, stop);
+}
 
 }  // namespace cohort

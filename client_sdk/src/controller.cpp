@@ -1,7 +1,8 @@
 #include "client_sdk/include/cohort/controller.hpp"
 
-#include <algorithm>
-#include <numeric>
+#include <utility>
+
+#include "client_sdk/src/nearest.hpp"
 
 namespace cohort {
 namespace {
@@ -18,36 +19,19 @@ bool matches(std::string_view pattern, std::string_view name) {
   return !name.empty() && name.front() == pattern.front() && matches(pattern.substr(1), name.substr(1));
 }
 
-// Levenshtein's: how many characters to insert, delete or replace.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 ChannelError no_channel(const Start& start, std::string_view kind, std::string_view name,
                         const std::vector<ChannelInfo>& channels) {
   std::string message =
       "robot '" + start.name + "' (" + start.model + ") has no " + std::string(kind) + " '" + std::string(name) + "'";
   if (channels.empty()) return ChannelError(message + ", and no other " + std::string(kind) + " either");
-  std::vector<const ChannelInfo*> nearest;
-  for (const ChannelInfo& channel : channels) nearest.push_back(&channel);
-  std::stable_sort(nearest.begin(), nearest.end(), [&](const ChannelInfo* a, const ChannelInfo* b) {
-    return edit_distance(a->name, name) < edit_distance(b->name, name);
-  });
+  std::vector<std::string> names;
+  for (const ChannelInfo& channel : channels) names.push_back(channel.name);
   constexpr std::size_t shown = 3;
   message += "; the nearest are";
-  for (std::size_t i = 0; i < std::min(shown, nearest.size()); ++i) {
-    message += (i == 0 ? " " : ", ") + nearest[i]->name;
+  const char* separator = " ";
+  for (const std::string& near : nearest_names(name, std::move(names), shown)) {
+    message += separator + near;
+    separator = ", ";
   }
   return ChannelError(message);
 }

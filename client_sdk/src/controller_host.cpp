@@ -8,8 +8,6 @@
 namespace cohort {
 namespace {
 
-using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
-
 // Runs a controller's code. Whatever it throws becomes a ControllerFailure that says whose, where and why.
 template <class Call>
 decltype(auto) guarded(const std::string& robot, const char* function, std::uint64_t tick, Call call) {
@@ -50,6 +48,18 @@ StartReason reason_of(wire::StartReason reason) {
   throw ControllerFailure("the server gives a reason to start that this version does not know");
 }
 
+const wire::Team* team_of(const wire::Admit& admit, const wire::AdmittedRobot& robot) {
+  if (admit.teams.empty()) return nullptr;
+  if (robot.team < admit.teams.size()) return &admit.teams[robot.team];
+  throw ControllerFailure("robot '" + robot.name + "' has a team that the server does not describe");
+}
+
+}  // namespace
+
+ControllerKind kind_of(const Plugin& plugin) {
+  return {plugin.name, [plugin] { return OwnedController(plugin.create(), plugin.destroy); }};
+}
+
 Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
                std::span<const wire::RobotDescription> descriptions) {
   const auto description = std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& candidate) {
@@ -62,6 +72,13 @@ Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
   start.robot = robot.robot;
   start.name = robot.name;
   start.model = description->model;
+  if (const wire::Team* const team = team_of(admit, robot)) {
+    start.team = team->name;
+    start.controller = team->controller;
+    std::vector<Parameter> parameters;
+    for (const wire::Parameter& parameter : team->parameters) parameters.push_back({parameter.name, parameter.values});
+    start.parameters = Parameters(std::move(parameters));
+  }
   start.reason = reason_of(admit.start_reason);
   start.tick = admit.tick;
   start.seed = robot.seed;
@@ -72,8 +89,6 @@ Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
   return start;
 }
 
-}  // namespace
-
 struct ControllerHost::Robot {
   std::uint32_t id = 0;
   std::string name;
@@ -82,7 +97,7 @@ struct ControllerHost::Robot {
   std::vector<double> neutral;
 };
 
-ControllerHost::ControllerHost(const Plugin& plugin) : plugin_(plugin) {}
+ControllerHost::ControllerHost(ControllerKind kind) : kind_(std::move(kind)) {}
 ControllerHost::~ControllerHost() = default;
 
 ControllerHost::Robot* ControllerHost::find(std::uint32_t id) {
@@ -99,11 +114,13 @@ void ControllerHost::start(const wire::Admit& admit, std::span<const wire::Robot
   for (const wire::AdmittedRobot& admitted : admit.robots) {
     const Start start = start_of(admit, admitted, descriptions);
     Robot* before = find(admitted.robot);
-    OwnedController controller =
-        before != nullptr ? std::move(before->controller) : guarded(admitted.name, "its constructor", admit.tick, [&] {
-          return OwnedController(plugin_.create(), plugin_.destroy);
-        });
-    guarded(admitted.name, "start", admit.tick, [&] { controller->start(start); });
+    OwnedController controller = before != nullptr
+                                     ? std::move(before->controller)
+                                     : guarded(admitted.name, "its constructor", admit.tick, kind_.create);
+    guarded(admitted.name, "start", admit.tick, [&] {
+      controller->start(start);
+      start.parameters.check_all_were_asked_for();
+    });
     std::vector<double> neutral;
     for (const ChannelInfo& channel : start.command_channels) {
       neutral.insert(neutral.end(), channel.size, channel.neutral);

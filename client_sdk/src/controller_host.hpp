@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "client_sdk/include/cohort/controller.hpp"
@@ -17,11 +19,26 @@ class ControllerFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
+
+/// How to make controllers of one kind.
+struct ControllerKind {
+  std::string name;  ///< shown to people
+  std::function<OwnedController()> create;
+};
+ControllerKind kind_of(const Plugin& plugin);
+
+/// What a controller of `robot`, one of `admit`'s, is started with. Throws ControllerFailure if `admit` or
+/// `descriptions` lack what it refers to.
+Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
+               std::span<const wire::RobotDescription> descriptions);
+
 /// The controllers of some robots in this process: turns frames into answers. Knows nothing of the network, so a
 /// process of its own and a run in the server's process do the very same. One thread at a time.
 class ControllerHost {
  public:
-  explicit ControllerHost(const Plugin& plugin);
+  explicit ControllerHost(ControllerKind kind);
+  explicit ControllerHost(const Plugin& plugin) : ControllerHost(kind_of(plugin)) {}
   ~ControllerHost();
 
   /// Creates a controller for each admitted robot (keeping those that it has if the reason is reset or restored) and
@@ -36,7 +53,7 @@ class ControllerHost {
   struct Robot;
   Robot* find(std::uint32_t id);
 
-  Plugin plugin_;
+  ControllerKind kind_;
   std::vector<Robot> robots_;  // ascending ids
   std::vector<double> values_;
 };

@@ -22,12 +22,21 @@ struct Policy {
   std::chrono::nanoseconds deadline{0};  ///< wall-clock patience per tick; only read if on_late is not wait
 };
 
+/// What the experiment gives a team's controllers. Nested maps are flattened: their keys are joined by '.'.
+struct Parameter {
+  std::string name;
+  std::vector<std::string> values;  ///< one, or those of a list, as they are written
+  int line = 0;                     ///< in the experiment's file
+};
+
 /// Robots that share a controller and a policy.
 struct Team {
   std::string name;
   std::vector<std::uint32_t> robots;  ///< ids, ascending
   std::string controller;             ///< plugin name, or a path to a plugin
   Policy policy;
+  std::vector<Parameter> parameters{};  ///< of the controllers, in the file's order
+  int controller_line = 0;              ///< of the key `controller` in the file
 };
 
 struct Experiment {

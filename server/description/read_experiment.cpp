@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>::max();
 
 const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "teams"};
-const std::vector<std::string> team_keys = {"name",  "robots", "controller", "period",
+const std::vector<std::string> team_keys = {"name",  "robots", "controller", "parameters", "period",
                                             "phase", "delay",  "on_late",    "deadline"};
 
 const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLate::wait},
@@ -90,6 +90,8 @@ class ExperimentReader {
   void read_world_of(const YamlMap& top);
   void read_teams(const YamlMap& top);
   void read_team(const YAML::Node& node, const std::string& path);
+  void read_parameters(const YAML::Node& map, const std::string& path, const std::string& prefix,
+                       std::vector<Parameter>& parameters);
   void select(const YAML::Node& selector, const std::string& path, std::set<std::uint32_t>& selected);
   void claim(const YAML::Node& node, const std::string& path, const std::string& team,
              const std::set<std::uint32_t>& selected);
@@ -172,6 +174,13 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
   Team team;
   team.name = map.text("name").value_or("");
   team.controller = map.text("controller").value_or("");
+  team.controller_line = map.where("controller").Mark().line + 1;
+  if (map.has("parameters")) {
+    if (map.where("parameters").IsMap())
+      read_parameters(map.where("parameters"), map.path_to("parameters"), "", team.parameters);
+    else
+      map.problem("parameters", "expected 'NAME: VALUE' lines, not " + shown(map.where("parameters")));
+  }
   team.policy = read_policy(map);
   for (const Team& other : experiment_.teams)
     if (!team.name.empty() && other.name == team.name)
@@ -190,6 +199,43 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
     team.robots.assign(selected.begin(), selected.end());
   }
   experiment_.teams.push_back(std::move(team));
+}
+
+// The controller knows what they mean; here only their shape is looked at: maps of maps, of values, and of lists of
+// values.
+void ExperimentReader::read_parameters(const YAML::Node& map, const std::string& path, const std::string& prefix,
+                                       std::vector<Parameter>& parameters) {
+  for (const auto& entry : map) {
+    if (!entry.first.IsScalar()) {
+      report_.problem(entry.first, path, "expected a name, not " + shown(entry.first));
+      continue;
+    }
+    const std::string name = prefix + entry.first.Scalar();
+    const std::string path_to_it = path + "." + entry.first.Scalar();
+    const YAML::Node& value = entry.second;
+    if (value.IsMap()) {
+      read_parameters(value, path_to_it, name + ".", parameters);
+      continue;
+    }
+    Parameter parameter{name, {}, entry.first.Mark().line + 1};
+    if (value.IsScalar()) parameter.values.push_back(value.Scalar());
+    bool is_right = value.IsScalar() || value.IsSequence();
+    if (value.IsSequence()) {
+      for (const YAML::Node& each : value) {
+        is_right &= each.IsScalar();
+        parameter.values.push_back(is_right ? each.Scalar() : "");
+      }
+    }
+    if (!is_right) {
+      report_.problem(entry.first, path_to_it,
+                      "expected a value or a list of values, not " +
+                          (value.IsSequence() ? "a list of something else" : shown(value)));
+    } else if (std::ranges::any_of(parameters, [&](const Parameter& other) { return other.name == name; })) {
+      report_.problem(entry.first, path_to_it, "the parameter is given twice");
+    } else {
+      parameters.push_back(std::move(parameter));
+    }
+  }
 }
 
 void ExperimentReader::select(const YAML::Node& selector, const std::string& path, std::set<std::uint32_t>& selected) {

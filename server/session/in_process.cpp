@@ -3,15 +3,14 @@
 #include <memory>
 #include <thread>
 
-#include "client_sdk/src/controller_host.hpp"
 #include "server/session/exchange.hpp"
 #include "server/session/roster.hpp"
 
 namespace cohort::session {
 
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
-                         const std::vector<Plugin>& plugins, const RunOptions& options, const RunListener& listener,
-                         const std::atomic<bool>& stop) {
+                         const std::vector<ControllerKind>& controllers, const RunOptions& options,
+                         const RunListener& listener, const std::atomic<bool>& stop) {
   RunBook book(experiment, simulation, options, listener);
   Exchange exchange(simulation);
   const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
@@ -23,8 +22,8 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       admit.client = team;
       admit.step_ns = experiment.world.step.count();
       admit.tick = simulation.tick();
-      admit.robots = admit_robots(experiment, simulation, experiment.teams[team].robots);
-      hosts.push_back(std::make_unique<ControllerHost>(plugins[team]));
+      admit_robots(admit, experiment, simulation, experiment.teams[team].robots);
+      hosts.push_back(std::make_unique<ControllerHost>(controllers[team]));
       hosts.back()->start(admit, descriptions);
     }
 

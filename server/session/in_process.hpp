@@ -3,16 +3,16 @@
 #include <atomic>
 #include <vector>
 
-#include "client_sdk/include/cohort/controller.hpp"
+#include "client_sdk/src/controller_host.hpp"
 #include "server/session/run.hpp"
 
 namespace cohort::session {
 
 /// Runs an experiment with its controllers in this process, without a network: the same barrier, the same frames and
-/// the same answers as over DDS. `plugins`: one for each team, in order. Returns when the run is over or soon after
+/// the same answers as over DDS. `controllers`: one for each team, in order. Returns when the run is over or soon after
 /// `stop` is set.
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
-                         const std::vector<Plugin>& plugins, const RunOptions& options, const RunListener& listener,
-                         const std::atomic<bool>& stop);
+                         const std::vector<ControllerKind>& controllers, const RunOptions& options,
+                         const RunListener& listener, const std::atomic<bool>& stop);
 
 }  // namespace cohort::session

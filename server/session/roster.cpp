@@ -1,5 +1,7 @@
 #include "server/session/roster.hpp"
 
+#include <algorithm>
+
 #include "server/core/random.hpp"
 
 namespace cohort::session {
@@ -8,6 +10,13 @@ namespace {
 std::vector<wire::Channel> to_wire(const std::vector<Channel>& channels) {
   std::vector<wire::Channel> result;
   for (const Channel& c : channels) result.push_back({c.name, c.unit, c.size, c.lower, c.upper, c.neutral});
+  return result;
+}
+
+wire::Team to_wire(const description::Team& team) {
+  wire::Team result{team.name, team.controller, {}};
+  for (const description::Parameter& parameter : team.parameters)
+    result.parameters.push_back({parameter.name, parameter.values});
   return result;
 }
 
@@ -21,17 +30,27 @@ std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation)
   return descriptions;
 }
 
-std::vector<wire::AdmittedRobot> admit_robots(const description::Experiment& experiment, const Simulation& simulation,
-                                              std::span<const std::uint32_t> robots) {
-  std::vector<wire::AdmittedRobot> result;
+void admit_robots(wire::Admit& admit, const description::Experiment& experiment, const Simulation& simulation,
+                  std::span<const std::uint32_t> robots) {
+  admit.robots.clear();
+  admit.teams.clear();
   for (const std::uint32_t robot : robots) {
     const std::string& name = simulation.robot_name(robot);
     const description::Policy& policy = simulation.policy(robot);
-    result.push_back({robot, name, simulation.kind_of(robot),
-                      RandomStream(experiment.seed, name, "controller").bits(0, 0), policy.period, policy.phase,
-                      policy.delay});
+    admit.robots.push_back({robot, name, 0, simulation.kind_of(robot),
+                            RandomStream(experiment.seed, name, "controller").bits(0, 0), policy.period, policy.phase,
+                            policy.delay});
   }
-  return result;
+  for (const description::Team& team : experiment.teams) {
+    const auto index = static_cast<std::uint32_t>(admit.teams.size());
+    bool is_named = false;
+    for (wire::AdmittedRobot& robot : admit.robots) {
+      if (!std::ranges::binary_search(team.robots, robot.robot)) continue;
+      robot.team = index;
+      is_named = true;
+    }
+    if (is_named) admit.teams.push_back(to_wire(team));
+  }
 }
 
 }  // namespace cohort::session

@@ -14,9 +14,9 @@ namespace cohort::session {
 /// One for each kind of robot; RobotDescription::description is its index in Simulation::kinds().
 std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation);
 
-/// What an Admit says of each robot. The seed for a controller's own randomness depends on the experiment's seed and
-/// the robot's name only.
-std::vector<wire::AdmittedRobot> admit_robots(const description::Experiment& experiment, const Simulation& simulation,
-                                              std::span<const std::uint32_t> robots);
+/// Gives an Admit its robots, with what their teams say of them. The seed for a controller's own randomness depends on
+/// the experiment's seed and the robot's name only.
+void admit_robots(wire::Admit& admit, const description::Experiment& experiment, const Simulation& simulation,
+                  std::span<const std::uint32_t> robots);
 
 }  // namespace cohort::session

@@ -166,7 +166,7 @@ void Server::admit(const lockstep::Leases::Granted& granted) {
     answer.start_reason = running_ ? wire::StartReason::takeover : wire::StartReason::first;
     answer.tick = frames.empty() ? simulation_.tick() : frames.front();
     answer.step_ns = experiment_.world.step.count();
-    answer.robots = admit_robots(experiment_, simulation_, lease.robots);
+    admit_robots(answer, experiment_, simulation_, lease.robots);
     if (!granted.again) book_.add_event("joined", label_of(granted.client) + " drives " + robots_text(lease.robots));
   }
   Client& client = clients_.at(granted.client);

@@ -29,7 +29,7 @@ class DemoRun : public ::testing::Test {
     ControllerHost host(plugin.plugin());
     wire::Admit admit;
     admit.step_ns = experiment.world.step.count();
-    admit.robots = session::admit_robots(experiment, simulation, experiment.teams[0].robots);
+    session::admit_robots(admit, experiment, simulation, experiment.teams[0].robots);
     host.start(admit, session::describe_kinds(simulation));
 
     robots = simulation.robot_count();

@@ -555,6 +555,21 @@ TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
   EXPECT_EQ(policy.deadline, 50ms);
 }
 
+TEST_F(Experiments, ParametersAreFlattenedInTheirOrder) {
+  const Experiment experiment = read_experiment(write_experiment(
+      "world: world.sdf\nduration: 1\nteams:\n  - name: a\n    robots: all\n    controller: x\n    parameters:\n"
+      "      wheel/0/velocity:\n        bias: 0.2\n        eye/*/reading: [1, -2]\n      mode: fast\n"));
+  const Team& team = experiment.teams[0];
+  EXPECT_EQ(team.controller_line, 6);
+  ASSERT_EQ(team.parameters.size(), 3u);
+  EXPECT_EQ(team.parameters[0].name, "wheel/0/velocity.bias");
+  EXPECT_EQ(team.parameters[0].line, 9);
+  EXPECT_EQ(team.parameters[1].name, "wheel/0/velocity.eye/*/reading");
+  EXPECT_EQ(team.parameters[1].values, (std::vector<std::string>{"1", "-2"}));
+  EXPECT_EQ(team.parameters[2].name, "mode");
+  EXPECT_EQ(team.parameters[2].values, std::vector<std::string>{"fast"});
+}
+
 TEST_F(Experiments, SeedAndDurationOfTheCallerStandInForTheFiles) {
   const fs::path file = write_experiment("world: world.sdf\nteams: [{name: a, robots: all, controller: x}]\n");
   const Experiment experiment = read_experiment(file, 7, 2s);
@@ -604,6 +619,11 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{team("all", "    on_late: halt\n"), 7, "teams[0].on_late", "unknown policy 'halt'"},
         Flaw{team("all", "    on_late: zero\n"), 4, "teams[0].deadline", "missing"},
         Flaw{team("all", "    deadline: 1\n"), 7, "teams[0].deadline", "waits for ever"},
+        Flaw{team("all", "    parameters: [1]\n"), 7, "teams[0].parameters", "'NAME: VALUE' lines, not a list"},
+        Flaw{team("all", "    parameters:\n      gain:\n"), 8, "teams[0].parameters.gain", "not nothing"},
+        Flaw{team("all", "    parameters:\n      a:\n        b: [[1]]\n"), 9, "teams[0].parameters.a.b",
+             "a list of something else"},
+        Flaw{team("all", "    parameters:\n      a: 1\n      a: 2\n"), 9, "teams[0].parameters.a", "given twice"},
         Flaw{team("p/bot_1"), 6, "teams[0].robots", "no robot is called 'p/bot_1'; did you mean 'p/sbot_1'?"},
         Flaw{team("[0..3, 9]"), 6, "teams[0].robots[1]", "the robots of this world are 0..3"},
         Flaw{team("[0, 1, 3]"), 4, "teams", "in no team: 'p/sbot_2'"},

@@ -125,13 +125,18 @@ TEST(Exchange, AFaultyAnswerUnderZeroGivesNeutralValuesAndTheRunGoesOn) {
 TEST(Roster, SeedsOfControllersDependOnTheExperimentsSeedAndTheRobotsNameOnly) {
   auto experiment = experiment_of({{}, {}});
   const Simulation two(experiment, 1);
-  const auto first = admit_robots(experiment, two, Robots{0, 1});
+  const auto admitted = [](const auto& of, const Simulation& simulation, const Robots& robots) {
+    wire::Admit admit;
+    admit_robots(admit, of, simulation, robots);
+    return admit.robots;
+  };
+  const auto first = admitted(experiment, two, {0, 1});
   EXPECT_NE(first[0].seed, first[1].seed);
   const auto alone = experiment_of({{}});
   const Simulation one(alone, 1);
-  EXPECT_EQ(admit_robots(alone, one, Robots{0})[0].seed, first[0].seed);
+  EXPECT_EQ(admitted(alone, one, {0})[0].seed, first[0].seed);
   experiment.seed = 99;
-  EXPECT_NE(admit_robots(experiment, two, Robots{0})[0].seed, first[0].seed);
+  EXPECT_NE(admitted(experiment, two, {0})[0].seed, first[0].seed);
 }
 
 TEST(EventLog, CountsWhatIsTheSameAndIsBounded) {
@@ -169,7 +174,7 @@ TEST(InProcessRun, EndsWithTheMessageOfAControllerThatThrows) {
   const auto experiment = experiment_of({{}});
   Simulation simulation(experiment, 1);
   const std::atomic<bool> stop = false;
-  const RunResult result = run_in_process(experiment, simulation, {straight}, {}, {}, stop);
+  const RunResult result = run_in_process(experiment, simulation, {kind_of(straight)}, {}, {}, stop);
   EXPECT_EQ(result.end, RunResult::End::failed);
   EXPECT_EQ(result.ticks, 5u);
   EXPECT_NE(result.error.find("robot_0"), std::string::npos) << result.error;
@@ -180,7 +185,7 @@ TEST(InProcessRun, StopsWhenAskedTo) {
   const auto experiment = experiment_of({{}});
   Simulation simulation(experiment, 1);
   const std::atomic<bool> stop = true;
-  const RunResult result = run_in_process(experiment, simulation, {straight}, {}, {}, stop);
+  const RunResult result = run_in_process(experiment, simulation, {kind_of(straight)}, {}, {}, stop);
   EXPECT_EQ(result.end, RunResult::End::interrupted);
   EXPECT_EQ(result.ticks, 0u);
 }

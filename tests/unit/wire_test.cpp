@@ -34,9 +34,11 @@ std::string show(const Channel& c) {
   return show(c.name) + show(c.unit) + show(c.size) + show(c.lower) + show(c.upper) + show(c.neutral);
 }
 std::string show(const AdmittedRobot& r) {
-  return show(r.robot) + show(r.name) + show(r.description) + show(r.seed) + " " + show(r.period) + " " +
-         show(r.phase) + " " + show(r.delay);
+  return show(r.robot) + show(r.name) + show(r.team) + " " + show(r.description) + show(r.seed) + " " + show(r.period) +
+         " " + show(r.phase) + " " + show(r.delay);
 }
+std::string show(const Parameter& p);
+std::string show(const Team& t);
 template <class List>
 requires requires(const List& list) { list.size(), list.data()[0]; }
 std::string show_list(const List& list) {
@@ -44,6 +46,8 @@ std::string show_list(const List& list) {
   for (const auto& element : list) text += show(element) + ",";
   return text + "]";
 }
+std::string show(const Parameter& p) { return show(p.name) + show_list(p.values); }
+std::string show(const Team& t) { return show(t.name) + show(t.controller) + show_list(t.parameters); }
 template <class... Fields>
 std::string show_all(const Fields&... fields) {
   return ((show(fields) + " ") + ...);
@@ -54,7 +58,7 @@ std::string show(const Join& m) {
 std::string show(const Admit& m) {
   return show_all(m.client, static_cast<std::uint32_t>(m.status), m.reason, m.run, m.epoch,
                   static_cast<std::uint32_t>(m.start_reason), m.tick, m.step_ns) +
-         show_list(m.robots);
+         show_list(m.teams) + show_list(m.robots);
 }
 std::string show(const RobotDescription& m) {
   return show_all(m.description, m.model) + show_list(m.observation) + show_list(m.command);
@@ -142,6 +146,7 @@ TEST_F(WireTest, AJoinArrivesUnchanged) {
 TEST_F(WireTest, AnAdmitArrivesUnchanged) {
   const AdmittedRobot robot{.robot = 3,
                             .name = "team/sbot_3",
+                            .team = 1,
                             .description = 1,
                             .seed = ~std::uint64_t{0},
                             .period = 2,
@@ -155,6 +160,8 @@ TEST_F(WireTest, AnAdmitArrivesUnchanged) {
         .start_reason = StartReason::takeover,
         .tick = 1'000'000'000'000,
         .step_ns = 10'000'000,
+        .teams = {{.name = "a", .controller = "none"},
+                  {"b", "braitenberg", {{"gain", {"1e-3"}}, {"track.weights", {"-1", "", "2"}}, {"", {}}}}},
         .robots = {robot, {}, robot}},
        {.client = 5, .status = AdmitStatus::refused, .reason = "robot 3 is driven by 'sweeper' on host h"},
        {.client = 5, .robots = std::vector<AdmittedRobot>(3000, robot)}});

@@ -4,7 +4,7 @@
 #include "server/description/input_error.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tools/cohort/commands.hpp"
-#include "tools/cohort/controller_plugins.hpp"
+#include "tools/cohort/team_controllers.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -14,9 +14,6 @@ void print_world(const description::World& world) {
             << " robots, steps of " << std::chrono::duration<double, std::milli>(world.step).count() << " ms\n";
 }
 
-// Whether physics takes the world too: some mistakes only show when it is built.
-void build(const description::Experiment& experiment) { Simulation(experiment, 1); }
-
 }  // namespace
 
 int check(const std::filesystem::path& file) {
@@ -25,12 +22,12 @@ int check(const std::filesystem::path& file) {
       description::Experiment experiment;
       experiment.file = file;
       experiment.world = description::read_world(file, experiment.seed);
-      build(experiment);
+      const Simulation built(experiment, 1);  // some mistakes only show when physics takes the world
       print_world(experiment.world);
     } else {
       const description::Experiment experiment = description::read_experiment(file);
-      build(experiment);
-      load_controllers(experiment);
+      const Simulation built(experiment, 1);
+      try_controllers(experiment, built, load_controllers(experiment));
       print_world(experiment.world);
       for (const description::Team& team : experiment.teams)
         std::cout << "team " << team.name << ": " << team.robots.size() << " robots, controller " << team.controller

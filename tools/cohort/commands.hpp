@@ -29,7 +29,7 @@ struct RunCommand {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   Controllers controllers = Controllers::process;
-  double speed = 0.0;             ///< 0: as fast as it goes
+  std::optional<double> speed;    ///< 0: as fast as it goes; none: that, or real time if people drive
   std::filesystem::path summary;  ///< file to write; empty: none
   std::filesystem::path plot;     ///< the same
   bool quiet = false;
@@ -45,6 +45,13 @@ struct HostCommand {
   std::uint32_t domain = 0;
 };
 int host(const HostCommand& command, const std::atomic<bool>& stop);
+
+struct TeleopCommand {
+  std::vector<std::string> robots;
+  std::string server;
+  std::uint32_t domain = 0;
+};
+int teleop(const TeleopCommand& command, const std::atomic<bool>& stop);
 
 int check(const std::filesystem::path& file);
 

@@ -27,7 +27,7 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed) {
   app.add_option("--duration", options.duration, "Simulated seconds, instead of the experiment's")
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", options.seed, "Seed, instead of the experiment's");
-  app.add_option("--speed", speed, "Simulated seconds per second: max, or a number")->default_str("max");
+  app.add_option("--speed", speed, "Simulated seconds per second: max, or a number (default: max; 1 if people drive)");
   app.add_option("--summary", options.summary, "Write the summary to this file as JSON");
   app.add_option("--plot", options.plot, "Draw arena, paths and contacts to this file as SVG");
   app.add_option("--domain", options.domain, "DDS domain (default: $COHORT_DOMAIN, or a free one, or 0 for outsiders)")
@@ -36,7 +36,14 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed) {
   app.add_flag("--quiet", options.quiet, "Print errors only");
 }
 
-double parse_speed(const std::string& text) {
+void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::string& server, std::uint32_t& domain) {
+  app.add_option("--robots", robots, "all, an id, A..B, or a name with *; may repeat")->required()->delimiter(',');
+  app.add_option("--server", server, "Address of the server")->envname("COHORT_SERVER")->default_val("127.0.0.1");
+  app.add_option("--domain", domain, "DDS domain of the server")->envname("COHORT_DOMAIN")->check(CLI::Range(0u, 230u));
+}
+
+std::optional<double> parse_speed(const std::string& text) {
+  if (text.empty()) return std::nullopt;
   if (text == "max") return 0.0;
   std::size_t used = 0;
   double speed = 0.0;
@@ -58,7 +65,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
 
   RunCommand run_options;
-  std::string speed = "max";
+  std::string speed;
   CLI::App* run_app = app.add_subcommand("run", "Run an experiment with its controllers");
   add_run_options(*run_app, run_options, speed);
   const std::map<std::string, Controllers> placements = {{"inprocess", Controllers::in_process},
@@ -79,15 +86,11 @@ int main(int argc, char** argv) {
   HostCommand host_options;
   CLI::App* host_app = app.add_subcommand("host", "Run a controller plugin for some robots of a server");
   host_app->add_option("PLUGIN", host_options.plugin, "Name of a controller, or path to its plugin")->required();
-  host_app->add_option("--robots", host_options.robots, "all, an id, A..B, or a name with *; may repeat")
-      ->required()
-      ->delimiter(',');
-  host_app->add_option("--server", host_options.server, "Address of the server")
-      ->envname("COHORT_SERVER")
-      ->default_str("127.0.0.1");
-  host_app->add_option("--domain", host_options.domain, "DDS domain of the server")
-      ->envname("COHORT_DOMAIN")
-      ->check(CLI::Range(0u, 230u));
+  add_client_options(*host_app, host_options.robots, host_options.server, host_options.domain);
+
+  TeleopCommand teleop_options;
+  CLI::App* teleop_app = app.add_subcommand("teleop", "Drive robots of a server by keyboard");
+  add_client_options(*teleop_app, teleop_options.robots, teleop_options.server, teleop_options.domain);
 
   std::filesystem::path checked_file;
   CLI::App* check_app =
@@ -103,9 +106,9 @@ int main(int argc, char** argv) {
 
   set_up_log();
   stop_on_signals();
-  if (host_options.server.empty()) host_options.server = "127.0.0.1";
   if (run_app->parsed()) return run(run_options, stop_requested);
   if (serve_app->parsed()) return run(serve_options, stop_requested);
   if (host_app->parsed()) return host(host_options, stop_requested);
+  if (teleop_app->parsed()) return teleop(teleop_options, stop_requested);
   return check(checked_file);
 }

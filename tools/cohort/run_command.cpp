@@ -14,11 +14,11 @@
 #include "server/session/server.hpp"
 #include "tools/cohort/children.hpp"
 #include "tools/cohort/commands.hpp"
-#include "tools/cohort/controller_plugins.hpp"
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
 #include "tools/cohort/run_trace.hpp"
 #include "tools/cohort/summary_file.hpp"
+#include "tools/cohort/team_controllers.hpp"
 #include "tools/cohort/terminal.hpp"
 
 namespace cohort::tool {
@@ -48,8 +48,8 @@ struct Served {
 
 // Outsiders need to know the domain: it is the one given, or 0. Nobody but our own children needs to know ours: it is
 // any free one, so that several runs on one machine do not meet.
-Served open_domain(const RunCommand& command) {
-  if (command.domain || command.controllers == Controllers::external) {
+Served open_domain(const RunCommand& command, bool has_outsiders) {
+  if (command.domain || has_outsiders) {
     const std::uint32_t domain = command.domain.value_or(0);
     return {wire::Participant::server(domain, command.network), domain};
   }
@@ -64,50 +64,74 @@ Served open_domain(const RunCommand& command) {
   }
 }
 
+// People cannot follow what is faster than life.
+double speed_of(const RunCommand& command, const description::Experiment& experiment) {
+  return command.speed.value_or(has_keyboard(experiment) ? 1.0 : 0.0);
+}
+
+void refuse_keyboard(const description::Experiment& experiment) {
+  for (const description::Team& team : experiment.teams)
+    if (team.controller == keyboard_controller)
+      throw description::InputError({{experiment.file, team.controller_line, "team " + team.name,
+                                      "people drive over DDS: run this without --controllers inprocess"}});
+}
+
+// Runs of ids, as short as they can be said.
+std::string selectors_of(const std::vector<std::uint32_t>& robots) {
+  std::string selectors;
+  for (std::size_t begin = 0, end = 0; begin < robots.size(); begin = end) {
+    for (end = begin + 1; end < robots.size() && robots[end] == robots[end - 1] + 1;) ++end;
+    const std::string range =
+        end - begin == 1 ? fmt::format("{}", robots[begin]) : fmt::format("{}..{}", robots[begin], robots[end - 1]);
+    selectors += (begin == 0 ? "" : ",") + range;
+  }
+  return selectors;
+}
+
 std::vector<std::vector<std::string>> controller_commands(const description::Experiment& experiment,
-                                                          const std::vector<LoadedPlugin>& plugins, bool per_robot,
-                                                          std::uint32_t domain) {
+                                                          const std::vector<TeamController>& controllers,
+                                                          bool per_robot, std::uint32_t domain) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
   std::vector<std::vector<std::string>> commands;
   for (std::size_t team = 0; team < experiment.teams.size(); ++team) {
+    if (controllers[team].is_keyboard()) continue;
     const auto add = [&](std::string robots) {
-      commands.push_back({program, "host", plugins[team].path(), "--robots", std::move(robots), "--server", "127.0.0.1",
-                          "--domain", std::to_string(domain)});
+      commands.push_back({program, "host", controllers[team].plugin->path(), "--robots", std::move(robots), "--server",
+                          "127.0.0.1", "--domain", std::to_string(domain)});
     };
     const std::vector<std::uint32_t>& robots = experiment.teams[team].robots;
     if (per_robot) {
       for (const std::uint32_t robot : robots) add(std::to_string(robot));
       continue;
     }
-    // Runs of ids, as short as they can be said.
-    std::string selectors;
-    for (std::size_t begin = 0, end = 0; begin < robots.size(); begin = end) {
-      for (end = begin + 1; end < robots.size() && robots[end] == robots[end - 1] + 1;) ++end;
-      selectors += fmt::format("{}{}..{}", begin == 0 ? "" : ",", robots[begin], robots[end - 1]);
-    }
-    add(selectors);
+    add(selectors_of(robots));
   }
   return commands;
 }
 
 RunResult run_over_dds(const RunCommand& command, const description::Experiment& experiment, Simulation& simulation,
-                       const std::vector<LoadedPlugin>& plugins, Terminal& terminal,
+                       const std::vector<TeamController>& controllers, Terminal& terminal,
                        const session::RunListener& listener, const std::atomic<bool>& stop) {
-  Served served = open_domain(command);
+  const bool external = command.controllers == Controllers::external;
+  Served served = open_domain(command, external || has_keyboard(experiment));
   Children* own_controllers = nullptr;
   session::RunListener own_listener = listener;
   own_listener.ending = [&] {
     if (own_controllers != nullptr) own_controllers->stop_restarting();
   };
-  session::Server server(experiment, simulation, served.participant, {command.speed}, own_listener);
-  if (command.controllers == Controllers::external) {
+  session::Server server(experiment, simulation, served.participant, {speed_of(command, experiment)}, own_listener);
+  if (external) {
     terminal.say(
         fmt::format("serving {} robots on {}, domain {}", simulation.robot_count(), command.network, served.domain));
     return server.run(stop);
   }
+  for (const description::Team& team : experiment.teams)
+    if (team.controller == keyboard_controller)
+      terminal.say(fmt::format("to drive team {}, in another terminal: cohort teleop --robots {} --domain {}",
+                               team.name, selectors_of(team.robots), served.domain));
   const bool per_robot = command.controllers == Controllers::per_robot;
   Children children(
-      controller_commands(experiment, plugins, per_robot, served.domain),
+      controller_commands(experiment, controllers, per_robot, served.domain),
       {[](const std::string& text) { spdlog::warn("{}", text); }, [&](const std::string& text) { server.fail(text); }});
   own_controllers = &children;
   RunResult result = server.run(stop);
@@ -116,11 +140,11 @@ RunResult run_over_dds(const RunCommand& command, const description::Experiment&
 }
 
 RunResult run_here(const RunCommand& command, const description::Experiment& experiment, Simulation& simulation,
-                   const std::vector<LoadedPlugin>& plugins, const session::RunListener& listener,
+                   const std::vector<TeamController>& controllers, const session::RunListener& listener,
                    const std::atomic<bool>& stop) {
-  std::vector<Plugin> teams;
-  for (const LoadedPlugin& plugin : plugins) teams.push_back(plugin.plugin());
-  return session::run_in_process(experiment, simulation, teams, {command.speed}, listener, stop);
+  std::vector<ControllerKind> teams;
+  for (const TeamController& controller : controllers) teams.push_back(controller.kind());
+  return session::run_in_process(experiment, simulation, teams, {speed_of(command, experiment)}, listener, stop);
 }
 
 void warn_if_not_portable() {
@@ -165,10 +189,12 @@ int run(const RunCommand& command, const std::atomic<bool>& stop) {
     const description::Experiment experiment = description::read_experiment(command.file, command.seed, duration);
     for (const std::string& warning : experiment.world.warnings) spdlog::warn("{}", warning);
 
-    std::vector<LoadedPlugin> plugins;
-    if (command.controllers != Controllers::external) plugins = load_controllers(experiment);
+    if (command.controllers == Controllers::in_process) refuse_keyboard(experiment);
+    std::vector<TeamController> controllers;
+    if (command.controllers != Controllers::external) controllers = load_controllers(experiment);
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     Simulation simulation(experiment, command.threads == 0 ? cores : command.threads);
+    if (command.controllers != Controllers::external) try_controllers(experiment, simulation, controllers);
     warn_if_not_portable();
 
     std::optional<TraceRecorder> recorder;
@@ -180,8 +206,8 @@ int run(const RunCommand& command, const std::atomic<bool>& stop) {
         .boundary = recorder ? std::function<void()>([&] { recorder->boundary(); }) : nullptr,
     };
     const RunResult result = command.controllers == Controllers::in_process
-                                 ? run_here(command, experiment, simulation, plugins, listener, stop)
-                                 : run_over_dds(command, experiment, simulation, plugins, terminal, listener, stop);
+                                 ? run_here(command, experiment, simulation, controllers, listener, stop)
+                                 : run_over_dds(command, experiment, simulation, controllers, terminal, listener, stop);
     const double cpu = cpu_seconds() - cpu_before;
     terminal.summary(result, cpu);
     const bool written = write_files(command, experiment, result, cpu, recorder);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cohort/parameters.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -51,6 +52,7 @@ enum class StartReason {
   takeover,  ///< another process drove this robot before; the run goes on from `Start::tick`
   reset,     ///< the world was built anew
   restored,  ///< the world was restored from a snapshot
+  check,     ///< `cohort check` and `cohort run` look for mistakes before anything runs: no step will follow
 };
 
 /// What a controller is told before its first step, and again after each reset, restore and takeover.
@@ -59,6 +61,9 @@ class Start {
   std::uint32_t robot = 0;  ///< id in this run
   std::string name;         ///< scoped name, such as `explorers/sbot_7`
   std::string model;        ///< such as `sbot`
+  std::string team;         ///< the robot's, in the experiment file
+  std::string controller;   ///< that the experiment file names for the team
+  Parameters parameters;    ///< that it gives the team
   StartReason reason = StartReason::first;
   std::uint64_t tick = 0;  ///< of the first observation to come
   std::uint64_t seed = 0;  ///< for the controller's own random numbers: fixed by experiment seed and robot name
@@ -119,7 +124,9 @@ class Command {
 class Controller {
  public:
   virtual ~Controller() = default;
-  /// Looks channels up. Called before the first step, and again whenever the world begins anew.
+  /// Looks channels up and asks for parameters; whatever it throws says what is wrong with the experiment. Called
+  /// before the first step, and again whenever the world begins anew. Also called on objects that only serve to find
+  /// mistakes early (StartReason::check): what opens a device or a file looks at the reason first.
   virtual void start(const Start& start) = 0;
   /// From one observation to one command. For lockstep with identical bits, a pure function of what `start` and the
   /// steps since gave: no clock, no random device, no state shared between robots.
@@ -128,7 +135,7 @@ class Controller {
 
 /// What a plugin exports as `cohort_plugin`.
 struct Plugin {
-  static constexpr std::uint32_t current_abi = 1;
+  static constexpr std::uint32_t current_abi = 2;
   std::uint32_t abi = 0;  ///< current_abi of the headers that it was built with
   const char* name = nullptr;
   Controller* (*create)() = nullptr;

@@ -1,0 +1,102 @@
+#include "tools/cohort/keyboard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tools/cohort/team_controllers.hpp"
+
+namespace cohort::tool {
+namespace {
+
+Start start_of_robot() {
+  Start start;
+  start.name = "r0";
+  start.model = "sbot";
+  start.command_channels = {{"treel/left/velocity", "m/s", 0, 1, -0.2, 0.2, 0.0},
+                            {"treel/right/velocity", "m/s", 1, 1, -0.2, 0.2, 0.0},
+                            {"turret/0/velocity", "rad/s", 2, 1, -1.5, 1.5, 0.0},
+                            {"arm/0/position", "rad", 3, 1, 0.0, std::numeric_limits<double>::infinity(), 0.0}};
+  return start;
+}
+
+std::vector<double> command_of(Controller& controller) {
+  std::vector<double> values(4, 0.0);
+  Command command(values);
+  controller.step(Observation(3, std::chrono::milliseconds(30), {}), command);
+  return values;
+}
+
+TEST(Keyboard, TheArrowsDriveTheTracksAndLettersTheOtherChannels) {
+  Keyboard keyboard;
+  const OwnedController controller = keyboard_controllers(keyboard).create();
+  controller->start(start_of_robot());
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0, 0, 0, 0}));
+  keyboard.press("up");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0.2, 0.2, 0, 0}));
+  keyboard.press("f");
+  keyboard.press("left");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{-0.1, 0.1, -1.5, 0}));
+  keyboard.press("up");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0.2, 0.2, -1.5, 0})) << "the last key counts";
+  keyboard.press("space");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0, 0, 0, 0}));
+  EXPECT_EQ(keyboard.time(), std::chrono::milliseconds(30));
+}
+
+TEST(Keyboard, PlusAndMinusChangeTheShareWithinATenthAndTheWhole) {
+  Keyboard keyboard;
+  const OwnedController controller = keyboard_controllers(keyboard).create();
+  controller->start(start_of_robot());
+  keyboard.press("r");
+  for (int i = 0; i < 5; ++i) keyboard.press("-");
+  EXPECT_DOUBLE_EQ(command_of(*controller)[2], 0.75);
+  for (int i = 0; i < 20; ++i) keyboard.press("-");
+  EXPECT_DOUBLE_EQ(command_of(*controller)[2], 0.15);
+  for (int i = 0; i < 20; ++i) keyboard.press("+");
+  EXPECT_DOUBLE_EQ(command_of(*controller)[2], 1.5);
+}
+
+TEST(Keyboard, AnExperimentBindsKeysOfItsOwn) {
+  Start start = start_of_robot();
+  start.controller = keyboard_controller;
+  start.parameters =
+      Parameters({{"up.treel/left/velocity", {"0.1"}}, {"up.arm/0/position", {"2"}}, {"x.turret/0/velocity", {"-1"}}});
+  Keyboard keyboard;
+  const OwnedController controller = keyboard_controllers(keyboard).create();
+  controller->start(start);
+  EXPECT_NO_THROW(start.parameters.check_all_were_asked_for());
+  keyboard.press("up");
+  keyboard.press("x");
+  keyboard.press("down");
+  EXPECT_EQ(command_of(*controller), (std::vector<double>{0.1, 0, -1, 2}));
+}
+
+TEST(Keyboard, WrongBindingsAreExplained) {
+  const auto message = [](Parameter parameter) -> std::string {
+    Start start = start_of_robot();
+    start.controller = keyboard_controller;
+    start.parameters = Parameters(std::vector{std::move(parameter)});
+    try {
+      key_bindings(start);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message({"up", {"1"}}).find("'CHANNEL: VALUE' under a key"), std::string::npos);
+  EXPECT_NE(message({"q.turret/0/velocity", {"1"}}).find("no key to bind"), std::string::npos);
+  EXPECT_NE(message({"up.turret/0/velocty", {"1"}}).find("the nearest are turret/0/velocity"), std::string::npos);
+  EXPECT_NE(message({"up.turret/0/velocity", {"2"}}).find("at most 1.5"), std::string::npos);
+}
+
+TEST(Keyboard, ParametersOfAnotherControllerAreLeftToIt) {
+  Start start = start_of_robot();
+  start.controller = "braitenberg";
+  start.parameters = Parameters(std::vector{Parameter{"treel/left/velocity.bias", {"0.2"}}});
+  EXPECT_EQ(key_bindings(start).front().key, "up");
+  EXPECT_NO_THROW(start.parameters.check_all_were_asked_for());
+}
+
+}  // namespace
+}  // namespace cohort::tool

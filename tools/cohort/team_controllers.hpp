@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "client_sdk/src/controller_host.hpp"
+#include "client_sdk/src/plugin_loader.hpp"
+#include "server/description/experiment.hpp"
+#include "server/simulation/simulation.hpp"
+
+namespace cohort::tool {
+
+/// What drives a team.
+struct TeamController {
+  std::optional<LoadedPlugin> plugin;  ///< none: people, by `cohort teleop`
+
+  bool is_keyboard() const { return !plugin; }
+  ControllerKind kind() const;
+};
+
+/// The name by which an experiment says that people drive a team.
+inline constexpr const char* keyboard_controller = "keyboard";
+
+bool has_keyboard(const description::Experiment& experiment);
+
+/// The controllers of the experiment's teams, in their order. One that is named by a relative path is looked for beside
+/// the experiment. Throws description::InputError.
+std::vector<TeamController> load_controllers(const description::Experiment& experiment);
+
+/// Starts a controller of each team for one robot of each kind that the team has, and throws it away: so mistakes in
+/// parameters and channels are found before anything runs. Throws description::InputError.
+void try_controllers(const description::Experiment& experiment, const Simulation& simulation,
+                     const std::vector<TeamController>& controllers);
+
+}  // namespace cohort::tool

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "server/core/hash.hpp"
-#include "server/core/portable_math.hpp"
+#include "math/portable_math.hpp"
 #include "server/core/random.hpp"
 #include "server/core/worker_pool.hpp"
 

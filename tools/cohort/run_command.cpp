@@ -7,7 +7,7 @@
 #include <memory>
 #include <thread>
 
-#include "server/core/portable_math.hpp"
+#include "math/portable_math.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/session/in_process.hpp"

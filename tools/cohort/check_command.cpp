@@ -5,6 +5,7 @@
 #include "server/simulation/simulation.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/controller_plugins.hpp"
+#include "tools/cohort/installed_models.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -24,11 +25,11 @@ int check(const std::filesystem::path& file) {
     if (file.extension() == ".sdf" || file.extension() == ".world") {
       description::Experiment experiment;
       experiment.file = file;
-      experiment.world = description::read_world(file, experiment.seed);
+      experiment.world = description::read_world(file, experiment.seed, installed_model_folders());
       build(experiment);
       print_world(experiment.world);
     } else {
-      const description::Experiment experiment = description::read_experiment(file);
+      const description::Experiment experiment = description::read_experiment(file, {}, {}, installed_model_folders());
       build(experiment);
       load_controllers(experiment);
       print_world(experiment.world);

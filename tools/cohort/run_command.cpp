@@ -15,6 +15,7 @@
 #include "tools/cohort/children.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/controller_plugins.hpp"
+#include "tools/cohort/installed_models.hpp"
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
 #include "tools/cohort/run_trace.hpp"
@@ -162,7 +163,8 @@ int run(const RunCommand& command, const std::atomic<bool>& stop) {
     std::optional<std::chrono::nanoseconds> duration;
     if (command.duration)
       duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
-    const description::Experiment experiment = description::read_experiment(command.file, command.seed, duration);
+    const description::Experiment experiment =
+        description::read_experiment(command.file, command.seed, duration, installed_model_folders());
     for (const std::string& warning : experiment.world.warnings) spdlog::warn("{}", warning);
 
     std::vector<LoadedPlugin> plugins;

@@ -71,10 +71,9 @@ std::vector<fs::path> default_plugin_directories() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error) return directories;
-  const fs::path library = program.parent_path().parent_path() / "lib";
-  directories.push_back(library / "controllers");  // in a build tree
-  directories.push_back(library / "cohort" / "controllers");
-  directories.push_back(library / COHORT_LIBRARY_ARCHITECTURE / "cohort" / "controllers");
+  const fs::path bin = program.parent_path();
+  directories.push_back((bin / "../lib/controllers").lexically_normal());  // in a build tree
+  directories.push_back((bin / COHORT_LIB_FROM_BIN / "cohort/controllers").lexically_normal());
   return directories;
 }
 

@@ -27,8 +27,8 @@ class LoadedPlugin {
   const Plugin* plugin_ = nullptr;
 };
 
-/// Where plugins are looked for: `COHORT_PLUGIN_PATH` (colon-separated), then the `controllers` folder beside the
-/// library folder of the running program.
+/// Where plugins are looked for: `COHORT_PLUGIN_PATH` (colon-separated), then, from the folder of the running program,
+/// those of a build tree (`../lib/controllers`) and of an installation (`../lib/cohort/controllers`).
 std::vector<std::filesystem::path> default_plugin_directories();
 
 }  // namespace cohort

@@ -48,9 +48,10 @@ struct Experiment {
   std::vector<Team> teams;  ///< every robot is in exactly one
 };
 
-/// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's. Throws
-/// InputError with every problem found.
+/// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's;
+/// `last_model_folders` are those of `read_world`. Throws InputError with every problem found.
 Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
-                           std::optional<std::chrono::nanoseconds> duration = {});
+                           std::optional<std::chrono::nanoseconds> duration = {},
+                           const std::vector<std::filesystem::path>& last_model_folders = {});
 
 }  // namespace cohort::description

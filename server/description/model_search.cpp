@@ -1,5 +1,6 @@
 #include "server/description/model_search.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -42,7 +43,7 @@ fs::path sdf_file_of(const fs::path& folder) {
 
 }  // namespace
 
-ModelSearch::ModelSearch(const fs::path& world_file)
+ModelSearch::ModelSearch(const fs::path& world_file, const std::vector<fs::path>& last_folders)
     : world_folder_(fs::absolute(world_file).lexically_normal().parent_path()) {
   if (const char* const path = std::getenv("COHORT_MODEL_PATH")) {
     std::istringstream stream(path);
@@ -56,6 +57,8 @@ ModelSearch::ModelSearch(const fs::path& world_file)
     if (folder == folder.parent_path()) break;
     folder = folder.parent_path();
   }
+  for (const fs::path& last : last_folders)
+    if (std::find(folders_.begin(), folders_.end(), last) == folders_.end()) folders_.push_back(last);
 }
 
 fs::path ModelSearch::find_folder(const std::string& name) const {
@@ -64,10 +67,11 @@ fs::path ModelSearch::find_folder(const std::string& name) const {
     if (!name.empty() && fs::is_directory(folder / name)) return folder / name;
     if (fs::is_directory(folder)) searched += (searched.empty() ? "" : ", ") + folder.string();
   }
-  throw std::runtime_error("there is no model '" + name + "' in " +
-                           (searched.empty() ? "any folder 'robots' or 'objects' at or above the world file, nor in "
-                                               "COHORT_MODEL_PATH"
-                                             : searched));
+  if (searched.empty())
+    throw std::runtime_error("there is no model '" + name +
+                             "': no folder 'robots' or 'objects' is beside the world file or up to " +
+                             std::to_string(parent_levels) + " levels above it, and COHORT_MODEL_PATH names none");
+  throw std::runtime_error("there is no model '" + name + "' in " + searched + "; COHORT_MODEL_PATH may name more");
 }
 
 FoundModel ModelSearch::find(const std::string& uri) const {

@@ -14,12 +14,12 @@ struct FoundModel {
 };
 
 /// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these
-/// that has one: the folders of the environment variable COHORT_MODEL_PATH (separated by colons), then `robots` and
-/// `objects` in the folder of the world file and in its parents, four levels up. Any other URI is a path relative to
-/// the world file, to a model's folder or to an SDF file.
+/// that has one: the folders of the environment variable COHORT_MODEL_PATH (separated by colons), `robots` and
+/// `objects` in the folder of the world file and in its parents, four levels up, and the `last_folders`. Any other URI
+/// is a path relative to the world file, to a model's folder or to an SDF file.
 class ModelSearch {
  public:
-  explicit ModelSearch(const std::filesystem::path& world_file);
+  ModelSearch(const std::filesystem::path& world_file, const std::vector<std::filesystem::path>& last_folders);
 
   /// Throws std::runtime_error that says what is missing and where it was looked for.
   FoundModel find(const std::string& uri) const;

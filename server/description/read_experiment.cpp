@@ -81,7 +81,10 @@ Policy read_policy(const YamlMap& team) {
 
 class ExperimentReader {
  public:
-  explicit ExperimentReader(const fs::path& file) : report_(file, problems_) { experiment_.file = file; }
+  ExperimentReader(const fs::path& file, const std::vector<fs::path>& last_model_folders)
+      : last_model_folders_(last_model_folders), report_(file, problems_) {
+    experiment_.file = file;
+  }
 
   Experiment read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration);
 
@@ -98,6 +101,7 @@ class ExperimentReader {
   void report_robots_without_team(const YamlMap& top);
   std::string listed(const std::vector<std::uint32_t>& robots) const;
 
+  std::vector<fs::path> last_model_folders_;
   Experiment experiment_;
   std::vector<Problem> problems_;
   YamlReport report_;
@@ -146,7 +150,7 @@ void ExperimentReader::read_world_of(const YamlMap& top) {
     return;
   }
   try {
-    experiment_.world = read_world(world.lexically_normal(), experiment_.seed);
+    experiment_.world = read_world(world.lexically_normal(), experiment_.seed, last_model_folders_);
     team_of_.resize(experiment_.world.robots.size());
     world_is_read_ = true;
   } catch (const InputError& error) {
@@ -284,8 +288,9 @@ std::string ExperimentReader::listed(const std::vector<std::uint32_t>& robots) c
 }  // namespace
 
 Experiment read_experiment(const fs::path& file, std::optional<std::uint64_t> seed,
-                           std::optional<std::chrono::nanoseconds> duration) {
-  return ExperimentReader(file).read(seed, duration);
+                           std::optional<std::chrono::nanoseconds> duration,
+                           const std::vector<fs::path>& last_model_folders) {
+  return ExperimentReader(file, last_model_folders).read(seed, duration);
 }
 
 }  // namespace cohort::description

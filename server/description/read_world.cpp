@@ -21,8 +21,9 @@ namespace {
 
 class WorldReader {
  public:
-  WorldReader(const std::filesystem::path& file, std::uint64_t seed)
-      : seed_(seed), files_(file, problems_), report_(files_, problems_, world_.warnings) {
+  WorldReader(const std::filesystem::path& file, std::uint64_t seed,
+              const std::vector<std::filesystem::path>& last_model_folders)
+      : seed_(seed), files_(file, last_model_folders, problems_), report_(files_, problems_, world_.warnings) {
     world_.file = file;
   }
 
@@ -187,6 +188,9 @@ bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& 
 
 }  // namespace
 
-World read_world(const std::filesystem::path& file, std::uint64_t seed) { return WorldReader(file, seed).read(); }
+World read_world(const std::filesystem::path& file, std::uint64_t seed,
+                 const std::vector<std::filesystem::path>& last_model_folders) {
+  return WorldReader(file, seed, last_model_folders).read();
+}
 
 }  // namespace cohort::description

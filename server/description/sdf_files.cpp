@@ -118,8 +118,9 @@ LibsdformatScope::~LibsdformatScope() {
   sdf::Console::Instance()->SetQuiet(false);
 }
 
-SdfFiles::SdfFiles(const fs::path& world_file, std::vector<Problem>& problems)
-    : world_file_(world_file), search_(world_file), problems_(problems) {}
+SdfFiles::SdfFiles(const fs::path& world_file, const std::vector<fs::path>& last_model_folders,
+                   std::vector<Problem>& problems)
+    : world_file_(world_file), search_(world_file, last_model_folders), problems_(problems) {}
 
 SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
   const fs::path absolute = fs::absolute(path).lexically_normal();

@@ -72,7 +72,8 @@ struct Location {
 class SdfFiles {
  public:
   /// What is wrong with a file goes to `problems`, which must outlive this.
-  SdfFiles(const std::filesystem::path& world_file, std::vector<Problem>& problems);
+  SdfFiles(const std::filesystem::path& world_file, const std::vector<std::filesystem::path>& last_model_folders,
+           std::vector<Problem>& problems);
 
   const SdfFile& world() { return open(world_file_, world_file_); }
 

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <set>
 
+#include "client_sdk/math/portable_math.hpp"
 #include "server/core/hash.hpp"
-#include "server/core/portable_math.hpp"
 #include "server/core/random.hpp"
 #include "server/core/worker_pool.hpp"
 

@@ -360,6 +360,29 @@ TEST_F(Description, TheEnvironmentsModelPathComesFirstAndTheWorkingDirectoryNeve
   unsetenv("COHORT_MODEL_PATH");
 }
 
+TEST_F(Description, TheFoldersOfTheInstallationComeLast) {
+  write("installed/sbot/model.config", "<model><name>x</name><sdf version=\"1.9\">model.sdf</sdf></model>");
+  write("installed/sbot/model.sdf", "<sdf version=\"1.9\"><model name=\"theirs\">" + links("a") + "</model></sdf>");
+  const fs::path world = write_world("<include><uri>model://sbot</uri></include>");
+  EXPECT_EQ(read_world(world, 1, {folder_ / "nowhere", folder_ / "installed"}).models[0].name, "sbot");
+  fs::remove_all(folder_ / "robots");
+  EXPECT_EQ(read_world(world, 1, {folder_ / "nowhere", folder_ / "installed"}).models[0].name, "theirs");
+}
+
+TEST_F(Description, AModelThatIsNowhereIsAnsweredWithTheFoldersSearched) {
+  const auto message_of = [&](const std::vector<fs::path>& last_folders) {
+    const auto problems = problems_of([&] { read_world(folder_ / "world.sdf", 1, last_folders); });
+    return problems.empty() ? "" : problems.front().message;
+  };
+  write_world("<include><uri>model://sbit</uri></include>");
+  fs::create_directories(folder_ / "installed");
+  EXPECT_EQ(message_of({folder_ / "nowhere", folder_ / "installed"}),
+            "there is no model 'sbit' in " + (folder_ / "robots").string() + ", " + (folder_ / "installed").string() +
+                "; COHORT_MODEL_PATH may name more");
+  fs::remove_all(folder_ / "robots");
+  EXPECT_NE(message_of({}).find("no folder 'robots' or 'objects' is beside the world file"), std::string::npos);
+}
+
 TEST_F(Description, AnEmptyWorldHasSdfsGravityAndOurStep) {
   const World world = read("<physics type=\"ode\"/>");
   EXPECT_EQ(world.step, 10ms);

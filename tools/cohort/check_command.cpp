@@ -4,6 +4,7 @@
 #include "server/description/input_error.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tools/cohort/commands.hpp"
+#include "tools/cohort/installed_models.hpp"
 #include "tools/cohort/team_controllers.hpp"
 
 namespace cohort::tool {
@@ -21,11 +22,11 @@ int check(const std::filesystem::path& file) {
     if (file.extension() == ".sdf" || file.extension() == ".world") {
       description::Experiment experiment;
       experiment.file = file;
-      experiment.world = description::read_world(file, experiment.seed);
+      experiment.world = description::read_world(file, experiment.seed, installed_model_folders());
       const Simulation built(experiment, 1);  // some mistakes only show when physics takes the world
       print_world(experiment.world);
     } else {
-      const description::Experiment experiment = description::read_experiment(file);
+      const description::Experiment experiment = description::read_experiment(file, {}, {}, installed_model_folders());
       const Simulation built(experiment, 1);
       try_controllers(experiment, built, load_controllers(experiment));
       print_world(experiment.world);

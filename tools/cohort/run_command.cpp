@@ -7,13 +7,14 @@
 #include <memory>
 #include <thread>
 
-#include "server/core/portable_math.hpp"
+#include "client_sdk/math/portable_math.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/session/in_process.hpp"
 #include "server/session/server.hpp"
 #include "tools/cohort/children.hpp"
 #include "tools/cohort/commands.hpp"
+#include "tools/cohort/installed_models.hpp"
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
 #include "tools/cohort/run_trace.hpp"
@@ -186,7 +187,8 @@ int run(const RunCommand& command, const std::atomic<bool>& stop) {
     std::optional<std::chrono::nanoseconds> duration;
     if (command.duration)
       duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
-    const description::Experiment experiment = description::read_experiment(command.file, command.seed, duration);
+    const description::Experiment experiment =
+        description::read_experiment(command.file, command.seed, duration, installed_model_folders());
     for (const std::string& warning : experiment.world.warnings) spdlog::warn("{}", warning);
 
     if (command.controllers == Controllers::in_process) refuse_keyboard(experiment);

@@ -14,26 +14,30 @@
 /// What the author of a controller writes against: one class derived from Controller, and COHORT_CONTROLLER(Class).
 /// The same source builds as a program (`cohort_add_controller` in CMake makes both) and as a plugin that
 /// `cohort run --controllers inprocess` and `cohort host` load.
+///
+/// Values are float64 in SI units; what a channel measures or moves, and in which frame, is said where its device is
+/// (docs/worlds.md). Nothing here is safe to share between threads, and nothing needs to be: the SDK calls all
+/// controllers of a process on one thread, one after the other.
 namespace cohort {
 
 /// A channel as the server describes it: `size` float64 values in a robot's observation or command.
 struct ChannelInfo {
-  std::string name;  ///< `device/index/quantity`, such as `proximity/3/reading`
-  std::string unit;  ///< SI; `1` if dimensionless
-  std::uint32_t offset = 0;
-  std::uint32_t size = 1;
-  double lower = 0.0;
-  double upper = 0.0;
-  double neutral = 0.0;
+  std::string name;          ///< `device/index/quantity`, such as `proximity/3/reading`
+  std::string unit;          ///< SI; `1` if dimensionless
+  std::uint32_t offset = 0;  ///< of its first value among the robot's
+  std::uint32_t size = 1;    ///< how many values
+  double lower = 0.0;        ///< least value, infinite if there is none
+  double upper = 0.0;        ///< greatest value, infinite if there is none
+  double neutral = 0.0;      ///< of a command: what each value is until it is set
 };
 
-/// Handle of an observation channel, looked up once in `start`.
+/// Handle of an observation channel, looked up in `start` and good until the next `start`, for this robot only.
 struct ObservationChannel {
   std::uint32_t offset = 0;
   std::uint32_t size = 0;
 };
 
-/// Handle of a command channel, looked up once in `start`.
+/// Handle of a command channel, looked up in `start` and good until the next `start`, for this robot only.
 struct CommandChannel {
   std::uint32_t offset = 0;
   std::uint32_t size = 0;
@@ -74,8 +78,8 @@ class Start {
 
   /// Throws ChannelError if there is no such channel.
   ObservationChannel observation(std::string_view name) const;
-  /// All channels that match, in their order; `*` stands for any run of characters but `/`. Throws ChannelError if
-  /// none.
+  /// All channels that match, in the order of the robot's layout; `*` stands for any run of characters but `/`. Throws
+  /// ChannelError if none.
   std::vector<ObservationChannel> observations(std::string_view pattern) const;
   /// Throws ChannelError if there is no such channel.
   CommandChannel command(std::string_view name) const;
@@ -83,15 +87,18 @@ class Start {
   std::vector<CommandChannel> commands(std::string_view pattern) const;
 };
 
-/// One robot's sensor readings at one tick. Valid during `step` only.
+/// One robot's sensor readings at one tick. Valid during `step` only. Channels are those that `start` found; others are
+/// not noticed and read anything.
 class Observation {
  public:
   Observation(std::uint64_t tick, std::chrono::nanoseconds time, std::span<const double> values)
       : tick_(tick), time_(time), values_(values) {}
 
   std::uint64_t tick() const { return tick_; }
-  std::chrono::nanoseconds time() const { return time_; }  ///< simulated
+  std::chrono::nanoseconds time() const { return time_; }  ///< simulated, since tick 0
+  /// The value of a channel, the first one if it has several.
   double operator[](ObservationChannel channel) const { return values_[channel.offset]; }
+  /// All values of a channel.
   std::span<const double> values(ObservationChannel channel) const {
     return values_.subspan(channel.offset, channel.size);
   }
@@ -108,7 +115,8 @@ class Command {
  public:
   explicit Command(std::span<double> values) : values_(values) {}
 
-  /// Sets a channel, brought into its range. NaN is passed on as it is, and refused by the server by name.
+  /// Sets value `index` of a channel, which is less than its size, brought into the channel's range. The channel is one
+  /// that `start` found; neither is checked. NaN is passed on as it is, and refused by the server by name.
   void set(CommandChannel channel, double value, std::size_t index = 0) {
     if (value < channel.lower) value = channel.lower;
     if (value > channel.upper) value = channel.upper;
@@ -119,8 +127,9 @@ class Command {
   std::span<double> values_;
 };
 
-/// Drives one robot. An object of its own for each robot; all are called on one thread. An exception ends the run with
-/// its message.
+/// Drives one robot. An object of its own for each robot, made by its default constructor; all are called on one
+/// thread. An exception from constructor, `start` or `step` ends the run with its message. The run waits while a call
+/// lasts, as long as the team's `on_late` has patience.
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -133,17 +142,19 @@ class Controller {
   virtual void step(const Observation& observation, Command& command) = 0;
 };
 
-/// What a plugin exports as `cohort_plugin`.
+/// What a plugin exports as `cohort_plugin`; COHORT_CONTROLLER fills it in. A plugin is loaded if its `abi` is that of
+/// the program; it may come from another build of Cohort.
 struct Plugin {
   static constexpr std::uint32_t current_abi = 2;
-  std::uint32_t abi = 0;  ///< current_abi of the headers that it was built with
-  const char* name = nullptr;
-  Controller* (*create)() = nullptr;
-  void (*destroy)(Controller*) = nullptr;
+  std::uint32_t abi = 0;                   ///< current_abi of the headers that it was built with
+  const char* name = nullptr;              ///< of the class, for messages
+  Controller* (*create)() = nullptr;       ///< may throw
+  void (*destroy)(Controller*) = nullptr;  ///< of what `create` gave
 };
 
-/// The `main` of a controller that runs as a process of its own: `--robots`, `--server`, `--domain`, `--help`.
-/// Returns the process's exit code.
+/// The `main` of a controller that runs as a process of its own: `--robots`, `--server`, `--domain`, `--help`. Ends in
+/// order on SIGINT and SIGTERM. Returns the process's exit code: 0 when the run finished, 1 when it or a controller
+/// failed, 2 for a mistake in the options or a refused claim, 130 when interrupted; but for 0, standard error says why.
 int run_controller(const Plugin& plugin, int argc, char** argv);
 
 }  // namespace cohort
@@ -155,7 +166,8 @@ int run_controller(const Plugin& plugin, int argc, char** argv);
   int main(int argc, char** argv) { return ::cohort::run_controller(cohort_plugin, argc, argv); }
 #endif
 
-/// Once, at the end of a controller's source file.
+/// Once in a controller, at the end of a source file and in no namespace, without a semicolon. `Class` derives from
+/// Controller and has a default constructor.
 #define COHORT_CONTROLLER(Class)                                                                  \
   extern "C" __attribute__((visibility("default"))) const ::cohort::Plugin cohort_plugin = {      \
       ::cohort::Plugin::current_abi, #Class, []() -> ::cohort::Controller* { return new Class; }, \

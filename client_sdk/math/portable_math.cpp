@@ -3,7 +3,7 @@
 // of the C library's for |x| < 10^6, which covers every angle of a simulation. pow and fmod are left to the C library:
 // fmod is exact in any correct implementation, and pow is called on no path of a step.
 
-#include "server/core/portable_math.hpp"
+#include "client_sdk/math/portable_math.hpp"
 
 #include <dlfcn.h>
 
@@ -264,6 +264,9 @@ double asin(double x) noexcept { return portable_asin(x); }
 double acos(double x) noexcept { return portable_acos(x); }
 double exp(double x) noexcept { return portable_exp(x); }
 double log(double x) noexcept { return portable_log(x); }
+
+// What the linker is told to look for (the CMakeLists.txt beside), so that it takes this object file before the C library.
+extern const char cohort_portable_math = 1;
 }
 
 namespace cohort {

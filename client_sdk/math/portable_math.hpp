@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// The C library picks its sin, cos, atan2 … at run time by what the CPU can do, and the variants differ in the last
+/// bit: one binary would give two trajectories on two machines. portable_math.cpp therefore defines sin, cos, sincos,
+/// tan, atan, atan2, asin, acos, exp and log itself, from + - * / and sqrt only. They are in every program that steps a
+/// world, which exports them so that Bullet's calls bind to them; and in every controller, program and plugin alike, so
+/// that it answers the same wherever it runs.
+namespace cohort {
+
+/// The functions that the shared libraries of this process would not get from portable_math.cpp, by name. Empty in our
+/// own programs; a host program that loads the simulation as a plugin may lack the exports, and its runs are then not
+/// portable between CPUs.
+std::vector<std::string> functions_not_portable();
+
+}  // namespace cohort

@@ -1,0 +1,158 @@
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "tests/support/process.hpp"
+
+namespace cohort::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Nothing of the build tree is in sight.
+const Process::Environment environment = {{"COHORT_MODEL_PATH", ""}, {"COHORT_PLUGIN_PATH", ""}};
+// Nor fused multiply-add for the C library.
+const Process::Environment environment_of_another_cpu = {
+    {"COHORT_MODEL_PATH", ""}, {"COHORT_PLUGIN_PATH", ""}, {"GLIBC_TUNABLES", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"}};
+
+std::string version(int minor) { return std::to_string(COHORT_VERSION_MAJOR) + "." + std::to_string(minor); }
+const std::string this_version = version(COHORT_VERSION_MINOR);
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+struct Ended {
+  std::optional<int> exit_code;
+  std::string output;
+};
+
+Ended run(const std::vector<std::string>& command) {
+  Process process(command, environment);
+  const auto exit_code = process.wait_for_exit();
+  return {exit_code, process.output()};
+}
+
+std::string hash_in(const fs::path& summary) {
+  return nlohmann::json::parse(read(summary), nullptr, false).value("state_hash", "no summary");
+}
+
+// Cohort, installed into a prefix, and a project that knows nothing else of it.
+class Installation : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch.emplace();
+    prefix = *scratch / "prefix";
+    outside = *scratch / "outside";
+    const Ended installed = run({COHORT_CMAKE, "--install", COHORT_BUILD_DIR, "--prefix", prefix});
+    ASSERT_EQ(installed.exit_code, 0) << installed.output;
+    fs::copy(COHORT_SOURCE_DIR "/tests/install/outside", outside);
+    const Ended configured = configure("build", this_version);
+    ASSERT_EQ(configured.exit_code, 0) << configured.output;
+    const Ended built = build("build");
+    ASSERT_EQ(built.exit_code, 0) << built.output;
+  }
+  static void TearDownTestSuite() { scratch.reset(); }
+
+  static Ended configure(const std::string& build_folder, const std::string& version) {
+    return run({COHORT_CMAKE, "-G", COHORT_GENERATOR, "-S", outside, "-B", outside / build_folder, "-C",
+                COHORT_SETTINGS, "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DWANTED_VERSION=" + version});
+  }
+  static Ended build(const std::string& build_folder, const std::string& target = "all") {
+    return run({COHORT_CMAKE, "--build", outside / build_folder, "--target", target});
+  }
+
+  static std::string cohort() { return prefix / "bin/cohort"; }
+
+  static std::string hash_of_run(const std::string& experiment, const std::string& controllers) {
+    const ScratchFolder folder;
+    const fs::path summary = folder / "summary.json";
+    const Ended ended =
+        run({cohort(), "run", outside / experiment, "--controllers", controllers, "--summary", summary});
+    EXPECT_EQ(ended.exit_code, 0) << ended.output;
+    return hash_in(summary);
+  }
+
+  static std::string hash_with_attached(const std::string& program, const Process::Environment& its_environment) {
+    const ScratchFolder folder;
+    const ReservedDomain domain;
+    const fs::path summary = folder / "summary.json";
+    Process server({cohort(), "serve", outside / "experiment.yaml", "--domain", domain.text(), "--summary", summary},
+                   environment);
+    Process controller({outside / "build" / program, "--domain", domain.text()}, its_environment);
+    EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+    EXPECT_EQ(controller.wait_for_exit(), 0) << controller.output();
+    return hash_in(summary);
+  }
+
+  static inline std::optional<ScratchFolder> scratch;
+  static inline fs::path prefix;
+  static inline fs::path outside;
+};
+
+TEST_F(Installation, AnOutsideControllerGivesTheSameBitsAsPluginInEitherPlacementAndAsAProgram) {
+  const std::string in_process = hash_of_run("experiment.yaml", "inprocess");
+  EXPECT_EQ(in_process.size(), 16u) << in_process;
+  EXPECT_EQ(hash_of_run("experiment.yaml", "process"), in_process);
+  EXPECT_EQ(hash_with_attached("weaver", environment), in_process);
+}
+
+TEST_F(Installation, AnOutsideControllerGivesTheSameBitsOnAnyCpu) {
+  const std::string expected = hash_of_run("experiment.yaml", "inprocess");
+  EXPECT_EQ(hash_of_run("tuned.yaml", "inprocess"), expected);
+  EXPECT_EQ(hash_with_attached("weaver", environment_of_another_cpu), expected);
+}
+
+TEST_F(Installation, AnOutsidePluginShowsNothingButItself) {
+  const std::string plugin = outside / "build/weaver.so";
+  void* const library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
+  ASSERT_NE(library, nullptr) << dlerror();
+  EXPECT_NE(dlsym(library, "cohort_plugin"), nullptr);
+  EXPECT_EQ(dlsym(library, "cohort_portable_math"), nullptr);
+  dlclose(library);
+}
+
+TEST_F(Installation, FindPackageAcceptsThisMinorVersionOnly) {
+  for (const int step : {-1, 1}) {
+    const Ended other = configure("other", version(COHORT_VERSION_MINOR + step));
+    EXPECT_NE(other.exit_code, 0);
+    EXPECT_NE(other.output.find("version: " + this_version), std::string::npos) << other.output;
+  }
+  const Ended same = configure("same", this_version);
+  EXPECT_EQ(same.exit_code, 0) << same.output;
+}
+
+TEST_F(Installation, ThePackageNamesNoFolderOfTheBuildAndNoneOfOurWarnings) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(prefix / COHORT_LIB_DIR / "cmake/Cohort")) {
+    const std::string text = read(entry.path());
+    for (const char* ours : {COHORT_SOURCE_DIR, COHORT_BUILD_DIR, "-Werror", "-Wall"})
+      EXPECT_EQ(text.find(ours), std::string::npos) << entry.path() << " has " << ours;
+    ++files;
+  }
+  EXPECT_GE(files, 5);
+}
+
+TEST_F(Installation, HasTheShippedExperimentAndItsController) {
+  const fs::path experiment = prefix / "share/cohort/worlds/experiments/obstacle_avoidance.yaml";
+  const Ended ended = run({cohort(), "run", experiment, "--duration", "0.1"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.output;
+}
+
+TEST_F(Installation, MayBeMoved) {
+  const std::string before = hash_of_run("experiment.yaml", "process");
+  const fs::path elsewhere = *scratch / "else where";
+  fs::rename(prefix, elsewhere);
+  prefix = elsewhere;
+  EXPECT_EQ(hash_of_run("experiment.yaml", "process"), before);
+  const Ended configured = configure("moved", this_version);
+  EXPECT_EQ(configured.exit_code, 0) << configured.output;
+  const Ended built = build("moved", "weaver_plugin");
+  EXPECT_EQ(built.exit_code, 0) << built.output;
+}
+
+}  // namespace
+}  // namespace cohort::testing

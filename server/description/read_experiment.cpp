@@ -9,6 +9,7 @@
 
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
+#include "server/description/input_file.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
 #include "server/description/yaml_map.hpp"
@@ -125,7 +126,11 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
 
 YAML::Node ExperimentReader::load() {
   const fs::path& file = experiment_.file;
-  if (!fs::is_regular_file(file)) throw InputError({{file, 0, "", "there is no such file"}});
+  if (auto reason = why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
+  if (file.extension() == ".sdf" || file.extension() == ".world")
+    throw InputError(
+        {{file, 0, "",
+          "this is a world; expected an experiment (YAML), which names a world and who controls its robots"}});
   try {
     return YAML::LoadFile(file.string());
   } catch (const YAML::ParserException& error) {
@@ -139,8 +144,8 @@ void ExperimentReader::read_world_of(const YamlMap& top) {
   const std::optional<std::string> name = top.text("world");
   if (!name) return;
   const fs::path world = experiment_.file.parent_path() / *name;
-  if (!fs::is_regular_file(world)) {
-    top.problem("world", "there is no '" + world.lexically_normal().string() + "'");
+  if (const auto reason = why_unreadable(world)) {
+    top.problem("world", *reason + ": '" + world.lexically_normal().string() + "'");
     return;
   }
   try {
@@ -160,7 +165,7 @@ void ExperimentReader::read_teams(const YamlMap& top) {
     return;
   }
   for (std::size_t i = 0; i < teams.size(); ++i) read_team(teams[i], "teams[" + std::to_string(i) + "]");
-  // A misspelt selector leaves robots without a team.
+  // A missing or misspelt selector leaves robots without a team.
   if (selectors_are_right_) report_robots_without_team(top);
 }
 
@@ -188,6 +193,8 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
     }
     claim(robots, map.path_to("robots"), team.name, selected);
     team.robots.assign(selected.begin(), selected.end());
+  } else {
+    selectors_are_right_ = false;
   }
   experiment_.teams.push_back(std::move(team));
 }

@@ -126,7 +126,7 @@ TEST(ShippedWorlds, TheExperimentHasSixteenRobotsThatShareOneModel) {
   EXPECT_EQ(experiment.teams[0].controller, "obstacle_avoidance");
   EXPECT_EQ(experiment.teams[0].robots.size(), 16u);
   EXPECT_EQ(experiment.teams[0].policy.on_late, OnLate::wait);
-  EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0];
+  EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0].text();
 }
 
 TEST(ShippedWorlds, TheArenaHasFourWallsTwentyFourObstaclesAndAGround) {
@@ -287,7 +287,7 @@ TEST_F(Description, IncludesOfOneModelShareItAndAStaticOneIsNoRobot) {
   EXPECT_EQ(world.robot_model(1).name, "sbot");
   EXPECT_TRUE(world.models[instance(world, "parked").model].is_static);
   ASSERT_EQ(world.warnings.size(), 1u);
-  EXPECT_NE(world.warnings[0].find("not a robot"), std::string::npos);
+  EXPECT_NE(world.warnings[0].message.find("not a robot"), std::string::npos);
 }
 
 TEST_F(Description, PosesResolveThroughFrames) {
@@ -373,7 +373,7 @@ TEST_F(Description, WhatIsNotSimulatedIsSaidOnceEach) {
       "<model name=\"m\"><self_collide>true</self_collide><link name=\"l\"><gravity>true</gravity>\n"
       "<sensor name=\"s\" type=\"imu\"/></link></model>");
   std::string all;
-  for (const std::string& warning : world.warnings) all += warning + "\n";
+  for (const Problem& warning : world.warnings) all += warning.text() + "\n";
   EXPECT_EQ(world.warnings.size(), 5u) << all;  // and that the link has neither mass nor inertia
   EXPECT_NE(all.find(":2: world/wind: "), std::string::npos) << all;
   EXPECT_NE(all.find(":3: world/model[m]/self_collide: "), std::string::npos) << all;
@@ -454,7 +454,9 @@ INSTANTIATE_TEST_SUITE_P(
              "</link></model>",
              2, "world/model[m]/link[l]/collision[c]/geometry", "<static>"},
         Flaw{static_model("<pose>0 0 inf 0 0 0</pose>" + links("a")), 2, "world/model[m]/pose", "'0 0 inf 0 0 0'"},
-        Flaw{static_model("<pse/>" + links("a")), 2, "world/model[m]/pse", "not defined in SDF"},
+        Flaw{static_model("<pse/>" + links("a")), 2, "world/model[m]/pse", "unknown element; did you mean 'pose'?"},
+        Flaw{"<model name=\"m\">\n<link nam=\"l\"/></model>", 3, "world/model[m]/link/@nam",
+             "unknown attribute; did you mean 'name'?"},
         Flaw{static_model(links("a")) + "\n" + static_model(links("a")), 3, "world/model[m]", "another model"},
         Flaw{static_model(links("a"), "sbot") + "\n<include><uri>model://sbot</uri></include>", 3,
              "world/include[sbot]", "another model"},
@@ -494,6 +496,9 @@ INSTANTIATE_TEST_SUITE_P(
              4, in_motor + "/cohort:joint", "did you mean 'hinge'?"},
         Flaw{motor("<cohort:joint>hinge</cohort:joint><cohort:max_velocity>1</cohort:max_velocity>"
                    "<cohort:max_effort>1</cohort:max_effort>\n<cohort:max_efort>1</cohort:max_efort>"),
+             5, in_motor + "/cohort:max_efort", "did you mean 'cohort:max_effort'?"},
+        Flaw{motor("<cohort:joint>hinge</cohort:joint><cohort:max_velocity>1</cohort:max_velocity>"
+                   "\n<cohort:max_efort>1</cohort:max_efort>"),
              5, in_motor + "/cohort:max_efort", "did you mean 'cohort:max_effort'?"},
         Flaw{motor("", "cohort:velocity_moter"), 3, "world/model[m]/cohort:velocity_moter[d]",
              "did you mean 'cohort:velocity_motor'?"},
@@ -598,6 +603,10 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{team("all", "duration: 3\n"), 7, "duration", "given twice"},
         Flaw{team("all", "seed: -1\n"), 7, "seed", "not '-1'"},
         Flaw{team("all", "    controler: y\n"), 7, "teams[0].controler", "did you mean 'controller'?"},
+        Flaw{"world: world.sdf\nduraton: 1\nteams: [{name: a, controller: x, robots: all}]\n", 2, "duraton",
+             "did you mean 'duration'?"},
+        Flaw{top + "teams:\n  - name: a\n    controller: x\n    robot: all\n", 6, "teams[0].robot",
+             "did you mean 'robots'?"},
         Flaw{team("all", "    period: 0\n"), 7, "teams[0].period", "not '0'"},
         Flaw{team("all", "    phase: 1\n"), 7, "teams[0].phase", "less than the period"},
         Flaw{team("all", "    delay: [1]\n"), 7, "teams[0].delay", "not a list"},

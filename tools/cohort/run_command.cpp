@@ -163,7 +163,7 @@ int run(const RunCommand& command, const std::atomic<bool>& stop) {
     if (command.duration)
       duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
     const description::Experiment experiment = description::read_experiment(command.file, command.seed, duration);
-    for (const std::string& warning : experiment.world.warnings) spdlog::warn("{}", warning);
+    for (const description::Problem& warning : experiment.world.warnings) spdlog::warn("{}", warning.text());
 
     std::vector<LoadedPlugin> plugins;
     if (command.controllers != Controllers::external) plugins = load_controllers(experiment);

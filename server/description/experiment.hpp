@@ -22,12 +22,17 @@ struct Policy {
   std::chrono::nanoseconds deadline{0};  ///< wall-clock patience per tick; only read if on_late is not wait
 };
 
+/// What to do about a controller process that dies.
+enum class Restart { on_failure, never };
+
 /// Robots that share a controller and a policy.
 struct Team {
   std::string name;
   std::vector<std::uint32_t> robots;  ///< ids, ascending
   std::string controller;             ///< plugin name, or a path to a plugin
   Policy policy;
+  Restart restart = Restart::on_failure;
+  int controller_line = 0;  ///< of the key `controller` in the file
 };
 
 struct Experiment {

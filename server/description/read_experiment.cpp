@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>::max();
 
 const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "teams"};
-const std::vector<std::string> team_keys = {"name",  "robots", "controller", "period",
-                                            "phase", "delay",  "on_late",    "deadline"};
+const std::vector<std::string> team_keys = {"name",  "robots",  "controller", "period", "phase",
+                                            "delay", "on_late", "deadline",   "restart"};
 
 const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLate::wait},
                                                                    {"hold", OnLate::hold},
@@ -78,6 +78,14 @@ Policy read_policy(const YamlMap& team) {
   team.require("deadline", "how long to wait before '" + on_late + "', in seconds");
   policy.deadline = read_seconds(team, "deadline").value_or(policy.deadline);
   return policy;
+}
+
+Restart read_restart(const YamlMap& team) {
+  const std::string restart = team.text("restart").value_or("on_failure");
+  if (restart == "never") return Restart::never;
+  if (restart != "on_failure")
+    team.problem("restart", "unknown value '" + restart + "'" + suggestion(restart, {"on_failure", "never"}));
+  return Restart::on_failure;
 }
 
 class ExperimentReader {
@@ -177,7 +185,9 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
   Team team;
   team.name = map.text("name").value_or("");
   team.controller = map.text("controller").value_or("");
+  team.controller_line = map.where("controller").Mark().line + 1;
   team.policy = read_policy(map);
+  team.restart = read_restart(map);
   for (const Team& other : experiment_.teams)
     if (!team.name.empty() && other.name == team.name)
       map.problem("name", "another team has the name '" + team.name + "'");

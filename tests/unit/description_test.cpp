@@ -546,7 +546,7 @@ TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
   const Experiment experiment = read_experiment(write_experiment(
       "world: world.sdf\nduration: 0.25\nseed: 18446744073709551615\nteams:\n"
       "  - {name: a, robots: [3, p/*_0], controller: x, period: 3, phase: 2, delay: 1, on_late: hold, deadline: 0.05}\n"
-      "  - {name: b, robots: 1..2, controller: y}\n"));
+      "  - {name: b, robots: 1..2, controller: y,\n     restart: never}\n"));
   EXPECT_EQ(experiment.duration, 250ms);
   EXPECT_EQ(experiment.seed, 18446744073709551615u);
   ASSERT_EQ(experiment.teams.size(), 2u);
@@ -558,6 +558,9 @@ TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
   EXPECT_EQ(policy.delay, 1u);
   EXPECT_EQ(policy.on_late, OnLate::hold);
   EXPECT_EQ(policy.deadline, 50ms);
+  EXPECT_EQ(experiment.teams[0].restart, Restart::on_failure);
+  EXPECT_EQ(experiment.teams[1].restart, Restart::never);
+  EXPECT_EQ(experiment.teams[1].controller_line, 6);
 }
 
 TEST_F(Experiments, SeedAndDurationOfTheCallerStandInForTheFiles) {
@@ -611,6 +614,8 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{team("all", "    phase: 1\n"), 7, "teams[0].phase", "less than the period"},
         Flaw{team("all", "    delay: [1]\n"), 7, "teams[0].delay", "not a list"},
         Flaw{team("all", "    on_late: halt\n"), 7, "teams[0].on_late", "unknown policy 'halt'"},
+        Flaw{team("all", "    restart: nevr\n"), 7, "teams[0].restart", "did you mean 'never'?"},
+        Flaw{team("all", "    restart: sometimes\n"), 7, "teams[0].restart", "known: on_failure, never"},
         Flaw{team("all", "    on_late: zero\n"), 4, "teams[0].deadline", "missing"},
         Flaw{team("all", "    deadline: 1\n"), 7, "teams[0].deadline", "waits for ever"},
         Flaw{team("p/bot_1"), 6, "teams[0].robots", "no robot is called 'p/bot_1'; did you mean 'p/sbot_1'?"},

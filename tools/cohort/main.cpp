@@ -16,8 +16,12 @@ std::atomic<bool> stop_requested = false;
 void stop_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = SA_RESETHAND;  // a second one ends the process at once, whatever it is stuck in
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // but for nohup: the terminal was closed
 }
 
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed) {

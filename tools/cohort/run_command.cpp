@@ -64,30 +64,47 @@ Served open_domain(const RunCommand& command) {
   }
 }
 
-std::vector<std::vector<std::string>> controller_commands(const description::Experiment& experiment,
-                                                          const std::vector<LoadedPlugin>& plugins, bool per_robot,
-                                                          std::uint32_t domain) {
+// Runs of ids, as short as they can be said.
+std::string selectors_of(const std::vector<std::uint32_t>& robots) {
+  std::string selectors;
+  for (std::size_t begin = 0, end = 0; begin < robots.size(); begin = end) {
+    for (end = begin + 1; end < robots.size() && robots[end] == robots[end - 1] + 1;) ++end;
+    const std::string range =
+        end - begin == 1 ? fmt::format("{}", robots[begin]) : fmt::format("{}..{}", robots[begin], robots[end - 1]);
+    selectors += (begin == 0 ? "" : ",") + range;
+  }
+  return selectors;
+}
+
+std::vector<Children::Command> controller_commands(const description::Experiment& experiment,
+                                                   const std::vector<LoadedPlugin>& plugins, bool per_robot,
+                                                   std::uint32_t domain) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
-  std::vector<std::vector<std::string>> commands;
-  for (std::size_t team = 0; team < experiment.teams.size(); ++team) {
-    const auto add = [&](std::string robots) {
-      commands.push_back({program, "host", plugins[team].path(), "--robots", std::move(robots), "--server", "127.0.0.1",
-                          "--domain", std::to_string(domain)});
+  std::vector<Children::Command> commands;
+  for (std::size_t i = 0; i < experiment.teams.size(); ++i) {
+    const description::Team& team = experiment.teams[i];
+    const auto add = [&](const std::vector<std::uint32_t>& robots) {
+      Children::Command command;
+      command.arguments = {program,     "host",     plugins[i].path(),     "--robots", selectors_of(robots), "--server",
+                           "127.0.0.1", "--domain", std::to_string(domain)};
+      const std::string more = robots.size() == 1 ? "" : fmt::format(" and {} more", robots.size() - 1);
+      command.name = fmt::format("team '{}' ({}{})", team.name, experiment.world.robot(robots.front()).name, more);
+      command.restarts = team.restart != description::Restart::never;
+      commands.push_back(std::move(command));
     };
-    const std::vector<std::uint32_t>& robots = experiment.teams[team].robots;
-    if (per_robot) {
-      for (const std::uint32_t robot : robots) add(std::to_string(robot));
-      continue;
-    }
-    // Runs of ids, as short as they can be said.
-    std::string selectors;
-    for (std::size_t begin = 0, end = 0; begin < robots.size(); begin = end) {
-      for (end = begin + 1; end < robots.size() && robots[end] == robots[end - 1] + 1;) ++end;
-      selectors += fmt::format("{}{}..{}", begin == 0 ? "" : ",", robots[begin], robots[end - 1]);
-    }
-    add(selectors);
+    if (!per_robot && !team.robots.empty()) add(team.robots);
+    if (per_robot)
+      for (const std::uint32_t robot : team.robots) add({robot});
   }
   return commands;
+}
+
+Children::Listener listen_to_children(session::Server& server) {
+  Children::Listener listener;
+  listener.restarted =
+      listener.killed = [](const Children::Command&, const std::string& text) { spdlog::warn("{}", text); };
+  listener.gave_up = [&](const std::string& text) { server.fail(text); };
+  return listener;
 }
 
 RunResult run_over_dds(const RunCommand& command, const description::Experiment& experiment, Simulation& simulation,
@@ -106,9 +123,7 @@ RunResult run_over_dds(const RunCommand& command, const description::Experiment&
     return server.run(stop);
   }
   const bool per_robot = command.controllers == Controllers::per_robot;
-  Children children(
-      controller_commands(experiment, plugins, per_robot, served.domain),
-      {[](const std::string& text) { spdlog::warn("{}", text); }, [&](const std::string& text) { server.fail(text); }});
+  Children children(controller_commands(experiment, plugins, per_robot, served.domain), listen_to_children(server));
   own_controllers = &children;
   RunResult result = server.run(stop);
   children.let_finish();

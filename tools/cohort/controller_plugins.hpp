@@ -8,7 +8,7 @@
 namespace cohort::tool {
 
 /// The plugins of the experiment's teams, in their order. A controller named by a relative path is looked for beside
-/// the experiment. Throws std::runtime_error that names the team.
+/// the experiment. Throws description::InputError.
 std::vector<LoadedPlugin> load_controllers(const description::Experiment& experiment);
 
 }  // namespace cohort::tool

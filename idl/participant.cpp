@@ -1,9 +1,12 @@
 #include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +14,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "idl/dds.hpp"
 
@@ -19,6 +23,17 @@ namespace {
 
 // The last domain whose ports exist: the next one's lie beyond 65535.
 constexpr std::uint32_t last_domain = 232;
+
+void print_log(std::string_view message, bool fatal) noexcept {
+  static const bool shown = [] {
+    const char* level = std::getenv("COHORT_LOG");
+    return level != nullptr && std::string_view(level) == "debug";
+  }();
+  if (shown || fatal) std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
+}
+
+std::atomic<DdsLogReceiver> receive_log_now = &print_log;
+void receive_log(std::string_view message, bool fatal) noexcept { receive_log_now.load()(message, fatal); }
 
 // Cyclone has one log for the process, and says why it refused there only. While one of these lives, what the same
 // thread's calls log is kept.
@@ -37,25 +52,21 @@ class LogCapture {
  private:
   static void install_sink() {
     static const bool installed = [] {
-      const char* level = std::getenv("COHORT_LOG");
-      void* shown = level != nullptr && std::string_view(level) == "debug" ? stderr : nullptr;
-      dds_set_log_sink(&LogCapture::receive, shown);
-      dds_set_trace_sink(&LogCapture::receive, shown);
+      dds_set_log_sink(&LogCapture::receive, nullptr);
+      dds_set_trace_sink(&LogCapture::receive, nullptr);
       return true;
     }();
     static_cast<void>(installed);
   }
 
-  static void receive(void* shown, const dds_log_data_t* entry) noexcept {
-    const std::string_view message(entry->message, entry->size);
+  static void receive(void*, const dds_log_data_t* entry) noexcept {
+    std::string_view message(entry->message, entry->size);
+    if (message.ends_with('\n')) message.remove_suffix(1);
     if (current_ != nullptr) {
       if (!current_->text_.empty()) current_->text_ += "; ";
       current_->text_ += message;
     }
-    // After a fatal message Cyclone aborts, so that one is always shown.
-    if (shown != nullptr || (entry->priority & DDS_LC_FATAL) != 0) {
-      std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
-    }
+    receive_log(message, (entry->priority & DDS_LC_FATAL) != 0);
   }
 
   static thread_local LogCapture* current_;
@@ -123,6 +134,30 @@ bool is_loopback(in_addr address) { return (ntohl(address.s_addr) >> 24) == 127;
 
 bool is_taken(std::uint16_t port) { return UdpSocket().bind(socket_address(in_addr{INADDR_ANY}, port)) == EADDRINUSE; }
 
+// IPv4 addresses of the network interfaces that are up.
+std::vector<in_addr> addresses_in_use() {
+  ifaddrs* list = nullptr;
+  if (::getifaddrs(&list) != 0) return {};
+  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owner(list, ::freeifaddrs);
+  std::vector<in_addr> addresses;
+  for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next)
+    if (entry->ifa_addr != nullptr && entry->ifa_addr->sa_family == AF_INET && (entry->ifa_flags & IFF_UP) != 0)
+      addresses.push_back(reinterpret_cast<const sockaddr_in*>(entry->ifa_addr)->sin_addr);
+  return addresses;
+}
+
+// Cyclone says neither which address it misses nor which it would have found.
+void expect_own(in_addr wanted) {
+  std::string others;
+  for (const in_addr address : addresses_in_use()) {
+    // All of 127.0.0.0/8 is the loopback's.
+    if (address.s_addr == wanted.s_addr || (is_loopback(address) && is_loopback(wanted))) return;
+    others += (others.empty() ? "" : ", ") + to_text(address);
+  }
+  if (others.empty()) throw WireError("this machine has no network interface that is up, not even the loopback");
+  throw WireError("no network interface that is up has the address " + to_text(wanted) + "; there are " + others);
+}
+
 in_addr own_address_towards(in_addr server, std::uint16_t port) {
   const UdpSocket socket;
   if (const int error = socket.connect(socket_address(server, port)); error != 0) {
@@ -165,6 +200,8 @@ std::unique_ptr<Participant::State> join(std::uint32_t domain, const std::string
 
 }  // namespace
 
+void set_dds_log(DdsLogReceiver receiver) { receive_log_now = receiver == nullptr ? &print_log : receiver; }
+
 dds_return_t check(dds_return_t result, const char* verb, const char* object) {
   if (result >= 0) return result;
   throw WireError(std::string("DDS cannot ") + verb + " " + object + ": " + dds_strretcode(-result));
@@ -187,9 +224,7 @@ std::uint16_t discovery_port(std::uint32_t domain) {
 Participant Participant::server(std::uint32_t domain, const std::string& address) {
   const std::uint16_t port = discovery_port(domain);
   const in_addr own_address = resolve(address);
-  if (UdpSocket().bind(socket_address(own_address, 0)) != 0) {
-    throw WireError("this machine has no network interface with the address " + address);
-  }
+  expect_own(own_address);
   LogCapture log;
   auto state = join(domain, configuration(domain, own_address,
                                           "<ParticipantIndex>0</ParticipantIndex><SPDPInterval>5s</SPDPInterval>"));

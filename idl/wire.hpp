@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "idl/messages.hpp"
 
@@ -24,6 +25,13 @@ class DomainTaken : public WireError {
  public:
   using WireError::WireError;
 };
+
+/// Receives what Cyclone DDS itself has to say, on any thread; after a fatal message it aborts.
+using DdsLogReceiver = void (*)(std::string_view message, bool fatal) noexcept;
+
+/// From now on, for the whole process: Cyclone has one log. Without a receiver (or with nullptr) fatal messages go to
+/// standard error, and all of them if the environment's COHORT_LOG is `debug`.
+void set_dds_log(DdsLogReceiver receiver);
 
 /// The partition in which the server speaks to one client: `c` and the client's id as 16 hexadecimal digits.
 std::string partition_of(std::uint64_t client);

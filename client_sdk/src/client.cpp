@@ -83,7 +83,7 @@ class Client {
   bool is_described(const wire::Admit& admit) const;
   std::optional<ClientEnd> reason_to_leave();
   ClientEnd fail(Lock& lock);
-  void explain(const std::string& text) const;
+  void tell(Severity severity, const std::string& text) const;
 
   const ClientOptions options_;
   const std::string name_;
@@ -227,17 +227,17 @@ void Client::heed(const wire::Report& report) {
   switch (report.kind) {
     case wire::ReportKind::finished: end_ = ClientEnd::finished; break;
     case wire::ReportKind::superseded:
-      explain("another process has taken these robots over. " + report.text);
+      tell(Severity::error, "another process has taken these robots over. " + report.text);
       end_ = ClientEnd::superseded;
       break;
     case wire::ReportKind::failed:
-      explain("the run failed. " + report.text);
+      tell(Severity::error, "the run failed. " + report.text);
       end_ = ClientEnd::failed;
       break;
     case wire::ReportKind::rejected:
       if (reasons_told_.insert(report.reason).second) {
-        explain("the server rejected the answer to tick " + std::to_string(report.tick) + " (" + report.reason +
-                "; told once). " + report.text);
+        tell(Severity::warning, "the server rejected the answer to tick " + std::to_string(report.tick) + " (" +
+                                    report.reason + "; told once). " + report.text);
       }
       break;
   }
@@ -246,7 +246,7 @@ void Client::heed(const wire::Report& report) {
 void Client::heed(Offer offer, Lock& lock) {
   const wire::Admit& admit = offer.admit;
   if (admit.status != wire::AdmitStatus::admitted) {
-    explain("refused: " + admit.reason);
+    tell(Severity::error, "refused: " + admit.reason);
     end_ = ClientEnd::refused;
     return;
   }
@@ -293,24 +293,25 @@ bool Client::is_described(const wire::Admit& admit) const {
 std::optional<ClientEnd> Client::reason_to_leave() {
   const auto now = Clock::now();
   if (stop_) {
-    explain("interrupted");
+    tell(Severity::info, "interrupted");
     return ClientEnd::interrupted;
   }
   if (server_left_ && now - *server_left_ > server_may_be_away) {
-    explain("the server at " + options_.server + ", domain " + std::to_string(options_.domain) + " is gone");
+    tell(Severity::error,
+         "the server at " + options_.server + ", domain " + std::to_string(options_.domain) + " is gone");
     return ClientEnd::server_lost;
   }
   if (!current_ && !notice_given_ && now - since_ > patience_before_notice) {
     notice_given_ = true;
-    explain(joins_.matched() == 0
-                ? "waiting for a server at " + options_.server + ", domain " + std::to_string(options_.domain)
-                : "waiting for the server to admit this client");
+    tell(Severity::warning, joins_.matched() == 0 ? "waiting for a server at " + options_.server + ", domain " +
+                                                        std::to_string(options_.domain)
+                                                  : "waiting for the server to admit this client");
   }
   return std::nullopt;
 }
 
 ClientEnd Client::fail(Lock& lock) {
-  explain(*failure_);
+  tell(Severity::error, *failure_);
   const wire::Report report{.client = id_,
                             .run = current_ ? current_->admit.run : 0,
                             .kind = wire::ReportKind::failed,
@@ -322,7 +323,12 @@ ClientEnd Client::fail(Lock& lock) {
   return ClientEnd::failed;
 }
 
-void Client::explain(const std::string& text) const { std::fprintf(stderr, "%s: %s\n", name_.c_str(), text.c_str()); }
+void Client::tell(Severity severity, const std::string& text) const {
+  if (options_.tell)
+    options_.tell(severity, text);
+  else
+    std::fprintf(stderr, "%s: %s\n", name_.c_str(), text.c_str());
+}
 
 }  // namespace
 

@@ -3,12 +3,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "client_sdk/src/controller_host.hpp"
 
 namespace cohort {
+
+enum class Severity { info, warning, error };
 
 struct ClientOptions {
   std::string server = "127.0.0.1";
@@ -18,6 +21,9 @@ struct ClientOptions {
   /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
   /// latency. Only for controllers that never block, since DDS stands still meanwhile.
   bool inline_step = false;
+  /// Receives what people should know, one text at a time, on any thread of the client. If empty it goes to standard
+  /// error, after the name.
+  std::function<void(Severity severity, const std::string& text)> tell{};
 };
 
 enum class ClientEnd {
@@ -29,8 +35,8 @@ enum class ClientEnd {
   interrupted,  ///< `stop` was set
 };
 
-/// Attaches to a server, drives robots until the run ends, and says why it ended; explains anything but `finished` on
-/// standard error. Waits for a server that is not there yet. Blocks; controllers run on the calling thread, unless
+/// Attaches to a server, drives robots until the run ends, and says why it ended; tells what anything but `finished` is
+/// about. Waits for a server that is not there yet. Blocks; controllers run on the calling thread, unless
 /// `inline_step`. `stop` may be set from a signal handler. Throws wire::WireError if the server's address cannot be
 /// used.
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop);

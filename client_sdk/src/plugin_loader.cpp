@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -17,21 +18,49 @@ bool is_path(const std::string& name_or_path) {
   return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".so");
 }
 
+std::string joined(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string names_of_plugins(const std::vector<fs::path>& directories) {
+  constexpr std::size_t few = 16;
+  std::set<std::string> names;
+  for (const fs::path& directory : directories) {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, ignored))
+      if (entry.path().extension() == ".so") names.insert(entry.path().stem().string());
+  }
+  return names.empty() || names.size() > few ? "" : "; known: " + joined(names);
+}
+
 fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path>& directories) {
-  std::vector<fs::path> candidates;
+  std::error_code ignored;
   if (is_path(name_or_path)) {
-    candidates.push_back(fs::absolute(name_or_path));
-  } else {
-    for (const fs::path& directory : directories) candidates.push_back(directory / (name_or_path + ".so"));
+    const fs::path path = fs::absolute(name_or_path).lexically_normal();
+    if (fs::is_regular_file(path, ignored)) return path;
+    throw std::runtime_error("there is no controller plugin " + path.string());
   }
   std::string tried;
-  for (const fs::path& candidate : candidates) {
-    std::error_code ignored;
-    if (fs::is_regular_file(candidate, ignored)) return candidate;
-    tried += "\n  " + candidate.lexically_normal().string();
+  for (const fs::path& directory : directories) {
+    const fs::path path = (directory / (name_or_path + ".so")).lexically_normal();
+    if (fs::is_regular_file(path, ignored)) return path;
+    tried += (tried.empty() ? "" : ", ") + path.string();
   }
-  throw std::runtime_error("there is no controller plugin '" + name_or_path + "'. Tried:" + tried +
-                           "\nGive its path, or put its folder into COHORT_PLUGIN_PATH.");
+  throw std::runtime_error("there is no controller plugin '" + name_or_path + "'" + names_of_plugins(directories) +
+                           ". Tried " + tried + ". Give its path, or put its folder into COHORT_PLUGIN_PATH");
+}
+
+// What dlopen says, without the path, and what to do about it.
+std::string reason_not_loaded(const fs::path& path) {
+  const char* error = ::dlerror();
+  std::string reason = error != nullptr ? error : "unknown error";
+  if (const std::string prefix = path.string() + ": "; reason.starts_with(prefix)) reason.erase(0, prefix.size());
+  if (reason.starts_with("undefined symbol")) return reason + ". Link what defines it into the plugin";
+  if (reason == "file too short" || reason == "invalid ELF header")
+    return reason + ". A plugin is a shared object, as cohort_add_controller builds it";
+  return reason;
 }
 
 }  // namespace
@@ -40,8 +69,7 @@ LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs
     : path_(find_plugin(name_or_path, directories)),
       library_(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL), ::dlclose) {
   if (library_ == nullptr) {
-    const char* reason = ::dlerror();
-    throw std::runtime_error("cannot load " + path_.string() + ": " + (reason != nullptr ? reason : "unknown error"));
+    throw std::runtime_error("cannot load " + path_.string() + ": " + reason_not_loaded(path_));
   }
   plugin_ = static_cast<const Plugin*>(::dlsym(library_.get(), "cohort_plugin"));
   if (plugin_ == nullptr) {
@@ -53,8 +81,7 @@ LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs
   if (plugin_->abi != Plugin::current_abi) {
     throw std::runtime_error(path_.string() + " was built for version " + std::to_string(plugin_->abi) +
                              " of the controller interface, and this program has version " +
-                             std::to_string(Plugin::current_abi) +
-                             ". Build it again with the headers of this version.");
+                             std::to_string(Plugin::current_abi) + ". Build it again with the headers of this version");
   }
 }
 

@@ -22,6 +22,9 @@ struct Policy {
   std::chrono::nanoseconds deadline{0};  ///< wall-clock patience per tick; only read if on_late is not wait
 };
 
+/// What to do about a controller process that dies.
+enum class Restart { on_failure, never };
+
 /// What the experiment gives a team's controllers. Nested maps are flattened: their keys are joined by '.'.
 struct Parameter {
   std::string name;
@@ -35,6 +38,7 @@ struct Team {
   std::vector<std::uint32_t> robots;  ///< ids, ascending
   std::string controller;             ///< plugin name, or a path to a plugin
   Policy policy;
+  Restart restart = Restart::on_failure;
   std::vector<Parameter> parameters{};  ///< of the controllers, in the file's order
   int controller_line = 0;              ///< of the key `controller` in the file
 };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "server/description/text.hpp"
 
@@ -130,12 +131,14 @@ bool ExtensionValues::read_name(const Extension& extension, const SdfReport& rep
 
 bool ExtensionValues::read_children(const Extension& extension, const SdfReport& report) {
   bool valid = true;
+  std::vector<std::string> known;
+  for (const ExtensionKey& each : extension.keys) known.push_back(prefixed(each.name));
+  std::set<std::string> misspelt;
   for (sdf::ElementPtr child = element_->GetFirstElement(); child; child = child->GetNextElement()) {
     const ExtensionKey* const key = find_key(extension, child);
     if (key == nullptr) {
-      std::vector<std::string> known;
-      for (const ExtensionKey& each : extension.keys) known.push_back(prefixed(each.name));
       report.problem(child, "unknown element" + suggestion(child->GetName(), known));
+      if (const auto meant = nearest(child->GetName(), known)) misspelt.insert(*meant);
       valid = false;
     } else if (child != element_->FindElement(child->GetName())) {
       report.problem(child, "<" + child->GetName() + "> is given twice");
@@ -146,6 +149,7 @@ bool ExtensionValues::read_children(const Extension& extension, const SdfReport&
   }
   for (const ExtensionKey& key : extension.keys) {
     if (element_->HasElement(prefixed(key.name))) continue;
+    if (misspelt.contains(prefixed(key.name))) continue;  // one mistake, one message
     if (key.required()) {
       report.problem(element_, "missing: " + std::string(key.doc), prefixed(key.name));
       valid = false;

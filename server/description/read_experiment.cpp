@@ -9,6 +9,7 @@
 
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
+#include "server/description/input_file.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
 #include "server/description/yaml_map.hpp"
@@ -22,7 +23,7 @@ constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>
 
 const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "teams"};
 const std::vector<std::string> team_keys = {"name",  "robots", "controller", "parameters", "period",
-                                            "phase", "delay",  "on_late",    "deadline"};
+                                            "phase", "delay",  "on_late",    "deadline",   "restart"};
 
 const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLate::wait},
                                                                    {"hold", OnLate::hold},
@@ -79,6 +80,14 @@ Policy read_policy(const YamlMap& team) {
   return policy;
 }
 
+Restart read_restart(const YamlMap& team) {
+  const std::string restart = team.text("restart").value_or("on_failure");
+  if (restart == "never") return Restart::never;
+  if (restart != "on_failure")
+    team.problem("restart", "unknown value '" + restart + "'" + suggestion(restart, {"on_failure", "never"}));
+  return Restart::on_failure;
+}
+
 class ExperimentReader {
  public:
   ExperimentReader(const fs::path& file, const std::vector<fs::path>& last_model_folders)
@@ -131,7 +140,11 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
 
 YAML::Node ExperimentReader::load() {
   const fs::path& file = experiment_.file;
-  if (!fs::is_regular_file(file)) throw InputError({{file, 0, "", "there is no such file"}});
+  if (auto reason = why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
+  if (file.extension() == ".sdf" || file.extension() == ".world")
+    throw InputError(
+        {{file, 0, "",
+          "this is a world; expected an experiment (YAML), which names a world and who controls its robots"}});
   try {
     return YAML::LoadFile(file.string());
   } catch (const YAML::ParserException& error) {
@@ -145,8 +158,8 @@ void ExperimentReader::read_world_of(const YamlMap& top) {
   const std::optional<std::string> name = top.text("world");
   if (!name) return;
   const fs::path world = experiment_.file.parent_path() / *name;
-  if (!fs::is_regular_file(world)) {
-    top.problem("world", "there is no '" + world.lexically_normal().string() + "'");
+  if (const auto reason = why_unreadable(world)) {
+    top.problem("world", *reason + ": '" + world.lexically_normal().string() + "'");
     return;
   }
   try {
@@ -166,7 +179,7 @@ void ExperimentReader::read_teams(const YamlMap& top) {
     return;
   }
   for (std::size_t i = 0; i < teams.size(); ++i) read_team(teams[i], "teams[" + std::to_string(i) + "]");
-  // A misspelt selector leaves robots without a team.
+  // A missing or misspelt selector leaves robots without a team.
   if (selectors_are_right_) report_robots_without_team(top);
 }
 
@@ -186,6 +199,7 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
       map.problem("parameters", "expected 'NAME: VALUE' lines, not " + shown(map.where("parameters")));
   }
   team.policy = read_policy(map);
+  team.restart = read_restart(map);
   for (const Team& other : experiment_.teams)
     if (!team.name.empty() && other.name == team.name)
       map.problem("name", "another team has the name '" + team.name + "'");
@@ -201,6 +215,8 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
     }
     claim(robots, map.path_to("robots"), team.name, selected);
     team.robots.assign(selected.begin(), selected.end());
+  } else {
+    selectors_are_right_ = false;
   }
   experiment_.teams.push_back(std::move(team));
 }

@@ -54,8 +54,10 @@ World WorldReader::read() {
   const SdfFile& file = files_.world();
   if (!file.loaded) throw InputError(std::move(problems_));
   if (file.root.WorldCount() != 1) {
-    problems_.push_back(
-        {file.shown, file.xml.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+    // A misspelt <world> has been reported.
+    if (problems_.empty())
+      problems_.push_back(
+          {file.shown, file.xml.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
     throw InputError(std::move(problems_));
   }
   const sdf::World& sdf_world = *file.root.WorldByIndex(0);

@@ -1,12 +1,18 @@
 #include "server/description/sdf_errors.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <sdf/Element.hh>
 #include <sdf/Error.hh>
+#include <sdf/SDFImpl.hh>
+#include <sdf/parser.hh>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include "server/description/text.hpp"
 
 namespace cohort::description {
 namespace {
@@ -64,6 +70,7 @@ bool is_consequence(const sdf::Error& error, const std::string& path, const std:
     case sdf::ErrorCode::ELEMENT_INVALID:
       return (is_cannot_read_element(error) && last_path.starts_with(path)) ||
              error.Message().starts_with("Unable to parse sdf element");
+    case sdf::ErrorCode::MODEL_WITHOUT_LINK:
     case sdf::ErrorCode::FRAME_ATTACHED_TO_GRAPH_ERROR:
     case sdf::ErrorCode::POSE_RELATIVE_TO_GRAPH_ERROR: return true;
     default:
@@ -123,6 +130,49 @@ void find_on_line(const XmlNode& node, std::string_view name, int line, std::vec
   for (const XmlNode& child : node.children) find_on_line(child, name, line, found);
 }
 
+// What SDFormat knows of the element at a readable path, from the root's child on; nullptr if it knows none.
+sdf::ElementPtr definition_of(std::string_view path) {
+  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+  sdf::init(sdf);
+  sdf::ElementPtr element = sdf->Root();
+  while (element && !path.empty()) {
+    const std::string_view step = path.substr(0, path.find('/'));
+    const std::string name(step.substr(0, step.find('[')));
+    path.remove_prefix(std::min(path.size(), step.size() + 1));
+    // A model may hold models, and so on: those are described by the outer one.
+    if (name != element->GetName()) element = element->GetElementDescription(name);
+  }
+  return element;
+}
+
+// `XML Element[x], child of element[y], not defined in SDF.` and the like.
+bool is_unknown(const sdf::Error& error) { return error.Message().find("not defined in SDF") != std::string::npos; }
+bool is_missing_attribute(const sdf::Error& error) { return error.Message().starts_with("Required attribute["); }
+
+// The text in the first brackets of a message.
+std::string in_brackets(const std::string& message) {
+  const std::size_t begin = std::min(message.find('['), message.size() - 1) + 1;
+  return message.substr(begin, message.find(']', begin) - begin);
+}
+
+// SDFormat's path of an element or an attribute that it does not know, without its last step.
+std::string_view parent_of(std::string_view path) {
+  const std::size_t slash = path.rfind('/');
+  return path.substr(0, slash == std::string_view::npos ? 0 : slash);
+}
+
+std::vector<std::string> known_names(const sdf::Error& error, std::string_view parent) {
+  const sdf::ElementPtr definition = definition_of(parent);
+  std::vector<std::string> names;
+  if (!definition) return names;
+  if (error.Message().starts_with("XML Attribute"))
+    for (const sdf::ParamPtr& attribute : definition->GetAttributes()) names.push_back(attribute->GetKey());
+  else
+    for (std::size_t i = 0; i < definition->GetElementDescriptionCount(); ++i)
+      names.push_back(definition->GetElementDescription(static_cast<unsigned>(i))->GetName());
+  return names;
+}
+
 // For `Error reading element <NAME>`: what the value is that libsdformat says nothing about.
 std::string message_with_value(const sdf::Error& error, int line, const XmlNode& xml) {
   std::string name = error.Message().substr(error.Message().find('<') + 1);
@@ -139,6 +189,7 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
   std::vector<Problem> problems;
   std::set<std::pair<std::string, std::string>> named;  // places, and the names that are wrong there
   std::string last_path;
+  std::set<std::pair<std::string, std::string>> misspelt;  // elements, and their attributes that others were taken for
   for (const sdf::Error& error : errors) {
     if (is_said_by_us(error)) continue;
     const std::string path = error.XmlPath().value_or("");
@@ -147,7 +198,18 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
     if (follows) continue;
 
     Problem problem{file.shown, error.LineNumber().value_or(0), readable_path(path), readable_message(error)};
-    if (problem.line == 0 && path.empty()) {
+    if (is_unknown(error)) {
+      const std::string parent(parent_of(problem.element));
+      const std::string name = in_brackets(error.Message());
+      const std::vector<std::string> known = known_names(error, parent);
+      const bool is_attribute = error.Message().starts_with("XML Attribute");
+      problem.message = std::string(is_attribute ? "unknown attribute" : "unknown element") + suggestion(name, known);
+      if (const auto meant = nearest(name, known); meant && is_attribute) misspelt.emplace(parent, *meant);
+    } else if (is_missing_attribute(error)) {
+      const std::string name = in_brackets(error.Message());
+      if (misspelt.contains({problem.element, name})) continue;
+      problem.message = "missing: the attribute '" + name + "'";
+    } else if (problem.line == 0 && path.empty()) {
       if (const auto place = place_named_in(error.Message(), file.xml)) {
         problem.line = place->node->line;
         problem.element = place->path;

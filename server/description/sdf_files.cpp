@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <memory>
 #include <sdf/Console.hh>
@@ -11,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/description/input_file.hpp"
 #include "server/description/sdf_errors.hpp"
 #include "server/description/text.hpp"
 
@@ -22,6 +24,17 @@ namespace fs = std::filesystem;
 std::mutex& libsdformat_mutex() {
   static std::mutex mutex;
   return mutex;
+}
+
+// libsdformat keeps a log of its own in the home folder, and says so on standard error where there is none.
+sdf::Console& console() {
+  static const sdf::ConsolePtr made = [] {
+    std::streambuf* const before = std::cerr.rdbuf(nullptr);
+    sdf::ConsolePtr silent = sdf::Console::Instance();
+    std::cerr.rdbuf(before);
+    return silent;
+  }();
+  return *made;
 }
 
 // "1.9" as {1, 9}; {0, 0} if it is nothing like that.
@@ -110,12 +123,12 @@ LibsdformatScope::LibsdformatScope() : lock_(libsdformat_mutex()), saved_(sdf::P
   config().SetWarningsPolicy(sdf::EnforcementPolicy::ERR);
   config().SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::ERR);
   config().SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
-  sdf::Console::Instance()->SetQuiet(true);
+  console().SetQuiet(true);
 }
 
 LibsdformatScope::~LibsdformatScope() {
   config() = saved_;
-  sdf::Console::Instance()->SetQuiet(false);
+  console().SetQuiet(false);
 }
 
 SdfFiles::SdfFiles(const fs::path& world_file, const std::vector<fs::path>& last_model_folders,
@@ -137,14 +150,14 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
 }
 
 std::optional<std::string> SdfFiles::read_text(const SdfFile& file) {
-  const char* failure = "there is no such file";
-  if (fs::is_regular_file(file.path)) {
+  auto failure = why_unreadable(file.path);
+  if (!failure) {
     std::ifstream stream(file.path);
     std::string text(std::istreambuf_iterator<char>(stream), {});
     if (stream) return text;
     failure = "the file cannot be read";
   }
-  problems_.push_back({file.shown, 0, "", failure});
+  problems_.push_back({file.shown, 0, "", std::move(*failure)});
   return std::nullopt;
 }
 

@@ -12,8 +12,7 @@ void SdfReport::problem(const sdf::ElementPtr& element, std::string message, std
 
 void SdfReport::warning(const sdf::ElementPtr& element, std::string message) const {
   Location location = files_.locate(element);
-  warnings_.push_back(
-      Problem{std::move(location.file), location.line, std::move(location.element), std::move(message)}.text());
+  warnings_.push_back({std::move(location.file), location.line, std::move(location.element), std::move(message)});
 }
 
 }  // namespace cohort::description

@@ -13,7 +13,7 @@ namespace cohort::description {
 /// Where checks of SDF elements put what they find.
 class SdfReport {
  public:
-  SdfReport(const SdfFiles& files, std::vector<Problem>& problems, std::vector<std::string>& warnings)
+  SdfReport(const SdfFiles& files, std::vector<Problem>& problems, std::vector<Problem>& warnings)
       : files_(files), problems_(problems), warnings_(warnings) {}
 
   /// `child` is added to the path of the element, for a child that is not there.
@@ -24,7 +24,7 @@ class SdfReport {
  private:
   const SdfFiles& files_;
   std::vector<Problem>& problems_;
-  std::vector<std::string>& warnings_;
+  std::vector<Problem>& warnings_;
 };
 
 }  // namespace cohort::description

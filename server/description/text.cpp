@@ -61,21 +61,25 @@ std::optional<double> parse_real(std::string_view text) {
 
 std::optional<std::uint64_t> parse_whole(std::string_view text) { return parse<std::uint64_t>(trimmed(text)); }
 
-std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
-  constexpr std::size_t few = 16;
+std::optional<std::string> nearest(std::string_view unknown, const std::vector<std::string>& known) {
   const std::size_t slip = std::max<std::size_t>(2, unknown.size() / 3);
-  const std::string* nearest = nullptr;
+  const std::string* found = nullptr;
   std::size_t least = slip + 1;
-  std::string list;
   for (const std::string& name : known) {
     if (const std::size_t distance = edit_distance(unknown, name); distance < least) {
       least = distance;
-      nearest = &name;
+      found = &name;
     }
-    list += (list.empty() ? "" : ", ") + name;
   }
-  if (nearest != nullptr) return "; did you mean '" + *nearest + "'?";
+  return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+std::string suggestion(std::string_view unknown, const std::vector<std::string>& known) {
+  constexpr std::size_t few = 16;
+  if (const auto name = nearest(unknown, known)) return "; did you mean '" + *name + "'?";
   if (known.empty() || known.size() > few) return {};
+  std::string list;
+  for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
   return "; known: " + list;
 }
 

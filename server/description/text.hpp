@@ -21,8 +21,11 @@ std::optional<double> parse_real(std::string_view text);
 /// A non-negative whole number of at most 64 bits.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 
-/// What to add to a message about an unknown name: "; did you mean 'x'?" if a known one is a slip away, otherwise the
-/// known ones if they are few.
+/// The known name that an unknown one is a slip away from, or nothing.
+std::optional<std::string> nearest(std::string_view unknown, const std::vector<std::string>& known);
+
+/// What to add to a message about an unknown name: "; did you mean 'x'?" with the nearest one, otherwise the known ones
+/// if they are few.
 std::string suggestion(std::string_view unknown, const std::vector<std::string>& known);
 
 }  // namespace cohort::description

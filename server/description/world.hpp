@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/description/input_error.hpp"
 #include "server/description/model.hpp"
 
 namespace cohort::description {
@@ -26,8 +27,7 @@ struct World {
   std::vector<Model> models;
   std::vector<Instance> instances;
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order
-  /// What the file asks for and is not simulated, a line each: `FILE:LINE: ELEMENT: MESSAGE`.
-  std::vector<std::string> warnings;
+  std::vector<Problem> warnings;    ///< what the file asks for and is not simulated
 
   const Instance& robot(std::uint32_t id) const { return instances[robots[id]]; }
   const Model& robot_model(std::uint32_t id) const { return models[robot(id).model]; }

@@ -19,10 +19,12 @@ YamlMap::YamlMap(const YAML::Node& node, std::string path, const std::vector<std
   std::set<std::string> seen;
   for (const auto& entry : node_) {
     const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : shown(entry.first);
-    if (std::find(known.begin(), known.end(), key) == known.end())
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
       report_.problem(entry.first, path_to(key), "unknown key" + suggestion(key, known));
-    else if (!seen.insert(key).second)
+      if (const auto meant = nearest(key, known)) misspelt_.insert(*meant);
+    } else if (!seen.insert(key).second) {
       report_.problem(entry.first, path_to(key), "the key is given twice");
+    }
   }
 }
 
@@ -33,7 +35,7 @@ YAML::Node YamlMap::value(const std::string& key) const {
 }
 
 void YamlMap::require(const std::string& key, const std::string& doc) const {
-  if (node_.IsMap() && !has(key)) problem(key, "missing: " + doc);
+  if (node_.IsMap() && !has(key) && !misspelt_.contains(key)) problem(key, "missing: " + doc);
 }
 
 std::optional<std::string> YamlMap::text(const std::string& key) const {
@@ -65,7 +67,11 @@ std::optional<std::uint64_t> YamlMap::whole(const std::string& key, std::uint64_
 
 std::string shown(const YAML::Node& node) {
   switch (node.Type()) {
-    case YAML::NodeType::Scalar: return "'" + node.Scalar() + "'";
+    case YAML::NodeType::Scalar: {
+      constexpr std::size_t most = 60;  // a whole file may be one scalar
+      const std::string& text = node.Scalar();
+      return "'" + (text.size() <= most ? text : text.substr(0, most) + "…") + "'";
+    }
     case YAML::NodeType::Sequence: return "a list";
     case YAML::NodeType::Map: return "a map";
     default: return "nothing";

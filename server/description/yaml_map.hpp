@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ class YamlMap {
   /// Of the key, or of the map if the key is absent.
   YAML::Node where(const std::string& key) const { return has(key) ? value(key) : node_; }
   std::string path_to(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
-  /// Reports the key if it is absent.
+  /// Reports the key if it is absent, unless an unknown one was taken for it.
   void require(const std::string& key, const std::string& doc) const;
   void problem(const std::string& key, std::string message) const {
     report_.problem(where(key), path_to(key), std::move(message));
@@ -57,6 +58,7 @@ class YamlMap {
   YAML::Node node_;
   std::string path_;
   const YamlReport& report_;
+  std::set<std::string> misspelt_;  // known keys that unknown ones were taken for
 };
 
 /// What a node is, for messages: its text in quotes, or `a list`, `a map`, `nothing`.

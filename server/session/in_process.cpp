@@ -49,7 +49,12 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       }
       book.add_barrier(RunBook::Clock::now() - begin);
       exchange.apply();
-      simulation.step();
+      try {
+        simulation.step();
+      } catch (const std::runtime_error& error) {
+        book.add_event("stopped", error.what());
+        return book.finish(RunResult::End::failed, error.what());
+      }
       book.stepped();
       book.report(false, [](Progress&) {});
       std::this_thread::sleep_until(book.due_time());

@@ -42,7 +42,7 @@ Server::~Server() = default;
 
 void Server::fail(const std::string& error) {
   const std::lock_guard lock(mutex_);
-  if (error_.empty()) error_ = error;
+  if (inbox_.failure.empty()) inbox_.failure = error;
   attention_ = true;
   wake_.notify_all();
 }

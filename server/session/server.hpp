@@ -30,7 +30,7 @@ class Server {
   /// is set, also while it waits.
   RunResult run(const std::atomic<bool>& stop);
 
-  /// Ends the run with this error, from any thread.
+  /// Ends the run with this error, from any thread, unless a controller has reported one before.
   void fail(const std::string& error);
 
  private:
@@ -59,8 +59,11 @@ class Server {
     std::vector<std::pair<wire::Join, wire::Sender>> joins;
     std::vector<Liveliness> liveliness;
     std::vector<wire::Report> reports;
+    std::string failure;  // of something outside
     std::map<std::pair<std::uint64_t, std::string>, std::pair<std::string, std::uint64_t>> rejected;  // text, count
-    bool empty() const { return joins.empty() && liveliness.empty() && reports.empty() && rejected.empty(); }
+    bool empty() const {
+      return joins.empty() && liveliness.empty() && reports.empty() && failure.empty() && rejected.empty();
+    }
   };
 
   // On DDS's threads.

@@ -30,6 +30,10 @@ void Server::handle_inbox() {
     book_.add_event("failed", label_of(report.client) + ": " + report.text);
     if (error_.empty()) error_ = report.text;
   }
+  if (!inbox.failure.empty()) {
+    const std::lock_guard lock(mutex_);
+    if (error_.empty()) error_ = inbox.failure;
+  }
   for (const auto& [key, value] : inbox.rejected) {
     const auto& [client_id, reason] = key;
     const auto& [text, count] = value;

@@ -126,7 +126,7 @@ TEST(ShippedWorlds, TheExperimentHasSixteenRobotsThatShareOneModel) {
   EXPECT_EQ(experiment.teams[0].controller, "obstacle_avoidance");
   EXPECT_EQ(experiment.teams[0].robots.size(), 16u);
   EXPECT_EQ(experiment.teams[0].policy.on_late, OnLate::wait);
-  EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0];
+  EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0].text();
 }
 
 TEST(ShippedWorlds, TheArenaHasFourWallsTwentyFourObstaclesAndAGround) {
@@ -287,7 +287,7 @@ TEST_F(Description, IncludesOfOneModelShareItAndAStaticOneIsNoRobot) {
   EXPECT_EQ(world.robot_model(1).name, "sbot");
   EXPECT_TRUE(world.models[instance(world, "parked").model].is_static);
   ASSERT_EQ(world.warnings.size(), 1u);
-  EXPECT_NE(world.warnings[0].find("not a robot"), std::string::npos);
+  EXPECT_NE(world.warnings[0].message.find("not a robot"), std::string::npos);
 }
 
 TEST_F(Description, PosesResolveThroughFrames) {
@@ -396,7 +396,7 @@ TEST_F(Description, WhatIsNotSimulatedIsSaidOnceEach) {
       "<model name=\"m\"><self_collide>true</self_collide><link name=\"l\"><gravity>true</gravity>\n"
       "<sensor name=\"s\" type=\"imu\"/></link></model>");
   std::string all;
-  for (const std::string& warning : world.warnings) all += warning + "\n";
+  for (const Problem& warning : world.warnings) all += warning.text() + "\n";
   EXPECT_EQ(world.warnings.size(), 5u) << all;  // and that the link has neither mass nor inertia
   EXPECT_NE(all.find(":2: world/wind: "), std::string::npos) << all;
   EXPECT_NE(all.find(":3: world/model[m]/self_collide: "), std::string::npos) << all;
@@ -477,7 +477,9 @@ INSTANTIATE_TEST_SUITE_P(
              "</link></model>",
              2, "world/model[m]/link[l]/collision[c]/geometry", "<static>"},
         Flaw{static_model("<pose>0 0 inf 0 0 0</pose>" + links("a")), 2, "world/model[m]/pose", "'0 0 inf 0 0 0'"},
-        Flaw{static_model("<pse/>" + links("a")), 2, "world/model[m]/pse", "not defined in SDF"},
+        Flaw{static_model("<pse/>" + links("a")), 2, "world/model[m]/pse", "unknown element; did you mean 'pose'?"},
+        Flaw{"<model name=\"m\">\n<link nam=\"l\"/></model>", 3, "world/model[m]/link/@nam",
+             "unknown attribute; did you mean 'name'?"},
         Flaw{static_model(links("a")) + "\n" + static_model(links("a")), 3, "world/model[m]", "another model"},
         Flaw{static_model(links("a"), "sbot") + "\n<include><uri>model://sbot</uri></include>", 3,
              "world/include[sbot]", "another model"},
@@ -517,6 +519,9 @@ INSTANTIATE_TEST_SUITE_P(
              4, in_motor + "/cohort:joint", "did you mean 'hinge'?"},
         Flaw{motor("<cohort:joint>hinge</cohort:joint><cohort:max_velocity>1</cohort:max_velocity>"
                    "<cohort:max_effort>1</cohort:max_effort>\n<cohort:max_efort>1</cohort:max_efort>"),
+             5, in_motor + "/cohort:max_efort", "did you mean 'cohort:max_effort'?"},
+        Flaw{motor("<cohort:joint>hinge</cohort:joint><cohort:max_velocity>1</cohort:max_velocity>"
+                   "\n<cohort:max_efort>1</cohort:max_efort>"),
              5, in_motor + "/cohort:max_efort", "did you mean 'cohort:max_effort'?"},
         Flaw{motor("", "cohort:velocity_moter"), 3, "world/model[m]/cohort:velocity_moter[d]",
              "did you mean 'cohort:velocity_motor'?"},
@@ -564,7 +569,7 @@ TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
   const Experiment experiment = read_experiment(write_experiment(
       "world: world.sdf\nduration: 0.25\nseed: 18446744073709551615\nteams:\n"
       "  - {name: a, robots: [3, p/*_0], controller: x, period: 3, phase: 2, delay: 1, on_late: hold, deadline: 0.05}\n"
-      "  - {name: b, robots: 1..2, controller: y}\n"));
+      "  - {name: b, robots: 1..2, controller: y,\n     restart: never}\n"));
   EXPECT_EQ(experiment.duration, 250ms);
   EXPECT_EQ(experiment.seed, 18446744073709551615u);
   ASSERT_EQ(experiment.teams.size(), 2u);
@@ -576,6 +581,9 @@ TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
   EXPECT_EQ(policy.delay, 1u);
   EXPECT_EQ(policy.on_late, OnLate::hold);
   EXPECT_EQ(policy.deadline, 50ms);
+  EXPECT_EQ(experiment.teams[0].restart, Restart::on_failure);
+  EXPECT_EQ(experiment.teams[1].restart, Restart::never);
+  EXPECT_EQ(experiment.teams[1].controller_line, 6);
 }
 
 TEST_F(Experiments, ParametersAreFlattenedInTheirOrder) {
@@ -636,10 +644,16 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{team("all", "duration: 3\n"), 7, "duration", "given twice"},
         Flaw{team("all", "seed: -1\n"), 7, "seed", "not '-1'"},
         Flaw{team("all", "    controler: y\n"), 7, "teams[0].controler", "did you mean 'controller'?"},
+        Flaw{"world: world.sdf\nduraton: 1\nteams: [{name: a, controller: x, robots: all}]\n", 2, "duraton",
+             "did you mean 'duration'?"},
+        Flaw{top + "teams:\n  - name: a\n    controller: x\n    robot: all\n", 6, "teams[0].robot",
+             "did you mean 'robots'?"},
         Flaw{team("all", "    period: 0\n"), 7, "teams[0].period", "not '0'"},
         Flaw{team("all", "    phase: 1\n"), 7, "teams[0].phase", "less than the period"},
         Flaw{team("all", "    delay: [1]\n"), 7, "teams[0].delay", "not a list"},
         Flaw{team("all", "    on_late: halt\n"), 7, "teams[0].on_late", "unknown policy 'halt'"},
+        Flaw{team("all", "    restart: nevr\n"), 7, "teams[0].restart", "did you mean 'never'?"},
+        Flaw{team("all", "    restart: sometimes\n"), 7, "teams[0].restart", "known: on_failure, never"},
         Flaw{team("all", "    on_late: zero\n"), 4, "teams[0].deadline", "missing"},
         Flaw{team("all", "    deadline: 1\n"), 7, "teams[0].deadline", "waits for ever"},
         Flaw{team("all", "    parameters: [1]\n"), 7, "teams[0].parameters", "'NAME: VALUE' lines, not a list"},

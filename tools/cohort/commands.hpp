@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/cohort/log.hpp"
+
 /// The commands of `cohort`, one file each. Every command returns the process's exit code.
 namespace cohort::tool {
 
@@ -15,6 +17,8 @@ inline constexpr int exit_ok = 0;
 inline constexpr int exit_failed = 1;  // the run ended with an error, or what it found could not be written
 inline constexpr int exit_usage = 2;   // bad command line, world, experiment or set-up: nothing was started
 inline constexpr int exit_interrupted = 130;
+// Between `cohort run` and the hosts that it starts: somebody else drives its robots now.
+inline constexpr int exit_superseded = 3;
 
 enum class Controllers {
   in_process,  ///< in the server's process
@@ -36,23 +40,24 @@ struct RunCommand {
   std::optional<std::uint32_t> domain;
   std::string network = "127.0.0.1";
 };
-int run(const RunCommand& command, const std::atomic<bool>& stop);
+int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop);
 
 struct HostCommand {
   std::string plugin;
   std::vector<std::string> robots;
   std::string server;
   std::uint32_t domain = 0;
+  bool for_run = false;  ///< started by `cohort run`, whose server tells what becomes of a client
 };
-int host(const HostCommand& command, const std::atomic<bool>& stop);
+int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);
 
 struct TeleopCommand {
   std::vector<std::string> robots;
   std::string server;
   std::uint32_t domain = 0;
 };
-int teleop(const TeleopCommand& command, const std::atomic<bool>& stop);
+int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop);
 
-int check(const std::filesystem::path& file);
+int check(const std::filesystem::path& file, Log& log);
 
 }  // namespace cohort::tool

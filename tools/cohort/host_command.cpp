@@ -1,29 +1,30 @@
-#include <iostream>
-
 #include "client_sdk/src/client.hpp"
 #include "client_sdk/src/plugin_loader.hpp"
 #include "tools/cohort/commands.hpp"
 
 namespace cohort::tool {
-
-int host(const HostCommand& command, const std::atomic<bool>& stop) {
+int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
   try {
     const LoadedPlugin loaded(command.plugin, default_plugin_directories());
     ClientOptions options;
     options.server = command.server;
     options.domain = command.domain;
     options.robots = command.robots;
+    options.tell = [&](Severity severity, const std::string& text) {
+      const std::string name = loaded.plugin().name;
+      log.write(command.for_run ? LogLevel::debug : level_of(severity), name + ": " + text, {{"controller", name}});
+    };
     switch (run_client(loaded.plugin(), options, stop)) {
       case ClientEnd::finished: return exit_ok;
       case ClientEnd::interrupted: return exit_interrupted;
       case ClientEnd::refused: return exit_usage;
-      case ClientEnd::superseded:
+      case ClientEnd::superseded: return command.for_run ? exit_superseded : exit_failed;
       case ClientEnd::failed:
       case ClientEnd::server_lost: return exit_failed;
     }
     return exit_failed;
   } catch (const std::exception& error) {
-    std::cerr << "cohort host: " << error.what() << "\n";
+    log.error(error.what());
     return exit_usage;
   }
 }

@@ -1,8 +1,76 @@
 #pragma once
 
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client_sdk/src/client.hpp"
+#include "server/description/input_error.hpp"
+
+namespace spdlog {
+class logger;
+}
+
 namespace cohort::tool {
 
-/// Log lines go to standard error; COHORT_LOG sets the level (debug, info, warn, error, off; warn by default).
-void set_up_log();
+enum class LogFormat { text, json };
+enum class LogLevel { debug, info, warning, error, off };
+
+/// The level of what a client tells.
+LogLevel level_of(Severity severity);
+
+struct LogOptions {
+  LogFormat format = LogFormat::text;
+  LogLevel level = LogLevel::warning;  ///< the least that is printed
+  bool progress = true;                ///< print progress and notices, which have no level
+};
+
+/// What a message is about, for machines: printed in JSON only.
+using LogFields = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
+
+/// All that a command has to say on standard error: as text for people, or as JSON, an object on each line with `time`,
+/// `level`, `message` and fields. Any thread may call it; a line is never torn apart.
+class Log {
+ public:
+  explicit Log(const LogOptions& options);
+  ~Log();
+
+  LogFormat format() const { return options_.format; }
+  bool shows(LogLevel level) const { return level >= options_.level; }
+
+  void write(LogLevel level, const std::string& message, const LogFields& fields = {});
+  void debug(const std::string& message, const LogFields& fields = {}) { write(LogLevel::debug, message, fields); }
+  void info(const std::string& message, const LogFields& fields = {}) { write(LogLevel::info, message, fields); }
+  void warning(const std::string& message, const LogFields& fields = {}) { write(LogLevel::warning, message, fields); }
+  void error(const std::string& message, const LogFields& fields = {}) { write(LogLevel::error, message, fields); }
+
+  /// In text as compilers do, so that editors find the place: `FILE:LINE: ELEMENT: MESSAGE`.
+  void problem(LogLevel level, const description::Problem& problem);
+  void problems(const description::InputError& error);
+
+  /// What people wait for, such as that the server is there. In text without a prefix.
+  void notice(const std::string& message, const LogFields& fields = {});
+  /// The same, and the next one takes its place if `rewrites_progress`.
+  void progress(const std::string& message, const LogFields& fields = {});
+  bool rewrites_progress() const { return rewrites_progress_; }
+  /// What another program printed, line by line: as it is if it is one of our lines.
+  void echo(const std::string& line, const LogFields& fields);
+  /// Before something else is printed to the terminal.
+  void clear_progress();
+
+ private:
+  void print(spdlog::logger& logger, LogLevel level, const std::string& message, const LogFields& fields);
+  void clear_progress_line();
+
+  const LogOptions options_;
+  const bool rewrites_progress_;
+  std::mutex mutex_;
+  bool progress_line_open_ = false;
+  std::shared_ptr<spdlog::logger> messages_;
+  std::shared_ptr<spdlog::logger> lines_;  // in text without a prefix
+};
 
 }  // namespace cohort::tool

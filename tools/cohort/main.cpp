@@ -1,114 +1,236 @@
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
-#include <thread>
+#include <limits>
 
+#include "idl/wire.hpp"
+#include "server/description/text.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
+#include "tools/cohort/usage.hpp"
 
 namespace {
 
 using namespace cohort::tool;
 
+constexpr double most_seconds = 9e9;  // fits into nanoseconds
+constexpr std::uint32_t last_domain = 230;
+
+// Signals and Cyclone DDS reach them by no other way.
 std::atomic<bool> stop_requested = false;
+Log* dds_log = nullptr;
 
 void stop_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int) { stop_requested = true; };
+  action.sa_flags = SA_RESETHAND;  // a second one ends the process at once, whatever it is stuck in
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // but for nohup: the terminal was closed
 }
 
-void add_run_options(CLI::App& app, RunCommand& options, std::string& speed) {
-  app.add_option("FILE", options.file, "Experiment (YAML)")->required();
-  app.add_option("--threads", options.threads, "Threads that step the world; results do not depend on it")
-      ->check(CLI::Range(1u, 1024u));
+struct LogFlags {
+  std::string format;
+  bool verbose = false;
+  bool quiet = false;
+};
+
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+const std::vector<std::string> log_formats = {"text", "json"};
+const std::vector<std::pair<std::string, LogLevel>> log_levels = {{"debug", LogLevel::debug},
+                                                                  {"info", LogLevel::info},
+                                                                  {"warn", LogLevel::warning},
+                                                                  {"error", LogLevel::error},
+                                                                  {"off", LogLevel::off}};
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+LogLevel level_from_environment() {
+  const std::string text = environment("COHORT_LOG");
+  if (text.empty()) return LogLevel::warning;
+  std::vector<std::string> names;
+  for (const auto& [name, level] : log_levels) {
+    if (name == text) return level;
+    names.push_back(name);
+  }
+  throw UsageError("COHORT_LOG is '" + text + "'" + cohort::description::suggestion(text, names));
+}
+
+LogFormat log_format(std::string text) {
+  if (text.empty()) text = environment("COHORT_LOG_FORMAT");
+  if (text.empty() || text == "text") return LogFormat::text;
+  if (text == "json") return LogFormat::json;
+  throw UsageError("COHORT_LOG_FORMAT is '" + text + "'" + cohort::description::suggestion(text, log_formats));
+}
+
+LogOptions log_options(const LogFlags& flags) {
+  LogOptions options;
+  options.format = log_format(flags.format);
+  options.level = level_from_environment();
+  if (flags.verbose && flags.quiet) throw UsageError("choose one of --verbose and --quiet");
+  if (flags.verbose) options.level = std::min(options.level, LogLevel::info);
+  if (flags.quiet) options.level = std::max(options.level, LogLevel::error);
+  options.progress = !flags.quiet && options.level != LogLevel::off;
+  return options;
+}
+
+// For a command line that cannot be read, and so does not say it as such.
+LogFormat format_of_unreadable(int argc, char** argv) {
+  bool is_json = environment("COHORT_LOG_FORMAT") == "json";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument.starts_with("--log-format=")) is_json = argument.ends_with("=json");
+    if (argument == "--log-format" && i + 1 < argc) is_json = std::string_view(argv[i + 1]) == "json";
+  }
+  return is_json ? LogFormat::json : LogFormat::text;
+}
+
+void add_log_options(CLI::App& app, LogFlags& flags) {
+  app.add_option("--log-format", flags.format, "Messages as text or as json (default: $COHORT_LOG_FORMAT, or text)")
+      ->check(one_of(log_formats))
+      ->type_name("FORMAT");
+  app.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
+}
+
+void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
+  app.add_option("FILE", options.file, "Experiment (YAML)")->required()->type_name("");
+  app.add_option("--threads", options.threads,
+                 "Threads that step the world, with the same results (default: the cores)")
+      ->check(whole_number(1, 1024))
+      ->type_name("N");
   app.add_option("--duration", options.duration, "Simulated seconds, instead of the experiment's")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", options.seed, "Seed, instead of the experiment's");
-  app.add_option("--speed", speed, "Simulated seconds per second: max, or a number (default: max; 1 if people drive)");
-  app.add_option("--summary", options.summary, "Write the summary to this file as JSON");
-  app.add_option("--plot", options.plot, "Draw arena, paths and contacts to this file as SVG");
-  app.add_option("--domain", options.domain, "DDS domain (default: $COHORT_DOMAIN, or a free one, or 0 for outsiders)")
+      ->check(number_above_zero(most_seconds))
+      ->type_name("S");
+  app.add_option("--seed", options.seed, "Seed, instead of the experiment's")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->type_name("N");
+  app.add_option("--speed", speed, "Simulated seconds per second at the most (default: max, or 1 if people drive)")
+      ->check(max_or_number_above_zero(1e9))
+      ->type_name("max|X");
+  app.add_option("--summary", options.summary, "Write the summary to this file as JSON")->type_name("FILE");
+  app.add_option("--plot", options.plot, "Draw arena, paths and contacts to this file as SVG")->type_name("FILE");
+  app.add_option("--domain", options.domain, "DDS domain (default: a free one, or 0 if others start controllers)")
       ->envname("COHORT_DOMAIN")
-      ->check(CLI::Range(0u, 230u));
-  app.add_flag("--quiet", options.quiet, "Print errors only");
+      ->check(whole_number(0, last_domain))
+      ->type_name("N");
+  add_log_options(app, flags);
+  app.add_flag("--quiet", flags.quiet, "Print errors only");
 }
 
 void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::string& server, std::uint32_t& domain) {
-  app.add_option("--robots", robots, "all, an id, A..B, or a name with *; may repeat")->required()->delimiter(',');
-  app.add_option("--server", server, "Address of the server")->envname("COHORT_SERVER")->default_val("127.0.0.1");
-  app.add_option("--domain", domain, "DDS domain of the server")->envname("COHORT_DOMAIN")->check(CLI::Range(0u, 230u));
-}
-
-std::optional<double> parse_speed(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  if (text == "max") return 0.0;
-  std::size_t used = 0;
-  double speed = 0.0;
-  try {
-    speed = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used != text.size() || !(speed > 0.0) || speed > 1e9)
-    throw CLI::ValidationError("--speed", "is '" + text + "', expected max or a number above 0");
-  return speed;
+  app.add_option("--robots", robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("SEL[,SEL...]");
+  app.add_option("--server", server, "Address of the server")
+      ->envname("COHORT_SERVER")
+      ->default_val("127.0.0.1")
+      ->type_name("ADDRESS");
+  app.add_option("--domain", domain, "DDS domain of the server (default: 0)")
+      ->envname("COHORT_DOMAIN")
+      ->check(whole_number(0, last_domain))
+      ->type_name("N");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Cohort: a deterministic simulator for groups of robots");
-  app.set_version_flag("--version", COHORT_VERSION);
+  CLI::App app("Cohort: a deterministic simulator for groups of robots", "cohort");
+  app.set_version_flag("--version", COHORT_VERSION, "Print the version and exit");
+  app.set_help_flag("-h,--help", "Print this text and exit");
   app.require_subcommand(1);
+  LogFlags log_flags;
+  add_log_options(app, log_flags);
+  app.footer(
+      "Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10\n"
+      "'cohort COMMAND --help' says more. Exit codes: 0 done, 1 the run failed, 2 a mistake in the command line, the\n"
+      "files or the set-up, 130 interrupted.");
 
   RunCommand run_options;
   std::string speed;
-  CLI::App* run_app = app.add_subcommand("run", "Run an experiment with its controllers");
-  add_run_options(*run_app, run_options, speed);
+  std::string controllers = "process";
   const std::map<std::string, Controllers> placements = {{"inprocess", Controllers::in_process},
                                                          {"process", Controllers::process},
                                                          {"per-robot", Controllers::per_robot},
                                                          {"external", Controllers::external}};
-  run_app->add_option("--controllers", run_options.controllers, "Where controllers run")
-      ->transform(CLI::CheckedTransformer(placements).description("inprocess|process|per-robot|external"))
-      ->default_str("process");
+  CLI::App* run_app = app.add_subcommand("run", "Run an experiment with its controllers");
+  add_run_options(*run_app, run_options, speed, log_flags);
+  run_app
+      ->add_option("--controllers", controllers,
+                   "process for each team (the default), per-robot, inprocess with the server, or external")
+      ->check(one_of({"process", "per-robot", "inprocess", "external"}))
+      ->type_name("WHERE");
+  run_app->footer("Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10 --plot run.svg");
 
   RunCommand serve_options;
   serve_options.controllers = Controllers::external;
   CLI::App* serve_app = app.add_subcommand("serve", "Run an experiment alone and wait for controllers to attach");
-  add_run_options(*serve_app, serve_options, speed);
+  add_run_options(*serve_app, serve_options, speed, log_flags);
   serve_app->add_option("--network", serve_options.network, "Address of the interface to serve on")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->type_name("ADDRESS");
+  serve_app->footer("Example: cohort serve worlds/experiments/obstacle_avoidance.yaml --domain 7 --network 10.0.0.5");
 
   HostCommand host_options;
   CLI::App* host_app = app.add_subcommand("host", "Run a controller plugin for some robots of a server");
-  host_app->add_option("PLUGIN", host_options.plugin, "Name of a controller, or path to its plugin")->required();
+  host_app->add_option("PLUGIN", host_options.plugin, "Name of a controller, or path to its plugin")
+      ->required()
+      ->type_name("");
   add_client_options(*host_app, host_options.robots, host_options.server, host_options.domain);
+  add_log_options(*host_app, log_flags);
+  host_app->add_flag("--for-run", host_options.for_run)->group("");  // `cohort run` starts it so
+  host_app->footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
 
   TeleopCommand teleop_options;
   CLI::App* teleop_app = app.add_subcommand("teleop", "Drive robots of a server by keyboard");
   add_client_options(*teleop_app, teleop_options.robots, teleop_options.server, teleop_options.domain);
+  add_log_options(*teleop_app, log_flags);
+  teleop_app->footer("Example: cohort teleop --robots 0");
 
   std::filesystem::path checked_file;
   CLI::App* check_app =
       app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
-  check_app->add_option("FILE", checked_file, "Experiment (.yaml) or world (.sdf)")->required();
+  check_app->add_option("FILE", checked_file, "Experiment (.yaml) or world (.sdf)")->required()->type_name("");
+  add_log_options(*check_app, log_flags);
+  check_app->footer("Example: cohort check worlds/arenas/obstacles.sdf");
 
+  std::optional<LogOptions> options;
   try {
     app.parse(argc, argv);
-    run_options.speed = serve_options.speed = parse_speed(speed);
+    options = log_options(log_flags);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_ok : exit_usage;
+    Log({.format = format_of_unreadable(argc, argv)}).error(usage_error(app, error));
+    return exit_usage;
+  } catch (const UsageError& error) {
+    Log({.format = format_of_unreadable(argc, argv)}).error(error.what());
+    return exit_usage;
   }
+  run_options.controllers = placements.at(controllers);
+  if (!speed.empty())
+    run_options.speed = serve_options.speed = speed == "max" ? 0.0 : *cohort::description::parse_real(speed);
+  run_options.quiet = serve_options.quiet = log_flags.quiet;
 
-  set_up_log();
+  Log log(*options);
+  dds_log = &log;
+  cohort::wire::set_dds_log([](std::string_view message, bool fatal) noexcept {
+    dds_log->write(fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
+  });
   stop_on_signals();
-  if (run_app->parsed()) return run(run_options, stop_requested);
-  if (serve_app->parsed()) return run(serve_options, stop_requested);
-  if (host_app->parsed()) return host(host_options, stop_requested);
-  if (teleop_app->parsed()) return teleop(teleop_options, stop_requested);
-  return check(checked_file);
+  if (run_app->parsed()) return run(run_options, log, stop_requested);
+  if (serve_app->parsed()) return run(serve_options, log, stop_requested);
+  if (host_app->parsed()) return host(host_options, log, stop_requested);
+  if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
+  return check(checked_file, log);
 }

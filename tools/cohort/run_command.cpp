@@ -1,9 +1,7 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <iostream>
 #include <memory>
 #include <thread>
 
@@ -21,6 +19,7 @@
 #include "tools/cohort/summary_file.hpp"
 #include "tools/cohort/team_controllers.hpp"
 #include "tools/cohort/terminal.hpp"
+#include "tools/cohort/wording.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -42,6 +41,14 @@ double cpu_seconds() {
   return total;
 }
 
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 struct Served {
   wire::Participant participant;
   std::uint32_t domain;
@@ -61,6 +68,8 @@ Served open_domain(const RunCommand& command, bool has_outsiders) {
       return {wire::Participant::server(domain, command.network), domain};
     } catch (const wire::DomainTaken&) {
       if (i + 1 == own_domain_count) throw;
+    } catch (const wire::WireError& error) {
+      throw wire::WireError(std::string(error.what()) + ". --controllers inprocess needs no network");
     }
   }
 }
@@ -89,52 +98,83 @@ std::string selectors_of(const std::vector<std::uint32_t>& robots) {
   return selectors;
 }
 
-std::vector<std::vector<std::string>> controller_commands(const description::Experiment& experiment,
-                                                          const std::vector<TeamController>& controllers,
-                                                          bool per_robot, std::uint32_t domain) {
+std::vector<Children::Command> controller_commands(const description::Experiment& experiment,
+                                                   const std::vector<TeamController>& controllers, bool per_robot,
+                                                   std::uint32_t domain, const Log& log) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
-  std::vector<std::vector<std::string>> commands;
-  for (std::size_t team = 0; team < experiment.teams.size(); ++team) {
-    if (controllers[team].is_keyboard()) continue;
-    const auto add = [&](std::string robots) {
-      commands.push_back({program, "host", controllers[team].plugin->path(), "--robots", std::move(robots), "--server",
-                          "127.0.0.1", "--domain", std::to_string(domain)});
+  std::vector<Children::Command> commands;
+  for (std::size_t i = 0; i < experiment.teams.size(); ++i) {
+    const description::Team& team = experiment.teams[i];
+    if (controllers[i].is_keyboard()) continue;
+    const auto add = [&](const std::vector<std::uint32_t>& robots) {
+      Children::Command command;
+      command.arguments = {
+          program,     "host",     controllers[i].plugin->path(), "--robots", selectors_of(robots), "--server",
+          "127.0.0.1", "--domain", std::to_string(domain),        "--for-run"};
+      if (log.format() == LogFormat::json) command.arguments.insert(command.arguments.end(), {"--log-format", "json"});
+      if (log.shows(LogLevel::info)) command.arguments.push_back("--verbose");
+      const std::string more = robots.size() == 1 ? "" : fmt::format(" and {} more", robots.size() - 1);
+      command.name = fmt::format("team '{}' ({}{})", team.name, experiment.world.robot(robots.front()).name, more);
+      command.restarts = team.restart != description::Restart::never;
+      commands.push_back(std::move(command));
     };
-    const std::vector<std::uint32_t>& robots = experiment.teams[team].robots;
-    if (per_robot) {
-      for (const std::uint32_t robot : robots) add(std::to_string(robot));
-      continue;
-    }
-    add(selectors_of(robots));
+    if (!per_robot && !team.robots.empty()) add(team.robots);
+    if (per_robot)
+      for (const std::uint32_t robot : team.robots) add({robot});
   }
   return commands;
 }
 
+Children::Listener listen_to_children(session::Server& server, Log& log) {
+  Children::Listener listener;
+  listener.started = [&](const Children::Command& command, pid_t pid) {
+    log.info(
+        fmt::format("{}: controller process {} is started: {}", command.name, pid, fmt::join(command.arguments, " ")),
+        {{"controller_of", command.name}, {"process", pid}, {"command", command.arguments}});
+  };
+  listener.restarted = listener.killed = [&](const Children::Command& command, const std::string& text) {
+    log.warning(text, {{"controller_of", command.name}});
+  };
+  listener.gave_up = [&](const std::string& text) { server.fail(text); };
+  listener.may_end_with = [](int exit_code) { return exit_code == exit_superseded; };
+  // A host writes JSON itself if it is to, but not its controllers, nor what a runtime says of a process that it
+  // aborts.
+  if (log.format() == LogFormat::json)
+    listener.wrote = [&](const Children::Command& command, const std::string& line) {
+      log.echo(line, {{"controller_of", command.name}});
+    };
+  return listener;
+}
+
 RunResult run_over_dds(const RunCommand& command, const description::Experiment& experiment, Simulation& simulation,
-                       const std::vector<TeamController>& controllers, Terminal& terminal,
-                       const session::RunListener& listener, const std::atomic<bool>& stop) {
-  const bool external = command.controllers == Controllers::external;
-  Served served = open_domain(command, external || has_keyboard(experiment));
+                       const std::vector<TeamController>& controllers, Log& log, const session::RunListener& listener,
+                       const std::atomic<bool>& stop, bool& has_begun) {
+  Served served = open_domain(command, command.controllers == Controllers::external || has_keyboard(experiment));
   Children* own_controllers = nullptr;
   session::RunListener own_listener = listener;
   own_listener.ending = [&] {
     if (own_controllers != nullptr) own_controllers->stop_restarting();
   };
   session::Server server(experiment, simulation, served.participant, {speed_of(command, experiment)}, own_listener);
+  const bool external = command.controllers == Controllers::external;
+  const std::string serving = fmt::format("serving {} on {}, domain {}", counted(simulation.robot_count(), "robot"),
+                                          command.network, served.domain);
+  const LogFields where = {{"address", command.network}, {"domain", served.domain}};
   if (external) {
-    terminal.say(
-        fmt::format("serving {} robots on {}, domain {}", simulation.robot_count(), command.network, served.domain));
+    log.notice(serving, where);
+    has_begun = true;
     return server.run(stop);
   }
+  log.info(serving, where);
   for (const description::Team& team : experiment.teams)
     if (team.controller == keyboard_controller)
-      terminal.say(fmt::format("to drive team {}, in another terminal: cohort teleop --robots {} --domain {}",
-                               team.name, selectors_of(team.robots), served.domain));
+      log.notice(fmt::format("to drive team '{}', in another terminal: cohort teleop --robots {} --domain {}",
+                             team.name, selectors_of(team.robots), served.domain));
   const bool per_robot = command.controllers == Controllers::per_robot;
-  Children children(
-      controller_commands(experiment, controllers, per_robot, served.domain),
-      {[](const std::string& text) { spdlog::warn("{}", text); }, [&](const std::string& text) { server.fail(text); }});
+  Children children(controller_commands(experiment, controllers, per_robot, served.domain, log),
+                    listen_to_children(server, log));
   own_controllers = &children;
+  has_begun = true;
   RunResult result = server.run(stop);
   children.let_finish();
   return result;
@@ -148,22 +188,22 @@ RunResult run_here(const RunCommand& command, const description::Experiment& exp
   return session::run_in_process(experiment, simulation, teams, {speed_of(command, experiment)}, listener, stop);
 }
 
-void warn_if_not_portable() {
+void warn_if_not_portable(Log& log) {
   std::string names;
   for (const std::string& name : functions_not_portable()) names += " " + name;
   if (!names.empty())
-    spdlog::warn("this run's hash may differ on another CPU: the C library's{} are in use instead of ours", names);
+    log.warning("this run's hash may differ on another CPU: the C library's" + names + " are in use instead of ours");
 }
 
 // Whether all that was asked for is written.
 bool write_files(const RunCommand& command, const description::Experiment& experiment, const RunResult& result,
-                 double cpu, std::optional<TraceRecorder>& recorder) {
-  const auto try_to = [](const auto& write) {
+                 double cpu, std::optional<TraceRecorder>& recorder, Log& log) {
+  const auto try_to = [&](const auto& write) {
     try {
       write();
       return true;
     } catch (const std::exception& error) {
-      std::cerr << "cohort: " << error.what() << "\n";
+      log.error(error.what());
       return false;
     }
   };
@@ -179,52 +219,69 @@ bool write_files(const RunCommand& command, const description::Experiment& exper
 
 }  // namespace
 
-int run(const RunCommand& command, const std::atomic<bool>& stop) {
+int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
   const double cpu_before = cpu_seconds();  // a shell that became this process may have had children
+  bool has_begun = false;
   try {
     if (!command.summary.empty()) check_writable("the summary", command.summary);
     if (!command.plot.empty()) check_writable("the plot", command.plot);
     std::optional<std::chrono::nanoseconds> duration;
     if (command.duration)
       duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
+    Stopwatch reading;
     const description::Experiment experiment =
         description::read_experiment(command.file, command.seed, duration, installed_model_folders());
-    for (const std::string& warning : experiment.world.warnings) spdlog::warn("{}", warning);
+    for (const description::Problem& warning : experiment.world.warnings) log.problem(LogLevel::warning, warning);
+    log.info(fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", command.file.string(),
+                         experiment.world.file.string(), counted(experiment.world.instances.size(), "model"),
+                         counted(experiment.world.robots.size(), "robot"), counted(experiment.teams.size(), "team"),
+                         reading.seconds()),
+             {{"models", experiment.world.instances.size()},
+              {"robots", experiment.world.robots.size()},
+              {"teams", experiment.teams.size()},
+              {"seconds", reading.seconds()}});
 
     if (command.controllers == Controllers::in_process) refuse_keyboard(experiment);
     std::vector<TeamController> controllers;
     if (command.controllers != Controllers::external) controllers = load_controllers(experiment);
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-    Simulation simulation(experiment, command.threads == 0 ? cores : command.threads);
+    const unsigned threads = command.threads == 0 ? cores : command.threads;
+    Stopwatch building;
+    Simulation simulation(experiment, threads);
+    log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
+             {{"threads", threads}, {"seconds", building.seconds()}});
     if (command.controllers != Controllers::external) try_controllers(experiment, simulation, controllers);
-    warn_if_not_portable();
+    warn_if_not_portable(log);
 
     std::optional<TraceRecorder> recorder;
     if (!command.plot.empty()) recorder.emplace(experiment.world, simulation);
-    Terminal terminal(command.quiet);
+    const bool own_controllers = command.controllers != Controllers::external && !has_keyboard(experiment);
+    Terminal terminal(log, {.quiet = command.quiet, .own_controllers = own_controllers});
     const session::RunListener listener = {
         .progress = [&](const session::Progress& progress) { terminal.progress(progress); },
         .event = [&](const session::Event& event) { terminal.event(event); },
         .boundary = recorder ? std::function<void()>([&] { recorder->boundary(); }) : nullptr,
     };
-    const RunResult result = command.controllers == Controllers::in_process
-                                 ? run_here(command, experiment, simulation, controllers, listener, stop)
-                                 : run_over_dds(command, experiment, simulation, controllers, terminal, listener, stop);
+    has_begun = command.controllers == Controllers::in_process;
+    const RunResult result =
+        has_begun ? run_here(command, experiment, simulation, controllers, listener, stop)
+                  : run_over_dds(command, experiment, simulation, controllers, log, listener, stop, has_begun);
     const double cpu = cpu_seconds() - cpu_before;
     terminal.summary(result, cpu);
-    const bool written = write_files(command, experiment, result, cpu, recorder);
+    const bool written = write_files(command, experiment, result, cpu, recorder, log);
     switch (result.end) {
       case RunResult::End::finished: return written ? exit_ok : exit_failed;
       case RunResult::End::interrupted: return exit_interrupted;
-      case RunResult::End::failed: spdlog::error("the run ended at tick {}: {}", result.ticks, result.error);
+      case RunResult::End::failed:
+        log.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
     }
     return exit_failed;
   } catch (const description::InputError& error) {
-    std::cerr << error.what() << "\n";
+    log.problems(error);
   } catch (const std::exception& error) {
-    std::cerr << "cohort: " << error.what() << "\n";
+    log.error(error.what());
   }
-  return exit_usage;
+  return has_begun ? exit_failed : exit_usage;
 }
 
 }  // namespace cohort::tool

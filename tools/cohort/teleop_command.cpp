@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <iostream>
 #include <thread>
 
 #include "client_sdk/src/client.hpp"
@@ -22,7 +20,7 @@ std::string help_of(const std::vector<KeyBinding>& bindings) {
       text += fmt::format(" {} = {:g} ", setting.channel, setting.value);
     text += "\n";
   }
-  return text + "  space  let all go\n  + -    more or less of it\n  q      leave\n";
+  return text + "  space  let all go\n  + -    more or less of it\n  q      leave";
 }
 
 std::string status_of(const Keyboard& keyboard) {
@@ -36,8 +34,8 @@ std::string status_of(const Keyboard& keyboard) {
 // What the person sees and does, beside the client. Sets `leave` for `q` and when `stop` is set.
 class Console {
  public:
-  Console(Keyboard& keyboard, const std::atomic<bool>& stop, std::atomic<bool>& leave)
-      : keyboard_(keyboard), stop_(stop), leave_(leave) {
+  Console(Keyboard& keyboard, Log& log, const std::atomic<bool>& stop, std::atomic<bool>& leave)
+      : keyboard_(keyboard), log_(log), stop_(stop), leave_(leave) {
     // What is there already counts from the first tick on.
     while (const auto key = keys_.read(std::chrono::milliseconds(0))) keyboard_.press(*key);
     thread_ = std::thread([this] { run(); });
@@ -47,7 +45,6 @@ class Console {
   ~Console() {
     done_ = true;
     thread_.join();
-    if (in_place_) std::fputs("\n", stderr);
   }
 
  private:
@@ -59,24 +56,24 @@ class Console {
       if (key) keyboard_.press(*key);
       const auto bindings = keyboard_.bindings();
       if (bindings.empty()) continue;
-      if (!explained) std::fputs(help_of(bindings).c_str(), stderr);
+      if (!explained) log_.notice(help_of(bindings));
       explained = true;
-      if (in_place_) std::fprintf(stderr, "\r\033[K%s", status_of(keyboard_).c_str());
+      if (log_.rewrites_progress()) log_.progress(status_of(keyboard_));
     }
   }
 
   Keyboard& keyboard_;
+  Log& log_;
   const std::atomic<bool>& stop_;
   std::atomic<bool>& leave_;
   KeyReader keys_;
-  const bool in_place_ = isatty(STDERR_FILENO) != 0;
   std::atomic<bool> done_ = false;
   std::thread thread_;
 };
 
 }  // namespace
 
-int teleop(const TeleopCommand& command, const std::atomic<bool>& stop) {
+int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop) {
   try {
     Keyboard keyboard;
     std::atomic<bool> leave = false;
@@ -85,7 +82,11 @@ int teleop(const TeleopCommand& command, const std::atomic<bool>& stop) {
     options.domain = command.domain;
     options.robots = command.robots;
     options.name = "teleop";
-    const Console console(keyboard, stop, leave);
+    options.tell = [&](Severity severity, const std::string& text) {
+      if (leave && !stop) return;  // nobody is surprised by that
+      log.write(level_of(severity), text);
+    };
+    const Console console(keyboard, log, stop, leave);
     switch (run_client(keyboard_controllers(keyboard), options, leave)) {
       case ClientEnd::finished: return exit_ok;
       case ClientEnd::interrupted: return stop ? exit_interrupted : exit_ok;
@@ -96,7 +97,7 @@ int teleop(const TeleopCommand& command, const std::atomic<bool>& stop) {
     }
     return exit_failed;
   } catch (const std::exception& error) {
-    std::cerr << "cohort teleop: " << error.what() << "\n";
+    log.error(error.what());
     return exit_usage;
   }
 }

@@ -1,9 +1,11 @@
 #include "tools/cohort/terminal.hpp"
 
-#include <spdlog/spdlog.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
 #include <cstdio>
+#include <utility>
+
+#include "tools/cohort/wording.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -32,64 +34,57 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-Terminal::Terminal(bool quiet) : quiet_(quiet), in_place_(isatty(STDERR_FILENO) != 0) {}
-
-Terminal::~Terminal() { clear_line(); }
-
-void Terminal::clear_line() {
-  if (!line_open_) return;
-  std::fputs("\r\033[K", stderr);
-  line_open_ = false;
-}
-
 void Terminal::progress(const session::Progress& progress) {
-  if (quiet_) return;
   const bool waits = !progress.awaited.empty() && (!progress.started || progress.waiting > worth_mentioning);
   const std::string awaited = waits ? awaited_text(progress) : std::string();
   std::string line;
+  // In columns for people: the line stands still while its numbers change.
   if (progress.started)
-    line = fmt::format("{:8.2f} of {:.2f} s simulated   {:6.1f} x real time", seconds(progress.time),
-                       seconds(progress.duration), progress.real_time_factor);
-  if (waits) line += (line.empty() ? "" : "   ") + awaited;
+    line = fmt::format(
+        fmt::runtime(log_.format() == LogFormat::text ? "{:8.2f} of {:.2f} s simulated   {:6.1f} x real time"
+                                                      : "{:.2f} of {:.2f} s simulated, {:.1f} x real time"),
+        seconds(progress.time), seconds(progress.duration), progress.real_time_factor);
+  if (waits) line += (line.empty() ? "" : log_.format() == LogFormat::text ? "   " : ", ") + awaited;
   if (waits && progress.started) line += fmt::format(", {:.1f} s", seconds(progress.waiting));
 
-  if (in_place_) {
-    clear_line();
-    std::fputs(line.c_str(), stderr);
-    line_open_ = true;
-    return;
-  }
   const auto now = std::chrono::steady_clock::now();
   const bool news = awaited != last_awaited_ && waits;
   last_awaited_ = awaited;
-  if (!news && now - last_line_ < line_interval) return;
+  if (!log_.rewrites_progress() && !news && now - last_line_ < line_interval) return;
   last_line_ = now;
-  std::fprintf(stderr, "%s\n", line.c_str());
+  LogFields fields = {{"sim_time_s", seconds(progress.time)}, {"duration_s", seconds(progress.duration)}};
+  if (progress.started) fields.emplace_back("real_time_factor", progress.real_time_factor);
+  if (waits) fields.emplace_back("waiting_for", progress.awaited);
+  log_.progress(line, fields);
 }
 
 void Terminal::event(const session::Event& event) {
-  if (quiet_) return;
-  clear_line();
-  // A resent frame may be answered twice.
-  const bool answered_twice =
-      event.kind == "rejected" && (event.text.starts_with("repeated") || event.text.starts_with("stale"));
-  const bool expected = event.kind == "joined" || event.kind == "back" || answered_twice;
-  spdlog::log(expected ? spdlog::level::info : spdlog::level::warn, "tick {}: {}: {}", event.tick, event.kind,
-              event.text);
+  log_.write(level_of(event), fmt::format("tick {}: {}: {}", event.tick, event.kind, event.text),
+             {{"tick", event.tick}, {"kind", event.kind}});
 }
 
-void Terminal::say(const std::string& line) {
-  if (quiet_) return;
-  clear_line();
-  std::fprintf(stderr, "%s\n", line.c_str());
+// What an error at the end says again, or what is in the nature of things, need not be read.
+LogLevel Terminal::level_of(const session::Event& event) {
+  const std::string& kind = event.kind;
+  if (kind == "joined" || kind == "back" || kind == "superseded" || kind == "failed" || kind == "stopped")
+    return LogLevel::info;
+  if (kind == "lost" && options_.own_controllers) return LogLevel::info;
+  // A frame that is sent again may be answered twice.
+  if (kind == "rejected" && (event.text.starts_with("repeated") || event.text.starts_with("stale")))
+    return LogLevel::info;
+  // The summary counts them.
+  if (kind == "missed" && std::exchange(miss_was_told_, true)) return LogLevel::info;
+  return LogLevel::warning;
 }
 
 void Terminal::summary(const session::RunResult& result, double cpu_seconds) {
-  if (quiet_) return;
-  clear_line();
+  log_.info(result.end == session::RunResult::End::finished ? "the run is finished" : "the run has ended early",
+            {{"ticks", result.ticks}, {"state_hash", fmt::format("{:016x}", result.state_hash)}});
+  log_.clear_progress();
+  if (options_.quiet) return;
   const double wall = seconds(result.wall_time);
-  std::printf("ticks             %lu (%.2f s simulated, %u robots)\n", static_cast<unsigned long>(result.ticks),
-              seconds(result.sim_time), result.robots);
+  std::printf("ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
+              seconds(result.sim_time), counted(result.robots, "robot").c_str());
   std::printf("real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0,
               wall, cpu_seconds);
   std::printf("barrier latency   p50 %s us, p99 %s us, max %s us\n", microseconds(result.barrier.quantile(0.5)).c_str(),

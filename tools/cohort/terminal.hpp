@@ -4,30 +4,32 @@
 #include <string>
 
 #include "server/session/run.hpp"
+#include "tools/cohort/log.hpp"
 
 namespace cohort::tool {
 
-/// What people see of a run: one line of progress on standard error, rewritten in place on a terminal and now and then
-/// elsewhere; events through the log; the summary on standard output.
+/// What people see of a run: progress, events and an end by error on the log, now and then where it cannot rewrite a
+/// line; the summary on standard output.
 class Terminal {
  public:
-  explicit Terminal(bool quiet);
-  ~Terminal();
+  struct Options {
+    bool quiet = false;            ///< no summary
+    bool own_controllers = false;  ///< their deaths are told by who started them
+  };
+  Terminal(Log& log, Options options) : log_(log), options_(options) {}
 
   void progress(const session::Progress& progress);
   void event(const session::Event& event);
-  /// A line of its own, above the progress.
-  void say(const std::string& line);
   void summary(const session::RunResult& result, double cpu_seconds);
 
  private:
-  void clear_line();
+  LogLevel level_of(const session::Event& event);
 
-  bool quiet_;
-  bool in_place_;
-  bool line_open_ = false;
+  Log& log_;
+  Options options_;
   std::string last_awaited_;
   std::chrono::steady_clock::time_point last_line_;
+  bool miss_was_told_ = false;
 };
 
 }  // namespace cohort::tool

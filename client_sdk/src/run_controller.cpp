@@ -43,6 +43,9 @@ void stop_on_signals() {
   action.sa_flags = SA_RESETHAND;  // a second one ends the process even if the controller is stuck
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hangup {};
+  ::sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);  // but for nohup: the terminal was closed
 }
 
 class UsageError : public std::runtime_error {

@@ -21,13 +21,6 @@ namespace {
 constexpr std::uint32_t first_domain = 80;
 constexpr std::uint32_t last_domain = 99;
 
-std::string read_file(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 template <class Condition>
 bool poll_until(Condition&& condition) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
@@ -50,6 +43,15 @@ bool port_is_free(std::uint32_t domain) {
 }
 
 }  // namespace
+
+void write_file(const std::filesystem::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+std::string read_file(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
 
 ScratchFolder::ScratchFolder() {
   std::string pattern = (std::filesystem::temp_directory_path() / "cohort-test-XXXXXX").string();
@@ -107,6 +109,31 @@ std::optional<int> Process::wait_for_exit() {
   return exit_code_;
 }
 
+Ended run_to_end(std::vector<std::string> command, const Process::Environment& environment) {
+  const ScratchFolder folder;
+  std::vector<std::string> redirected = {"/bin/sh",
+                                         "-c",
+                                         R"(out=$1 err=$2; shift 2; exec "$@" > "$out" 2> "$err")",
+                                         "sh",
+                                         (folder / "out").string(),
+                                         (folder / "err").string()};
+  redirected.insert(redirected.end(), command.begin(), command.end());
+  Process process(redirected, environment);
+  const std::optional<int> exit_code = process.wait_for_exit();
+  return {exit_code, read_file(folder / "out"), read_file(folder / "err")};
+}
+
+bool is_alive(pid_t pid) {
+  const std::string stat = read_file("/proc/" + std::to_string(pid) + "/stat");
+  const std::size_t name_end = stat.rfind(')');  // the name before may hold anything
+  return name_end != std::string::npos && stat.size() > name_end + 2 && stat[name_end + 2] != 'Z' &&
+         stat[name_end + 2] != 'X';
+}
+
+bool wait_until_gone(pid_t pid) {
+  return poll_until([&] { return !is_alive(pid); });
+}
+
 std::vector<pid_t> children_of(pid_t parent) {
   std::vector<pid_t> children;
   for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(parent) + "/task")) {
@@ -130,6 +157,9 @@ ReservedDomain::ReservedDomain() {
 ReservedDomain::~ReservedDomain() { close(lock_); }
 
 std::string cohort_program() { return COHORT_BUILD_DIR "/bin/cohort"; }
+std::string test_controller(const std::string& name) {
+  return COHORT_BUILD_DIR "/lib/test_controllers/" + name + ".so";
+}
 std::string demo_experiment() { return COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml"; }
 
 nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment) {

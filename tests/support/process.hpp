@@ -55,6 +55,19 @@ class Process {
   std::optional<int> exit_code_;
 };
 
+/// How a program ended, and what it wrote where.
+struct Ended {
+  std::optional<int> exit_code;
+  std::string out;
+  std::string err;
+};
+Ended run_to_end(std::vector<std::string> command, const Process::Environment& environment = {});
+
+/// Whether the process runs. One that has ended does not, even if nobody has waited for it yet.
+bool is_alive(pid_t pid);
+/// Waits until it has ended; false if patience ran out.
+bool wait_until_gone(pid_t pid);
+
 /// Processes started by `parent`.
 std::vector<pid_t> children_of(pid_t parent);
 
@@ -72,7 +85,12 @@ class ReservedDomain {
   int lock_ = -1;
 };
 
+void write_file(const std::filesystem::path& file, const std::string& text);
+std::string read_file(const std::filesystem::path& file);
+
 std::string cohort_program();
+/// A controller of tests/commands/.
+std::string test_controller(const std::string& name);
 std::string demo_experiment();
 
 /// Runs `cohort run` on the demo with more arguments, checks that it succeeds, and returns its summary.

@@ -59,7 +59,7 @@ std::vector<TeamController> load_controllers(const Experiment& experiment) {
     TeamController& controller = controllers.emplace_back();
     if (team.controller == keyboard_controller) continue;
     std::string name = team.controller;
-    const bool is_path = name.find('/') != std::string::npos;
+    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".so");
     if (is_path && std::filesystem::path(name).is_relative()) name = experiment.file.parent_path() / name;
     try {
       controller.plugin.emplace(name, default_plugin_directories());

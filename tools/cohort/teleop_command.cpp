@@ -37,7 +37,7 @@ class Console {
   Console(Keyboard& keyboard, Log& log, const std::atomic<bool>& stop, std::atomic<bool>& leave)
       : keyboard_(keyboard), log_(log), stop_(stop), leave_(leave) {
     // What is there already counts from the first tick on.
-    while (const auto key = keys_.read(std::chrono::milliseconds(0))) keyboard_.press(*key);
+    while (const auto key = keys_.read(std::chrono::milliseconds(0))) heed(*key);
     thread_ = std::thread([this] { run(); });
   }
   Console(const Console&) = delete;
@@ -48,12 +48,19 @@ class Console {
   }
 
  private:
+  void heed(const std::string& key) {
+    if (key == "q")
+      leave_ = true;
+    else
+      keyboard_.press(key);
+  }
+
   void run() {
     bool explained = false;
     while (!done_) {
       const auto key = keys_.read(display_interval);
-      if (stop_ || key == "q") leave_ = true;
-      if (key) keyboard_.press(*key);
+      if (stop_) leave_ = true;
+      if (key) heed(*key);
       const auto bindings = keyboard_.bindings();
       if (bindings.empty()) continue;
       if (!explained) log_.notice(help_of(bindings));

@@ -47,6 +47,7 @@ void Terminal::progress(const session::Progress& progress) {
   if (waits) line += (line.empty() ? "" : log_.format() == LogFormat::text ? "   " : ", ") + awaited;
   if (waits && progress.started) line += fmt::format(", {:.1f} s", seconds(progress.waiting));
 
+  if (line.empty()) return log_.clear_progress();
   const auto now = std::chrono::steady_clock::now();
   const bool news = awaited != last_awaited_ && waits;
   last_awaited_ = awaited;

@@ -38,8 +38,9 @@ ChannelError no_channel(const Start& start, std::string_view kind, std::string_v
                         const std::vector<ChannelInfo>& channels) {
   std::string message =
       "robot '" + start.name + "' (" + start.model + ") has no " + std::string(kind) + " '" + std::string(name) + "'";
-  if (channels.empty()) return ChannelError(message + ", and no other " + std::string(kind) + " either");
+  if (channels.empty()) return ChannelError{message + ", and no other " + std::string(kind) + " either"};
   std::vector<const ChannelInfo*> nearest;
+  nearest.reserve(channels.size());
   for (const ChannelInfo& channel : channels) nearest.push_back(&channel);
   std::stable_sort(nearest.begin(), nearest.end(), [&](const ChannelInfo* a, const ChannelInfo* b) {
     return edit_distance(a->name, name) < edit_distance(b->name, name);
@@ -49,7 +50,7 @@ ChannelError no_channel(const Start& start, std::string_view kind, std::string_v
   for (std::size_t i = 0; i < std::min(shown, nearest.size()); ++i) {
     message += (i == 0 ? " " : ", ") + nearest[i]->name;
   }
-  return ChannelError(message);
+  return ChannelError{message};
 }
 
 constexpr std::string_view observation_kind = "observation channel";

@@ -32,6 +32,7 @@ const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLa
 
 std::vector<std::string> names_of_policies() {
   std::vector<std::string> names;
+  names.reserve(late_policies.size());
   for (const auto& [name, policy] : late_policies) names.push_back(name);
   return names;
 }
@@ -86,7 +87,7 @@ class ExperimentReader {
   Experiment read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration);
 
  private:
-  YAML::Node load();
+  YAML::Node load() const;
   void read_world_of(const YamlMap& top);
   void read_teams(const YamlMap& top);
   void read_team(const YAML::Node& node, const std::string& path);
@@ -123,7 +124,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   return std::move(experiment_);
 }
 
-YAML::Node ExperimentReader::load() {
+YAML::Node ExperimentReader::load() const {
   const fs::path& file = experiment_.file;
   if (!fs::is_regular_file(file)) throw InputError({{file, 0, "", "there is no such file"}});
   try {

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -10,7 +9,7 @@
 
 #include <cerrno>
 #include <chrono>
-#include <cstring>
+#include <csignal>
 #include <system_error>
 
 namespace cohort::tool {
@@ -65,7 +64,7 @@ void Children::start(Child& child) {
     _exit(127);
   }
   if (pid < 0) {
-    listener_.gave_up(std::string("no process could be started: ") + std::strerror(errno));
+    listener_.gave_up("no process could be started: " + std::generic_category().message(errno));
     return;
   }
   child.pid = pid;

@@ -6,7 +6,7 @@
 namespace cohort::wire {
 namespace {
 
-using std::chrono_literals::operator""s;
+using namespace std::chrono_literals;
 
 // Cyclone's structs are not const-correct; writing only reads what they point to. `_release` stays false: it is ours.
 char* lent(const std::string& text) { return const_cast<char*>(text.c_str()); }

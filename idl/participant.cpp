@@ -10,10 +10,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "idl/dds.hpp"
@@ -69,16 +69,15 @@ class LogCapture {
     receive_log(message, (entry->priority & DDS_LC_FATAL) != 0);
   }
 
-  static thread_local LogCapture* current_;
+  // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one sink for the process.
+  static inline thread_local LogCapture* current_ = nullptr;
   std::string text_;
 };
-
-thread_local LogCapture* LogCapture::current_ = nullptr;
 
 class UdpSocket {
  public:
   UdpSocket() : descriptor_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    if (descriptor_ < 0) throw WireError(std::string("cannot open a UDP socket: ") + std::strerror(errno));
+    if (descriptor_ < 0) throw WireError("cannot open a UDP socket: " + std::generic_category().message(errno));
   }
   UdpSocket(const UdpSocket&) = delete;
   UdpSocket& operator=(const UdpSocket&) = delete;
@@ -161,7 +160,7 @@ void expect_own(in_addr wanted) {
 in_addr own_address_towards(in_addr server, std::uint16_t port) {
   const UdpSocket socket;
   if (const int error = socket.connect(socket_address(server, port)); error != 0) {
-    throw WireError("no way to the server at " + to_text(server) + ": " + std::strerror(error));
+    throw WireError("no way to the server at " + to_text(server) + ": " + std::generic_category().message(error));
   }
   return socket.local_address();
 }

@@ -13,7 +13,7 @@
 namespace cohort::wire {
 namespace {
 
-using std::chrono_literals::operator""ms;
+using namespace std::chrono_literals;
 
 using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 using Listener = std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)>;

@@ -135,9 +135,9 @@ double portable_atan(double x) {
 
 double portable_atan2(double y, double x) {
   if (x != x || y != y) return x + y;
-  const bool y_negative = __builtin_signbit(y);
-  const bool x_negative = __builtin_signbit(x);
-  double angle;
+  const bool y_negative = __builtin_signbit(y) != 0;
+  const bool x_negative = __builtin_signbit(x) != 0;
+  double angle = 0.0;
   if (y == 0.0) {
     angle = x_negative ? pi : 0.0;
   } else if (x == 0.0 || (!is_finite(y) && is_finite(x))) {
@@ -229,7 +229,7 @@ double portable_log(double x) {
   }
   const auto bits = std::bit_cast<std::uint64_t>(x);
   exponent += static_cast<int>(bits >> 52) - 1023;
-  double mantissa = std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3ff0000000000000u);
+  auto mantissa = std::bit_cast<double>((bits & 0x000fffffffffffffu) | 0x3ff0000000000000u);
   if (mantissa > 1.41421356237309504880) {
     mantissa *= 0.5;
     ++exponent;
@@ -265,7 +265,8 @@ double acos(double x) noexcept { return portable_acos(x); }
 double exp(double x) noexcept { return portable_exp(x); }
 double log(double x) noexcept { return portable_log(x); }
 
-// What the linker is told to look for (the CMakeLists.txt beside), so that it takes this object file before the C library.
+// What the linker is told to look for (the CMakeLists.txt beside), so that it takes this object file before the C
+// library.
 extern const char cohort_portable_math = 1;
 }
 

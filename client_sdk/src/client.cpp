@@ -19,8 +19,7 @@ namespace cohort {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using std::chrono_literals::operator""ms;
-using std::chrono_literals::operator""s;
+using namespace std::chrono_literals;
 
 constexpr auto stop_is_polled_every = 100ms;
 constexpr auto patience_before_notice = 3s;

@@ -23,8 +23,9 @@ ChannelError no_channel(const Start& start, std::string_view kind, std::string_v
                         const std::vector<ChannelInfo>& channels) {
   std::string message =
       "robot '" + start.name + "' (" + start.model + ") has no " + std::string(kind) + " '" + std::string(name) + "'";
-  if (channels.empty()) return ChannelError(message + ", and no other " + std::string(kind) + " either");
+  if (channels.empty()) return ChannelError{message + ", and no other " + std::string(kind) + " either"};
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const ChannelInfo& channel : channels) names.push_back(channel.name);
   constexpr std::size_t shown = 3;
   message += "; the nearest are";
@@ -33,7 +34,7 @@ ChannelError no_channel(const Start& start, std::string_view kind, std::string_v
     message += separator + near;
     separator = ", ";
   }
-  return ChannelError(message);
+  return ChannelError{message};
 }
 
 constexpr std::string_view observation_kind = "observation channel";

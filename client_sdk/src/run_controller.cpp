@@ -1,7 +1,6 @@
-#include <signal.h>
-
 #include <atomic>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -34,7 +33,7 @@ Exit code: 0 when the run finished, 1 when it failed, the server was lost or ano
 in the options or a refused claim, 130 when interrupted.
 )";
 
-// Set by signals, so it cannot be anything but global.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
 std::atomic<bool> stop_requested{false};
 
 void stop_on_signals() {

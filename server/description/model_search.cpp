@@ -34,7 +34,7 @@ fs::path sdf_file_of(const fs::path& folder) {
   const XmlNode* const sdf = outline.root.child("sdf");
   if (outline.root.name != "model" || name == nullptr || name->text.empty() || sdf == nullptr || sdf->text.empty())
     throw std::runtime_error(config.string() + " needs <model> with <name> and <sdf version=\"1.9\">FILE</sdf>");
-  const fs::path file = sdf::getModelFilePath(folder.string());
+  fs::path file = sdf::getModelFilePath(folder.string());
   if (file.empty()) throw std::runtime_error(config.string() + " names no SDF file of a version that is read");
   if (!fs::is_regular_file(file))
     throw std::runtime_error("there is no '" + file.string() + "', which " + config.string() + " names");

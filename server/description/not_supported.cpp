@@ -1,5 +1,7 @@
 #include "server/description/not_supported.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -60,11 +62,7 @@ constexpr Unsupported table[] = {
 constexpr std::string_view containers[] = {"link",    "joint",  "axis",     "dynamics", "limit",  "collision",
                                            "surface", "bounce", "friction", "ode",      "contact"};
 
-bool is_container(std::string_view name) {
-  for (const std::string_view container : containers)
-    if (container == name) return true;
-  return false;
-}
+bool is_container(std::string_view name) { return std::ranges::find(containers, name) != std::end(containers); }
 
 bool has_default_value(const sdf::ElementPtr& element) {
   const sdf::ParamPtr value = element->GetValue();

@@ -33,6 +33,7 @@ const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLa
 
 std::vector<std::string> names_of_policies() {
   std::vector<std::string> names;
+  names.reserve(late_policies.size());
   for (const auto& [name, policy] : late_policies) names.push_back(name);
   return names;
 }
@@ -98,7 +99,7 @@ class ExperimentReader {
   Experiment read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration);
 
  private:
-  YAML::Node load();
+  YAML::Node load() const;
   void read_world_of(const YamlMap& top);
   void read_teams(const YamlMap& top);
   void read_team(const YAML::Node& node, const std::string& path);
@@ -138,7 +139,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   return std::move(experiment_);
 }
 
-YAML::Node ExperimentReader::load() {
+YAML::Node ExperimentReader::load() const {
   const fs::path& file = experiment_.file;
   if (auto reason = why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
   if (file.extension() == ".sdf" || file.extension() == ".world")

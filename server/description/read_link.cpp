@@ -86,7 +86,7 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
 double read_coefficient(const sdf::ElementPtr& element, double by_default, double greatest, const char* expected,
                         const SdfReport& report) {
   if (!element) return by_default;
-  const double value = element->Get<double>();
+  const auto value = element->Get<double>();
   if (value < 0.0 || value > greatest) report.problem(element, expected);
   return value;
 }

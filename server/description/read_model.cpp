@@ -64,6 +64,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   }
 
   std::vector<Link> links;
+  links.reserve(order.size());
   for (const std::size_t link : order) links.push_back(std::move(model.links[link]));
   model.links = std::move(links);
   for (Joint& joint : model.joints) {

@@ -85,7 +85,7 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
   constexpr double nanoseconds = 1e9;
   constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
   constexpr double longest = 1.0;
-  const double seconds = step->Get<double>();
+  const auto seconds = step->Get<double>();
   if (!(seconds > 0.0 && seconds <= longest)) {
     if (!std::isnan(seconds)) report_.problem(step, "expected a step > 0 s and <= 1 s");
     return;

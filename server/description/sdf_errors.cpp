@@ -119,7 +119,7 @@ std::optional<Place> place_named_in(std::string message, const XmlNode& xml) {
   const std::size_t start = subject == std::string::npos ? 0 : subject;
   for (const char* const kind : {"joint", "link", "frame", "collision"})
     if (const auto name = name_in(message, kind, start)) {
-      const auto place = scope ? find_named(*scope->node, scope->path, kind, *name) : find_named(xml, "", kind, *name);
+      auto place = scope ? find_named(*scope->node, scope->path, kind, *name) : find_named(xml, "", kind, *name);
       if (place) return place;
     }
   return scope;

@@ -91,6 +91,7 @@ std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlN
       {"pose", {"relative_to", "degrees", "rotation_format"}},
       {"plugin", {"name", "filename"}}};
   std::vector<std::string> names;
+  names.reserve(attributes_of.size());
   for (const auto& [name, attributes] : attributes_of) names.push_back(name);
   for (const XmlNode& child : include.children) {
     if (child.name == "experimental:params") return std::pair{&child, "parameters of an include are not supported"};

@@ -114,14 +114,14 @@ std::vector<Barrier::Miss> Barrier::expire(Time now) {
   return misses;
 }
 
-Barrier::Outcome Barrier::outcome(std::uint32_t id) const {
-  const Robot& robot = robots_[id];
-  if (robot.detached) return {Outcome::Kind::neutral, {}};
-  const auto frame = acting_frame(robot);
+Barrier::Outcome Barrier::outcome(std::uint32_t robot) const {
+  const Robot& r = robots_[robot];
+  if (r.detached) return {Outcome::Kind::neutral, {}};
+  const auto frame = acting_frame(r);
   if (!frame) return {};
-  const Answer& answer = answer_of(robot, *frame);
+  const Answer& answer = answer_of(r, *frame);
   if (answer.state == Answer::State::given) return {Outcome::Kind::command, answer.values};
-  const bool hold = robot.policy.on_late == OnLate::hold || robot.policy.on_late == OnLate::wait;
+  const bool hold = r.policy.on_late == OnLate::hold || r.policy.on_late == OnLate::wait;
   return {hold ? Outcome::Kind::keep : Outcome::Kind::neutral, {}};
 }
 

@@ -87,8 +87,10 @@ class Barrier {
     bool awaited = false;
     bool detached = false;
   };
-  Answer& answer_of(Robot& robot, std::uint64_t frame_tick) { return robot.answers[frame_tick % robot.answers.size()]; }
-  const Answer& answer_of(const Robot& robot, std::uint64_t frame_tick) const {
+  static Answer& answer_of(Robot& robot, std::uint64_t frame_tick) {
+    return robot.answers[frame_tick % robot.answers.size()];
+  }
+  static const Answer& answer_of(const Robot& robot, std::uint64_t frame_tick) {
     return robot.answers[frame_tick % robot.answers.size()];
   }
   /// The frame whose answer acts at this tick, if there is one.

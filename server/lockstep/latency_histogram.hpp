@@ -39,7 +39,7 @@ class LatencyHistogram {
   static std::size_t bucket_of(std::uint64_t value) {
     if (value < 32) return value;
     const int shift = static_cast<int>(std::bit_width(value)) - 6;
-    return static_cast<std::size_t>(32 * (shift + 1)) + ((value >> shift) - 32);
+    return 32 * (static_cast<std::size_t>(shift) + 1) + ((value >> shift) - 32);
   }
   static std::uint64_t upper_end(std::size_t bucket) {
     if (bucket < 32) return bucket;

@@ -49,6 +49,7 @@ struct Collision::Pair {
     if (algorithm == nullptr) return;
     algorithm->~btCollisionAlgorithm();
     dispatcher.freeCollisionAlgorithm(algorithm);
+    algorithm = nullptr;
   }
 };
 

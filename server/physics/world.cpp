@@ -52,15 +52,9 @@ class World::Implementation {
   void step();
   void hash_contacts(StateHash& hash) const;
 
-  const description::World& description_;
-  WorkerPool& workers_;
-  double step_;
-  btContactSolverInfo info_;
-  geometry::Scene scene_;
-  std::vector<std::unique_ptr<Multibody>> multibodies_;  // by body; null for what is static
-  std::vector<Contact> contacts_;
-
  private:
+  friend World;  // its functions are the other half of this one
+
   struct Part {  // a solid that moves
     std::uint32_t solid;
     std::size_t link;
@@ -80,6 +74,13 @@ class World::Implementation {
   void report_contacts();
   std::uint32_t member_of(std::uint32_t solid) const { return member_of_body_[scene_.solid(solid).body]; }
 
+  const description::World& description_;
+  WorkerPool& workers_;
+  double step_;
+  btContactSolverInfo info_;
+  geometry::Scene scene_;
+  std::vector<std::unique_ptr<Multibody>> multibodies_;  // by body; null for what is static
+  std::vector<Contact> contacts_;
   std::vector<std::uint32_t> moving_bodies_;   // by member
   std::vector<std::uint32_t> member_of_body_;  // index into moving_bodies_
   std::vector<std::vector<Part>> parts_;       // by member
@@ -202,7 +203,7 @@ void World::Implementation::integrate() {
   workers_.for_each_chunk(moving_bodies_.size(), bodies_a_chunk,
                           [&](std::size_t begin, std::size_t end, unsigned worker) {
                             for (std::size_t i = begin; i < end; ++i) {
-                              finite_[i] = multibodies_[moving_bodies_[i]]->integrate(step_, scratch_[worker]);
+                              finite_[i] = multibodies_[moving_bodies_[i]]->integrate(step_, scratch_[worker]) ? 1 : 0;
                               if (finite_[i]) place_solids(static_cast<std::uint32_t>(i));
                             }
                           });

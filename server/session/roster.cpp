@@ -9,6 +9,7 @@ namespace {
 
 std::vector<wire::Channel> to_wire(const std::vector<Channel>& channels) {
   std::vector<wire::Channel> result;
+  result.reserve(channels.size());
   for (const Channel& c : channels) result.push_back({c.name, c.unit, c.size, c.lower, c.upper, c.neutral});
   return result;
 }

@@ -52,7 +52,7 @@ class Server {
   };
   struct Liveliness {
     wire::Sender sender;
-    bool alive;
+    bool alive = false;
   };
   // What DDS's threads leave for the thread of `run`.
   struct Inbox {

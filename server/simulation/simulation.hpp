@@ -87,8 +87,8 @@ class Simulation {
 
  private:
   struct Robot {
-    std::uint32_t kind;
-    std::uint32_t body;
+    std::uint32_t kind = 0;
+    std::uint32_t body = 0;
     description::Policy policy;
     std::vector<std::unique_ptr<sensing::Sensor>> sensors;
     std::vector<std::size_t> sensor_sizes;
@@ -98,7 +98,7 @@ class Simulation {
     std::vector<double> command;  // that acts now
   };
 
-  void build_robot(std::uint32_t robot);
+  void build_robot(std::uint32_t id);
   void sense();
   void count_touches();
 

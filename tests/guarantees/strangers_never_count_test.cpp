@@ -33,7 +33,7 @@ class HandWrittenClient {
  public:
   using Answer = std::function<void(wire::Writer<wire::Command>&, const wire::Observation&)>;
 
-  HandWrittenClient(std::uint32_t domain, const std::string& robots, Answer answer)
+  HandWrittenClient(std::uint32_t domain, const std::string& robots, const Answer& answer)
       : participant_(wire::Participant::client(domain)),
         commands_(participant_),
         join_(participant_),

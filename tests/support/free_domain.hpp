@@ -14,12 +14,13 @@
 #include <utility>
 
 #include "idl/wire.hpp"
+#include "tests/support/patience.hpp"
 
 namespace cohort::test {
 
 /// Polls until `condition` holds; false if it does not within `at_most`.
 template <class Condition>
-bool eventually(Condition condition, std::chrono::milliseconds at_most = std::chrono::seconds(10)) {
+bool eventually(Condition condition, std::chrono::milliseconds at_most = patience) {
   const auto deadline = std::chrono::steady_clock::now() + at_most;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > deadline) return false;

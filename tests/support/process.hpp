@@ -10,19 +10,20 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/patience.hpp"
+
 /// Running `cohort` as users do, from tests.
 namespace cohort::testing {
 
 using namespace std::chrono_literals;
-
-/// How long a test waits for something that should happen before it fails: long, since it is never waited for in vain.
-inline constexpr std::chrono::seconds patience{60};
+using test::patience;
 
 /// A folder that is gone with this.
 class ScratchFolder {
  public:
   ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
   ~ScratchFolder();
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
@@ -37,6 +38,7 @@ class Process {
   using Environment = std::map<std::string, std::string>;
   explicit Process(std::vector<std::string> command, const Environment& environment = {});
   Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
   ~Process();
 
   pid_t pid() const { return pid_; }
@@ -76,6 +78,7 @@ class ReservedDomain {
  public:
   ReservedDomain();
   ReservedDomain(const ReservedDomain&) = delete;
+  ReservedDomain& operator=(const ReservedDomain&) = delete;
   ~ReservedDomain();
   std::uint32_t number() const { return number_; }
   std::string text() const { return std::to_string(number_); }

@@ -15,7 +15,6 @@
 namespace cohort {
 namespace {
 
-using std::chrono_literals::operator""s;
 using test::CountingController;
 using test::eventually;
 
@@ -32,9 +31,9 @@ class RunningClient {
   }
   ~RunningClient() { stop = true; }
 
-  // How it ended; empty if it still runs after ten seconds.
+  // How it ended; empty if it goes on.
   std::optional<ClientEnd> end() {
-    if (end_.wait_for(10s) != std::future_status::ready) return std::nullopt;
+    if (end_.wait_for(test::patience) != std::future_status::ready) return std::nullopt;
     return end_.get();
   }
 

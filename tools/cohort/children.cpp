@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <linux/close_range.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -11,6 +10,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -96,7 +97,7 @@ void Children::start(Child& child) {
   if (pid < 0) {
     close_if_open(child.output);
     if (listener_.gave_up)
-      listener_.gave_up(child.command.name + ": no process can be started: " + std::strerror(error));
+      listener_.gave_up(child.command.name + ": no process can be started: " + std::generic_category().message(error));
     return;
   }
   setpgid(pid, pid);  // whoever of both comes first

@@ -5,15 +5,16 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace cohort::tool {
 namespace {
 
 [[noreturn]] void refuse(std::string_view what, const std::filesystem::path& file, int error) {
-  throw std::runtime_error(fmt::format("{} cannot be written to {}: {}", what, file.string(), std::strerror(error)));
+  throw std::runtime_error(
+      fmt::format("{} cannot be written to {}: {}", what, file.string(), std::generic_category().message(error)));
 }
 
 }  // namespace

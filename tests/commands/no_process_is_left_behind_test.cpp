@@ -229,7 +229,10 @@ TEST_F(ChildrenTest, AreNoticedWhereTheKernelDoesNotAnnounceTheirEnds) {
 }
 
 TEST_F(ChildrenTest, ReadNothingAndInheritNoDescriptors) {
-  const int descriptor = open("/dev/zero", O_RDONLY);  // without close-on-exec
+  const int zero = open("/dev/zero", O_RDONLY);
+  const int descriptor = fcntl(zero, F_DUPFD, 100);  // without close-on-exec, where the shell has none of its own
+  close(zero);
+  const std::string inherited = "/proc/$$/fd/" + std::to_string(descriptor);
   std::mutex mutex;
   std::vector<std::string> lines;
   Children::Listener its_listener = listener();
@@ -238,9 +241,9 @@ TEST_F(ChildrenTest, ReadNothingAndInheritNoDescriptors) {
     lines.push_back(line);
   };
   {
-    Children children(
-        {{{"/bin/sh", "-c", "cat; readlink /proc/self/fd/0 >&2; ls /proc/$$/fd | xargs >&2; sleep 1000"}, "sh"}},
-        its_listener);
+    const std::string script = "cat; readlink /proc/self/fd/0 >&2; test -e " + inherited +
+                               " && echo inherited >&2 || echo closed >&2; sleep 1000";
+    Children children({{{"/bin/sh", "-c", script}, "sh"}}, its_listener);
     EXPECT_TRUE(eventually([&] {
       const std::lock_guard lock(mutex);
       return lines.size() == 2;
@@ -250,7 +253,7 @@ TEST_F(ChildrenTest, ReadNothingAndInheritNoDescriptors) {
   close(descriptor);
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0], "/dev/null");
-  EXPECT_EQ(lines[1], "0 1 2");
+  EXPECT_EQ(lines[1], "closed");
 }
 
 }  // namespace

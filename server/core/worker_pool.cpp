@@ -1,24 +1,34 @@
 #include "server/core/worker_pool.hpp"
 
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <vector>
 
+#include "server/core/tbb_loop.hpp"
+
 namespace cohort {
 
 struct WorkerPool::Threads {
-  explicit Threads(unsigned count)
-      : allowance(tbb::global_control::max_allowed_parallelism, count),
-        arena(static_cast<int>(count)),
-        handed_over(count) {}
+  explicit Threads(unsigned thread_count) : loop(thread_count), handed_over(thread_count) {}
 
-  tbb::global_control allowance;  // oneTBB starts no more threads than cores without it
-  tbb::task_arena arena;
+  void run_chunk(std::size_t chunk, unsigned worker) {
+    begun.load(std::memory_order_acquire);
+    handed_over[worker].load(std::memory_order_acquire);
+    const std::size_t begin = chunk * grain;
+    call(body, begin, std::min(count, begin + grain), worker);
+    handed_over[worker].fetch_add(1, std::memory_order_release);
+    done.fetch_add(1, std::memory_order_release);
+  }
+
+  TbbLoop loop;
+
+  // Of the loop under way.
+  std::size_t count = 0;
+  std::size_t grain = 1;
+  Call call = nullptr;
+  void* body = nullptr;
+
   // What oneTBB guarantees already, said once more so that ThreadSanitizer, which cannot see into it, knows too: chunks
   // come after the loop's begin, its end after them, and chunks with one worker's scratch memory after each other.
   std::atomic<std::size_t> begun = 0;
@@ -38,19 +48,15 @@ void WorkerPool::run(std::size_t count, std::size_t grain, Call call, void* body
     for (std::size_t begin = 0; begin < count; begin += grain) call(body, begin, std::min(count, begin + grain), 0);
     return;
   }
-  const std::size_t chunks = (count + grain - 1) / grain;
+  pool_->count = count;
+  pool_->grain = grain;
+  pool_->call = call;
+  pool_->body = body;
   pool_->begun.fetch_add(1, std::memory_order_release);
-  pool_->arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-      const auto worker = static_cast<unsigned>(tbb::this_task_arena::current_thread_index());
-      pool_->begun.load(std::memory_order_acquire);
-      pool_->handed_over[worker].load(std::memory_order_acquire);
-      const std::size_t begin = chunk * grain;
-      call(body, begin, std::min(count, begin + grain), worker);
-      pool_->handed_over[worker].fetch_add(1, std::memory_order_release);
-      pool_->done.fetch_add(1, std::memory_order_release);
-    });
-  });
+  pool_->loop.run(
+      (count + grain - 1) / grain,
+      [](void* pool, std::size_t chunk, unsigned worker) { static_cast<Threads*>(pool)->run_chunk(chunk, worker); },
+      pool_.get());
   pool_->done.load(std::memory_order_acquire);
 }
 

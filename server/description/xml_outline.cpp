@@ -43,7 +43,7 @@ std::string decoded(std::string_view entity) {
       {"amp", "&"}, {"lt", "<"}, {"gt", ">"}, {"quot", "\""}, {"apos", "'"}};
   for (const auto& [name, meaning] : named)
     if (entity == name) return meaning;
-  const std::string as_written = "&" + std::string(entity) + ";";
+  std::string as_written = "&" + std::string(entity) + ";";
   if (entity.size() < 2 || entity[0] != '#') return as_written;
   const bool hexadecimal = entity[1] == 'x';
   const char* const end = entity.data() + entity.size();

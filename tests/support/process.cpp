@@ -63,6 +63,7 @@ ScratchFolder::~ScratchFolder() { std::filesystem::remove_all(path_); }
 
 Process::Process(std::vector<std::string> command, const Environment& environment) {
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (std::string& argument : command) arguments.push_back(argument.data());
   arguments.push_back(nullptr);
   const std::string output = (folder_ / "output").string();
@@ -138,7 +139,7 @@ std::vector<pid_t> children_of(pid_t parent) {
   std::vector<pid_t> children;
   for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(parent) + "/task")) {
     std::istringstream list(read_file(task.path() / "children"));
-    for (pid_t child; list >> child;) children.push_back(child);
+    for (pid_t child = 0; list >> child;) children.push_back(child);
   }
   return children;
 }

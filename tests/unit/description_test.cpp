@@ -23,8 +23,7 @@ namespace cohort::description {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono_literals::operator""ms;
-using std::chrono_literals::operator""s;
+using namespace std::chrono_literals;
 
 const fs::path source = COHORT_SOURCE_DIR;
 const fs::path shipped_experiment = source / "worlds/experiments/obstacle_avoidance.yaml";

@@ -25,7 +25,7 @@ Policy policy(std::uint32_t period = 1, std::uint32_t phase = 0, std::uint32_t d
 
 Barrier barrier_of(std::vector<Policy> policies) {
   const std::vector<std::size_t> sizes(policies.size(), 1);
-  return Barrier(std::move(policies), sizes);
+  return {std::move(policies), sizes};
 }
 
 void answer(Barrier& barrier, std::uint32_t robot, std::uint64_t frame, double value) {

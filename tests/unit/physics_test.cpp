@@ -239,8 +239,10 @@ TEST(World, TurnsAnInertiaWithProductsIntoItsPrincipalAxes) {
 TEST(World, GivesTheSameBitsForAnyNumberOfWorkers) {
   const auto hash_with = [](unsigned threads) {
     description::World description = world_with_floor();
-    for (int i = 0; i < 60; ++i)
-      place(description, tracked_robot(), "r" + std::to_string(i), at(0.14 * (i % 8), 0.14 * (i / 8), 0, 0.7 * i));
+    for (int i = 0; i < 60; ++i) {
+      const int row = i / 8;
+      place(description, tracked_robot(), "r" + std::to_string(i), at(0.14 * (i % 8), 0.14 * row, 0, 0.7 * i));
+    }
     WorkerPool workers(threads);
     World world(description, workers);
     for (std::uint32_t body = 1; body <= 60; ++body) command(world, body, {0.05 + 0.002 * body, 0.2 - 0.002 * body});

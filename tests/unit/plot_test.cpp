@@ -74,19 +74,19 @@ description::World arena() {
 
 std::size_t count(std::string_view text, std::string_view part) {
   std::size_t found = 0;
-  for (std::size_t i = text.find(part); i != text.npos; i = text.find(part, i + part.size())) ++found;
+  for (std::size_t i = text.find(part); i != std::string::npos; i = text.find(part, i + part.size())) ++found;
   return found;
 }
 
 // What stands within the group of this id.
 std::string group(const std::string& plot, const std::string& id) {
   const std::size_t begin = plot.find("<g id=\"" + id + "\"");
-  if (begin == plot.npos) return {};
+  if (begin == std::string::npos) return {};
   std::size_t end = begin;
   for (int depth = 0;;) {
     const std::size_t opened = plot.find("<g", end);
     const std::size_t closed = plot.find("</g>", end);
-    if (closed == plot.npos) return {};
+    if (closed == std::string::npos) return {};
     depth += opened < closed ? 1 : -1;
     end = std::min(opened, closed) + 2;
     if (depth == 0) return plot.substr(begin, closed - begin);
@@ -97,7 +97,7 @@ std::string group(const std::string& plot, const std::string& id) {
 std::vector<double> values(const std::string& text, const std::string& attribute) {
   std::vector<double> result;
   const std::string start = " " + attribute + "=\"";
-  for (std::size_t i = text.find(start); i != text.npos; i = text.find(start, i + 1))
+  for (std::size_t i = text.find(start); i != std::string::npos; i = text.find(start, i + 1))
     result.push_back(std::stod(text.substr(i + start.size())));
   return result;
 }
@@ -113,15 +113,16 @@ std::string fault_in_xml(const std::string& text) {
       if (count(between, "&") > count(between, "&amp;") + count(between, "&lt;") + count(between, "&gt;") +
                                     count(between, "&quot;") + count(between, "&#39;"))
         return "a bare & in " + between;
-      if (open.empty() && between.find_first_not_of(" \n") != between.npos) return "outside of the root: " + between;
+      if (open.empty() && between.find_first_not_of(" \n") != std::string::npos)
+        return "outside of the root: " + between;
       i = end;
       continue;
     }
     const std::size_t end = text.find('>', i);
-    if (end == text.npos) return "a tag without an end";
+    if (end == std::string::npos) return "a tag without an end";
     const std::string tag = text.substr(i + 1, end - i - 1);
     i = end + 1;
-    if (tag.find('<') != tag.npos || count(tag, "\"") % 2 != 0) return "a malformed tag: " + tag;
+    if (tag.find('<') != std::string::npos || count(tag, "\"") % 2 != 0) return "a malformed tag: " + tag;
     const std::string name = tag.substr(0, tag.find_first_of(" /", 1));
     if (name.starts_with('/')) {
       if (open.empty() || "/" + open.back() != name) return "closes what is not open: " + tag;
@@ -143,8 +144,8 @@ TEST(Plot, EscapesNames) {
   done.trace.robots[0].name = "<first>";
   const std::string plot = done.plot();
   EXPECT_EQ(fault_in_xml(plot), "");
-  EXPECT_NE(plot.find("a &lt; b &amp; &quot;c&quot;"), plot.npos);
-  EXPECT_NE(plot.find("&lt;first&gt;"), plot.npos);
+  EXPECT_NE(plot.find("a &lt; b &amp; &quot;c&quot;"), std::string::npos);
+  EXPECT_NE(plot.find("&lt;first&gt;"), std::string::npos);
 }
 
 TEST(Plot, HasOnePathOneStartAndOneEndForEachRobot) {
@@ -170,7 +171,7 @@ TEST(Plot, DrawsABoxByItsFourCornersTurnedByItsYaw) {
   std::replace(points.begin(), points.end(), ',', ' ');
   std::istringstream in(points);
   std::vector<Eigen::Vector2d> corners;
-  for (double x, y; in >> x >> y;) corners.emplace_back(x, y);
+  for (double x = 0.0, y = 0.0; in >> x >> y;) corners.emplace_back(x, y);
   ASSERT_EQ(corners.size(), 4u);
   std::vector<double> edges;
   bool turned = false;
@@ -216,7 +217,7 @@ TEST(Plot, SaysWhatWasRun) {
   done.caption.state_hash = 0xabcdef;
   const std::string plot = done.plot();
   for (const std::string part : {"straight ahead", "0.50 s simulated", "2 robots", "0000000000abcdef"})
-    EXPECT_NE(plot.find(part), plot.npos) << part;
+    EXPECT_NE(plot.find(part), std::string::npos) << part;
 }
 
 TEST(Plot, OfARunWithoutTicksShowsRobotsAtTheirStart) {
@@ -231,8 +232,8 @@ TEST(Plot, OfOneRobotWithoutWallsShowsSomeOfTheWorldAroundIt) {
   place(world, tracked_robot(), "alone", at(-7.0, 3.0, 0.0));
   const std::string plot = run(world, 0).plot();
   EXPECT_EQ(fault_in_xml(plot), "");
-  EXPECT_EQ(plot.find("nan"), plot.npos);
-  EXPECT_EQ(plot.find("inf"), plot.npos);
+  EXPECT_EQ(plot.find("nan"), std::string::npos);
+  EXPECT_EQ(plot.find("inf"), std::string::npos);
   const double radius = values(group(plot, "ends"), "r").at(0);
   EXPECT_GT(radius, 5.0);
   EXPECT_LT(radius, 100.0);
@@ -322,8 +323,8 @@ TEST(OutputFile, IsRefusedBeforehandWhereItCannotBeWritten) {
     FAIL();
   } catch (const std::runtime_error& error) {
     const std::string text = error.what();
-    EXPECT_NE(text.find("the plot cannot be written to"), text.npos);
-    EXPECT_NE(text.find("No such file or directory"), text.npos);
+    EXPECT_NE(text.find("the plot cannot be written to"), std::string::npos);
+    EXPECT_NE(text.find("No such file or directory"), std::string::npos);
   }
 }
 

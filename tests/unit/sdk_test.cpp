@@ -93,7 +93,7 @@ std::string name_of(std::uint32_t robot) { return std::string("r").append(std::t
 
 class ControllerHostTest : public testing::Test {
  protected:
-  void start(wire::StartReason reason = wire::StartReason::first, std::vector<std::uint32_t> robots = {2, 5}) {
+  void start(wire::StartReason reason = wire::StartReason::first, const std::vector<std::uint32_t>& robots = {2, 5}) {
     wire::Admit admit{.start_reason = reason, .tick = 100, .step_ns = 10'000'000};
     for (const std::uint32_t robot : robots) admit.robots.push_back({.robot = robot, .name = name_of(robot)});
     host.start(admit, descriptions);

@@ -79,7 +79,7 @@ std::string show(const Report& m) {
 template <class Message>
 class Inbox {
  public:
-  Inbox(Participant& participant, const std::string& partition = "", int depth = 8)
+  explicit Inbox(Participant& participant, const std::string& partition = "", int depth = 8)
       : reader_(participant, {[this](const Message& message, const Sender&) { add(show(message)); }, nullptr},
                 partition, depth) {}
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <variant>
@@ -29,9 +30,13 @@ struct Plane {
 };
 using Shape = std::variant<Box, Sphere, Cylinder, Plane>;
 
+/// Of two surfaces that touch, unless the world has a MaterialPair for them: the smaller friction, the larger
+/// restitution and the larger rolling resistance.
 struct Surface {
-  double friction = 1.0;     ///< Coulomb coefficient; a pair of surfaces has the smaller of the two
-  double restitution = 0.0;  ///< a pair of surfaces has the larger of the two
+  double friction = 1.0;            ///< Coulomb coefficient [1]
+  double restitution = 0.0;         ///< share of the normal velocity that comes back [1]
+  double rolling_resistance = 0.0;  ///< torque against rolling for each newton of normal force [m]
+  std::uint32_t material = 0;       ///< index into World::materials
 };
 
 struct Collision {
@@ -54,20 +59,31 @@ struct Link {
   std::vector<Collision> collisions;
 };
 
-enum class JointType { fixed, revolute, prismatic };
+enum class JointType { fixed, revolute, prismatic, ball, universal };
 
-/// One degree of freedom (none if fixed) between two links of the same model. Links form trees: every link is the child
-/// of at most one joint.
-struct Joint {
-  std::string name;
-  JointType type = JointType::fixed;
-  std::size_t parent = 0;                                   ///< index into Model::links
-  std::size_t child = 0;                                    ///< index into Model::links
-  Pose X_LJ;                                                ///< in the child link
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();          ///< unit vector in J
+/// One direction in which a joint turns [rad] or slides [m].
+struct JointAxis {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();     ///< unit vector in J
   double lower = -std::numeric_limits<double>::infinity();  ///< [rad] or [m]
   double upper = std::numeric_limits<double>::infinity();
-  double damping = 0.0;  ///< [N m s/rad] or [N s/m]
+  double damping = 0.0;           ///< [N m s/rad] or [N s/m]
+  double friction = 0.0;          ///< Coulomb friction of the joint [N m] or [N]
+  double spring_stiffness = 0.0;  ///< [N m/rad] or [N/m]
+  double spring_reference = 0.0;  ///< where the spring is at rest [rad] or [m]
+};
+
+/// Joins two links of the same model, or a link and the world. Links form a tree: every link is the child of at most
+/// one joint.
+struct Joint {
+  static constexpr std::size_t world = std::numeric_limits<std::size_t>::max();
+
+  std::string name;
+  JointType type = JointType::fixed;
+  std::size_t parent = 0;  ///< index into Model::links, or `world`
+  std::size_t child = 0;   ///< index into Model::links
+  Pose X_LJ;               ///< in the child link
+  JointAxis axis;          ///< of a revolute, prismatic or universal joint; of a ball only damping and friction
+  JointAxis second_axis;   ///< of a universal joint: the one that moves with the first, fixed in the child
 };
 
 /// Two tracks that share one rigid body ("treels", tracks and wheels of the s-bot): drawn as four ground points, two a
@@ -82,9 +98,15 @@ struct TreelDrive {
   double max_torque = 0.0;           ///< per side [N m]
   double max_velocity = 0.0;         ///< of the ground points [m/s]
   double friction = 0.0;             ///< Coulomb coefficient of the tracks; a pair has the smaller of the two
+
+  /// The joints of the real wheels that this stands for. Where wheels are simulated (Fidelity::articulated) their
+  /// motors are the drive; elsewhere they are welded to the link, and their collisions are none.
+  std::vector<std::size_t> left_wheels{};
+  std::vector<std::size_t> right_wheels{};
 };
 
-/// A motor with a velocity loop on one joint. Command `NAME/0/velocity` [rad/s] or [m/s].
+/// A motor with a velocity loop on one joint, on the first axis of a universal one. Command `NAME/0/velocity` [rad/s]
+/// or [m/s].
 struct VelocityMotor {
   std::string name;
   std::size_t joint = 0;
@@ -121,11 +143,13 @@ struct ProximityRing {
 
 using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing>;
 
-/// Links in an order in which every parent comes before its children; link 0 is the root. Devices in document order,
-/// which is the order of their channels. A static model has neither joints nor devices, and its links stay at X_ML.
+/// Links in an order in which every parent comes before its children; link 0 is the root, which is free to move unless
+/// a joint ties it to the world. Devices in document order, which is the order of their channels. A static model has
+/// neither joints nor devices, and its links stay at X_ML.
 struct Model {
   std::string name;
   bool is_static = false;
+  bool self_collide = false;  ///< links of one instance collide with each other, but for those that a joint connects
   std::vector<Link> links;
   std::vector<Joint> joints;
   std::vector<Device> devices;

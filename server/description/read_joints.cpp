@@ -49,14 +49,14 @@ void read_axis(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
     report.problem(axis->Element(), errors.front().Message());
     return;
   }
-  joint.axis = to_eigen(direction).normalized();
-  joint.damping = axis->Damping();
-  if (joint.damping < 0.0 || std::isinf(joint.damping))
+  joint.axis.direction = to_eigen(direction).normalized();
+  joint.axis.damping = axis->Damping();
+  if (joint.axis.damping < 0.0 || std::isinf(joint.axis.damping))
     report.problem(find(axis->Element(), {"dynamics", "damping"}), "expected a damping >= 0");
   if (sdf_joint.Type() == sdf::JointType::CONTINUOUS) return;
-  if (axis->Lower() > -no_limit) joint.lower = axis->Lower();
-  if (axis->Upper() < no_limit) joint.upper = axis->Upper();
-  if (joint.lower > joint.upper) {
+  if (axis->Lower() > -no_limit) joint.axis.lower = axis->Lower();
+  if (axis->Upper() < no_limit) joint.axis.upper = axis->Upper();
+  if (joint.axis.lower > joint.axis.upper) {
     const sdf::ElementPtr limit = axis->Element()->FindElement("limit");
     report.problem(limit, "the lower limit exceeds the upper limit");
   }

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,48 @@ struct Instance {
   Pose X_WM;
 };
 
+/// What is simulated of a model (docs/fidelity.md).
+enum class Fidelity {
+  articulated,  ///< every joint and wheel
+  treel,        ///< a treel drive stands for the wheels under it
+  planar,       ///< flat ground: position and heading only
+};
+
+/// How joints and contacts are solved, island by island.
+enum class Solver {
+  iterative,  ///< sequential impulses, warm-started
+  direct,     ///< Dantzig's algorithm on the whole island
+  hybrid,     ///< direct for islands of few bodies, iterative for others
+};
+
+struct PhysicsSettings {
+  Fidelity fidelity = Fidelity::treel;
+  Solver solver = Solver::iterative;
+  std::uint32_t iterations = 10;                             ///< of the iterative solver, at the most
+  std::uint32_t direct_bodies = 4;                           ///< hybrid: the largest island that is solved directly
+  double lowest = -std::numeric_limits<double>::infinity();  ///< a body below this z has left the world [m]
+  bool strict = false;                                       ///< a body that breaks or leaves the world ends the run
+};
+
+/// What holds between two materials in place of the surfaces' own coefficients. Either order; a material may be paired
+/// with itself.
+struct MaterialPair {
+  std::uint32_t first = 0;  ///< index into World::materials
+  std::uint32_t second = 0;
+  double friction = 1.0;
+  double restitution = 0.0;
+  double rolling_resistance = 0.0;  ///< [m]
+};
+
 /// A world with every include and population expanded. A robot's id is its place in `robots`.
 struct World {
   std::string name;
   std::filesystem::path file;
   std::chrono::nanoseconds step{10'000'000};
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
+  PhysicsSettings physics;
+  std::vector<std::string> materials{""};  ///< 0 is of all that names none
+  std::vector<MaterialPair> material_pairs;
   std::vector<Model> models;
   std::vector<Instance> instances;
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order

@@ -55,7 +55,7 @@ void Multibody::build_links(const Pose& X_WM) {
     const Pose X_BL_child = X_LB_[joint.child].inverse();
     const Pose X_BpB = X_MB(joint.parent).inverse() * X_MB(joint.child);
     const Eigen::Vector3d pivot_B = X_BL_child * joint.X_LJ.position;
-    const Eigen::Vector3d axis_B = X_BL_child.orientation * (joint.X_LJ.orientation * joint.axis);
+    const Eigen::Vector3d axis_B = X_BL_child.orientation * (joint.X_LJ.orientation * joint.axis.direction);
     const int link = bullet_link(joint.child);
     const int parent = bullet_link(joint.parent);
     const double mass = links[joint.child].inertial.mass;
@@ -75,6 +75,9 @@ void Multibody::build_links(const Pose& X_WM) {
         multibody_->setupPrismatic(link, mass, inertia, parent, parent_to_child, to_bullet(axis_B), parent_to_pivot,
                                    pivot_to_child, true);
         break;
+      case description::JointType::ball:
+      case description::JointType::universal:
+        throw std::invalid_argument("joint '" + joint.name + "' is of a type that is not simulated");
     }
   }
   multibody_->finalizeMultiDof();
@@ -90,10 +93,10 @@ void Multibody::build_devices(const geometry::Scene& scene) {
   motors_.resize(model_->joints.size());
   drives_.resize(model_->devices.size());
   for (const description::Joint& joint : model_->joints) {
-    if (joint.type == description::JointType::fixed || !(std::isfinite(joint.lower) || std::isfinite(joint.upper)))
+    if (joint.type == description::JointType::fixed || !(std::isfinite(joint.axis.lower) || std::isfinite(joint.axis.upper)))
       continue;
     limits_.push_back(
-        std::make_unique<JointLimit>(multibody_.get(), bullet_link(joint.child), joint.lower, joint.upper));
+        std::make_unique<JointLimit>(multibody_.get(), bullet_link(joint.child), joint.axis.lower, joint.axis.upper));
     constraints_.push_back(limits_.back().get());
   }
   for (std::size_t device = 0; device < model_->devices.size(); ++device) {
@@ -138,7 +141,7 @@ Twist Multibody::link_twist(std::size_t link) const {
     const Twist parent = link_twist(joint.parent);
     const Pose X_WL = link_pose(link);
     const Pose X_WJ = X_WL * joint.X_LJ;
-    const Eigen::Vector3d axis_W = X_WJ.orientation * joint.axis;
+    const Eigen::Vector3d axis_W = X_WJ.orientation * joint.axis.direction;
     const double velocity = joint_velocity(j);
     const bool turns = joint.type == description::JointType::revolute;
     const Eigen::Vector3d relative_angular = turns ? Eigen::Vector3d(velocity * axis_W) : Eigen::Vector3d::Zero();
@@ -169,8 +172,8 @@ void Multibody::apply_forces(const Eigen::Vector3d& gravity, double step, Scratc
   for (int link = 0; link < multibody_->getNumLinks(); ++link)
     multibody_->addLinkForce(link, g * multibody_->getLinkMass(link));
   for (std::size_t j = 0; j < model_->joints.size(); ++j)
-    if (model_->joints[j].damping != 0.0)
-      multibody_->addJointTorque(bullet_link(model_->joints[j].child), -model_->joints[j].damping * joint_velocity(j));
+    if (model_->joints[j].axis.damping != 0.0)
+      multibody_->addJointTorque(bullet_link(model_->joints[j].child), -model_->joints[j].axis.damping * joint_velocity(j));
   const bool constraint_pass = false;
   const bool feedback_in_world = false;
   const bool feedback_in_joint_frame = false;

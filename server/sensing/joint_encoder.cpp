@@ -7,7 +7,7 @@ namespace cohort::sensing {
 std::vector<Channel> JointEncoder::channels() const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::string unit = joint_.type == description::JointType::prismatic ? "m" : "rad";
-  return {{encoder_.name + "/0/position", unit, 1, joint_.lower, joint_.upper, 0.0},
+  return {{encoder_.name + "/0/position", unit, 1, joint_.axis.lower, joint_.axis.upper, 0.0},
           {encoder_.name + "/0/velocity", unit + "/s", 1, -infinity, infinity, 0.0}};
 }
 

@@ -171,7 +171,7 @@ TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
   EXPECT_DOUBLE_EQ(sbot.links[1].collisions[0].surface.friction, 0.3);
   ASSERT_EQ(sbot.joints.size(), 1u);
   EXPECT_EQ(sbot.joints[0].type, JointType::revolute);
-  EXPECT_TRUE(std::isinf(sbot.joints[0].upper));
+  EXPECT_TRUE(std::isinf(sbot.joints[0].axis.upper));
 
   ASSERT_EQ(sbot.devices.size(), 5u);
   EXPECT_DOUBLE_EQ(std::get<TreelDrive>(sbot.devices[0]).max_velocity, 0.2);
@@ -320,9 +320,9 @@ TEST_F(Description, LinksAreOrderedFromTheRootAndJointsFollow) {
   EXPECT_EQ(order, "abcd");
   for (const Joint& each : model.joints) EXPECT_EQ(each.child, each.parent + 1);
   EXPECT_EQ(model.joints[2].type, JointType::prismatic);
-  EXPECT_EQ(model.joints[2].lower, -1.0);
-  EXPECT_EQ(model.joints[2].upper, 2.0);
-  EXPECT_EQ(model.joints[0].lower, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(model.joints[2].axis.lower, -1.0);
+  EXPECT_EQ(model.joints[2].axis.upper, 2.0);
+  EXPECT_EQ(model.joints[0].axis.lower, -std::numeric_limits<double>::infinity());
 }
 
 TEST_F(Description, AnAxisExpressedInAnotherFrameIsTurnedIntoTheJoints) {
@@ -333,8 +333,8 @@ TEST_F(Description, AnAxisExpressedInAnotherFrameIsTurnedIntoTheJoints) {
                  "</dynamics>") +
            "</model>");
   const Joint& found = world.models[0].joints[0];
-  EXPECT_TRUE(found.axis.isApprox(Eigen::Vector3d::UnitY(), 1e-12)) << found.axis.transpose();
-  EXPECT_EQ(found.damping, 0.5);
+  EXPECT_TRUE(found.axis.direction.isApprox(Eigen::Vector3d::UnitY(), 1e-12)) << found.axis.direction.transpose();
+  EXPECT_EQ(found.axis.damping, 0.5);
 }
 
 TEST_F(Description, AMergedModelBringsItsLinksAndDevices) {

@@ -203,9 +203,9 @@ TEST(World, HoldsAJointAtItsLimit) {
   hinge.name = "hinge";
   hinge.type = description::JointType::revolute;
   hinge.child = 1;
-  hinge.axis = Eigen::Vector3d::UnitY();
-  hinge.lower = -0.5;
-  hinge.upper = 0.5;
+  hinge.axis.direction = Eigen::Vector3d::UnitY();
+  hinge.axis.lower = -0.5;
+  hinge.axis.upper = 0.5;
   arm.joints.push_back(hinge);
   arm.devices.push_back(description::VelocityMotor{"hinge", 0, 10.0, 5.0});
   const auto body = place(description, arm, "arm", at(0, 0, 0));

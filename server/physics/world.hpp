@@ -35,6 +35,8 @@ struct TrackState {
 };
 enum class Side : std::uint8_t { left = 0, right = 1 };
 
+class Stepper;
+
 /// The moving part of a world: rigid multibodies in reduced coordinates, stepped by semi-implicit Euler with a
 /// warm-started sequential-impulse solver. Bodies are the instances of the description, under the same indices; links,
 /// joints and devices keep their indices in the model. Poses and states are those of the last completed step. Setters
@@ -56,7 +58,7 @@ class World {
   Twist link_twist(std::uint32_t body, std::size_t link) const;  ///< zero for a static body
   double joint_position(std::uint32_t body, std::size_t joint) const;
   double joint_velocity(std::uint32_t body, std::size_t joint) const;
-  const TrackState& track(std::uint32_t body, std::size_t drive, Side side) const;
+  TrackState track(std::uint32_t body, std::size_t drive, Side side) const;
 
   /// For a joint that a VelocityMotor drives.
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity);
@@ -72,8 +74,7 @@ class World {
   void hash_contacts(StateHash& hash) const;
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<Stepper> stepper_;
 };
 
 }  // namespace cohort::physics

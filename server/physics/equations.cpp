@@ -129,7 +129,7 @@ void Equations::gather_inwards() {
                              work.mass * axis.linear - work.moment.cross(axis.angular)};
       double* row = matrix_.data() + i * stride_;
       int j = i;
-      for (; j >= 0 && !(mechanism_->has_free_root() && j < free_dofs); j = mechanism_->dofs()[at(j)].parent)
+      for (; j >= 0 && !(mechanism_->has_free_root() && j < free_dofs); j = mechanism_->parents()[at(j)])
         row[j] = axes_[at(j)].angular.dot(momentum.angular) + axes_[at(j)].linear.dot(momentum.linear);
       if (j >= 0) {
         for (int k = 0; k < 3; ++k) {
@@ -149,37 +149,52 @@ void Equations::gather_inwards() {
 }
 
 void Equations::factorise() {
-  const std::vector<Dof>& dofs = mechanism_->dofs();
+  const std::vector<int>& parents = mechanism_->parents();
   for (int k = size_ - 1; k >= 0; --k) {
     double* row_k = matrix_.data() + k * stride_;
-    for (int i = dofs[at(k)].parent; i >= 0; i = dofs[at(i)].parent) {
+    const double inverse = 1.0 / row_k[k];
+    for (int i = parents[at(k)]; i >= 0; i = parents[at(i)]) {
       double* row_i = matrix_.data() + i * stride_;
-      const double factor = row_k[i] / row_k[k];
-      for (int j = i; j >= 0; j = dofs[at(j)].parent) row_i[j] -= factor * row_k[j];
+      const double factor = row_k[i] * inverse;
+      if (mechanism_->is_chain()) {
+        for (int j = 0; j <= i; ++j) row_i[j] -= factor * row_k[j];
+      } else {
+        for (int j = i; j >= 0; j = parents[at(j)]) row_i[j] -= factor * row_k[j];
+      }
       row_k[i] = factor;
     }
+    row_k[k] = inverse;  // the solver multiplies
   }
-  // The solver below multiplies: the diagonal is kept inverted.
-  for (int k = 0; k < size_; ++k) matrix_[at(k * stride_ + k)] = 1.0 / matrix_[at(k * stride_ + k)];
 }
 
+// Where each dof's way to the root is all lower dofs, as in a robot with one joint, the loops need not look it up.
 void Equations::solve(double* x) const {
-  const std::vector<Dof>& dofs = mechanism_->dofs();
-  for (int i = size_ - 1; i >= 0; --i) {
-    const double* row = matrix_.data() + i * stride_;
-    for (int j = dofs[at(i)].parent; j >= 0; j = dofs[at(j)].parent) x[j] -= row[j] * x[i];
+  const std::vector<int>& parents = mechanism_->parents();
+  const double* row = matrix_.data() + (size_ - 1) * stride_;
+  if (mechanism_->is_chain()) {
+    for (int i = size_ - 1; i > 0; --i, row -= stride_) {
+      const double value = x[i];
+      for (int j = 0; j < i; ++j) x[j] -= row[j] * value;
+    }
+    for (int i = 0; i < size_; ++i, row += stride_) {
+      double value = x[i] * row[i];
+      for (int j = 0; j < i; ++j) value -= row[j] * x[j];
+      x[i] = value;
+    }
+    return;
   }
-  for (int i = 0; i < size_; ++i) {
-    const double* row = matrix_.data() + i * stride_;
+  for (int i = size_ - 1; i > 0; --i, row -= stride_)
+    for (int j = parents[at(i)]; j >= 0; j = parents[at(j)]) x[j] -= row[j] * x[i];
+  for (int i = 0; i < size_; ++i, row += stride_) {
     double value = x[i] * row[i];
-    for (int j = dofs[at(i)].parent; j >= 0; j = dofs[at(j)].parent) value -= row[j] * x[j];
+    for (int j = parents[at(i)]; j >= 0; j = parents[at(j)]) value -= row[j] * x[j];
     x[i] = value;
   }
 }
 
 void Equations::add_generalised(int segment, const Spatial& force, double* jacobian) const {
   int i = mechanism_->segments()[at(segment)].last_dof;
-  for (; i >= 0 && !(mechanism_->has_free_root() && i < free_dofs); i = mechanism_->dofs()[at(i)].parent)
+  for (; i >= 0 && !(mechanism_->has_free_root() && i < free_dofs); i = mechanism_->parents()[at(i)])
     jacobian[i] += axes_[at(i)].angular.dot(force.angular) + axes_[at(i)].linear.dot(force.linear);
   if (i < 0) return;
   for (int k = 0; k < 3; ++k) {

@@ -111,9 +111,10 @@ int Mechanism::add_segment(int parent, Motion motion, const Pose& X_PS, const Ei
   int above = parent < 0 ? -1 : segments_[static_cast<std::size_t>(parent)].last_dof;
   for (int i = 0; i < segment.dofs; ++i) {
     Dof dof;
-    dof.parent = above;
     if (axis != nullptr) dof.axis = *axis;
     if (motion == Motion::revolute || motion == Motion::prismatic) dof.coordinate = segment.first_coordinate;
+    is_chain_ = is_chain_ && above == dof_count() - 1;
+    parents_.push_back(above);
     above = dof_count();
     dofs_.push_back(dof);
   }

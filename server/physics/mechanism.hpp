@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "server/description/world.hpp"
+#include "server/physics/lanes.hpp"
 
 namespace cohort::physics {
 
@@ -28,7 +29,6 @@ struct Segment {
 
 /// One degree of freedom of a joint, or one of the six of a free root (which has no damping, spring or limit).
 struct Dof {
-  int parent = -1;      ///< the next dof on the way to the root, -1: none
   int coordinate = -1;  ///< of a revolute or prismatic joint
   description::JointAxis axis;
 };
@@ -67,7 +67,11 @@ class Mechanism {
 
   int dof_count() const { return static_cast<int>(dofs_.size()); }
   /// Doubles that a vector of velocities takes in the solver, padded with zeros.
-  int stride() const { return (dof_count() + 3) / 4 * 4; }
+  int stride() const { return (dof_count() + lanes - 1) / lanes * lanes; }
+  /// By dof: the next one on the way to the root, -1: none.
+  const std::vector<int>& parents() const { return parents_; }
+  /// Whether the way from each dof to the root is the next lower dof, and so on down to 0.
+  bool is_chain() const { return is_chain_; }
 
  private:
   void add_link(std::size_t link, const std::vector<char>& welded);
@@ -81,6 +85,8 @@ class Mechanism {
   std::vector<LinkPlace> links_;
   std::vector<JointPlace> joints_;
   std::vector<double> zero_coordinates_;
+  std::vector<int> parents_;
+  bool is_chain_ = true;
   bool has_wheels_ = false;
 };
 

@@ -6,6 +6,7 @@
 
 #include "server/physics/anchors.hpp"
 #include "server/physics/equations.hpp"
+#include "server/physics/lanes.hpp"
 
 namespace cohort::physics {
 
@@ -87,19 +88,5 @@ class Problem {
   std::vector<Row> rows_;
   std::vector<double> numbers_;
 };
-
-/// The sum of products of two vectors whose length is a multiple of four, in four lanes: the same bits whatever the
-/// width of the instructions.
-inline double dot(const double* a, const double* b, int length) {
-  double lanes[4] = {0.0, 0.0, 0.0, 0.0};
-  for (int i = 0; i < length; i += 4)
-    for (int lane = 0; lane < 4; ++lane) lanes[lane] += a[i + lane] * b[i + lane];
-  return (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]);
-}
-
-/// y += factor * x.
-inline void add_scaled(double factor, const double* x, double* y, int length) {
-  for (int i = 0; i < length; ++i) y[i] += factor * x[i];
-}
 
 }  // namespace cohort::physics

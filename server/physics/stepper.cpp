@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "server/physics/active_set_solver.hpp"
 #include "server/physics/iterative_solver.hpp"
 
 namespace cohort::physics {
@@ -159,7 +160,7 @@ void Stepper::solve_island(std::span<const std::uint32_t> members, Memory& memor
     of(members_[member]).add_rows(problem, anchors_.index_of_member[member], anchors_, step_);
   for (const std::uint32_t member : members) add_contact_rows_of(members_[member], problem);
 
-  solve_iteratively(problem, description_.physics.iterations, tolerance);
+  if (!solve_by_active_set(problem)) solve_iteratively(problem, description_.physics.iterations, tolerance);
 
   for (const Row& row : problem.rows())
     if (row.kept != nullptr) *row.kept = row.impulse;

@@ -144,7 +144,7 @@ void BulletContact::update(const Pose& X_WA, const Pose& X_WB, ContactPoints& po
     const Eigen::Vector3d normal_W = (flipped ? -1.0 : 1.0) * to_eigen(theirs.m_normalWorldOnB);
     const Eigen::Vector3d position_W =
         0.5 * (to_eigen(theirs.getPositionWorldOnA()) + to_eigen(theirs.getPositionWorldOnB()));
-    points.add(position_W, normal_W, theirs.getDistance(), static_cast<std::uint32_t>(i));
+    points.add(position_W, normal_W, theirs.getDistance());
     points.points[static_cast<std::size_t>(i)].impulse = {theirs.m_appliedImpulse, theirs.m_appliedImpulseLateral1,
                                                           theirs.m_appliedImpulseLateral2};
   }

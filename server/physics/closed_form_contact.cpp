@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "server/physics/box_contact.hpp"
 #include "server/physics/prism_contact.hpp"
 
 namespace cohort::physics {
@@ -25,14 +26,13 @@ struct HalfSpace {
   double height(const Vector3d& point_W) const { return normal_W.dot(point_W) - offset; }
 };
 
-void touch_plane(const Vector3d& point_W, const HalfSpace& plane, double margin, std::uint32_t feature,
-                 ContactPoints& found) {
+void touch_plane(const Vector3d& point_W, const HalfSpace& plane, double margin, ContactPoints& found) {
   const double gap = plane.height(point_W);
-  if (gap < margin) found.add(point_W - 0.5 * gap * plane.normal_W, plane.normal_W, gap, feature);
+  if (gap < margin) found.add(point_W - 0.5 * gap * plane.normal_W, plane.normal_W, gap);
 }
 
 void on_plane(const Sphere& sphere, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
-  touch_plane(X_W.position - sphere.radius * plane.normal_W, plane, margin, 0, found);
+  touch_plane(X_W.position - sphere.radius * plane.normal_W, plane, margin, found);
 }
 
 void on_plane(const Box& box, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
@@ -52,9 +52,11 @@ void on_plane(const Box& box, const Pose& X_W, const HalfSpace& plane, double ma
     corners[i] = {plane.height(positions_W[i]), i};
   }
   std::partial_sort(corners.begin(), corners.begin() + ContactPoints::most, corners.end());
-  for (int i = 0; i < ContactPoints::most; ++i)
-    touch_plane(positions_W[corners[static_cast<std::size_t>(i)].index], plane, margin,
-                corners[static_cast<std::size_t>(i)].index, found);
+  // In the order of the corners, so that the solver sees the same rows step after step.
+  std::array<std::uint32_t, ContactPoints::most> lowest;
+  for (std::size_t i = 0; i < lowest.size(); ++i) lowest[i] = corners[i].index;
+  std::sort(lowest.begin(), lowest.end());
+  for (const std::uint32_t corner : lowest) touch_plane(positions_W[corner], plane, margin, found);
 }
 
 void on_plane(const Cylinder& cylinder, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
@@ -67,14 +69,14 @@ void on_plane(const Cylinder& cylinder, const Pose& X_W, const HalfSpace& plane,
     const Vector3d end = X_W.position - (upright > 0.0 ? 1.0 : -1.0) * to_end;
     for (std::uint32_t i = 0; i < 4; ++i) {
       const Vector3d rim = cylinder.radius * ((i & 1) != 0 ? -1.0 : 1.0) * R.col(i / 2);
-      touch_plane(end + rim, plane, margin, i, found);
+      touch_plane(end + rim, plane, margin, found);
     }
     return;
   }
   // Lies or leans: the lowest line, of which the ends count.
   const Vector3d down = (upright * axis - plane.normal_W).normalized();
-  touch_plane(X_W.position + cylinder.radius * down - to_end, plane, margin, 4, found);
-  touch_plane(X_W.position + cylinder.radius * down + to_end, plane, margin, 5, found);
+  touch_plane(X_W.position + cylinder.radius * down - to_end, plane, margin, found);
+  touch_plane(X_W.position + cylinder.radius * down + to_end, plane, margin, found);
 }
 
 // The point of a box nearest to `point`, both in the box's frame; if that is inside, the way out through the nearest
@@ -139,7 +141,7 @@ bool ball_on(const Sphere& sphere, const Pose& X_WA, const geometry::Shape& b, c
   if (gap >= margin) return true;
   const Vector3d normal_W = X_WB.orientation * nearest->normal;
   const Vector3d position_W = X_WB * nearest->point + 0.5 * gap * normal_W;
-  found.add(position_W, flipped ? Vector3d(-normal_W) : normal_W, gap, 0);
+  found.add(position_W, flipped ? Vector3d(-normal_W) : normal_W, gap);
   return true;
 }
 
@@ -185,7 +187,9 @@ bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const 
     for (ContactPoint& point : found) point.normal_W = -point.normal_W;
     return known;
   }
-  return false;
+  if (box_a == nullptr || box_b == nullptr) return false;
+  find_box_contact(*box_a, X_WA, *box_b, X_WB, margin, found);
+  return true;
 }
 
 }  // namespace cohort::physics

@@ -1,6 +1,7 @@
 #include "server/physics/collision.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "server/physics/closed_form_contact.hpp"
 
@@ -12,15 +13,27 @@ constexpr double contact_margin = 0.005;
 
 constexpr std::size_t solids_a_chunk = 32;
 
-// Points that were there in the last step start from its impulses.
+// A point may move this far from one step to the next and still be the same [m].
+constexpr double same_point = 0.01;
+
+// Each point starts from the impulses of the nearest one of the last step.
 void take_over_impulses(const ContactPoints& before, ContactPoints& now) {
+  std::array<bool, ContactPoints::most> taken{};
   for (ContactPoint& point : now) {
-    for (const ContactPoint& old : before) {
-      if (old.feature != point.feature) continue;
-      point.impulse = old.impulse;
-      point.rolling_impulse = old.rolling_impulse;
-      break;
+    double nearest = same_point * same_point;
+    int best = -1;
+    for (int i = 0; i < before.count; ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      const double distance = (before.points[index].position_W - point.position_W).squaredNorm();
+      if (taken[index] || distance >= nearest) continue;
+      nearest = distance;
+      best = i;
     }
+    if (best < 0) continue;
+    const auto index = static_cast<std::size_t>(best);
+    taken[index] = true;
+    point.impulse = before.points[index].impulse;
+    point.rolling_impulse = before.points[index].rolling_impulse;
   }
 }
 

@@ -12,7 +12,6 @@ struct ContactPoint {
   Eigen::Vector3d position_W = Eigen::Vector3d::Zero();  ///< halfway between the surfaces
   Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();    ///< unit, from b towards a
   double gap = 0.0;                                      ///< [m], negative: they overlap
-  std::uint32_t feature = 0;                             ///< tells the points of a pair apart from step to step
 
   // What the solver keeps from step to step: impulses along the normal and two tangents [N s], and against rolling
   // about the tangents [N m s].
@@ -27,8 +26,8 @@ struct ContactPoints {
   std::array<ContactPoint, most> points;
   int count = 0;
 
-  void add(const Eigen::Vector3d& position_W, const Eigen::Vector3d& normal_W, double gap, std::uint32_t feature) {
-    if (count < most) points[static_cast<std::size_t>(count++)] = {position_W, normal_W, gap, feature};
+  void add(const Eigen::Vector3d& position_W, const Eigen::Vector3d& normal_W, double gap) {
+    if (count < most) points[static_cast<std::size_t>(count++)] = {position_W, normal_W, gap, {}, {}};
   }
   ContactPoint* begin() { return points.data(); }
   ContactPoint* end() { return points.data() + count; }

@@ -43,8 +43,30 @@ SurfacePair SurfacePairs::of(const description::Surface& a, const description::S
           std::max(a.rolling_resistance, b.rolling_resistance)};
 }
 
-void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, const SurfacePair& surfaces,
-                      double step) {
+namespace {
+
+// Where friction starts from. Between two bodies at nothing: what a heap of bodies needed a step ago would rock it, as
+// the solver cannot follow that fast. On the world at what it was, but only the sum over the points, each with its
+// share of the load: they can strain against each other without any effect, and that strain would grow from step to
+// step.
+void start_friction(ContactPoints& contact, bool on_the_world) {
+  double load = 0.0;
+  Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
+  for (const ContactPoint& point : contact) {
+    const Tangents tangents = tangents_of(point.normal_W);
+    load += point.impulse[0];
+    sum_W += point.impulse[1] * tangents.first + point.impulse[2] * tangents.second;
+  }
+  for (ContactPoint& point : contact) {
+    const double share = on_the_world && load > 0.0 ? point.impulse[0] / load : 0.0;
+    const Tangents tangents = tangents_of(point.normal_W);
+    point.impulse[1] = share * tangents.first.dot(sum_W);
+    point.impulse[2] = share * tangents.second.dot(sum_W);
+  }
+}
+
+void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, const SurfacePair& surfaces,
+                    double step) {
   const int normal = problem.row_count();
   Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, &point.impulse[0]);
   // Apart: may close the gap within the step. Overlapping: pushed out gently.
@@ -70,6 +92,7 @@ void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point,
     first.limits = Row::Limits::cone;
     Row& second = problem.add_force_row(a, b, point.position_W, tangents.second, &point.impulse[2]);
     limit_by_load(second, surfaces.friction);
+    second.limits = Row::Limits::coned;
   } else {
     point.impulse[1] = point.impulse[2] = 0.0;
   }
@@ -80,6 +103,14 @@ void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point,
   } else {
     point.rolling_impulse = {};
   }
+}
+
+}  // namespace
+
+void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
+                      double step) {
+  start_friction(contact, b.body < 0);
+  for (ContactPoint& point : contact) add_point_rows(problem, a, b, point, surfaces, step);
 }
 
 }  // namespace cohort::physics

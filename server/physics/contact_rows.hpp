@@ -28,9 +28,9 @@ class SurfacePairs {
   std::vector<char> is_given_;
 };
 
-/// Adds the rows of one point between `a`, a body, and `b`: along the normal, two along the surface with friction in a
-/// disc, and two against rolling where there is rolling resistance.
-void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, const SurfacePair& surfaces,
+/// Adds the rows of the points between `a`, a body, and `b`: for each along the normal, two along the surface with
+/// friction in a disc, and two against rolling where there is rolling resistance.
+void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
                       double step);
 
 }  // namespace cohort::physics

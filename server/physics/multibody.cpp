@@ -1,5 +1,6 @@
 #include "server/physics/multibody.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -141,6 +142,23 @@ double Multibody::joint_position(std::size_t joint) const {
 double Multibody::joint_velocity(std::size_t joint) const {
   const Mechanism::JointPlace& place = mechanism_->joint(joint);
   return place.dofs == 0 ? 0.0 : velocities_[static_cast<std::size_t>(place.first_dof)];
+}
+
+void Multibody::set_root_twist(const Twist& twist) {
+  const Eigen::Vector3d to_reference_W = reference_W_ - link_pose(0).position;
+  const Eigen::Vector3d linear_W = twist.linear_W + twist.angular_W.cross(to_reference_W);
+  for (std::size_t i = 0; i < 3; ++i) {
+    velocities_[i] = twist.angular_W[static_cast<Eigen::Index>(i)];
+    velocities_[3 + i] = linear_W[static_cast<Eigen::Index>(i)];
+  }
+}
+
+void Multibody::set_joint_state(std::size_t joint, std::span<const double> coordinates,
+                                std::span<const double> velocities) {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  std::copy(coordinates.begin(), coordinates.end(), coordinates_.begin() + place.first_coordinate);
+  std::copy(velocities.begin(), velocities.end(), velocities_.begin() + place.first_dof);
+  update_poses();
 }
 
 void Multibody::set_joint_velocity_target(std::size_t joint, double velocity) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ class Multibody {
   Twist link_twist(std::size_t link) const;
   double joint_position(std::size_t joint) const;
   double joint_velocity(std::size_t joint) const;
+
+  void set_root_twist(const Twist& twist);
+  void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
 
   /// The joint has to have a motor.
   void set_joint_velocity_target(std::size_t joint, double velocity);

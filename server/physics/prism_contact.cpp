@@ -32,14 +32,11 @@ bool take_ends(const Stretch& stretch, const SectionContact& low, const SectionC
   // Deeper sideways than lengthways: one stands on the other.
   if (std::min(low.gap, high.gap) < -stretch.length()) return false;
   if (stretch.length() < one_point) {
-    if (low.gap < margin) found.add(low.surface_W + 0.5 * low.gap * low.normal_W, low.normal_W, low.gap, 0);
+    if (low.gap < margin) found.add(low.surface_W + 0.5 * low.gap * low.normal_W, low.normal_W, low.gap);
     return true;
   }
-  std::uint32_t feature = 1;
-  for (const SectionContact* end : {&low, &high}) {
-    if (end->gap < margin) found.add(end->surface_W + 0.5 * end->gap * end->normal_W, end->normal_W, end->gap, feature);
-    ++feature;
-  }
+  for (const SectionContact* end : {&low, &high})
+    if (end->gap < margin) found.add(end->surface_W + 0.5 * end->gap * end->normal_W, end->normal_W, end->gap);
   return true;
 }
 

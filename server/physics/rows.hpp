@@ -15,8 +15,9 @@ inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// One scalar constraint: the velocity along the row seeks `target` by an impulse within limits.
 struct Row {
   /// How the limits come about. `friction`: ± the smaller of `cap` and `friction` times the sum of the impulses of the
-  /// rows [load_begin, load_end). `cone`: this row and the next share such a limit as the radius of a disc.
-  enum class Limits : std::uint8_t { fixed, friction, cone };
+  /// rows [load_begin, load_end). `cone`: this row and the next, which is `coned`, share such a limit as the radius of
+  /// a disc.
+  enum class Limits : std::uint8_t { fixed, friction, cone, coned };
 
   double target = 0.0;    ///< [m/s] or [rad/s]
   double inverse = 0.0;   ///< 1 / (velocity that a unit impulse gives, plus softness)

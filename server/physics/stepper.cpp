@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/physics/active_set_solver.hpp"
+#include "server/physics/direct_solver.hpp"
 #include "server/physics/iterative_solver.hpp"
 
 namespace cohort::physics {
@@ -25,6 +26,7 @@ Stepper::Stepper(const description::World& description, WorkerPool& workers)
       mechanisms_(description.models.size()),
       shapes_(description.models.size()),
       multibodies_(description.instances.size()),
+      member_of_body_(description.instances.size(), Anchors::nobody),
       memory_(workers.threads()) {
   for (std::uint32_t body = 0; body < description.instances.size(); ++body) {
     const description::Model& model = description.models[description.instances[body].model];
@@ -72,6 +74,7 @@ void Stepper::add_body(std::uint32_t body) {
 
   const auto member = static_cast<std::uint32_t>(members_.size());
   members_.push_back({body, {}});
+  member_of_body_[body] = member;
   std::size_t index = 0;
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     const Mechanism::LinkPlace& place = mechanism->link(link);
@@ -160,7 +163,7 @@ void Stepper::solve_island(std::span<const std::uint32_t> members, Memory& memor
     of(members_[member]).add_rows(problem, anchors_.index_of_member[member], anchors_, step_);
   for (const std::uint32_t member : members) add_contact_rows_of(members_[member], problem);
 
-  if (!solve_by_active_set(problem)) solve_iteratively(problem, description_.physics.iterations, tolerance);
+  solve(problem);
 
   for (const Row& row : problem.rows())
     if (row.kept != nullptr) *row.kept = row.impulse;
@@ -169,9 +172,27 @@ void Stepper::solve_island(std::span<const std::uint32_t> members, Memory& memor
     for (TreelDrive& treel : multibody.treels()) treel.read_rows(problem, step_);
     finite_[member] =
         multibody.integrate(problem.equations(anchors_.index_of_member[member]).velocity(), step_) ? 1 : 0;
-    for (const Part& part : members_[member].parts)
-      scene_.set_pose(part.solid, multibody.segment_pose(part.segment) * part.X_SC);
+    place_solids_of(members_[member]);
   }
+}
+
+void Stepper::place_solids_of(const Member& member) {
+  const Multibody& multibody = of(member);
+  for (const Part& part : member.parts) scene_.set_pose(part.solid, multibody.segment_pose(part.segment) * part.X_SC);
+}
+
+void Stepper::place_solids(std::uint32_t body) {
+  place_solids_of(members_[member_of_body_[body]]);
+  scene_.update();
+}
+
+void Stepper::solve(Problem& problem) const {
+  const description::PhysicsSettings& settings = description_.physics;
+  const bool directly = settings.solver == description::Solver::direct ||
+                        (settings.solver == description::Solver::hybrid &&
+                         problem.body_count() <= static_cast<int>(settings.direct_bodies));
+  if (directly ? solve_directly(problem) : solve_by_active_set(problem)) return;
+  solve_iteratively(problem, settings.iterations, tolerance);
 }
 
 void Stepper::add_contact_rows_of(const Member& member, Problem& problem) {
@@ -179,8 +200,7 @@ void Stepper::add_contact_rows_of(const Member& member, Problem& problem) {
     for (SolidPair& pair : collision_->pairs_of(part.solid)) {
       if (pair.contact.count == 0) continue;
       const SurfacePair surfaces = surfaces_.of(scene_.solid(pair.a).surface, scene_.solid(pair.b).surface);
-      for (ContactPoint& point : pair.contact)
-        add_contact_rows(problem, anchors_.of(pair.a), anchors_.of(pair.b), point, surfaces, step_);
+      add_contact_rows(problem, anchors_.of(pair.a), anchors_.of(pair.b), pair.contact, surfaces, step_);
     }
   }
 }

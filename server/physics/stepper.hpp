@@ -27,6 +27,8 @@ class Stepper {
   Multibody* multibody(std::uint32_t body) { return multibodies_[body].get(); }
   const Multibody* multibody(std::uint32_t body) const { return multibodies_[body].get(); }
   Pose resting_link_pose(std::uint32_t body, std::size_t link) const;
+  /// Takes a body's poses into the scene.
+  void place_solids(std::uint32_t body);
   std::span<const Contact> contacts() const { return contacts_; }
   void hash_contacts(StateHash& hash) const;
 
@@ -51,6 +53,8 @@ class Stepper {
   void find_ground();
   void find_islands();
   void solve_island(std::span<const std::uint32_t> members, Memory& memory);
+  void solve(Problem& problem) const;
+  void place_solids_of(const Member& member);
   void add_contact_rows_of(const Member& member, Problem& problem);
   void report_contacts();
   Multibody& of(const Member& member) { return *multibodies_[member.body]; }
@@ -64,6 +68,7 @@ class Stepper {
   std::vector<std::vector<std::shared_ptr<const BulletShape>>> shapes_;  // by model, of its collisions in their order
   std::vector<std::unique_ptr<Multibody>> multibodies_;                  // by body, null for what is static
   std::vector<Member> members_;
+  std::vector<std::uint32_t> member_of_body_;
   Anchors anchors_;
   std::vector<std::shared_ptr<const BulletShape>> shape_of_solid_;
   std::unique_ptr<Collision> collision_;

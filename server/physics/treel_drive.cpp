@@ -26,10 +26,14 @@ void TreelDrive::find_ground(const geometry::Scene& scene, std::uint32_t body, c
                             drive_.wheel_radius, reach, near);
   std::size_t i = 0;
   for (const Side side : sides) {
-    for (const double x : {drive_.half_contact_length, -drive_.half_contact_length}) {
+    for (const double end : {drive_.half_contact_length, -drive_.half_contact_length}) {
+      // A track that reaches over an edge or a slit stands on the outermost part that has ground.
       Point& point = points_[i++];
-      point.position_W = centre_W + x * R.col(0) + y_of(side) * R.col(1);
-      point.ground = finder.below(point.position_W);
+      for (const double share : {1.0, 0.5, 0.0}) {
+        point.position_W = centre_W + share * end * R.col(0) + y_of(side) * R.col(1);
+        point.ground = finder.below(point.position_W);
+        if (point.ground) break;
+      }
     }
   }
 }

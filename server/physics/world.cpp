@@ -39,6 +39,13 @@ void World::set_track_velocity_target(std::uint32_t body, std::size_t drive, Sid
   stepper_->multibody(body)->set_track_velocity_target(drive, side, velocity);
 }
 
+void World::set_root_twist(std::uint32_t body, const Twist& twist) { stepper_->multibody(body)->set_root_twist(twist); }
+void World::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                            std::span<const double> velocities) {
+  stepper_->multibody(body)->set_joint_state(joint, coordinates, velocities);
+  stepper_->place_solids(body);
+}
+
 void World::hash_body(std::uint32_t body, StateHash& hash) const {
   if (const Multibody* multibody = stepper_->multibody(body)) multibody->hash(hash);
 }

@@ -65,6 +65,13 @@ class World {
   /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
   void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity);
 
+  /// Of a root link that is free to move.
+  void set_root_twist(std::uint32_t body, const Twist& twist);
+  /// An angle or a way and its velocity, one of each for every axis; of a ball joint the quaternion x y z w of the
+  /// child in the parent and the angular velocity in the child's axes.
+  void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                       std::span<const double> velocities);
+
   /// In the order of the bodies' solids: the same for any number of workers.
   std::span<const Contact> contacts() const;
 

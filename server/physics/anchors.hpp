@@ -13,14 +13,14 @@ struct Anchor {
 
 /// Where the solids of the scene are in the problems of this step.
 struct Anchors {
+  static constexpr std::uint32_t nobody = 0xffffffffu;
   struct Part {
-    std::uint32_t member = 0;  ///< whose it is among the bodies that move; `nobody`: it is part of the world
+    std::uint32_t member = nobody;  ///< whose it is among the bodies that move; `nobody`: it is part of the world
     int segment = 0;
   };
-  static constexpr std::uint32_t nobody = 0xffffffffu;
 
   std::vector<Part> part_of_solid;
-  std::vector<int> index_of_member;  ///< in its island's problem
+  std::vector<int> index_of_member;  ///< in its island's problem, -1 while it is out of it
 
   bool moves(std::uint32_t solid) const { return part_of_solid[solid].member != nobody; }
   std::uint32_t member(std::uint32_t solid) const { return part_of_solid[solid].member; }

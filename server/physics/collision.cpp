@@ -39,15 +39,21 @@ void take_over_impulses(const ContactPoints& before, ContactPoints& now) {
 
 }  // namespace
 
-Collision::Collision(const geometry::Scene& scene, std::vector<std::shared_ptr<const BulletShape>> shapes,
-                     MayTouch may_touch)
-    : scene_(scene),
-      shapes_(std::move(shapes)),
-      may_touch_(std::move(may_touch)),
-      narrow_phase_(contact_margin),
-      pairs_(scene.size()) {
-  for (std::uint32_t solid = 0; solid < scene.size(); ++solid)
-    if (scene.solid(solid).moves) moving_.push_back(solid);
+Collision::Collision(const geometry::Scene& scene, MayTouch may_touch)
+    : scene_(scene), may_touch_(std::move(may_touch)), narrow_phase_(contact_margin) {}
+
+void Collision::add(std::shared_ptr<const BulletShape> shape) {
+  const auto solid = static_cast<std::uint32_t>(shapes_.size());
+  if (scene_.solid(solid).moves) moving_.push_back(solid);
+  shapes_.push_back(std::move(shape));
+  pairs_.emplace_back();
+}
+
+void Collision::remove(std::uint32_t solid) {
+  std::erase(moving_, solid);
+  pairs_[solid].clear();
+  for (std::vector<SolidPair>& pairs : pairs_)
+    std::erase_if(pairs, [&](const SolidPair& pair) { return pair.b == solid; });
 }
 
 void Collision::detect(WorkerPool& workers) {

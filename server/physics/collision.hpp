@@ -27,8 +27,13 @@ class Collision {
   /// Says whether two solids of one body may touch each other.
   using MayTouch = std::function<bool(std::uint32_t, std::uint32_t)>;
 
-  /// The scene must outlive this. `shapes`: Bullet's shape of each solid, as `make_bullet_shape` gives it.
-  Collision(const geometry::Scene& scene, std::vector<std::shared_ptr<const BulletShape>> shapes, MayTouch may_touch);
+  /// The scene must outlive this.
+  Collision(const geometry::Scene& scene, MayTouch may_touch);
+
+  /// Solids in the order of the scene, each with Bullet's shape as `make_bullet_shape` gives it.
+  void add(std::shared_ptr<const BulletShape> shape);
+  /// Forgets a solid that is no longer in the scene.
+  void remove(std::uint32_t solid);
 
   /// Finds near pairs and their contact points for the present poses. Points that were there before keep their
   /// impulses.

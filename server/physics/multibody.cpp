@@ -204,13 +204,7 @@ void Multibody::add_rows(Problem& problem, int index, const Anchors& anchors, do
   for (TreelDrive& treel : treels_) treel.add_rows(problem, index, anchors, step);
 }
 
-bool Multibody::integrate(const double* velocities, double step) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < velocities_.size(); ++i) sum += std::abs(velocities[i]);
-  // Faster than this the next step would leave the numbers.
-  constexpr double senseless = 1e6;
-  if (!(sum < senseless)) return false;
-
+void Multibody::integrate(const double* velocities, double step) {
   std::copy_n(velocities, velocities_.size(), velocities_.begin());
   last_step_ = step;
   for (const Segment& segment : mechanism_->segments()) {
@@ -233,7 +227,6 @@ bool Multibody::integrate(const double* velocities, double step) {
     }
   }
   update_poses();
-  return true;
 }
 
 void Multibody::hash(StateHash& hash) const {

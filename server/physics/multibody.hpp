@@ -55,9 +55,8 @@ class Multibody {
 
   /// Adds the rows of joints and drives; `index`: of this body in the problem.
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
-  /// Takes the velocities that the solver found and moves the body by them. False, and nothing changed, if they are
-  /// not finite.
-  bool integrate(const double* velocities, double step);
+  /// Takes the velocities that the solver found and moves the body by them.
+  void integrate(const double* velocities, double step);
   void hash(StateHash& hash) const;
 
  private:

@@ -9,6 +9,10 @@ World::World(const description::World& description, WorkerPool& workers)
 World::~World() = default;
 
 void World::step() { stepper_->step(); }
+std::span<const Quarantine> World::quarantined() const { return stepper_->quarantined(); }
+bool World::is_active(std::uint32_t body) const { return stepper_->is_active(body); }
+std::uint32_t World::add_body(std::size_t model, const Pose& X_WM) { return stepper_->add_body(model, X_WM); }
+void World::remove_body(std::uint32_t body) { stepper_->remove_body(body); }
 const geometry::Scene& World::scene() const { return stepper_->scene(); }
 std::size_t World::body_count() const { return stepper_->body_count(); }
 std::span<const Contact> World::contacts() const { return stepper_->contacts(); }
@@ -19,7 +23,8 @@ Pose World::link_pose(std::uint32_t body, std::size_t link) const {
 }
 
 Twist World::link_twist(std::uint32_t body, std::size_t link) const {
-  if (const Multibody* multibody = stepper_->multibody(body)) return multibody->link_twist(link);
+  if (const Multibody* multibody = stepper_->multibody(body); multibody != nullptr && stepper_->is_active(body))
+    return multibody->link_twist(link);
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 

@@ -35,6 +35,16 @@ struct TrackState {
 };
 enum class Side : std::uint8_t { left = 0, right = 1 };
 
+/// A body that is no longer simulated: it stays where it was last, touches nothing and is seen by nobody.
+struct Quarantine {
+  enum class Reason : std::uint8_t {
+    not_finite,  ///< its velocities left the numbers, or all that is sensible
+    left_world,  ///< it fell below the lowest point or went further than 1,000 km
+  };
+  std::uint32_t body = 0;
+  Reason reason = Reason::not_finite;
+};
+
 class Stepper;
 
 /// The moving part of a world: rigid multibodies in reduced coordinates, stepped by semi-implicit Euler with a
@@ -48,8 +58,19 @@ class World {
   ~World();
 
   /// Advances by one step of the description. The result depends on the state and the targets alone, not on the number
-  /// of workers. Throws std::runtime_error if a body's state is no longer finite.
+  /// of workers. A body whose state breaks is quarantined, and the others go on as if it had not been there; with the
+  /// setting `strict` std::runtime_error is thrown.
   void step();
+  /// Those of the last step, in the order of the bodies.
+  std::span<const Quarantine> quarantined() const;
+  /// Whether the body is simulated, or static: neither quarantined nor removed.
+  bool is_active(std::uint32_t body) const;
+
+  /// Adds an instance of one of the description's models; between steps. Returns its body, the next free index. Throws
+  /// std::invalid_argument for a model that cannot be simulated.
+  std::uint32_t add_body(std::size_t model, const Pose& X_WM);
+  /// Takes a body that moves out of the world; between steps.
+  void remove_body(std::uint32_t body);
 
   const geometry::Scene& scene() const;
   std::size_t body_count() const;

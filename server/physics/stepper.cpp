@@ -131,6 +131,9 @@ void Stepper::remove_body(std::uint32_t body) { take_out(members_[bodies_[body].
 
 void Stepper::take_out(Member& member) {
   member.is_active = false;
+  const std::uint32_t index = bodies_[member.body].member;
+  for (Connection& connection : connections_)
+    if (connection.a().member == index || connection.b().member == index) connection.release();
   for (const Part& part : member.parts) {
     scene_.remove(part.solid);
     collision_.remove(part.solid);
@@ -167,6 +170,7 @@ void Stepper::step() {
       solve_island(islands_.members(static_cast<std::uint32_t>(i)), memory_[worker]);
   });
   report_contacts();
+  break_connections();
   quarantine();
   scene_.update();
 }
@@ -179,11 +183,6 @@ void Stepper::quarantine() {
     quarantined_.push_back({member.body, member.is_finite ? Reason::left_world : Reason::not_finite});
     take_out(member);
   }
-  if (description_.physics.strict && !quarantined_.empty())
-    throw std::runtime_error(quarantined_[0].reason == Quarantine::Reason::left_world
-                                 ? "body " + std::to_string(quarantined_[0].body) + " has left the world"
-                                 : "the state of body " + std::to_string(quarantined_[0].body) +
-                                       " is no longer finite");
 }
 
 void Stepper::find_ground() {
@@ -205,6 +204,10 @@ void Stepper::find_islands() {
     for (const Part& part : members_[member].parts)
       for (const SolidPair& pair : collision_.pairs_of(part.solid))
         if (pair.contact.count > 0 && anchors_.moves(pair.b)) islands_.link(member, anchors_.member(pair.b));
+    for (const std::uint32_t index : members_[member].connections) {
+      const Connection& connection = connections_[index];
+      if (connection.holds() && connection.b().member != Anchors::nobody) islands_.link(member, connection.b().member);
+    }
     for (const TreelDrive& treel : of(members_[member]).treels())
       treel.for_each_ground([&](std::uint32_t solid) {
         if (anchors_.moves(solid)) islands_.link(member, anchors_.member(solid));
@@ -243,6 +246,7 @@ bool Stepper::try_island(const std::vector<std::uint32_t>& members, Problem& pro
 
   for (const std::uint32_t member : members)
     of(members_[member]).add_rows(problem, anchors_.index_of_member[member], anchors_, step_);
+  for (const std::uint32_t member : members) add_connection_rows_of(members_[member], problem);
   for (const std::uint32_t member : members) add_contact_rows_of(members_[member], problem);
   solve(problem);
   if (!all_are_finite()) return false;
@@ -289,6 +293,42 @@ void Stepper::add_contact_rows_of(const Member& member, Problem& problem) {
   }
 }
 
+void Stepper::add_connection_rows_of(const Member& member, Problem& problem) {
+  for (const std::uint32_t index : member.connections) {
+    Connection& connection = connections_[index];
+    const bool to_world = connection.b().member == Anchors::nobody;
+    if (!connection.holds() || (!to_world && anchors_.index_of_member[connection.b().member] < 0)) continue;
+    const Pose X_WSb = to_world ? Pose{} : of(members_[connection.b().member]).segment_pose(connection.b().segment);
+    connection.add_rows(problem, anchors_, of(member).segment_pose(connection.a().segment), X_WSb, step_);
+  }
+}
+
+std::uint32_t Stepper::connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                               std::size_t link_b, const ConnectionLimits& limits) {
+  const Multibody& a = *bodies_[body_a].multibody;
+  const Mechanism::LinkPlace& place_a = a.mechanism().link(link_a);
+  const Connection::End end_a{bodies_[body_a].member, place_a.segment, place_a.X_SL * X_LP};
+  const Pose X_WP = a.segment_pose(place_a.segment) * end_a.X_SP;
+  Connection::End end_b{Anchors::nobody, 0, X_WP};
+  if (const Multibody* b = bodies_[body_b].multibody.get()) {
+    const int segment = b->mechanism().link(link_b).segment;
+    end_b = {bodies_[body_b].member, segment, b->segment_pose(segment).inverse() * X_WP};
+  }
+  const auto index = static_cast<std::uint32_t>(connections_.size());
+  connections_.emplace_back(end_a, end_b, limits);
+  members_[end_a.member].connections.push_back(index);
+  return index;
+}
+
+void Stepper::break_connections() {
+  broken_.clear();
+  for (std::uint32_t index = 0; index < connections_.size(); ++index) {
+    if (!connections_[index].holds() || !connections_[index].is_overloaded(step_)) continue;
+    connections_[index].release();
+    broken_.push_back(index);
+  }
+}
+
 void Stepper::report_contacts() {
   contacts_.clear();
   for (const Member& member : members_) {
@@ -305,6 +345,7 @@ void Stepper::report_contacts() {
 }
 
 void Stepper::hash_contacts(StateHash& hash) const {
+  for (const Connection& connection : connections_) connection.hash(hash);
   for (const Member& member : members_) {
     for (const Part& part : member.parts) {
       for (const SolidPair& pair : collision_.pairs_of(part.solid)) {

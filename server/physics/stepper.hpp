@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/physics/collision.hpp"
+#include "server/physics/connection.hpp"
 #include "server/physics/contact_rows.hpp"
 #include "server/physics/islands.hpp"
 #include "server/physics/multibody.hpp"
@@ -24,6 +25,13 @@ class Stepper {
   bool is_active(std::uint32_t body) const;
   std::uint32_t add_body(std::size_t model, const Pose& X_WM);
   void remove_body(std::uint32_t body);
+
+  std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                        std::size_t link_b, const ConnectionLimits& limits);
+  void disconnect(std::uint32_t connection) { connections_[connection].release(); }
+  const Connection& connection(std::uint32_t index) const { return connections_[index]; }
+  std::span<const std::uint32_t> broken_connections() const { return broken_; }
+  double step_size() const { return step_; }
 
   const geometry::Scene& scene() const { return scene_; }
   std::size_t body_count() const { return bodies_.size(); }
@@ -50,7 +58,8 @@ class Stepper {
   };
   struct Member {  // a body that moves
     std::uint32_t body = 0;
-    std::vector<Part> parts;  // ascending solids
+    std::vector<Part> parts;                   // ascending solids
+    std::vector<std::uint32_t> connections{};  // whose end a is here, ascending
     bool is_active = true;
     // Of this step:
     bool is_finite = true;
@@ -73,6 +82,8 @@ class Stepper {
   void find_islands();
   void solve_island(std::span<const std::uint32_t> members, Memory& memory);
   bool try_island(const std::vector<std::uint32_t>& members, Problem& problem);
+  void add_connection_rows_of(const Member& member, Problem& problem);
+  void break_connections();
   void quarantine();
   void take_out(Member& member);
   void solve(Problem& problem) const;
@@ -95,6 +106,8 @@ class Stepper {
   Anchors anchors_;
   Collision collision_;
   Islands islands_;
+  std::vector<Connection> connections_;
+  std::vector<std::uint32_t> broken_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
   std::vector<Memory> memory_;  // by worker

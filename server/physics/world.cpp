@@ -28,6 +28,17 @@ Twist World::link_twist(std::uint32_t body, std::size_t link) const {
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 
+std::uint32_t World::connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                             std::size_t link_b, const ConnectionLimits& limits) {
+  return stepper_->connect(body_a, link_a, X_LP, body_b, link_b, limits);
+}
+void World::disconnect(std::uint32_t connection) { stepper_->disconnect(connection); }
+bool World::is_connected(std::uint32_t connection) const { return stepper_->connection(connection).holds(); }
+Wrench World::connection_wrench(std::uint32_t connection) const {
+  return stepper_->connection(connection).wrench(stepper_->step_size());
+}
+std::span<const std::uint32_t> World::broken_connections() const { return stepper_->broken_connections(); }
+
 double World::joint_position(std::uint32_t body, std::size_t joint) const {
   return stepper_->multibody(body)->joint_position(joint);
 }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -35,6 +36,17 @@ struct TrackState {
 };
 enum class Side : std::uint8_t { left = 0, right = 1 };
 
+struct Wrench {
+  Eigen::Vector3d force_W;   ///< [N]
+  Eigen::Vector3d torque_W;  ///< [N m]
+};
+
+/// What a connection bears before it breaks.
+struct ConnectionLimits {
+  double force = std::numeric_limits<double>::infinity();   ///< [N]
+  double torque = std::numeric_limits<double>::infinity();  ///< [N m]
+};
+
 /// A body that is no longer simulated: it stays where it was last, touches nothing and is seen by nobody.
 struct Quarantine {
   enum class Reason : std::uint8_t {
@@ -58,8 +70,7 @@ class World {
   ~World();
 
   /// Advances by one step of the description. The result depends on the state and the targets alone, not on the number
-  /// of workers. A body whose state breaks is quarantined, and the others go on as if it had not been there; with the
-  /// setting `strict` std::runtime_error is thrown.
+  /// of workers. A body whose state breaks is quarantined, and the others go on as if it had not been there.
   void step();
   /// Those of the last step, in the order of the bodies.
   std::span<const Quarantine> quarantined() const;
@@ -81,6 +92,17 @@ class World {
   double joint_velocity(std::uint32_t body, std::size_t joint) const;
   TrackState track(std::uint32_t body, std::size_t drive, Side side) const;
 
+  /// Holds a link of `body_a`, which moves, to one of `body_b` as they are now, around the frame P of link a; from the
+  /// next step on. Returns the connection's number, which counts up from 0. Between steps.
+  std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                        std::size_t link_b, const ConnectionLimits& limits = {});
+  void disconnect(std::uint32_t connection);
+  bool is_connected(std::uint32_t connection) const;
+  /// On link a by link b, about the origin of P, over the last step; zero if it does not hold.
+  Wrench connection_wrench(std::uint32_t connection) const;
+  /// The connections that broke in the last step, ascending.
+  std::span<const std::uint32_t> broken_connections() const;
+
   /// For a joint that a VelocityMotor drives.
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity);
   /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
@@ -98,7 +120,7 @@ class World {
 
   /// Adds all that decides how `body` goes on: pose, velocities, joints, tracks, targets, warm-start impulses.
   void hash_body(std::uint32_t body, StateHash& hash) const;
-  /// Adds every cached contact point with what the solver's warm start takes from it.
+  /// Adds every contact point and every connection with what the solver's warm start takes from it.
   void hash_contacts(StateHash& hash) const;
 
  private:

@@ -83,14 +83,6 @@ TEST(Quarantine, ABodyThatFallsOutOfTheWorldIsTakenOut) {
   EXPECT_TRUE(small.world().is_active(rests));
 }
 
-TEST(Quarantine, AStrictWorldStops) {
-  SmallWorld small;
-  small.description.physics.strict = true;
-  const auto bomb = small.add(tracked_robot(), at(0, 0, 0));
-  small.world().set_root_twist(bomb, {Vector3d::Constant(1e300), Vector3d::Zero()});
-  EXPECT_THROW(small.world().step(), std::runtime_error);
-}
-
 TEST(Population, RobotsComeAndGoInMidRunTheSameForAnyNumberOfWorkers) {
   const auto hash_with = [](unsigned threads) {
     description::World description = world_with_floor();

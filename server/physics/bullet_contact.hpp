@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "server/core/snapshot.hpp"
 #include "server/physics/contact_point.hpp"
 
 namespace cohort::physics {
@@ -38,6 +39,11 @@ class BulletContact {
 
   /// `points` are those of the last call, with the impulses that the solver has given them since.
   void update(const Pose& X_WA, const Pose& X_WB, ContactPoints& points);
+
+  /// Bullet's side of the points; `points` holds the rest.
+  void save(SnapshotWriter& writer) const;
+  /// For the poses that the shapes had when it was saved.
+  void restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& reader);
 
  private:
   struct State;

@@ -39,6 +39,11 @@ class Collision {
   /// impulses.
   void detect(WorkerPool& workers);
 
+  /// All points and what decides the next ones.
+  void save(SnapshotWriter& writer) const;
+  /// With the solids where they were when it was saved.
+  void restore(SnapshotReader& reader);
+
   /// The pairs that solid `a` reports.
   std::span<SolidPair> pairs_of(std::uint32_t solid) { return pairs_[solid]; }
   std::span<const SolidPair> pairs_of(std::uint32_t solid) const { return pairs_[solid]; }

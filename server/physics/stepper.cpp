@@ -344,24 +344,4 @@ void Stepper::report_contacts() {
   }
 }
 
-void Stepper::hash_contacts(StateHash& hash) const {
-  for (const Connection& connection : connections_) connection.hash(hash);
-  for (const Member& member : members_) {
-    for (const Part& part : member.parts) {
-      for (const SolidPair& pair : collision_.pairs_of(part.solid)) {
-        if (pair.contact.count == 0) continue;
-        hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
-        for (const ContactPoint& point : pair.contact) {
-          for (int axis = 0; axis < 3; ++axis) {
-            hash.add(point.position_W[axis]);
-            hash.add(point.normal_W[axis]);
-          }
-          for (const double impulse : point.impulse) hash.add(impulse);
-          for (const double impulse : point.rolling_impulse) hash.add(impulse);
-        }
-      }
-    }
-  }
-}
-
 }  // namespace cohort::physics

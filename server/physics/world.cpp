@@ -29,6 +29,10 @@ std::unique_ptr<btCollisionShape> make_shape(const description::Shape& shape) {
     std::unique_ptr<btCollisionShape> operator()(const description::Plane& plane) const {
       return std::make_unique<btStaticPlaneShape>(to_bullet(plane.normal), 0.0);
     }
+    template <class Other>
+    std::unique_ptr<btCollisionShape> operator()(const Other&) const {
+      throw std::invalid_argument("capsules, ellipsoids, meshes and height maps are not simulated yet");
+    }
   };
   return std::visit(Make{}, shape);
 }

@@ -29,10 +29,12 @@ std::unique_ptr<btCollisionShape> make_shape(const description::Shape& shape) {
     std::unique_ptr<btCollisionShape> operator()(const description::Plane& plane) const {
       return std::make_unique<btStaticPlaneShape>(to_bullet(plane.normal), 0.0);
     }
-    template <class Other>
-    std::unique_ptr<btCollisionShape> operator()(const Other&) const {
-      throw std::invalid_argument("capsules, ellipsoids, meshes and height maps are not simulated yet");
-    }
+    using Shape = std::unique_ptr<btCollisionShape>;
+    static Shape refuse() { throw std::invalid_argument("shapes of this kind are not simulated yet"); }
+    Shape operator()(const description::Capsule&) const { return refuse(); }
+    Shape operator()(const description::Ellipsoid&) const { return refuse(); }
+    Shape operator()(const description::Mesh&) const { return refuse(); }
+    Shape operator()(const description::Heightmap&) const { return refuse(); }
   };
   return std::visit(Make{}, shape);
 }

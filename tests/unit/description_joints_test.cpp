@@ -109,7 +109,7 @@ std::string drive_with(const std::string& wheels) {
                                    key("max_velocity", "1") + key("friction", "1") + "\n" + wheels);
 }
 std::string cart() {
-  return links("abcde") + joint("b", "a", "b") + joint("c", "a", "c") + joint("d", "a", "d") + joint("e", "b", "e") +
+  return links("abcde") + joint("to_b", "a", "b") + joint("to_c", "a", "c") + joint("to_d", "a", "d") + joint("to_e", "b", "e") +
          "\n";
 }
 
@@ -122,7 +122,7 @@ TEST_F(Joints, MotorAndEncoderOfAUniversalJointAreOnItsFirstAxis) {
 
 TEST_F(Joints, ATreelDriveNamesTheWheelsThatItStandsFor) {
   const World world =
-      read(model(cart() + drive_with(key("left_wheel", "d") + key("right_wheel", "c") + key("left_wheel", "b"))));
+      read(model(cart() + drive_with(key("left_wheel", "to_d") + key("right_wheel", "to_c") + key("left_wheel", "to_b"))));
   const auto& drive = std::get<TreelDrive>(world.models[0].devices[0]);
   EXPECT_EQ(drive.left_wheels, (std::vector<std::size_t>{2, 0}));
   EXPECT_EQ(drive.right_wheels, std::vector<std::size_t>{1});
@@ -175,22 +175,22 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "ball") +
                    device("joint_encoder", key("joint", "j"))),
              3, "world/model[m]/cohort:joint_encoder[d]/cohort:joint", "has no single axis"},
-        Flaw{model(cart() + drive_with(key("left_wheel", "bb"))), 5, in_drive + "/cohort:left_wheel", "no joint 'bb'"},
-        Flaw{model(cart() + drive_with(key("left_wheel", "e"))), 5, in_drive + "/cohort:left_wheel",
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_bb"))), 5, in_drive + "/cohort:left_wheel", "no joint 'to_bb'"},
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_e"))), 5, in_drive + "/cohort:left_wheel",
              "is not between 'a' and a wheel"},
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "prismatic") +
                    drive_with(key("right_wheel", "j"))),
              4, in_drive + "/cohort:right_wheel", "is not revolute"},
-        Flaw{model(cart() + drive_with(key("left_wheel", "b") + "\n" + key("right_wheel", "b"))), 6,
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_b") + "\n" + key("right_wheel", "to_b"))), 6,
              in_drive + "/cohort:right_wheel", "is a wheel's already"},
         Flaw{model(cart() +
-                   drive_with(key("left_wheel", "b") + "\n" + key("left_wheel", "c") + "\n" + key("left_wheel", "b"))),
+                   drive_with(key("left_wheel", "to_b") + "\n" + key("left_wheel", "to_c") + "\n" + key("left_wheel", "to_b"))),
              7, in_drive + "/cohort:left_wheel", "is a wheel's already"},
-        Flaw{model(cart() + drive_with(key("left_wheel", "b")) + "<cohort:velocity_motor name=\"n\">\n" +
-                   motor_of("b") + "</cohort:velocity_motor>"),
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_b")) + "<cohort:velocity_motor name=\"n\">\n" +
+                   motor_of("to_b") + "</cohort:velocity_motor>"),
              6, "world/model[m]/cohort:velocity_motor[n]/cohort:joint", "is a wheel's of a treel_drive"},
-        Flaw{model(cart() + "<cohort:velocity_motor name=\"n\">" + motor_of("b") + "</cohort:velocity_motor>" +
-                   drive_with(key("left_wheel", "b"))),
+        Flaw{model(cart() + "<cohort:velocity_motor name=\"n\">" + motor_of("to_b") + "</cohort:velocity_motor>" +
+                   drive_with(key("left_wheel", "to_b"))),
              5, in_drive + "/cohort:left_wheel", "has a motor already"}));
 
 }  // namespace

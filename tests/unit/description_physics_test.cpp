@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
                          "unknown value 'dircet'; did you mean 'direct'?"},
                     Flaw{"physics:\n  iterations: 0\n", 5, "physics.iterations", "from 1 to 1000000, not '0'"},
                     Flaw{"physics:\n  strict: [true]\n", 5, "physics.strict", "expected true or false, not a list"},
-                    Flaw{"physics:\n  lowest:\n", 5, "physics.lowest", "expected a number, not nothing"}));
+                    Flaw{"physics:\n  lowest: deep\n", 5, "physics.lowest", "expected a number, not 'deep'"}));
 
 }  // namespace
 }  // namespace cohort::description

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "server/description/convex_hull.hpp"
@@ -32,13 +31,15 @@ Vector3d scaled_normal(const std::vector<Vector3d>& vertices, const Triangle& tr
 }
 
 bool closes_a_surface(const std::vector<Triangle>& triangles) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  edges.reserve(3 * triangles.size());
   for (const Triangle& triangle : triangles)
-    for (std::size_t i = 0; i < 3; ++i) ++edges[{triangle[i], triangle[(i + 1) % 3]}];
-  return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
-    const auto reverse = edges.find({edge.first.second, edge.first.first});
-    return edge.second == 1 && reverse != edges.end();
-  });
+    for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(triangle[i], triangle[(i + 1) % 3]);
+  std::sort(edges.begin(), edges.end());
+  return std::adjacent_find(edges.begin(), edges.end()) == edges.end() &&
+         std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+           return std::binary_search(edges.begin(), edges.end(), std::pair(edge.second, edge.first));
+         });
 }
 
 double volume_of(const std::vector<Vector3d>& vertices, const std::vector<Triangle>& triangles) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <variant>
 
 #include "server/core/pose.hpp"
 #include "server/description/shape.hpp"
@@ -10,6 +11,11 @@
 namespace cohort::geometry {
 
 using description::Shape;
+
+/// Whether a shape is what everything stands on: solid without end below its surface.
+inline bool is_ground(const Shape& shape) {
+  return std::holds_alternative<description::Plane>(shape) || std::holds_alternative<description::Heightmap>(shape);
+}
 
 /// Axis-aligned box in the world frame [m]; may be infinite.
 struct Bounds {

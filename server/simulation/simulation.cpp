@@ -33,12 +33,8 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
   kind_of_model_.assign(world.models.size(), none);
   robot_of_body_.assign(world.instances.size(), none);
   is_ground_.assign(world.instances.size(), 0);
-  for (std::uint32_t i = 0; i < world_.scene().size(); ++i) {
-    const geometry::Solid& solid = world_.scene().solid(i);
-    if (std::holds_alternative<description::Plane>(solid.shape) ||
-        std::holds_alternative<description::Heightmap>(solid.shape))
-      is_ground_[solid.body] = 1;
-  }
+  for (std::uint32_t solid = 0; solid < world_.scene().size(); ++solid)
+    if (geometry::is_ground(world_.scene().solid(solid).shape)) is_ground_[world_.scene().solid(solid).body] = 1;
 
   robots_.resize(world.robots.size());
   for (const description::Team& team : experiment.teams)

@@ -109,8 +109,8 @@ std::string drive_with(const std::string& wheels) {
                                    key("max_velocity", "1") + key("friction", "1") + "\n" + wheels);
 }
 std::string cart() {
-  return links("abcde") + joint("to_b", "a", "b") + joint("to_c", "a", "c") + joint("to_d", "a", "d") + joint("to_e", "b", "e") +
-         "\n";
+  return links("abcde") + joint("to_b", "a", "b") + joint("to_c", "a", "c") + joint("to_d", "a", "d") +
+         joint("to_e", "b", "e") + "\n";
 }
 
 TEST_F(Joints, MotorAndEncoderOfAUniversalJointAreOnItsFirstAxis) {
@@ -121,8 +121,8 @@ TEST_F(Joints, MotorAndEncoderOfAUniversalJointAreOnItsFirstAxis) {
 }
 
 TEST_F(Joints, ATreelDriveNamesTheWheelsThatItStandsFor) {
-  const World world =
-      read(model(cart() + drive_with(key("left_wheel", "to_d") + key("right_wheel", "to_c") + key("left_wheel", "to_b"))));
+  const World world = read(
+      model(cart() + drive_with(key("left_wheel", "to_d") + key("right_wheel", "to_c") + key("left_wheel", "to_b"))));
   const auto& drive = std::get<TreelDrive>(world.models[0].devices[0]);
   EXPECT_EQ(drive.left_wheels, (std::vector<std::size_t>{2, 0}));
   EXPECT_EQ(drive.right_wheels, std::vector<std::size_t>{1});
@@ -175,7 +175,8 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "ball") +
                    device("joint_encoder", key("joint", "j"))),
              3, "world/model[m]/cohort:joint_encoder[d]/cohort:joint", "has no single axis"},
-        Flaw{model(cart() + drive_with(key("left_wheel", "to_bb"))), 5, in_drive + "/cohort:left_wheel", "no joint 'to_bb'"},
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_bb"))), 5, in_drive + "/cohort:left_wheel",
+             "no joint 'to_bb'"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_e"))), 5, in_drive + "/cohort:left_wheel",
              "is not between 'a' and a wheel"},
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "prismatic") +
@@ -183,8 +184,8 @@ INSTANTIATE_TEST_SUITE_P(
              4, in_drive + "/cohort:right_wheel", "is not revolute"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_b") + "\n" + key("right_wheel", "to_b"))), 6,
              in_drive + "/cohort:right_wheel", "is a wheel's already"},
-        Flaw{model(cart() +
-                   drive_with(key("left_wheel", "to_b") + "\n" + key("left_wheel", "to_c") + "\n" + key("left_wheel", "to_b"))),
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_b") + "\n" + key("left_wheel", "to_c") + "\n" +
+                                       key("left_wheel", "to_b"))),
              7, in_drive + "/cohort:left_wheel", "is a wheel's already"},
         Flaw{model(cart() + drive_with(key("left_wheel", "to_b")) + "<cohort:velocity_motor name=\"n\">\n" +
                    motor_of("to_b") + "</cohort:velocity_motor>"),

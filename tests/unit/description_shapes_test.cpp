@@ -192,6 +192,16 @@ TEST_F(Shapes, AHeightmapMayHaveSixteenBits) {
   EXPECT_EQ(grid.heights, (std::vector<double>{256, 65535, 0, 1}));
 }
 
+TEST_F(Shapes, NothingIsPrintedAboutBrokenFiles) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  for (const char* const file : {"broken.dae", "nan.stl", "no_triangle.obj"})
+    problems_of([&] { read(static_model(collision(mesh(file)))); });
+  problems_of([&] { read(static_model(collision(heightmap("not.png")))); });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
 class FlawOfAShape : public Shapes, public testing::WithParamInterface<Flaw> {};
 
 TEST_P(FlawOfAShape, IsReportedAloneWithFileLineAndElement) {

@@ -17,12 +17,6 @@ using geometry::Solid;
 constexpr std::uint32_t none = 0xffffffffu;
 constexpr double floor_tolerance = 1e-3;  // [m]; robots sink in a little
 
-// What everything stands on, and no picture shows.
-bool is_ground(const Solid& solid) {
-  return std::holds_alternative<description::Plane>(solid.shape) ||
-         std::holds_alternative<description::Heightmap>(solid.shape);
-}
-
 // How far the shape reaches from `centre_W`, seen from above.
 struct Reach {
   const Pose& X_WC;
@@ -92,7 +86,7 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const bool below = !solid.moves && scene.bounds(i).upper.z() <= lowest_robot + floor_tolerance;
-    if (!is_ground(solid) && !below) is_floor_[solid.body] = 0;
+    if (!geometry::is_ground(solid.shape) && !below) is_floor_[solid.body] = 0;
   }
   sample();
 }
@@ -139,7 +133,8 @@ RunTrace TraceRecorder::finish() {
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const bool of_robot = robot_of_body_[solid.body] != none;
-    if (!of_robot && !is_ground(solid) && scene.bounds(i).lower.allFinite() && scene.bounds(i).upper.allFinite())
+    if (!of_robot && !geometry::is_ground(solid.shape) && scene.bounds(i).lower.allFinite() &&
+        scene.bounds(i).upper.allFinite())
       order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {

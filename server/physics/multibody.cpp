@@ -93,8 +93,7 @@ void Multibody::build_devices(const geometry::Scene& scene) {
   motors_.resize(model_->joints.size());
   drives_.resize(model_->devices.size());
   for (const description::Joint& joint : model_->joints) {
-    if (joint.type == description::JointType::fixed ||
-        !(std::isfinite(joint.axis.lower) || std::isfinite(joint.axis.upper)))
+    if (joint.type == description::JointType::fixed || !(std::isfinite(joint.axis.lower) || std::isfinite(joint.axis.upper)))
       continue;
     limits_.push_back(
         std::make_unique<JointLimit>(multibody_.get(), bullet_link(joint.child), joint.axis.lower, joint.axis.upper));
@@ -174,8 +173,7 @@ void Multibody::apply_forces(const Eigen::Vector3d& gravity, double step, Scratc
     multibody_->addLinkForce(link, g * multibody_->getLinkMass(link));
   for (std::size_t j = 0; j < model_->joints.size(); ++j)
     if (model_->joints[j].axis.damping != 0.0)
-      multibody_->addJointTorque(bullet_link(model_->joints[j].child),
-                                 -model_->joints[j].axis.damping * joint_velocity(j));
+      multibody_->addJointTorque(bullet_link(model_->joints[j].child), -model_->joints[j].axis.damping * joint_velocity(j));
   const bool constraint_pass = false;
   const bool feedback_in_world = false;
   const bool feedback_in_joint_frame = false;

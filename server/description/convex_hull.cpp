@@ -68,8 +68,8 @@ class Hull {
       upper = upper.cwiseMax(point);
     }
     const double extent = points.empty() ? 0.0 : (upper - lower).maxCoeff();
-    if (!(extent > 0.0)) fail();
     const double steps = std::ldexp(1.0, bits) / extent;
+    if (!(extent > 0.0) || std::isinf(steps)) fail();
     points_.reserve(points.size());
     for (const Eigen::Vector3d& point : points) {
       const Eigen::Vector3d at = (point - lower) * steps;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <string>
 
 #include "server/description/key_values.hpp"
 #include "server/description/world.hpp"

@@ -159,13 +159,13 @@ std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
 
 void WorldReader::read_extensions(const sdf::World& sdf_world) {
   const auto extensions = extensions_in(sdf_world.Element(), report_);
-  const sdf::ElementPtr* physics = nullptr;
+  bool has_physics = false;
   for (const auto& [element, extension] : extensions) {
     if (extension->name == "population") {
       if (const auto population = read_population(element, *extension, seed_, report_)) expand(*population);
     } else if (extension->name == "physics") {
-      if (physics != nullptr) report_.problem(element, "<cohort:physics> is given twice");
-      physics = &element;
+      if (has_physics) report_.problem(element, "<cohort:physics> is given twice");
+      has_physics = true;
       if (const auto values = ExtensionValues::read(element, *extension, report_))
         world_.physics = with_values(world_.physics, *values);
     }

@@ -23,19 +23,19 @@ TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file
 
 std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri, const Eigen::Vector3d& scale,
                                                      bool convex) {
-  const Key key{files_.find_file(uri), {scale.x(), scale.y(), scale.z()}, convex};
-  std::shared_ptr<const TriangleMesh>& mesh = meshes_[key];
+  const std::filesystem::path file = files_.find_file(uri);
+  std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
   if (mesh) return mesh;
-  TriangleMesh read = read_mesh(key.file, scale);
-  if (convex) read = hull_of(read, key.file);
+  TriangleMesh read = read_mesh(file, scale);
+  if (convex) read = hull_of(read, file);
   mesh = std::make_shared<const TriangleMesh>(std::move(read));
   return mesh;
 }
 
 std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size) {
-  const Key key{files_.find_file(uri), {size.x(), size.y(), size.z()}, false};
-  std::shared_ptr<const HeightGrid>& grid = grids_[key];
-  if (!grid) grid = std::make_shared<const HeightGrid>(read_height_image(key.file, size));
+  const std::filesystem::path file = files_.find_file(uri);
+  std::shared_ptr<const HeightGrid>& grid = grids_[{file, size.x(), size.y(), size.z()}];
+  if (!grid) grid = std::make_shared<const HeightGrid>(read_height_image(file, size));
   return grid;
 }
 

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <sdf/Element.hh>
-#include <utility>
+#include <tuple>
 
 #include "server/description/sdf_files.hpp"
 #include "server/description/shape.hpp"
@@ -25,16 +24,12 @@ class ShapeFiles {
   std::shared_ptr<const HeightGrid> height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size);
 
  private:
-  struct Key {
-    std::filesystem::path file;
-    std::array<double, 3> size;
-    bool convex;
-    auto operator<=>(const Key&) const = default;
-  };
-
   const SdfFiles& files_;
-  std::map<Key, std::shared_ptr<const TriangleMesh>> meshes_;
-  std::map<Key, std::shared_ptr<const HeightGrid>> grids_;
+  /// By file, scale and whether convex.
+  std::map<std::tuple<std::filesystem::path, double, double, double, bool>, std::shared_ptr<const TriangleMesh>>
+      meshes_;
+  /// By file and size.
+  std::map<std::tuple<std::filesystem::path, double, double, double>, std::shared_ptr<const HeightGrid>> grids_;
 };
 
 }  // namespace cohort::description

@@ -110,10 +110,10 @@ class Walk {
       const double next = std::min({to_line(0), to_line(1), last});
       const double diagonal = to_diagonal();
       if (diagonal > first && diagonal < next) {
-        if (const RayEntry entry = enter_slope(first, diagonal); std::isfinite(entry.distance)) return entry;
+        if (RayEntry entry = enter_slope(first, diagonal); std::isfinite(entry.distance)) return entry;
         first = diagonal;
       }
-      if (const RayEntry entry = enter_slope(first, next); std::isfinite(entry.distance)) return entry;
+      if (RayEntry entry = enter_slope(first, next); std::isfinite(entry.distance)) return entry;
       if (next >= last) return {};
       first = std::max(first, next);
       const int axis = to_line(0) <= to_line(1) ? 0 : 1;

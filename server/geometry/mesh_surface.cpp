@@ -93,12 +93,13 @@ struct MeshSurface::Ray {
       first = std::max(first, std::min(a, b));
       last = std::min(last, std::max(a, b));
     }
-    return first <= last ? first : infinity;
+    if (first > last) return infinity;
+    return first;
   }
 
   const Vector3d& origin;
   const Vector3d& direction;
-  int x, y, z;
+  int x = 0, y = 0, z = 0;
   Vector3d shear;
 };
 
@@ -248,7 +249,7 @@ RayEntry MeshSurface::cast_ray(const Vector3d& origin, const Vector3d& direction
 RayEntry MeshSurface::enter_convex(const Vector3d& origin, const Vector3d& direction) const {
   double first = -infinity;
   double last = infinity;
-  const HalfSpace* through = nullptr;
+  Vector3d normal = Vector3d::Zero();
   for (const HalfSpace& half_space : half_spaces_) {
     const double height = half_space.normal.dot(origin) - half_space.offset;
     const double climb = half_space.normal.dot(direction);
@@ -261,12 +262,12 @@ RayEntry MeshSurface::enter_convex(const Vector3d& origin, const Vector3d& direc
       last = std::min(last, distance);
     } else if (distance > first) {
       first = distance;
-      through = &half_space;
+      normal = half_space.normal;
     }
   }
   if (first > last || last < 0.0) return {};
   if (first <= 0.0) return {0.0, Vector3d::Zero()};
-  return {first, through->normal};
+  return {first, normal};
 }
 
 }  // namespace cohort::geometry

@@ -35,8 +35,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
   robot_of_body_.assign(world.instances.size(), none);
   is_ground_.assign(world.instances.size(), 0);
   for (std::uint32_t solid = 0; solid < world_.scene().size(); ++solid)
-    if (std::holds_alternative<description::Plane>(world_.scene().solid(solid).shape))
-      is_ground_[world_.scene().solid(solid).body] = 1;
+    if (geometry::is_ground(world_.scene().solid(solid).shape)) is_ground_[world_.scene().solid(solid).body] = 1;
 
   robots_.resize(world.robots.size());
   for (const description::Team& team : experiment.teams)

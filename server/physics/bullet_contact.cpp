@@ -1,36 +1,10 @@
 #include "server/physics/bullet_contact.hpp"
 
-#include <stdexcept>
-
 #include "server/physics/bullet.hpp"
 
 namespace cohort::physics {
 
-class BulletShape {
- public:
-  explicit BulletShape(std::unique_ptr<btCollisionShape> shape) : shape_(std::move(shape)) {}
-  btCollisionShape* get() const { return shape_.get(); }
-
- private:
-  std::unique_ptr<btCollisionShape> shape_;
-};
-
 namespace {
-
-struct Make {
-  std::unique_ptr<btCollisionShape> operator()(const description::Box& box) const {
-    return std::make_unique<btBoxShape>(to_bullet(0.5 * box.size));
-  }
-  std::unique_ptr<btCollisionShape> operator()(const description::Sphere& sphere) const {
-    return std::make_unique<btSphereShape>(sphere.radius);
-  }
-  std::unique_ptr<btCollisionShape> operator()(const description::Cylinder& cylinder) const {
-    return std::make_unique<btCylinderShapeZ>(btVector3(cylinder.radius, cylinder.radius, 0.5 * cylinder.length));
-  }
-  std::unique_ptr<btCollisionShape> operator()(const description::Plane& plane) const {
-    return std::make_unique<btStaticPlaneShape>(to_bullet(plane.normal), 0.0);
-  }
-};
 
 btDefaultCollisionConstructionInfo without_pools() {
   btDefaultCollisionConstructionInfo info;
@@ -40,10 +14,6 @@ btDefaultCollisionConstructionInfo without_pools() {
 }
 
 }  // namespace
-
-std::shared_ptr<const BulletShape> make_bullet_shape(const geometry::Shape& shape) {
-  return std::make_shared<BulletShape>(std::visit(Make{}, shape));
-}
 
 // Bullet's dispatcher hands out manifolds and algorithms from pools that are not safe for several threads, and lists
 // all manifolds in one array; ours takes memory from the allocator and keeps no list.
@@ -133,8 +103,8 @@ btPersistentManifold* BulletContact::State::manifold() const {
 }
 
 void BulletContact::State::collide(const Pose& X_WA, const Pose& X_WB) {
-  a.setWorldTransform(to_bullet(X_WA));
-  b.setWorldTransform(to_bullet(X_WB));
+  a.setWorldTransform(to_bullet(X_WA * Pose{shape_a->offset()}));
+  b.setWorldTransform(to_bullet(X_WB * Pose{shape_b->offset()}));
   const btCollisionObjectWrapper wrapped_a(nullptr, a.getCollisionShape(), &a, a.getWorldTransform(), -1, -1);
   const btCollisionObjectWrapper wrapped_b(nullptr, b.getCollisionShape(), &b, b.getWorldTransform(), -1, -1);
   if (algorithm == nullptr)

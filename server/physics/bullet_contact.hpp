@@ -3,13 +3,10 @@
 #include <memory>
 
 #include "server/core/snapshot.hpp"
+#include "server/physics/bullet_shape.hpp"
 #include "server/physics/contact_point.hpp"
 
 namespace cohort::physics {
-
-/// A shape as Bullet takes it. May be shared.
-class BulletShape;
-std::shared_ptr<const BulletShape> make_bullet_shape(const geometry::Shape& shape);
 
 /// Bullet's narrow phase for shapes of any kind. May be used from several threads at once.
 class BulletNarrowPhase {

@@ -30,7 +30,7 @@ class Collision {
   /// The scene must outlive this.
   Collision(const geometry::Scene& scene, MayTouch may_touch);
 
-  /// Solids in the order of the scene, each with Bullet's shape as `make_bullet_shape` gives it.
+  /// Solids in the order of the scene, each with Bullet's shape of it.
   void add(std::shared_ptr<const BulletShape> shape);
   /// Forgets a solid that is no longer in the scene.
   void remove(std::uint32_t solid);

@@ -58,7 +58,7 @@ std::uint32_t Stepper::create_body(std::size_t model_index, const Pose& X_WM) {
   if (shapes_[model_index].empty())
     for (const description::Link& link : model.links)
       for (const description::Collision& collision : link.collisions)
-        shapes_[model_index].push_back(make_bullet_shape(collision.shape));
+        shapes_[model_index].push_back(std::make_shared<BulletShape>(collision.shape));
   if (model.is_static) {
     bodies_.push_back({model_index, X_WM, Anchors::nobody, nullptr});
     add_static_solids(body);

@@ -1,6 +1,7 @@
 #include "server/physics/equations.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace cohort::physics {
 namespace {
@@ -8,6 +9,9 @@ namespace {
 constexpr int free_dofs = 6;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// Up to this many dofs the inverse of the mass matrix is cheaper to have than to do without.
+constexpr int most_inverted = 12;
 
 }  // namespace
 
@@ -40,6 +44,8 @@ void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, do
   }
   factorise();
   solve(velocity_.data());
+  is_inverted_ = size_ <= most_inverted;
+  if (is_inverted_) invert();
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += velocities[i];
 }
 
@@ -167,22 +173,32 @@ void Equations::factorise() {
   }
 }
 
-// Where each dof's way to the root is all lower dofs, as in a robot with one joint, the loops need not look it up.
+// From the factors: inv(L) inv(D) inv(L)', row by row.
+void Equations::invert() {
+  inverse_.assign(at(size_ * stride_), 0.0);
+  std::array<std::array<double, most_inverted>, most_inverted> inverse_l;
+  for (int i = 0; i < size_; ++i) {
+    const double* row = matrix_.data() + i * stride_;
+    for (int j = 0; j < i; ++j) {
+      double value = -row[j];
+      for (int k = j + 1; k < i; ++k) value -= row[k] * inverse_l[at(k)][at(j)];
+      inverse_l[at(i)][at(j)] = value;
+    }
+    inverse_l[at(i)][at(i)] = 1.0;
+  }
+  for (int i = 0; i < size_; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      double value = 0.0;
+      for (int k = 0; k <= j; ++k)
+        value += inverse_l[at(i)][at(k)] * matrix_[at(k * stride_ + k)] * inverse_l[at(j)][at(k)];
+      inverse_[at(i * stride_ + j)] = inverse_[at(j * stride_ + i)] = value;
+    }
+  }
+}
+
 void Equations::solve(double* x) const {
   const std::vector<int>& parents = mechanism_->parents();
   const double* row = matrix_.data() + (size_ - 1) * stride_;
-  if (mechanism_->is_chain()) {
-    for (int i = size_ - 1; i > 0; --i, row -= stride_) {
-      const double value = x[i];
-      for (int j = 0; j < i; ++j) x[j] -= row[j] * value;
-    }
-    for (int i = 0; i < size_; ++i, row += stride_) {
-      double value = x[i] * row[i];
-      for (int j = 0; j < i; ++j) value -= row[j] * x[j];
-      x[i] = value;
-    }
-    return;
-  }
   for (int i = size_ - 1; i > 0; --i, row -= stride_)
     for (int j = parents[at(i)]; j >= 0; j = parents[at(j)]) x[j] -= row[j] * x[i];
   for (int i = 0; i < size_; ++i, row += stride_) {
@@ -213,8 +229,14 @@ void Equations::add_torque(int segment, const Eigen::Vector3d& direction_W, doub
 }
 
 void Equations::respond(const double* jacobian, double* response) const {
-  std::copy_n(jacobian, stride_, response);
-  solve(response);
+  if (!is_inverted_) {
+    std::copy_n(jacobian, stride_, response);
+    solve(response);
+    return;
+  }
+  std::fill_n(response, stride_, 0.0);
+  for (int i = 0; i < size_; ++i)
+    if (jacobian[i] != 0.0) add_scaled(jacobian[i], inverse_.data() + i * stride_, response, stride_);
 }
 
 }  // namespace cohort::physics

@@ -53,6 +53,7 @@ class Equations {
   void gather_inwards();
   void add_generalised(int segment, const Spatial& force, double* jacobian) const;
   void factorise();
+  void invert();
   void solve(double* x) const;
 
   const Multibody* body_ = nullptr;
@@ -60,8 +61,10 @@ class Equations {
   int size_ = 0;
   int stride_ = 0;
   std::vector<Work> work_;
-  std::vector<Spatial> axes_;   // by dof; those of a free root stay unused
-  std::vector<double> matrix_;  // size_ x stride_, lower triangle: the mass matrix, then its factors
+  std::vector<Spatial> axes_;    // by dof; those of a free root stay unused
+  std::vector<double> matrix_;   // size_ x stride_, lower triangle: the mass matrix, then its factors
+  std::vector<double> inverse_;  // of the mass matrix, size_ x stride_
+  bool is_inverted_ = false;     // whether inverse_ is of this body
   std::vector<double> bias_;
   std::vector<double> velocity_;
 };

@@ -63,6 +63,12 @@ class Scene {
   std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
                                        const Eigen::Vector3d& direction_W, double range) const;
 
+  /// Whether a solid's bounds overlap `query`, or, of a plane, it reaches into it.
+  bool reaches_into(std::uint32_t index, const Bounds& query) const {
+    return std::holds_alternative<description::Plane>(solids_[index].shape) ? reaches(index, query)
+                                                                            : bounds_[index].overlaps(query);
+  }
+
   /// Calls `visit(index)` once for each solid whose bounds overlap `query` (for a plane: that it reaches into).
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {

@@ -25,6 +25,10 @@ struct Bounds {
   bool overlaps(const Bounds& other) const {
     return (lower.array() <= other.upper.array()).all() && (other.lower.array() <= upper.array()).all();
   }
+  void include(const Bounds& other) {
+    lower = lower.cwiseMin(other.lower);
+    upper = upper.cwiseMax(other.upper);
+  }
   Bounds grown_by(double margin) const { return {lower.array() - margin, upper.array() + margin}; }
 };
 

@@ -8,11 +8,6 @@
 namespace cohort::physics {
 namespace {
 
-// Points this near count as touching for the solver, which lets them close the gap within the step [m].
-constexpr double contact_margin = 0.005;
-
-constexpr std::size_t solids_a_chunk = 32;
-
 // A point may move this far from one step to the next and still be the same [m].
 constexpr double same_point = 0.01;
 
@@ -40,51 +35,48 @@ void take_over_impulses(const ContactPoints& before, ContactPoints& now) {
 }  // namespace
 
 Collision::Collision(const geometry::Scene& scene, MayTouch may_touch)
-    : scene_(scene), may_touch_(std::move(may_touch)), narrow_phase_(contact_margin) {}
+    : scene_(scene), may_touch_(std::move(may_touch)), narrow_phase_(margin) {}
 
 void Collision::add(std::shared_ptr<const BulletShape> shape) {
-  const auto solid = static_cast<std::uint32_t>(shapes_.size());
-  if (scene_.solid(solid).moves) moving_.push_back(solid);
   shapes_.push_back(std::move(shape));
   pairs_.emplace_back();
 }
 
 void Collision::remove(std::uint32_t solid) {
-  std::erase(moving_, solid);
   pairs_[solid].clear();
   for (std::vector<SolidPair>& pairs : pairs_)
     std::erase_if(pairs, [&](const SolidPair& pair) { return pair.b == solid; });
 }
 
-void Collision::detect(WorkerPool& workers) {
-  workers.for_each_chunk(moving_.size(), solids_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
-    std::vector<std::uint32_t> near;
-    for (std::size_t i = begin; i < end; ++i) {
-      find_pairs(moving_[i], near);
-      for (SolidPair& pair : pairs_[moving_[i]]) find_contact(pair);
-    }
-  });
+void Collision::detect(std::uint32_t solid, std::span<const std::uint32_t> near) {
+  find_pairs(solid, near);
+  for (SolidPair& pair : pairs_[solid]) find_contact(pair);
+}
+
+bool Collision::makes_a_pair(std::uint32_t solid, std::uint32_t other) const {
+  const geometry::Solid& two = scene_.solid(other);
+  if (two.moves && other <= solid) return false;  // the other one reports it
+  if (!scene_.reaches_into(other, scene_.bounds(solid).grown_by(margin))) return false;
+  return two.body != scene_.solid(solid).body || may_touch_(solid, other);
 }
 
 // Old pairs that are still near keep what they know.
-void Collision::find_pairs(std::uint32_t solid, std::vector<std::uint32_t>& near) {
-  near.clear();
-  const geometry::Solid& one = scene_.solid(solid);
-  scene_.for_each_overlap(scene_.bounds(solid).grown_by(contact_margin), [&](std::uint32_t other) {
-    const geometry::Solid& two = scene_.solid(other);
-    if (two.moves && other <= solid) return;  // the other one reports it
-    if (two.body == one.body && !may_touch_(solid, other)) return;
-    near.push_back(other);
-  });
-  std::sort(near.begin(), near.end());
-
+void Collision::find_pairs(std::uint32_t solid, std::span<const std::uint32_t> near) {
   std::vector<SolidPair>& pairs = pairs_[solid];
-  const auto is_same = [](const SolidPair& pair, std::uint32_t other) { return pair.b == other; };
-  if (std::equal(pairs.begin(), pairs.end(), near.begin(), near.end(), is_same)) return;
+  std::size_t same = 0;
+  bool is_same = true;
+  for (const std::uint32_t other : near) {
+    if (!makes_a_pair(solid, other)) continue;
+    is_same = is_same && same < pairs.size() && pairs[same].b == other;
+    ++same;
+  }
+  if (is_same && same == pairs.size()) return;
+
   std::vector<SolidPair> next;
-  next.reserve(near.size());
+  next.reserve(same);
   auto old = pairs.begin();
   for (const std::uint32_t other : near) {
+    if (!makes_a_pair(solid, other)) continue;
     while (old != pairs.end() && old->b < other) ++old;
     if (old != pairs.end() && old->b == other) {
       next.push_back(std::move(*old));
@@ -99,7 +91,7 @@ void Collision::find_contact(SolidPair& pair) {
   const geometry::Solid& a = scene_.solid(pair.a);
   const geometry::Solid& b = scene_.solid(pair.b);
   ContactPoints found;
-  if (find_closed_form_contact(a.shape, a.X_WC, b.shape, b.X_WC, contact_margin, found)) {
+  if (find_closed_form_contact(a.shape, a.X_WC, b.shape, b.X_WC, margin, found)) {
     pair.general.reset();
     take_over_impulses(pair.contact, found);
     pair.contact = found;

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "server/core/worker_pool.hpp"
 #include "server/geometry/scene.hpp"
 #include "server/physics/bullet_contact.hpp"
 
@@ -35,9 +34,12 @@ class Collision {
   /// Forgets a solid that is no longer in the scene.
   void remove(std::uint32_t solid);
 
-  /// Finds near pairs and their contact points for the present poses. Points that were there before keep their
-  /// impulses.
-  void detect(WorkerPool& workers);
+  /// Finds the pairs that `solid`, which moves, reports, and their contact points for the present poses. `near`: in
+  /// ascending order all solids, and maybe more, whose bounds overlap its own grown by `margin`. Points that were there
+  /// before keep their impulses. Different solids from different threads.
+  void detect(std::uint32_t solid, std::span<const std::uint32_t> near);
+  /// Points this near count as touching for the solver, which lets them close the gap within the step [m].
+  static constexpr double margin = 0.005;
 
   /// All points and what decides the next ones.
   void save(SnapshotWriter& writer) const;
@@ -49,14 +51,14 @@ class Collision {
   std::span<const SolidPair> pairs_of(std::uint32_t solid) const { return pairs_[solid]; }
 
  private:
-  void find_pairs(std::uint32_t solid, std::vector<std::uint32_t>& near);
+  bool makes_a_pair(std::uint32_t solid, std::uint32_t other) const;
+  void find_pairs(std::uint32_t solid, std::span<const std::uint32_t> near);
   void find_contact(SolidPair& pair);
 
   const geometry::Scene& scene_;
   std::vector<std::shared_ptr<const BulletShape>> shapes_;
   MayTouch may_touch_;
   BulletNarrowPhase narrow_phase_;
-  std::vector<std::uint32_t> moving_;
   std::vector<std::vector<SolidPair>> pairs_;  // by solid, ascending b
 };
 

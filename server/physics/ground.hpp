@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <vector>
+#include <span>
 
 #include "server/geometry/scene.hpp"
 
@@ -19,20 +19,21 @@ struct Ground {
 /// whether it moves or not.
 class GroundFinder {
  public:
-  /// All points lie within `radius` of `centre_W`. The ground is looked for along `-up_W`, from `climb` above a point
-  /// to `reach` below it: a surface higher than `climb` is a wall. `near` is scratch memory.
-  GroundFinder(const geometry::Scene& scene, std::uint32_t body, const Eigen::Vector3d& centre_W, double radius,
-               const Eigen::Vector3d& up_W, double climb, double reach, std::vector<std::uint32_t>& near);
+  /// The ground is looked for along `-up_W`, from `climb` above a point to `reach` below it: a surface higher than
+  /// `climb` is a wall. `candidates`: the solids of other bodies that reach into where the rays go.
+  GroundFinder(const geometry::Scene& scene, std::span<const std::uint32_t> candidates, const Eigen::Vector3d& up_W,
+               double climb, double reach)
+      : scene_(scene), candidates_(candidates), up_W_(up_W), climb_(climb), reach_(reach) {}
 
-  /// The first solid of any other body.
+  /// The first of the candidates.
   std::optional<Ground> below(const Eigen::Vector3d& point_W) const;
 
  private:
   const geometry::Scene& scene_;
+  std::span<const std::uint32_t> candidates_;
   Eigen::Vector3d up_W_;
   double climb_;
   double reach_;
-  const std::vector<std::uint32_t>& near_;
 };
 
 }  // namespace cohort::physics

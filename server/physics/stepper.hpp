@@ -72,6 +72,7 @@ class Stepper {
   struct Memory {  // of one worker
     Problem problem;
     std::vector<std::uint32_t> near;
+    std::vector<std::uint32_t> candidates;
     std::vector<std::uint32_t> members;
   };
 
@@ -82,7 +83,7 @@ class Stepper {
   void add_moving_solids(std::uint32_t body);
   void find_lowest();
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;
-  void find_ground();
+  void detect();
   void find_islands();
   void solve_island(std::span<const std::uint32_t> members, Memory& memory);
   bool try_island(const std::vector<std::uint32_t>& members, Problem& problem);

@@ -17,13 +17,21 @@ constexpr std::array sides{Side::left, Side::right};
 
 }  // namespace
 
-void TreelDrive::find_ground(const geometry::Scene& scene, std::uint32_t body, const Pose& X_WS,
-                             std::vector<std::uint32_t>& near) {
+geometry::Bounds TreelDrive::ground_region(const Pose& X_WS) const {
+  const Eigen::Matrix3d R = (X_WS.orientation * X_SL_.orientation).toRotationMatrix();
+  const double rise = 0.5 * (drive_.wheel_radius + reach);
+  const Eigen::Vector3d centre_W =
+      X_WS * X_SL_.position + (drive_.ground_height + 0.5 * (drive_.wheel_radius - reach)) * R.col(2);
+  const Eigen::Vector3d half_W = R.cwiseAbs() * Eigen::Vector3d(drive_.half_contact_length, drive_.half_gauge, rise);
+  return {centre_W - half_W, centre_W + half_W};
+}
+
+void TreelDrive::find_ground(const geometry::Scene& scene, const Pose& X_WS,
+                             std::span<const std::uint32_t> candidates) {
   X_WL_ = X_WS * X_SL_;
   const Eigen::Matrix3d R = X_WL_.orientation.toRotationMatrix();
   const Eigen::Vector3d centre_W = X_WL_.position + drive_.ground_height * R.col(2);
-  const GroundFinder finder(scene, body, centre_W, drive_.half_gauge + drive_.half_contact_length, R.col(2),
-                            drive_.wheel_radius, reach, near);
+  const GroundFinder finder(scene, candidates, R.col(2), drive_.wheel_radius, reach);
   std::size_t i = 0;
   for (const Side side : sides) {
     for (const double end : {drive_.half_contact_length, -drive_.half_contact_length}) {

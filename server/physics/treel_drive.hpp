@@ -24,9 +24,10 @@ class TreelDrive {
   double target(Side side) const { return side_of(side).target; }
   const TrackState& track(Side side) const { return side_of(side).state; }
 
-  /// Looks for what each ground point stands on. `X_WS`: the root segment; `near`: scratch memory.
-  void find_ground(const geometry::Scene& scene, std::uint32_t body, const Pose& X_WS,
-                   std::vector<std::uint32_t>& near);
+  /// Where the ground is looked for. `X_WS`: the root segment.
+  geometry::Bounds ground_region(const Pose& X_WS) const;
+  /// Looks for what each ground point stands on. `candidates`: the solids of other bodies in the ground region.
+  void find_ground(const geometry::Scene& scene, const Pose& X_WS, std::span<const std::uint32_t> candidates);
   /// Calls `visit(solid)` for what was found.
   template <class Visit>
   void for_each_ground(Visit&& visit) const {

@@ -14,6 +14,8 @@ std::uint32_t Scene::add(Solid solid) {
   const auto index = static_cast<std::uint32_t>(solids_.size());
   bounds_.push_back(bounds_of(solid.shape, solid.X_WC));
   X_CW_.push_back(solid.X_WC.inverse());
+  constexpr double rounding = 1e-9;
+  balls_.push_back({solid.X_WC.position, radius_of(solid.shape) * (1.0 + rounding) + rounding});
   const auto* const mesh = std::get_if<description::Mesh>(&solid.shape);
   surfaces_.push_back(mesh != nullptr ? surface_of(*mesh) : nullptr);
   if (solid.moves) moving_.push_back(index);
@@ -54,12 +56,14 @@ void Scene::remove(std::uint32_t index) {
 void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
   solids_[index].X_WC = X_WC;
   X_CW_[index] = X_WC.inverse();
+  balls_[index].centre_W = X_WC.position;
   bounds_[index] = bounds_of(solids_[index].shape, X_WC);
 }
 
 double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                       const Eigen::Vector3d& direction_W, double range) const {
   const double reach = best ? best->distance : range;
+  if (misses(index, origin_W, direction_W, reach)) return reach;
   const Eigen::Vector3d origin_C = X_CW_[index] * origin_W;
   const Eigen::Vector3d direction_C = X_CW_[index].orientation * direction_W;
   const RayEntry entry = surfaces_[index] ? surfaces_[index]->cast_ray(origin_C, direction_C, reach)

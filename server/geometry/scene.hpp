@@ -81,6 +81,15 @@ class Scene {
  private:
   std::shared_ptr<const MeshSurface> surface_of(const description::Mesh& mesh);
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
+  /// Whether a ray surely misses a solid on its first `reach`.
+  bool misses(std::uint32_t index, const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
+              double reach) const {
+    const Ball& ball = balls_[index];
+    const Eigen::Vector3d offset = ball.centre_W - origin_W;
+    const double along = offset.dot(direction_W);
+    return along < -ball.radius || along > reach + ball.radius ||
+           offset.squaredNorm() - along * along > ball.radius * ball.radius;
+  }
   /// Makes `best` the solid's hit if that is nearer. Returns how far a nearer hit may be.
   double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                  const Eigen::Vector3d& direction_W, double range) const;
@@ -88,6 +97,11 @@ class Scene {
   std::vector<Solid> solids_;
   std::vector<Pose> X_CW_;  // inverse of each solid's pose
   std::vector<Bounds> bounds_;
+  struct Ball {
+    Eigen::Vector3d centre_W;
+    double radius;
+  };
+  std::vector<Ball> balls_;  // around each solid; a ray that misses it misses the solid
   std::vector<std::shared_ptr<const MeshSurface>> surfaces_;  // of each solid that is a mesh
   std::map<std::pair<const description::TriangleMesh*, bool>, std::shared_ptr<const MeshSurface>> shared_;
   std::vector<std::uint32_t> moving_;

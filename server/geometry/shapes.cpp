@@ -179,6 +179,26 @@ RayEntry enter(const Closed& shape, const Vector3d& origin, const Vector3d& dire
 
 }  // namespace
 
+double radius_of(const Shape& shape) {
+  struct Radius {
+    double operator()(const Box& box) const { return 0.5 * box.size.norm(); }
+    double operator()(const Sphere& sphere) const { return sphere.radius; }
+    double operator()(const Cylinder& cylinder) const {
+      return std::sqrt(cylinder.radius * cylinder.radius + 0.25 * cylinder.length * cylinder.length);
+    }
+    double operator()(const description::Capsule& capsule) const { return capsule.radius + 0.5 * capsule.length; }
+    double operator()(const description::Ellipsoid& ellipsoid) const { return ellipsoid.radii.maxCoeff(); }
+    double operator()(const description::Mesh& mesh) const {
+      double radius = 0.0;
+      for (const Vector3d& vertex : mesh.triangles->vertices) radius = std::max(radius, vertex.norm());
+      return radius;
+    }
+    double operator()(const Plane&) const { return infinity; }
+    double operator()(const description::Heightmap&) const { return infinity; }
+  };
+  return std::visit(Radius{}, shape);
+}
+
 Bounds bounds_of(const Shape& shape, const Pose& X_WC) {
   return std::visit([&](const auto& s) { return bounds(s, X_WC); }, shape);
 }

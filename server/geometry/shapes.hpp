@@ -36,6 +36,9 @@ struct Bounds {
 /// it.
 Bounds bounds_of(const Shape& shape, const Pose& X_WC);
 
+/// Of the smallest ball around the shape's origin that holds it [m]; infinite for planes and height maps.
+double radius_of(const Shape& shape);
+
 /// Where a ray enters a solid: `distance` along the unit direction, 0 if it starts inside, infinite if it misses.
 /// `normal`: outward unit normal of the surface there, undefined if it starts inside or misses.
 struct RayEntry {

@@ -11,6 +11,7 @@ using description::Joint;
 using description::Model;
 using description::Sphere;
 
+constexpr std::size_t turret_link = 1;
 constexpr std::size_t turret_joint = 0;
 constexpr std::size_t left_wheel_joint = 1;
 constexpr std::size_t right_wheel_joint = 2;
@@ -158,8 +159,9 @@ class CohortEngine final : public Engine {
 
   void step() override { world_.step(); }
 
-  Eigen::Vector3d position_W(std::uint32_t robot) const override {
-    return world_.link_pose(first_robot_ + robot, 0).position;
+  Eigen::Vector3d turret_W(std::uint32_t robot) const override {
+    const Eigen::Vector3d centre_L(0.0, 0.0, robot_.turret.z - robot_.turret_joint_height);
+    return world_.link_pose(first_robot_ + robot, turret_link) * centre_L;
   }
 
   std::vector<Touch> touches() const override {

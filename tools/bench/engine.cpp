@@ -9,7 +9,7 @@ namespace {
 
 using Limitation = std::optional<std::string>;
 
-constexpr std::size_t most_robots_in_mujoco = 1000;
+constexpr std::size_t most_robots_in_mujoco = 512;
 constexpr std::size_t most_connected_in_world_step = 32;
 
 Limitation none(const Scene&) { return std::nullopt; }
@@ -27,7 +27,8 @@ Limitation world_step_limitation(const Scene& scene) {
 
 Limitation mujoco_limitation(const Scene& scene) {
   if (scene.robots.size() > most_robots_in_mujoco)
-    return fmt::format("more than {} robots need tens of GB: its matrices are dense", most_robots_in_mujoco);
+    return fmt::format("its matrices are dense, and those of more than {} robots too large for it",
+                       most_robots_in_mujoco);
   return std::nullopt;
 }
 

@@ -32,7 +32,7 @@ class Engine {
   virtual void set_command(std::uint32_t robot, const Command& command) = 0;
   /// Advances by one step of the scene. Throws std::runtime_error if the engine gives up.
   virtual void step() = 0;
-  virtual Eigen::Vector3d position_W(std::uint32_t robot) const = 0;  ///< of the chassis [m]
+  virtual Eigen::Vector3d turret_W(std::uint32_t robot) const = 0;  ///< its centre [m]
   /// A pair appears as often as it has contact points.
   virtual std::vector<Touch> touches() const = 0;
 };

@@ -40,6 +40,7 @@ class Run {
       : name_(kind.name),
         threads_(threads),
         robots_(static_cast<double>(scene.robots.size())),
+        turret_radius_(scene.robot.turret.radius),
         driving_(options.seed, static_cast<std::uint32_t>(scene.robots.size())),
         engine_(kind.make(scene, threads)) {}
 
@@ -58,7 +59,7 @@ class Run {
       const auto [tick_cpu, tick_wall] = drive_one_tick();
       cpu += tick_cpu;
       wall += tick_wall;
-      touches += static_cast<double>(touching_pairs());
+      touches += static_cast<double>(look_at_touches());
     }
     const double robot_steps = robots_ * ticks * steps_a_control_tick;
     cpu_.push_back(cpu / robot_steps);
@@ -69,6 +70,7 @@ class Run {
   const std::vector<double>& cpu() const { return cpu_; }
   const std::vector<double>& wall() const { return wall_; }
   double touches() const { return median(touches_); }
+  double overlap() const { return overlap_; }
 
  private:
   std::pair<double, double> drive_one_tick() {
@@ -80,21 +82,29 @@ class Run {
     return {cpu_seconds() - cpu, wall_seconds() - wall};
   }
 
-  std::size_t touching_pairs() const {
+  // Returns how many pairs there are.
+  std::size_t look_at_touches() {
     std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
     for (const Touch& touch : engine_->touches()) pairs.insert(std::minmax(touch.robot, touch.other));
+    for (const auto& [a, b] : pairs) {
+      if (b == Touch::wall) continue;
+      const double distance = (engine_->turret_W(a) - engine_->turret_W(b)).head<2>().norm();
+      overlap_ = std::max(overlap_, 2.0 * turret_radius_ - distance);
+    }
     return pairs.size();
   }
 
   std::string name_;
   unsigned threads_;
   double robots_;
+  double turret_radius_;
   RandomDriving driving_;
   std::unique_ptr<Engine> engine_;
   std::uint64_t tick_ = 0;
   std::vector<double> cpu_;  // one for each repetition, of one robot and step
   std::vector<double> wall_;
   std::vector<double> touches_;
+  double overlap_ = 0.0;
 };
 
 // A second to get going, then the way of a second.
@@ -107,11 +117,11 @@ double straight_speed_ratio(const EngineKind& kind, Drive drive, std::uint64_t s
     engine->set_command(robot, {straight_speed, straight_speed, 0.0});
   for (unsigned i = 0; i < steps; ++i) engine->step();
   std::vector<Eigen::Vector3d> start_W;
-  for (std::uint32_t robot = 0; robot < straight_robots; ++robot) start_W.push_back(engine->position_W(robot));
+  for (std::uint32_t robot = 0; robot < straight_robots; ++robot) start_W.push_back(engine->turret_W(robot));
   for (unsigned i = 0; i < steps; ++i) engine->step();
   double way = 0.0;
   for (std::uint32_t robot = 0; robot < straight_robots; ++robot)
-    way += (engine->position_W(robot) - start_W[robot]).head<2>().norm();
+    way += (engine->turret_W(robot) - start_W[robot]).head<2>().norm();
   return way / (straight_robots * straight_speed);
 }
 
@@ -128,6 +138,7 @@ StepCost cost_of(const Run& run, const std::vector<std::unique_ptr<Run>>& runs) 
   cost.cpu = spread_of(run.cpu());
   cost.wall = spread_of(run.wall());
   cost.touches = run.touches();
+  cost.overlap = run.overlap();
   if (const Run* reference = find(runs, reference_engine))
     cost.against_reference = median_ratio(reference->cpu(), run.cpu());
   if (const Run* single = find(runs, run.name()); single != nullptr && run.threads() > 1)

@@ -51,6 +51,7 @@ struct StepCost {
   Spread cpu;                               ///< of all threads, of one robot and step [s]
   Spread wall;                              ///< the same
   double touches = 0.0;                     ///< pairs that touch, of robots or of a robot and a wall, for each robot
+  double overlap = 0.0;                     ///< of two turrets, the deepest [m]
   double speed_ratio = 0.0;                 ///< reached to commanded, straight on and alone
   std::optional<double> against_reference;  ///< CPU time of the reference engine to this one's, median of repetitions
   std::optional<double> speed_up;           ///< wall time with one thread to this, median of repetitions

@@ -14,15 +14,20 @@
 namespace cohort::bench {
 namespace {
 
-// For each robot, with room to spare: 2 wheels and 2 casters on the ground, 6 neighbours with 2 points each. A contact
-// with friction has 4 rows, one without has 1.
-constexpr std::size_t contacts_a_robot = 12;
-constexpr std::size_t rows_a_robot = 30;
+// Room for each robot: 2 wheels and a caster on the ground need 9 rows, a contact of two robots 4 and more. Matrices
+// are dense and their memory is counted in 32 bits, so there is little to spare in a crowd; some more for a few robots.
+constexpr std::size_t contacts_a_robot = 10;
+constexpr std::size_t rows_a_robot = 18;
 constexpr std::size_t rows_a_connection = 6;
+constexpr std::size_t freedoms_a_robot = 9;
 
 // For geoms: a pair collides if the type of one is in the affinity of the other.
 constexpr int shell = 1;  // hulls, turrets and walls
 constexpr int wheel = 2;
+
+// MuJoCo numbers bodies as they stand in the text: the world, then of each robot chassis, wheels and turret.
+constexpr int bodies_a_robot = 4;
+constexpr int turret_body = 4;  // of the first robot
 
 using Output = std::back_insert_iterator<std::string>;
 
@@ -44,9 +49,10 @@ class ModelText {
 
   std::string write() {
     const std::size_t robots = scene_.robots.size();
-    fmt::format_to(out_, R"(<mujoco><compiler angle="radian"/><size njmax="{}" nconmax="{}"/>)",
-                   rows_a_robot * robots + (scene_.connected ? rows_a_connection * robots : 0) + 100,
-                   contacts_a_robot * robots + 100);
+    const std::size_t rows = rows_a_robot * robots + (scene_.connected ? rows_a_connection * robots : 0) + 100;
+    const std::size_t freedoms = freedoms_a_robot * robots;
+    fmt::format_to(out_, R"(<mujoco><compiler angle="radian"/><size njmax="{}" nconmax="{}" nstack="{}"/>)", rows,
+                   contacts_a_robot * robots + 100, 2 * freedoms * freedoms + 3 * rows * freedoms + 100'000);
     fmt::format_to(out_, R"(<option timestep="{}" gravity="0 0 {}"/><worldbody>)", scene_.step, -scene_.gravity);
     // Of a pair the larger friction and the larger number of dimensions count.
     fmt::format_to(out_, R"(<geom type="plane" size="0 0 1" friction="0" condim="1" contype="0" conaffinity="{}"/>)",
@@ -97,7 +103,7 @@ class ModelText {
     const Robot& robot = scene_.robot;
     const Placement& at = scene_.robots[i];
     const CylinderBody chassis = robot.chassis_without_wheels();
-    fmt::format_to(out_, R"(<body name="r{}" pos="{} {} 0" euler="0 0 {}"><freejoint/>)", i, at.x, at.y, at.yaw);
+    fmt::format_to(out_, R"(<body pos="{} {} 0" euler="0 0 {}"><freejoint/>)", at.x, at.y, at.yaw);
     text_ += inertial(chassis, chassis.z);
     add_cylinder(robot.hull_radius, robot.hull_height, robot.hull_z);
     for (const double x : {-robot.caster_x, robot.caster_x})
@@ -170,13 +176,7 @@ class MujocoEngine final : public Engine {
     take_over_messages();
     model_ = compile(ModelText(scene).write());
     data_.reset(mj_makeData(model_.get()));
-    robot_of_body_.assign(static_cast<std::size_t>(model_->nbody), Touch::wall);
-    for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot)
-      chassis_.push_back(mj_name2id(model_.get(), mjOBJ_BODY, fmt::format("r{}", robot).c_str()));
-    for (int body = 1; body < model_->nbody; ++body) {
-      const auto root = std::lower_bound(chassis_.begin(), chassis_.end(), model_->body_rootid[body]);
-      robot_of_body_[static_cast<std::size_t>(body)] = static_cast<std::uint32_t>(root - chassis_.begin());
-    }
+    mj_kinematics(model_.get(), data_.get());  // positions at tick 0
   }
 
   void set_command(std::uint32_t robot, const Command& command) override {
@@ -194,8 +194,9 @@ class MujocoEngine final : public Engine {
                                                                            static_cast<std::size_t>(warning.lastinfo)));
   }
 
-  Eigen::Vector3d position_W(std::uint32_t robot) const override {
-    const mjtNum* position = data_->xpos + std::ptrdiff_t{3} * chassis_[robot];
+  Eigen::Vector3d turret_W(std::uint32_t robot) const override {
+    const mjtNum* position =
+        data_->xipos + std::ptrdiff_t{3} * (turret_body + bodies_a_robot * static_cast<int>(robot));
     return {position[0], position[1], position[2]};
   }
 
@@ -206,20 +207,22 @@ class MujocoEngine final : public Engine {
       if (contact.dist > 0.0) continue;
       if (model_->geom_type[contact.geom1] == mjGEOM_PLANE || model_->geom_type[contact.geom2] == mjGEOM_PLANE)
         continue;
-      const auto [robot, other] = std::minmax(robot_of(contact.geom1), robot_of(contact.geom2));
-      touches.push_back({robot, other});
+      const std::uint32_t a = robot_of(contact.geom1);
+      const std::uint32_t b = robot_of(contact.geom2);
+      touches.push_back({std::min(a, b), std::max(a, b)});  // a wall is the greater
     }
     return touches;
   }
 
  private:
-  std::uint32_t robot_of(int geom) const { return robot_of_body_[static_cast<std::size_t>(model_->geom_bodyid[geom])]; }
+  std::uint32_t robot_of(int geom) const {
+    const int body = model_->geom_bodyid[geom];
+    return body == 0 ? Touch::wall : static_cast<std::uint32_t>((body - 1) / bodies_a_robot);
+  }
 
   double wheel_radius_;
   std::unique_ptr<mjModel, Delete> model_;
   std::unique_ptr<mjData, Delete> data_;
-  std::vector<int> chassis_;  // body of each robot, ascending
-  std::vector<std::uint32_t> robot_of_body_;
 };
 
 }  // namespace

@@ -66,8 +66,8 @@ class OdeEngine final : public Engine {
       dWorldStep(world_, scene_.step);
   }
 
-  Eigen::Vector3d position_W(std::uint32_t robot) const override {
-    const dReal* position = dBodyGetPosition(robots_[robot].chassis);
+  Eigen::Vector3d turret_W(std::uint32_t robot) const override {
+    const dReal* position = dBodyGetPosition(robots_[robot].turret_body);
     return {position[0], position[1], position[2]};
   }
 

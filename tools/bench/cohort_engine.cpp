@@ -1,4 +1,5 @@
-#include <numbers>
+#include <algorithm>
+#include <cmath>
 
 #include "server/physics/world.hpp"
 #include "tools/bench/engines.hpp"
@@ -118,7 +119,7 @@ void place_walls(description::World& world, const Scene& scene) {
 description::World describe(const Scene& scene) {
   description::World world;
   world.name = "bench";
-  world.step = std::chrono::nanoseconds(static_cast<std::int64_t>(scene.step * 1e9 + 0.5));
+  world.step = std::chrono::nanoseconds(std::llround(1e9 * scene.step));
   world.gravity = {0.0, 0.0, -scene.gravity};
   if (scene.drive == Drive::wheels) world.physics.fidelity = description::Fidelity::articulated;
   place_static(world, description::Plane{}, scene.ground_friction, {});
@@ -159,7 +160,7 @@ class CohortEngine final : public Engine {
 
   void step() override { world_.step(); }
 
-  Eigen::Vector3d turret_W(std::uint32_t robot) const override {
+  Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
     const Eigen::Vector3d centre_L(0.0, 0.0, robot_.turret.z - robot_.turret_joint_height);
     return world_.link_pose(first_robot_ + robot, turret_link) * centre_L;
   }

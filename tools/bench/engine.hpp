@@ -32,7 +32,7 @@ class Engine {
   virtual void set_command(std::uint32_t robot, const Command& command) = 0;
   /// Advances by one step of the scene. Throws std::runtime_error if the engine gives up.
   virtual void step() = 0;
-  virtual Eigen::Vector3d turret_W(std::uint32_t robot) const = 0;  ///< its centre [m]
+  virtual Eigen::Vector3d turret_centre(std::uint32_t robot) const = 0;  ///< in the world [m]
   /// A pair appears as often as it has contact points.
   virtual std::vector<Touch> touches() const = 0;
 };

@@ -59,7 +59,7 @@ class EnkiEngine final : public Engine {
     world_->step(step_, 1);
   }
 
-  Eigen::Vector3d turret_W(std::uint32_t robot) const override {
+  Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
     const Enki::Point& position = robots_[robot]->pos;
     return {position.x / centimetres - half_arena_, position.y / centimetres - half_arena_, 0.0};
   }

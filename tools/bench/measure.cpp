@@ -88,7 +88,7 @@ class Run {
     for (const Touch& touch : engine_->touches()) pairs.insert(std::minmax(touch.robot, touch.other));
     for (const auto& [a, b] : pairs) {
       if (b == Touch::wall) continue;
-      const double distance = (engine_->turret_W(a) - engine_->turret_W(b)).head<2>().norm();
+      const double distance = (engine_->turret_centre(a) - engine_->turret_centre(b)).head<2>().norm();
       overlap_ = std::max(overlap_, 2.0 * turret_radius_ - distance);
     }
     return pairs.size();
@@ -117,11 +117,11 @@ double straight_speed_ratio(const EngineKind& kind, Drive drive, std::uint64_t s
     engine->set_command(robot, {straight_speed, straight_speed, 0.0});
   for (unsigned i = 0; i < steps; ++i) engine->step();
   std::vector<Eigen::Vector3d> start_W;
-  for (std::uint32_t robot = 0; robot < straight_robots; ++robot) start_W.push_back(engine->turret_W(robot));
+  for (std::uint32_t robot = 0; robot < straight_robots; ++robot) start_W.push_back(engine->turret_centre(robot));
   for (unsigned i = 0; i < steps; ++i) engine->step();
   double way = 0.0;
   for (std::uint32_t robot = 0; robot < straight_robots; ++robot)
-    way += (engine->turret_W(robot) - start_W[robot]).head<2>().norm();
+    way += (engine->turret_centre(robot) - start_W[robot]).head<2>().norm();
   return way / (straight_robots * straight_speed);
 }
 

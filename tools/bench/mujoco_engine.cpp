@@ -166,7 +166,7 @@ std::unique_ptr<mjModel, Delete> compile(const std::string& text) {
   std::unique_ptr<mjModel, Delete> model(
       mj_loadXML(file, files.get(), message.data(), static_cast<int>(message.size())));
   mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error("MuJoCo: " + std::string(message.c_str()));
+  if (!model) throw std::runtime_error("MuJoCo: " + message.substr(0, message.find('\0')));
   return model;
 }
 
@@ -188,13 +188,13 @@ class MujocoEngine final : public Engine {
 
   void step() override {
     mj_step(model_.get(), data_.get());
-    for (const mjWarningStat& warning : data_->warning)
-      if (warning.number > 0)
-        throw std::runtime_error(std::string("MuJoCo: ") + mju_warningText(static_cast<int>(&warning - data_->warning),
-                                                                           static_cast<std::size_t>(warning.lastinfo)));
+    for (int i = 0; i < mjNWARNING; ++i) {
+      const mjWarningStat& warning = data_->warning[i];
+      if (warning.number > 0) throw std::runtime_error(std::string("MuJoCo: ") + mju_warningText(i, warning.lastinfo));
+    }
   }
 
-  Eigen::Vector3d turret_W(std::uint32_t robot) const override {
+  Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
     const mjtNum* position =
         data_->xipos + std::ptrdiff_t{3} * (turret_body + bodies_a_robot * static_cast<int>(robot));
     return {position[0], position[1], position[2]};

@@ -66,7 +66,7 @@ class OdeEngine final : public Engine {
       dWorldStep(world_, scene_.step);
   }
 
-  Eigen::Vector3d turret_W(std::uint32_t robot) const override {
+  Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
     const dReal* position = dBodyGetPosition(robots_[robot].turret_body);
     return {position[0], position[1], position[2]};
   }
@@ -98,7 +98,7 @@ class OdeEngine final : public Engine {
     const double way = *scene_.half_arena + 0.5 * thickness;
     const double length = 2.0 * (*scene_.half_arena + thickness);
     const auto add = [&](double x, double y, double size_x, double size_y) {
-      const dGeomID wall = dCreateBox(space_, size_x, size_y, scene_.wall_height);
+      dGeomID wall = dCreateBox(space_, size_x, size_y, scene_.wall_height);
       dGeomSetPosition(wall, x, y, 0.5 * scene_.wall_height);
       set_surface(wall, scene_.robot.friction, wall_bit, shell_bit, Touch::wall);
     };
@@ -110,7 +110,7 @@ class OdeEngine final : public Engine {
 
   // `z` is the height of its centre of mass.
   dBodyID add_body(const Placement& at, double x, double y, double z) {
-    const dBodyID body = dBodyCreate(world_);
+    dBodyID body = dBodyCreate(world_);
     dBodySetPosition(body, at.x + x * std::cos(at.yaw) - y * std::sin(at.yaw),
                      at.y + x * std::sin(at.yaw) + y * std::cos(at.yaw), z);
     dMatrix3 rotation;
@@ -136,7 +136,7 @@ class OdeEngine final : public Engine {
   }
 
   dJointID add_hinge(dBodyID parent, dBodyID child, double height, const dReal* axis, double max_torque) {
-    const dJointID hinge = dJointCreateHinge(world_, nullptr);
+    dJointID hinge = dJointCreateHinge(world_, nullptr);
     dJointAttach(hinge, child, parent);
     const dReal* position = dBodyGetPosition(child);
     dJointSetHingeAnchor(hinge, position[0], position[1], height);
@@ -148,7 +148,7 @@ class OdeEngine final : public Engine {
 
   dJointID add_wheel(dSpaceID space, dBodyID chassis, const Placement& at, double y) {
     const Robot& robot = scene_.robot;
-    const dBodyID wheel = add_body(at, 0.0, y, robot.wheel_radius);
+    dBodyID wheel = add_body(at, 0.0, y, robot.wheel_radius);
     dMass mass;
     dMassSetSphereTotal(&mass, robot.wheel_mass, robot.wheel_radius);
     dBodySetMass(wheel, &mass);
@@ -160,7 +160,7 @@ class OdeEngine final : public Engine {
   // A space of its own for each robot: its parts are not tested against each other.
   void add_robot(const Placement& at) {
     const Robot& robot = scene_.robot;
-    const dSpaceID space = dSimpleSpaceCreate(space_);
+    dSpaceID space = dSimpleSpaceCreate(space_);
     Body body{};
     const CylinderBody chassis = robot.chassis_without_wheels();
     body.chassis = add_body(at, 0.0, 0.0, chassis.z);
@@ -181,7 +181,7 @@ class OdeEngine final : public Engine {
     body.turret =
         add_hinge(body.chassis, body.turret_body, robot.turret_joint_height, up.data(), robot.max_turret_torque);
     if (scene_.connected && !robots_.empty()) {
-      const dJointID connection = dJointCreateFixed(world_, nullptr);
+      dJointID connection = dJointCreateFixed(world_, nullptr);
       dJointAttach(connection, body.turret_body, robots_.back().turret_body);
       dJointSetFixed(connection);
     }
@@ -196,14 +196,13 @@ class OdeEngine final : public Engine {
   }
 
   void collide(dGeomID a, dGeomID b) {
-    std::array<dContact, most_points> contacts;
-    const int count = dCollide(a, b, most_points, &contacts[0].geom, sizeof(dContact));
+    const int count = dCollide(a, b, most_points, &contacts_[0].geom, sizeof(dContact));
     if (count == 0) return;
     const auto& surface_a = *static_cast<const Surface*>(dGeomGetData(a));
     const auto& surface_b = *static_cast<const Surface*>(dGeomGetData(b));
     const bool on_ground = ((dGeomGetCategoryBits(a) | dGeomGetCategoryBits(b)) & ground_bit) != 0;
     for (int i = 0; i < count; ++i) {
-      dContact& contact = contacts[static_cast<std::size_t>(i)];
+      dContact& contact = contacts_[static_cast<std::size_t>(i)];
       contact.surface = {};
       contact.surface.mode = dContactApprox1;
       contact.surface.mu = std::min(surface_a.friction, surface_b.friction);
@@ -220,7 +219,8 @@ class OdeEngine final : public Engine {
   dSpaceID space_;
   dJointGroupID contact_joints_;
   std::vector<Body> robots_;
-  std::deque<Surface> surfaces_;  // ODE keeps pointers to them
+  std::deque<Surface> surfaces_;                  // ODE keeps pointers to them
+  std::array<dContact, most_points> contacts_{};  // of the pair at hand
   std::vector<Touch> touches_;
 };
 

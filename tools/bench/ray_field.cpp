@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/core/random.hpp"
 #include "tools/bench/scene.hpp"
 
 namespace cohort::bench {
@@ -17,15 +16,10 @@ constexpr CylinderBody turret = Robot{}.turret;
 }  // namespace
 
 RayField::RayField(std::uint32_t robots, double spacing, std::uint64_t seed) {
-  const RandomStream random(seed, "bench", "rays");
-  const auto columns = static_cast<std::uint32_t>(std::ceil(std::sqrt(robots)));
-  const double freedom = 0.5 * (spacing - 2.0 * turret.radius - least_gap);
-  for (std::uint32_t i = 0; i < robots; ++i) {
-    const auto within = [&](std::uint32_t draw) { return freedom * (2.0 * random.uniform(i, draw) - 1.0); };
-    const Eigen::AngleAxisd yaw(2.0 * std::numbers::pi * random.uniform(i, 2), Eigen::Vector3d::UnitZ());
-    poses_.push_back({{spacing * (i % columns) + within(0), spacing * (i / columns) + within(1), turret.z},
-                      Eigen::Quaterniond(yaw)});
-    scene_.add({description::Cylinder{turret.radius, turret.height}, {}, i, true, poses_.back()});
+  for (const Placement& at : in_cells(robots, spacing, 0.5 * (spacing - least_gap) - turret.radius, seed)) {
+    const auto body = static_cast<std::uint32_t>(poses_.size());
+    poses_.push_back({{at.x, at.y, turret.z}, Eigen::Quaterniond(Eigen::AngleAxisd(at.yaw, Eigen::Vector3d::UnitZ()))});
+    scene_.add({description::Cylinder{turret.radius, turret.height}, {}, body, true, poses_.back()});
   }
   scene_.build();
   for (std::size_t ray = 0; ray < rays_a_robot; ++ray) {

@@ -7,7 +7,7 @@
 
 namespace cohort::bench {
 
-/// Turrets on a square grid of points, each up to half the free way beside its point, with 24 rays of 20 cm each.
+/// Turrets in the cells of a square grid, at random but never touching, with 24 rays of 20 cm each.
 class RayField {
  public:
   RayField(std::uint32_t robots, double spacing, std::uint64_t seed);

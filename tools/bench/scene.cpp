@@ -13,20 +13,6 @@ constexpr double gap = 0.002;           // between a robot and the border of its
 constexpr double spread_cell = 2.0;     // two robots at 0.2 m/s meet after 4.7 s at the earliest
 constexpr double chain_spacing = 0.13;  // the turrets do not touch
 
-// A square grid of cells about the origin, each robot anywhere in its own.
-std::vector<Placement> in_cells(std::uint32_t robots, double cell, double freedom, std::uint64_t seed) {
-  const RandomStream random(seed, "bench", "placement");
-  const auto columns = static_cast<std::uint32_t>(std::ceil(std::sqrt(robots)));
-  const double first = -0.5 * cell * (columns - 1);
-  std::vector<Placement> placements;
-  for (std::uint32_t i = 0; i < robots; ++i) {
-    const auto within = [&](std::uint32_t draw) { return freedom * (2.0 * random.uniform(i, draw) - 1.0); };
-    placements.push_back({first + cell * (i % columns) + within(0), first + cell * (i / columns) + within(1),
-                          2.0 * std::numbers::pi * random.uniform(i, 2)});
-  }
-  return placements;
-}
-
 }  // namespace
 
 CylinderBody Robot::chassis_without_wheels() const {
@@ -34,6 +20,20 @@ CylinderBody Robot::chassis_without_wheels() const {
   rest.mass -= 2.0 * wheel_mass;
   rest.z = (chassis.mass * chassis.z - 2.0 * wheel_mass * wheel_radius) / rest.mass;
   return rest;
+}
+
+std::vector<Placement> in_cells(std::uint32_t robots, double cell, double freedom, std::uint64_t seed) {
+  const RandomStream random(seed, "bench", "placement");
+  const auto columns = static_cast<std::uint32_t>(std::ceil(std::sqrt(robots)));
+  const double first = -0.5 * cell * (columns - 1);
+  std::vector<Placement> placements;
+  for (std::uint32_t i = 0; i < robots; ++i) {
+    const std::uint32_t row = i / columns;
+    const auto within = [&](std::uint32_t draw) { return freedom * (2.0 * random.uniform(i, draw) - 1.0); };
+    placements.push_back({first + cell * (i % columns) + within(0), first + cell * row + within(1),
+                          2.0 * std::numbers::pi * random.uniform(i, 2)});
+  }
+  return placements;
 }
 
 Scene crowd(std::uint32_t robots, std::uint64_t seed) {

@@ -68,7 +68,11 @@ struct Scene {
   double wall_height = 0.2;
 };
 
-/// Random places in a square arena of which the robots cover 17 %, one robot in each cell of a grid.
+/// One robot in each cell of a square grid about the origin, at random up to `freedom` from its middle along x and y,
+/// and at a random yaw.
+std::vector<Placement> in_cells(std::uint32_t robots, double cell, double freedom, std::uint64_t seed);
+
+/// Random places in a square arena of which the robots cover 17 %.
 Scene crowd(std::uint32_t robots, std::uint64_t seed);
 /// Without walls, and too far apart to meet within five seconds.
 Scene spread(std::uint32_t robots, std::uint64_t seed);

@@ -121,6 +121,7 @@ description::World describe(const Scene& scene) {
   world.name = "bench";
   world.step = std::chrono::nanoseconds(std::llround(1e9 * scene.step));
   world.gravity = {0.0, 0.0, -scene.gravity};
+  world.physics.strict = true;  // a body that breaks is a result, not a saving
   if (scene.drive == Drive::wheels) world.physics.fidelity = description::Fidelity::articulated;
   place_static(world, description::Plane{}, scene.ground_friction, {});
   if (scene.half_arena) place_walls(world, scene);

@@ -32,6 +32,7 @@ void print_log(std::string_view message, bool fatal) noexcept {
   if (shown || fatal) std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
 }
 
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
 std::atomic<DdsLogReceiver> receive_log_now = &print_log;
 void receive_log(std::string_view message, bool fatal) noexcept { receive_log_now.load()(message, fatal); }
 

@@ -38,13 +38,13 @@ std::string names_of_plugins(const std::vector<fs::path>& directories) {
 fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path>& directories) {
   std::error_code ignored;
   if (is_path(name_or_path)) {
-    const fs::path path = fs::absolute(name_or_path).lexically_normal();
+    fs::path path = fs::absolute(name_or_path).lexically_normal();
     if (fs::is_regular_file(path, ignored)) return path;
     throw std::runtime_error("there is no controller plugin " + path.string());
   }
   std::string tried;
   for (const fs::path& directory : directories) {
-    const fs::path path = (directory / (name_or_path + ".so")).lexically_normal();
+    fs::path path = (directory / (name_or_path + ".so")).lexically_normal();
     if (fs::is_regular_file(path, ignored)) return path;
     tried += (tried.empty() ? "" : ", ") + path.string();
   }

@@ -183,13 +183,26 @@ std::string message_with_value(const sdf::Error& error, int line, const XmlNode&
   return "<" + name + "> cannot have the value '" + found[0]->text + "'";
 }
 
+// Names, each after the readable path of the element that it stands in.
+using PlacedNames = std::set<std::pair<std::string, std::string>>;
+
+// Says what may have been meant. If that is an attribute, it is one of `misspelt` from here on.
+void explain_unknown(const sdf::Error& error, Problem& problem, PlacedNames& misspelt) {
+  const std::string parent(parent_of(problem.element));
+  const std::string name = in_brackets(error.Message());
+  const std::vector<std::string> known = known_names(error, parent);
+  const bool is_attribute = error.Message().starts_with("XML Attribute");
+  problem.message = std::string(is_attribute ? "unknown attribute" : "unknown element") + suggestion(name, known);
+  if (const auto meant = nearest(name, known); meant && is_attribute) misspelt.emplace(parent, *meant);
+}
+
 }  // namespace
 
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file) {
   std::vector<Problem> problems;
-  std::set<std::pair<std::string, std::string>> named;  // places, and the names that are wrong there
+  PlacedNames named;     // those that are wrong
+  PlacedNames misspelt;  // attributes that others were taken for
   std::string last_path;
-  std::set<std::pair<std::string, std::string>> misspelt;  // elements, and their attributes that others were taken for
   for (const sdf::Error& error : errors) {
     if (is_said_by_us(error)) continue;
     const std::string path = error.XmlPath().value_or("");
@@ -199,12 +212,7 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
 
     Problem problem{file.shown, error.LineNumber().value_or(0), readable_path(path), readable_message(error)};
     if (is_unknown(error)) {
-      const std::string parent(parent_of(problem.element));
-      const std::string name = in_brackets(error.Message());
-      const std::vector<std::string> known = known_names(error, parent);
-      const bool is_attribute = error.Message().starts_with("XML Attribute");
-      problem.message = std::string(is_attribute ? "unknown attribute" : "unknown element") + suggestion(name, known);
-      if (const auto meant = nearest(name, known); meant && is_attribute) misspelt.emplace(parent, *meant);
+      explain_unknown(error, problem, misspelt);
     } else if (is_missing_attribute(error)) {
       const std::string name = in_brackets(error.Message());
       if (misspelt.contains({problem.element, name})) continue;

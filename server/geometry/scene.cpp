@@ -38,6 +38,11 @@ void Scene::build() {
   update();
 }
 
+void Scene::remove(std::uint32_t index) {
+  std::erase(moving_, index);
+  update();
+}
+
 void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
   solids_[index].X_WC = X_WC;
   X_CW_[index] = X_WC.inverse();

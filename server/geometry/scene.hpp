@@ -33,8 +33,10 @@ class Scene {
 
   /// Adds a solid; `build` must follow before the first query. Returns its index.
   std::uint32_t add(Solid solid);
-  /// Chooses the cell size and sorts what does not move. Once, after the last `add`.
+  /// Chooses the cell size and sorts what does not move. After the last `add`; again if more are added later.
   void build();
+  /// Takes a solid that moves out of all further queries. Its index is never used again.
+  void remove(std::uint32_t index);
 
   std::size_t size() const { return solids_.size(); }
   const Solid& solid(std::uint32_t index) const { return solids_[index]; }

@@ -47,7 +47,7 @@ class LatencyHistogram {
     return ((bucket % 32 + 33) << shift) - 1;
   }
 
-  std::array<std::uint64_t, 32 * 60> counts_{};
+  std::array<std::uint64_t, std::size_t{32} * 60> counts_{};
   std::uint64_t total_ = 0;
   Duration max_{0};
 };

@@ -1,17 +1,14 @@
 #pragma once
 
-// Bullet's headers, and the way between its types and Eigen's. Private to server/physics.
+// Bullet's headers, and the way from Eigen's types to its own and back. Private to server/physics.
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wpedantic"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
-#include <BulletDynamics/Featherstone/btMultiBody.h>
-#include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
-#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
-#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
-#include <btBulletDynamicsCommon.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigLCP.h>
+#include <btBulletCollisionCommon.h>
 #pragma GCC diagnostic pop
 
 #include "server/core/pose.hpp"
@@ -25,6 +22,5 @@ inline btTransform to_bullet(const Pose& pose) {
 }
 
 inline Eigen::Vector3d to_eigen(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-inline Eigen::Quaterniond to_eigen(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 }  // namespace cohort::physics

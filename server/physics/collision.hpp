@@ -1,49 +1,58 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "server/core/worker_pool.hpp"
 #include "server/geometry/scene.hpp"
-#include "server/physics/bullet.hpp"
+#include "server/physics/bullet_contact.hpp"
 
 namespace cohort::physics {
 
-/// Contact manifolds between the solids of a scene. Keeps Bullet's algorithm for each pair of solids that are near each
-/// other, as long as they are; pairs and manifolds are always in the order of the solids' indices, so nothing depends
-/// on the number of workers or on what was near before.
+/// Two solids that are near each other. `a` moves; if both do, it has the lower index.
+struct SolidPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  ContactPoints contact;
+  std::optional<BulletContact> general;  ///< where there is no closed form
+};
+
+/// Finds where the solids of a scene touch. Pairs are in the order of `a`, then of `b`, so nothing depends on the
+/// number of workers or on what was near before.
 class Collision {
  public:
-  /// `objects[i]` is Bullet's object for solid i of the scene; both must outlive this.
-  Collision(const geometry::Scene& scene, std::span<btCollisionObject* const> objects);
-  ~Collision();
+  /// Says whether two solids of one body may touch each other.
+  using MayTouch = std::function<bool(std::uint32_t, std::uint32_t)>;
 
-  /// Finds near pairs and their contact points for the objects' current transforms.
-  void detect(WorkerPool& workers, double step);
+  /// The scene must outlive this.
+  Collision(const geometry::Scene& scene, MayTouch may_touch);
 
-  struct PairContact {
-    std::uint32_t solid_a;
-    std::uint32_t solid_b;
-    btPersistentManifold* manifold;  ///< has at least one point; body 0 is one of the two solids' object
-  };
-  std::span<const PairContact> contacts() const { return contacts_; }
+  /// Solids in the order of the scene, each with Bullet's shape as `make_bullet_shape` gives it.
+  void add(std::shared_ptr<const BulletShape> shape);
+  /// Forgets a solid that is no longer in the scene.
+  void remove(std::uint32_t solid);
+
+  /// Finds near pairs and their contact points for the present poses. Points that were there before keep their
+  /// impulses.
+  void detect(WorkerPool& workers);
+
+  /// The pairs that solid `a` reports.
+  std::span<SolidPair> pairs_of(std::uint32_t solid) { return pairs_[solid]; }
+  std::span<const SolidPair> pairs_of(std::uint32_t solid) const { return pairs_[solid]; }
 
  private:
-  struct Pair;
-  class Dispatcher;
-
-  void find_pairs(WorkerPool& workers);
-  void narrow(Pair& pair, const btDispatcherInfo& info);
+  void find_pairs(std::uint32_t solid, std::vector<std::uint32_t>& near);
+  void find_contact(SolidPair& pair);
 
   const geometry::Scene& scene_;
-  std::span<btCollisionObject* const> objects_;
+  std::vector<std::shared_ptr<const BulletShape>> shapes_;
+  MayTouch may_touch_;
+  BulletNarrowPhase narrow_phase_;
   std::vector<std::uint32_t> moving_;
-  std::unique_ptr<btCollisionConfiguration> configuration_;
-  std::unique_ptr<Dispatcher> dispatcher_;
-  std::vector<Pair> pairs_;                        // ascending
-  std::vector<std::vector<std::uint64_t>> found_;  // for each moving solid, keys of its pairs
-  std::vector<PairContact> contacts_;
+  std::vector<std::vector<SolidPair>> pairs_;  // by solid, ascending b
 };
 
 }  // namespace cohort::physics

@@ -1,8 +1,14 @@
 #include "server/physics/islands.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace cohort::physics {
+
+void Islands::reset(std::uint32_t count) {
+  root_.resize(count);
+  std::iota(root_.begin(), root_.end(), 0u);
+}
 
 std::uint32_t Islands::find(std::uint32_t member) {
   while (root_[member] != member) {
@@ -12,33 +18,31 @@ std::uint32_t Islands::find(std::uint32_t member) {
   return member;
 }
 
-void Islands::build(std::uint32_t count, std::span<const std::pair<std::uint32_t, std::uint32_t>> links,
-                    std::uint32_t batch_size) {
-  root_.resize(count);
-  std::iota(root_.begin(), root_.end(), 0u);
-  for (const auto& [a, b] : links) {
-    const std::uint32_t root_a = find(a);
-    const std::uint32_t root_b = find(b);
-    root_[std::max(root_a, root_b)] = std::min(root_a, root_b);
-  }
-  size_.assign(count, 0);
+void Islands::link(std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t root_a = find(a);
+  const std::uint32_t root_b = find(b);
+  root_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+}
+
+void Islands::finish() {
+  const auto count = static_cast<std::uint32_t>(root_.size());
+  island_.resize(count);
+  begin_.assign(1, 0);
+  // A root is the least of its island, so it comes before its members.
   for (std::uint32_t member = 0; member < count; ++member) {
     root_[member] = find(member);
-    ++size_[root_[member]];
-  }
-
-  batch_.resize(count);
-  batch_count_ = 0;
-  std::uint32_t filled = 0;
-  for (std::uint32_t member = 0; member < count; ++member) {
-    if (root_[member] != member) continue;
-    if (batch_count_ == 0 || filled + size_[member] > batch_size) {
-      ++batch_count_;
-      filled = 0;
+    if (root_[member] == member) {
+      island_[member] = static_cast<std::uint32_t>(begin_.size()) - 1;
+      begin_.push_back(0);
     }
-    filled += size_[member];
-    batch_[member] = batch_count_ - 1;
+    ++begin_[island_[root_[member]] + 1];
   }
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  members_.resize(count);
+  std::vector<std::uint32_t>& fill = island_;  // from here on, by root: where the next member goes
+  for (std::uint32_t member = 0; member < count; ++member)
+    if (root_[member] == member) fill[member] = begin_[fill[member]];
+  for (std::uint32_t member = 0; member < count; ++member) members_[fill[root_[member]]++] = member;
 }
 
 }  // namespace cohort::physics

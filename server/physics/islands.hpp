@@ -2,29 +2,34 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace cohort::physics {
 
-/// Groups of things that touch, packed into batches for the solver. What is in a batch depends on the links alone:
-/// islands in the order of their least member, filled up to `batch_size` members.
+/// Groups of things that touch, directly or through others. What an island is depends on the links alone, not on their
+/// order.
 class Islands {
  public:
-  /// Joins linked members of [0, count). Then `batch_of` and `batch_count` hold.
-  void build(std::uint32_t count, std::span<const std::pair<std::uint32_t, std::uint32_t>> links,
-             std::uint32_t batch_size);
+  /// Begins anew, with every member of [0, count) on its own.
+  void reset(std::uint32_t count);
+  void link(std::uint32_t a, std::uint32_t b);
+  /// After the last link: sorts the members.
+  void finish();
 
-  std::uint32_t batch_of(std::uint32_t member) const { return batch_[root_[member]]; }
-  std::uint32_t batch_count() const { return batch_count_; }
+  /// Islands are in the order of their least members.
+  std::uint32_t count() const { return static_cast<std::uint32_t>(begin_.size()) - 1; }
+  /// Ascending.
+  std::span<const std::uint32_t> members(std::uint32_t island) const {
+    return {members_.data() + begin_[island], members_.data() + begin_[island + 1]};
+  }
 
  private:
   std::uint32_t find(std::uint32_t member);
 
-  std::vector<std::uint32_t> root_;  // least member of its island
-  std::vector<std::uint32_t> size_;
-  std::vector<std::uint32_t> batch_;
-  std::uint32_t batch_count_ = 0;
+  std::vector<std::uint32_t> root_;    // a lower member of the same island, or itself
+  std::vector<std::uint32_t> island_;  // by root
+  std::vector<std::uint32_t> begin_{0};
+  std::vector<std::uint32_t> members_;
 };
 
 }  // namespace cohort::physics

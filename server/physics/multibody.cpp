@@ -1,220 +1,243 @@
 #include "server/physics/multibody.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "server/physics/rotation.hpp"
 
 namespace cohort::physics {
 namespace {
 
-struct PrincipalInertia {
-  Eigen::Vector3d moments;
-  Eigen::Quaterniond q_IB;  // the principal axes in the inertial frame
-};
-
-PrincipalInertia principal(const Eigen::Matrix3d& inertia) {
-  if (inertia.isDiagonal(0.0)) return {inertia.diagonal(), Eigen::Quaterniond::Identity()};
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
-  Eigen::Matrix3d axes = solver.eigenvectors();
-  if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
-  return {solver.eigenvalues(), Eigen::Quaterniond(axes)};
+Eigen::Quaterniond ball_rotation(const double* coordinates) {
+  return {coordinates[3], coordinates[0], coordinates[1], coordinates[2]};
 }
 
 }  // namespace
 
-Multibody::Multibody(const description::Model& model, const Pose& X_WM, std::uint32_t body,
-                     const geometry::Scene& scene)
-    : model_(&model), body_(body), handle_(nullptr, -1) {
-  build_links(X_WM);
-  handle_.m_multiBody = multibody_.get();
-  multibody_->setBaseCollider(&handle_);
-  build_devices(scene);
+Multibody::Multibody(const Mechanism& mechanism, const Pose& X_WM, std::uint32_t body)
+    : mechanism_(&mechanism),
+      body_(body),
+      X_WM_(X_WM),
+      coordinates_(mechanism.zero_coordinates()),
+      velocities_(static_cast<std::size_t>(mechanism.dof_count()), 0.0),
+      X_WS_(mechanism.segments().size()),
+      joints_(mechanism) {
+  const Segment& root = mechanism.segments()[0];
+  const Pose X_WS = X_WM * root.X_PS;
+  root_rotation_ = X_WS.orientation;
+  reference_W_ = mechanism.has_free_root() ? X_WS * root.centre_S : X_WS.position;
+  update_poses();
+  build_devices();
 }
 
-void Multibody::build_links(const Pose& X_WM) {
-  const std::vector<description::Link>& links = model_->links;
-  std::vector<btVector3> moments;
-  for (const description::Link& link : links) {
-    const PrincipalInertia inertia = principal(link.inertial.inertia);
-    X_LB_.push_back(link.inertial.X_LI * Pose{Eigen::Vector3d::Zero(), inertia.q_IB});
-    moments.push_back(to_bullet(inertia.moments));
-  }
-  const auto X_MB = [&](std::size_t link) { return links[link].X_ML * X_LB_[link]; };
-
-  const bool fixed_base = false;
-  const bool can_sleep = false;
-  multibody_ = std::make_unique<btMultiBody>(static_cast<int>(links.size()) - 1, links[0].inertial.mass, moments[0],
-                                             fixed_base, can_sleep);
-  multibody_->setLinearDamping(0.0);
-  multibody_->setAngularDamping(0.0);
-  multibody_->setHasSelfCollision(false);
-  multibody_->setUseGyroTerm(true);
-  multibody_->setMaxCoordinateVelocity(1000.0);
-
-  for (const description::Joint& joint : model_->joints) {
-    const Pose X_BL_child = X_LB_[joint.child].inverse();
-    const Pose X_BpB = X_MB(joint.parent).inverse() * X_MB(joint.child);
-    const Eigen::Vector3d pivot_B = X_BL_child * joint.X_LJ.position;
-    const Eigen::Vector3d axis_B = X_BL_child.orientation * (joint.X_LJ.orientation * joint.axis.direction);
-    const int link = bullet_link(joint.child);
-    const int parent = bullet_link(joint.parent);
-    const double mass = links[joint.child].inertial.mass;
-    const btVector3& inertia = moments[joint.child];
-    const btQuaternion parent_to_child = to_bullet(X_BpB.orientation.conjugate());
-    const btVector3 parent_to_pivot = to_bullet(X_BpB * pivot_B);
-    const btVector3 pivot_to_child = to_bullet(-pivot_B);
-    switch (joint.type) {
-      case description::JointType::fixed:
-        multibody_->setupFixed(link, mass, inertia, parent, parent_to_child, parent_to_pivot, pivot_to_child);
-        break;
-      case description::JointType::revolute:
-        multibody_->setupRevolute(link, mass, inertia, parent, parent_to_child, to_bullet(axis_B), parent_to_pivot,
-                                  pivot_to_child, true);
-        break;
-      case description::JointType::prismatic:
-        multibody_->setupPrismatic(link, mass, inertia, parent, parent_to_child, to_bullet(axis_B), parent_to_pivot,
-                                   pivot_to_child, true);
-        break;
-      case description::JointType::ball:
-      case description::JointType::universal:
-        throw std::invalid_argument("joint '" + joint.name + "' is of a type that is not simulated");
+void Multibody::build_devices() {
+  const description::Model& model = mechanism_->model();
+  drives_.resize(model.devices.size());
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    if (const auto* motor = std::get_if<description::VelocityMotor>(&model.devices[device])) {
+      if (mechanism_->joint(motor->joint).dofs == 0)
+        throw std::invalid_argument("motor '" + motor->name + "' drives the fixed joint '" +
+                                    model.joints[motor->joint].name + "'");
+      add_motor(mechanism_->joint(motor->joint).first_dof, motor->max_effort, motor->name);
+    } else if (const auto* drive = std::get_if<description::TreelDrive>(&model.devices[device])) {
+      add_drive(device, *drive);
     }
   }
-  multibody_->finalizeMultiDof();
-
-  const Pose X_WB = X_WM * X_MB(0);
-  multibody_->setBasePos(to_bullet(X_WB.position));
-  multibody_->setWorldToBaseRot(to_bullet(X_WB.orientation.conjugate()));
-  Scratch scratch;
-  multibody_->forwardKinematics(scratch.rotations, scratch.vectors);
 }
 
-void Multibody::build_devices(const geometry::Scene& scene) {
-  motors_.resize(model_->joints.size());
-  drives_.resize(model_->devices.size());
-  for (const description::Joint& joint : model_->joints) {
-    if (joint.type == description::JointType::fixed || !(std::isfinite(joint.axis.lower) || std::isfinite(joint.axis.upper)))
+void Multibody::add_motor(int dof, double max_effort, const std::string& device) {
+  if (joints_.has_motor(dof))
+    throw std::invalid_argument("motor '" + device + "' drives a joint that has a motor already");
+  joints_.add_motor(dof, max_effort);
+}
+
+void Multibody::add_drive(std::size_t device, const description::TreelDrive& drive) {
+  const description::Model& model = mechanism_->model();
+  if (mechanism_->link(drive.link).segment != 0)
+    throw std::invalid_argument("treel drive '" + drive.name + "' is not on the root link '" + model.links[0].name +
+                                "'");
+  if (!mechanism_->has_wheels() || (drive.left_wheels.empty() && drive.right_wheels.empty())) {
+    drives_[device].treel = static_cast<int>(treels_.size());
+    treels_.emplace_back(drive, mechanism_->link(drive.link).X_SL);
+    return;
+  }
+  drives_[device].wheels = static_cast<int>(wheels_.size());
+  WheelDrive& wheels = wheels_.emplace_back();
+  wheels.radius = drive.wheel_radius;
+  for (const Side side : {Side::left, Side::right}) {
+    const auto s = static_cast<std::size_t>(side);
+    const std::vector<std::size_t>& joints = side == Side::left ? drive.left_wheels : drive.right_wheels;
+    for (const std::size_t joint : joints) {
+      const Mechanism::JointPlace& place = mechanism_->joint(joint);
+      const Segment& wheel = mechanism_->segments()[static_cast<std::size_t>(place.segment)];
+      const Eigen::Vector3d axis = wheel.X_PS.orientation * wheel.axis_S;
+      add_motor(place.first_dof, drive.max_torque / static_cast<double>(joints.size()), drive.name);
+      wheels.dofs[s].push_back(place.first_dof);
+      wheels.senses[s].push_back(axis.y() < 0.0 ? -1.0 : 1.0);
+    }
+  }
+}
+
+void Multibody::update_poses() {
+  for (std::size_t s = 0; s < X_WS_.size(); ++s) {
+    const Segment& segment = mechanism_->segments()[s];
+    if (segment.motion == Motion::free) {
+      X_WS_[s] = {reference_W_ - root_rotation_ * segment.centre_S, root_rotation_};
       continue;
-    limits_.push_back(
-        std::make_unique<JointLimit>(multibody_.get(), bullet_link(joint.child), joint.axis.lower, joint.axis.upper));
-    constraints_.push_back(limits_.back().get());
-  }
-  for (std::size_t device = 0; device < model_->devices.size(); ++device) {
-    if (const auto* motor = std::get_if<description::VelocityMotor>(&model_->devices[device])) {
-      const description::Joint& joint = model_->joints[motor->joint];
-      if (joint.type == description::JointType::fixed)
-        throw std::invalid_argument("motor '" + motor->name + "' drives the fixed joint '" + joint.name + "'");
-      if (motors_[motor->joint])
-        throw std::invalid_argument("motor '" + motor->name + "' drives the joint '" + joint.name +
-                                    "', which has a motor already");
-      motors_[motor->joint] =
-          std::make_unique<JointMotor>(multibody_.get(), bullet_link(joint.child), motor->max_effort);
-      constraints_.push_back(motors_[motor->joint].get());
-    } else if (const auto* drive = std::get_if<description::TreelDrive>(&model_->devices[device])) {
-      if (drive->link != 0)
-        throw std::invalid_argument("treel drive '" + drive->name + "' is not on the root link '" +
-                                    model_->links[0].name + "'");
-      drives_[device] = std::make_unique<TreelDrive>(multibody_.get(), body_, *drive, X_LB_[0].inverse(), scene);
-      constraints_.push_back(drives_[device].get());
     }
+    const Pose& X_WP = segment.parent < 0 ? X_WM_ : X_WS_[static_cast<std::size_t>(segment.parent)];
+    Pose X_WS = X_WP * segment.X_PS;
+    const double* coordinates = coordinates_.data() + segment.first_coordinate;
+    switch (segment.motion) {
+      case Motion::free:
+      case Motion::anchored: break;
+      case Motion::revolute: X_WS.orientation *= rotation_about(segment.axis_S, coordinates[0]); break;
+      case Motion::prismatic: X_WS.position += coordinates[0] * (X_WS.orientation * segment.axis_S); break;
+      case Motion::ball: X_WS.orientation *= ball_rotation(coordinates); break;
+    }
+    X_WS_[s] = X_WS;
   }
+  if (!mechanism_->has_free_root()) reference_W_ = X_WS_[0].position;
 }
 
-Pose Multibody::bullet_link_pose(std::size_t link) const {
-  if (link == 0) return {to_eigen(multibody_->getBasePos()), to_eigen(multibody_->getWorldToBaseRot()).conjugate()};
-  const btTransform& X_WB = multibody_->getLink(bullet_link(link)).m_cachedWorldTransform;
-  return {to_eigen(X_WB.getOrigin()), to_eigen(X_WB.getRotation())};
+Pose Multibody::link_pose(std::size_t link) const {
+  const Mechanism::LinkPlace& place = mechanism_->link(link);
+  return segment_pose(place.segment) * place.X_SL;
 }
-
-Pose Multibody::link_pose(std::size_t link) const { return bullet_link_pose(link) * X_LB_[link].inverse(); }
 
 Twist Multibody::link_twist(std::size_t link) const {
-  // Down the chain from the root: each joint adds its own motion to its parent's.
-  if (link == 0) {
-    const Eigen::Vector3d angular = to_eigen(multibody_->getBaseOmega());
-    const Eigen::Vector3d arm = link_pose(0).position - to_eigen(multibody_->getBasePos());
-    return {angular, to_eigen(multibody_->getBaseVel()) + angular.cross(arm)};
+  const Mechanism::LinkPlace& place = mechanism_->link(link);
+  const Eigen::Vector3d origin_W = link_pose(link).position;
+  Twist twist{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  // From the link to the root: each joint adds what it does to the link's origin.
+  for (int s = place.segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
+    const Segment& segment = mechanism_->segments()[static_cast<std::size_t>(s)];
+    const Pose& X_WS = segment_pose(s);
+    const double* v = velocities_.data() + segment.first_dof;
+    Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();
+    Eigen::Vector3d pivot_W = X_WS.position;
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free:
+        angular_W = {v[0], v[1], v[2]};
+        pivot_W = reference_W_;
+        twist.linear_W += Eigen::Vector3d(v[3], v[4], v[5]);
+        break;
+      case Motion::revolute: angular_W = v[0] * (X_WS.orientation * segment.axis_S); break;
+      case Motion::prismatic: twist.linear_W += v[0] * (X_WS.orientation * segment.axis_S); break;
+      case Motion::ball: angular_W = X_WS.orientation * Eigen::Vector3d(v[0], v[1], v[2]); break;
+    }
+    twist.angular_W += angular_W;
+    twist.linear_W += angular_W.cross(origin_W - pivot_W);
   }
-  for (std::size_t j = 0; j < model_->joints.size(); ++j) {
-    const description::Joint& joint = model_->joints[j];
-    if (joint.child != link) continue;
-    const Twist parent = link_twist(joint.parent);
-    const Pose X_WL = link_pose(link);
-    const Pose X_WJ = X_WL * joint.X_LJ;
-    const Eigen::Vector3d axis_W = X_WJ.orientation * joint.axis.direction;
-    const double velocity = joint_velocity(j);
-    const bool turns = joint.type == description::JointType::revolute;
-    const Eigen::Vector3d relative_angular = turns ? Eigen::Vector3d(velocity * axis_W) : Eigen::Vector3d::Zero();
-    const Eigen::Vector3d relative_linear = joint.type == description::JointType::prismatic
-                                                ? Eigen::Vector3d(velocity * axis_W)
-                                                : relative_angular.cross(X_WL.position - X_WJ.position);
-    const Eigen::Vector3d arm = X_WL.position - link_pose(joint.parent).position;
-    return {parent.angular_W + relative_angular, parent.linear_W + parent.angular_W.cross(arm) + relative_linear};
-  }
-  throw std::logic_error("link without a joint");  // the description sees to it that there is none
+  return twist;
 }
 
 double Multibody::joint_position(std::size_t joint) const {
-  if (model_->joints[joint].type == description::JointType::fixed) return 0.0;
-  return multibody_->getJointPosMultiDof(bullet_link(model_->joints[joint].child))[0];
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  return place.dofs == 0 ? 0.0 : coordinates_[static_cast<std::size_t>(place.first_coordinate)];
 }
 
 double Multibody::joint_velocity(std::size_t joint) const {
-  if (model_->joints[joint].type == description::JointType::fixed) return 0.0;
-  return multibody_->getJointVelMultiDof(bullet_link(model_->joints[joint].child))[0];
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  return place.dofs == 0 ? 0.0 : velocities_[static_cast<std::size_t>(place.first_dof)];
 }
 
-void Multibody::apply_forces(const Eigen::Vector3d& gravity, double step, Scratch& scratch) {
-  const btVector3 g = to_bullet(gravity);
-  multibody_->clearForcesAndTorques();
-  multibody_->clearConstraintForces();
-  multibody_->addBaseForce(g * multibody_->getBaseMass());
-  for (int link = 0; link < multibody_->getNumLinks(); ++link)
-    multibody_->addLinkForce(link, g * multibody_->getLinkMass(link));
-  for (std::size_t j = 0; j < model_->joints.size(); ++j)
-    if (model_->joints[j].axis.damping != 0.0)
-      multibody_->addJointTorque(bullet_link(model_->joints[j].child), -model_->joints[j].axis.damping * joint_velocity(j));
-  const bool constraint_pass = false;
-  const bool feedback_in_world = false;
-  const bool feedback_in_joint_frame = false;
-  multibody_->computeAccelerationsArticulatedBodyAlgorithmMultiDof(step, scratch.scalars, scratch.vectors,
-                                                                   scratch.matrices, constraint_pass, feedback_in_world,
-                                                                   feedback_in_joint_frame);
+void Multibody::set_root_twist(const Twist& twist) {
+  const Eigen::Vector3d to_reference_W = reference_W_ - link_pose(0).position;
+  const Eigen::Vector3d linear_W = twist.linear_W + twist.angular_W.cross(to_reference_W);
+  for (std::size_t i = 0; i < 3; ++i) {
+    velocities_[i] = twist.angular_W[static_cast<Eigen::Index>(i)];
+    velocities_[3 + i] = linear_W[static_cast<Eigen::Index>(i)];
+  }
 }
 
-bool Multibody::integrate(double step, Scratch& scratch) {
-  multibody_->processDeltaVeeMultiDof2();
-  const double* velocities = multibody_->getVelocityVector();
-  double sum = 0.0;
-  for (int i = 0; i < 6 + multibody_->getNumDofs(); ++i) sum += velocities[i];
-  if (!std::isfinite(sum)) return false;
-  for (const auto& drive : drives_)
-    if (drive) drive->advance_tracks(step);
-  multibody_->stepPositionsMultiDof(step);
-  multibody_->forwardKinematics(scratch.rotations, scratch.vectors);
-  return true;
+void Multibody::set_joint_state(std::size_t joint, std::span<const double> coordinates,
+                                std::span<const double> velocities) {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  std::copy(coordinates.begin(), coordinates.end(), coordinates_.begin() + place.first_coordinate);
+  std::copy(velocities.begin(), velocities.end(), velocities_.begin() + place.first_dof);
+  update_poses();
+}
+
+void Multibody::set_joint_velocity_target(std::size_t joint, double velocity) {
+  joints_.set_target(mechanism_->joint(joint).first_dof, velocity);
+}
+
+void Multibody::set_track_velocity_target(std::size_t device, Side side, double velocity) {
+  const Drive& drive = drives_[device];
+  if (drive.treel >= 0) {
+    treels_[static_cast<std::size_t>(drive.treel)].set_target(side, velocity);
+    return;
+  }
+  const WheelDrive& wheels = wheels_[static_cast<std::size_t>(drive.wheels)];
+  const auto s = static_cast<std::size_t>(side);
+  for (std::size_t i = 0; i < wheels.dofs[s].size(); ++i)
+    joints_.set_target(wheels.dofs[s][i], wheels.senses[s][i] * velocity / wheels.radius);
+}
+
+TrackState Multibody::track(std::size_t device, Side side) const {
+  const Drive& drive = drives_[device];
+  if (drive.treel >= 0) return treels_[static_cast<std::size_t>(drive.treel)].track(side);
+  // Wheels of one side turn alike but for slip: their mean.
+  const WheelDrive& wheels = wheels_[static_cast<std::size_t>(drive.wheels)];
+  const auto s = static_cast<std::size_t>(side);
+  TrackState state;
+  for (std::size_t i = 0; i < wheels.dofs[s].size(); ++i) {
+    const int dof = wheels.dofs[s][i];
+    const double sense = wheels.senses[s][i];
+    const auto coordinate = static_cast<std::size_t>(mechanism_->dofs()[static_cast<std::size_t>(dof)].coordinate);
+    state.position += sense * coordinates_[coordinate] * wheels.radius;
+    state.velocity += sense * velocities_[static_cast<std::size_t>(dof)] * wheels.radius;
+    if (last_step_ > 0.0) state.traction += sense * joints_.motor_impulse(dof) / last_step_ / wheels.radius;
+  }
+  if (const auto count = static_cast<double>(wheels.dofs[s].size()); count > 0.0) {
+    state.position /= count;
+    state.velocity /= count;
+  }
+  return state;
+}
+
+void Multibody::add_rows(Problem& problem, int index, const Anchors& anchors, double step) {
+  joints_.add_rows(problem, index, *this, step);
+  for (TreelDrive& treel : treels_) treel.add_rows(problem, index, anchors, step);
+}
+
+void Multibody::integrate(const double* velocities, double step) {
+  std::copy_n(velocities, velocities_.size(), velocities_.begin());
+  last_step_ = step;
+  for (const Segment& segment : mechanism_->segments()) {
+    const double* v = velocities_.data() + segment.first_dof;
+    double* coordinates = coordinates_.data() + segment.first_coordinate;
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free:
+        root_rotation_ = (rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2])) * root_rotation_).normalized();
+        reference_W_ += step * Eigen::Vector3d(v[3], v[4], v[5]);
+        break;
+      case Motion::revolute:
+      case Motion::prismatic: coordinates[0] += step * v[0]; break;
+      case Motion::ball: {
+        const Eigen::Quaterniond turned =
+            (ball_rotation(coordinates) * rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]))).normalized();
+        for (int i = 0; i < 4; ++i) coordinates[i] = turned.coeffs()[i];  // x y z w
+        break;
+      }
+    }
+  }
+  update_poses();
 }
 
 void Multibody::hash(StateHash& hash) const {
-  const btVector3& position = multibody_->getBasePos();
-  const btQuaternion& rotation = multibody_->getWorldToBaseRot();
-  for (int i = 0; i < 3; ++i) hash.add(position[i]);
-  for (int i = 0; i < 4; ++i) hash.add(rotation[i]);
-  for (int i = 0; i < 6 + multibody_->getNumDofs(); ++i) hash.add(multibody_->getVelocityVector()[i]);
-  for (std::size_t joint = 0; joint < motors_.size(); ++joint) {
-    hash.add(joint_position(joint));
-    if (motors_[joint]) hash.add(motors_[joint]->target());
+  if (mechanism_->has_free_root()) {
+    for (int i = 0; i < 3; ++i) hash.add(reference_W_[i]);
+    for (int i = 0; i < 4; ++i) hash.add(root_rotation_.coeffs()[i]);
   }
-  for (const auto& drive : drives_) {
-    if (!drive) continue;
-    for (const Side side : {Side::left, Side::right}) {
-      hash.add(drive->target(side));
-      hash.add(drive->track(side).position);
-      hash.add(drive->track(side).velocity);
-    }
-  }
-  for (btMultiBodyConstraint* constraint : constraints_)
-    for (int row = 0; row < constraint->getNumRows(); ++row) hash.add(constraint->getAppliedImpulse(row));
+  for (const double coordinate : coordinates_) hash.add(coordinate);
+  for (const double velocity : velocities_) hash.add(velocity);
+  joints_.hash(hash);
+  for (const TreelDrive& treel : treels_) treel.hash(hash);
 }
 
 }  // namespace cohort::physics

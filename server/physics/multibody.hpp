@@ -1,80 +1,94 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <memory>
-#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "server/description/world.hpp"
+#include "server/core/hash.hpp"
 #include "server/geometry/scene.hpp"
-#include "server/physics/bullet.hpp"
-#include "server/physics/joint_limit.hpp"
-#include "server/physics/joint_motor.hpp"
+#include "server/physics/joint_rows.hpp"
+#include "server/physics/mechanism.hpp"
 #include "server/physics/treel_drive.hpp"
+#include "server/physics/world.hpp"
 
 namespace cohort::physics {
 
-/// Scratch memory of one worker.
-struct Scratch {
-  btAlignedObjectArray<btQuaternion> rotations;
-  btAlignedObjectArray<btVector3> vectors;
-  btAlignedObjectArray<btScalar> scalars;
-  btAlignedObjectArray<btMatrix3x3> matrices;
-};
-
-/// One instance of a model that moves: Bullet's multibody, with the constraints of its devices.
+/// One instance of a model that moves: its state, and the devices that drive it.
 class Multibody {
  public:
-  /// Throws std::invalid_argument for a model that cannot be simulated.
-  Multibody(const description::Model& model, const Pose& X_WM, std::uint32_t body, const geometry::Scene& scene);
+  /// The mechanism is shared and must outlive this; X_WM places the model with all its joints at zero. Throws
+  /// std::invalid_argument for a device that cannot be simulated.
+  Multibody(const Mechanism& mechanism, const Pose& X_WM, std::uint32_t body);
   Multibody(const Multibody&) = delete;
   Multibody& operator=(const Multibody&) = delete;
 
-  const description::Model& model() const { return *model_; }
-  btMultiBody& bullet() { return *multibody_; }
+  const Mechanism& mechanism() const { return *mechanism_; }
   std::uint32_t body() const { return body_; }
 
+  // The state: what decides how the body goes on.
+  const double* coordinates() const { return coordinates_.data(); }
+  const double* velocities() const { return velocities_.data(); }
+  /// Where the spatial velocities of this body are taken: the centre of mass of the root segment, or the origin of a
+  /// root that is tied to the world [m].
+  const Eigen::Vector3d& reference_W() const { return reference_W_; }
+
+  const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
   Pose link_pose(std::size_t link) const;  ///< X_WL
   Twist link_twist(std::size_t link) const;
   double joint_position(std::size_t joint) const;
   double joint_velocity(std::size_t joint) const;
 
-  /// Null if the joint has no motor or the device is no drive.
-  JointMotor* motor(std::size_t joint) { return motors_[joint].get(); }
-  const JointMotor* motor(std::size_t joint) const { return motors_[joint].get(); }
-  TreelDrive* drive(std::size_t device) { return drives_[device].get(); }
-  const TreelDrive* drive(std::size_t device) const { return drives_[device].get(); }
+  void set_root_twist(const Twist& twist);
+  void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
 
-  /// All constraints of this body, in a fixed order.
-  const std::vector<btMultiBodyConstraint*>& constraints() const { return constraints_; }
-  /// Stands for the body in Bullet's solver; no part of the collision.
-  btCollisionObject* handle() { return &handle_; }
+  /// The joint has to have a motor.
+  void set_joint_velocity_target(std::size_t joint, double velocity);
+  /// The device has to be a treel drive.
+  void set_track_velocity_target(std::size_t device, Side side, double velocity);
+  TrackState track(std::size_t device, Side side) const;
 
-  /// Applies gravity and damping and takes the forces into the velocities.
-  void apply_forces(const Eigen::Vector3d& gravity, double step, Scratch& scratch);
-  /// Takes the solver's impulses into the velocities and the velocities into the positions. False if the state is no
-  /// longer finite.
-  bool integrate(double step, Scratch& scratch);
+  /// Those drives that stand on tracks, not on wheels.
+  std::vector<TreelDrive>& treels() { return treels_; }
+  const std::vector<TreelDrive>& treels() const { return treels_; }
 
+  /// Adds the rows of joints and drives; `index`: of this body in the problem.
+  void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
+  /// Takes the velocities that the solver found and moves the body by them.
+  void integrate(const double* velocities, double step);
   void hash(StateHash& hash) const;
 
  private:
-  void build_links(const Pose& X_WM);
-  void build_devices(const geometry::Scene& scene);
-  Pose bullet_link_pose(std::size_t link) const;  // X_WB
+  /// Drives whose wheels are simulated: how the velocity of a track becomes that of its joints.
+  struct WheelDrive {
+    double radius = 0.0;
+    std::array<std::vector<int>, 2> dofs;       // by side
+    std::array<std::vector<double>, 2> senses;  // 1: a positive velocity of the joint drives forwards; or -1
+  };
+  struct Drive {  // index into treels_ or wheels_, -1: not so
+    int treel = -1;
+    int wheels = -1;
+  };
 
-  // Bullet's index of a description link or of a joint's child: the root is -1.
-  static int bullet_link(std::size_t link) { return static_cast<int>(link) - 1; }
+  void build_devices();
+  void add_drive(std::size_t device, const description::TreelDrive& drive);
+  void add_motor(int dof, double max_effort, const std::string& device);
+  void update_poses();
 
-  const description::Model* model_;
+  const Mechanism* mechanism_;
   std::uint32_t body_;
-  std::vector<Pose> X_LB_;  // B: Bullet's frame of a link, its centre of mass and principal axes
-  std::unique_ptr<btMultiBody> multibody_;
-  btMultiBodyLinkCollider handle_;
-  std::vector<std::unique_ptr<JointMotor>> motors_;  // by joint
-  std::vector<std::unique_ptr<JointLimit>> limits_;
-  std::vector<std::unique_ptr<TreelDrive>> drives_;  // by device
-  std::vector<btMultiBodyConstraint*> constraints_;
+  Pose X_WM_;  // of a root that is tied to the world
+  Eigen::Vector3d reference_W_;
+  Eigen::Quaterniond root_rotation_;  // of a free root
+  std::vector<double> coordinates_;
+  std::vector<double> velocities_;
+  std::vector<Pose> X_WS_;  // follow from the state
+  JointRows joints_;
+  std::vector<Drive> drives_;  // by device
+  std::vector<TreelDrive> treels_;
+  std::vector<WheelDrive> wheels_;
+  double last_step_ = 0.0;  // [s]
 };
 
 }  // namespace cohort::physics

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -35,6 +36,29 @@ struct TrackState {
 };
 enum class Side : std::uint8_t { left = 0, right = 1 };
 
+struct Wrench {
+  Eigen::Vector3d force_W;   ///< [N]
+  Eigen::Vector3d torque_W;  ///< [N m]
+};
+
+/// What a connection bears before it breaks.
+struct ConnectionLimits {
+  double force = std::numeric_limits<double>::infinity();   ///< [N]
+  double torque = std::numeric_limits<double>::infinity();  ///< [N m]
+};
+
+/// A body that is no longer simulated: it stays where it was last, touches nothing and is seen by nobody.
+struct Quarantine {
+  enum class Reason : std::uint8_t {
+    not_finite,  ///< its velocities left the numbers, or all that is sensible
+    left_world,  ///< it fell below the lowest point or went further than 1,000 km
+  };
+  std::uint32_t body = 0;
+  Reason reason = Reason::not_finite;
+};
+
+class Stepper;
+
 /// The moving part of a world: rigid multibodies in reduced coordinates, stepped by semi-implicit Euler with a
 /// warm-started sequential-impulse solver. Bodies are the instances of the description, under the same indices; links,
 /// joints and devices keep their indices in the model. Poses and states are those of the last completed step. Setters
@@ -46,8 +70,18 @@ class World {
   ~World();
 
   /// Advances by one step of the description. The result depends on the state and the targets alone, not on the number
-  /// of workers. Throws std::runtime_error if a body's state is no longer finite.
+  /// of workers. A body whose state breaks is quarantined, and the others go on as if it had not been there.
   void step();
+  /// Those of the last step, in the order of the bodies.
+  std::span<const Quarantine> quarantined() const;
+  /// Whether the body is simulated, or static: neither quarantined nor removed.
+  bool is_active(std::uint32_t body) const;
+
+  /// Adds an instance of one of the description's models; between steps. Returns its body, the next free index. Throws
+  /// std::invalid_argument for a model that cannot be simulated.
+  std::uint32_t add_body(std::size_t model, const Pose& X_WM);
+  /// Takes a body that moves out of the world; between steps.
+  void remove_body(std::uint32_t body);
 
   const geometry::Scene& scene() const;
   std::size_t body_count() const;
@@ -56,24 +90,41 @@ class World {
   Twist link_twist(std::uint32_t body, std::size_t link) const;  ///< zero for a static body
   double joint_position(std::uint32_t body, std::size_t joint) const;
   double joint_velocity(std::uint32_t body, std::size_t joint) const;
-  const TrackState& track(std::uint32_t body, std::size_t drive, Side side) const;
+  TrackState track(std::uint32_t body, std::size_t drive, Side side) const;
+
+  /// Holds a link of `body_a`, which moves, to one of `body_b` as they are now, around the frame P of link a; from the
+  /// next step on. Returns the connection's number, which counts up from 0. Between steps.
+  std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                        std::size_t link_b, const ConnectionLimits& limits = {});
+  void disconnect(std::uint32_t connection);
+  bool is_connected(std::uint32_t connection) const;
+  /// On link a by link b, about the origin of P, over the last step; zero if it does not hold.
+  Wrench connection_wrench(std::uint32_t connection) const;
+  /// The connections that broke in the last step, ascending.
+  std::span<const std::uint32_t> broken_connections() const;
 
   /// For a joint that a VelocityMotor drives.
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity);
   /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
   void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity);
 
+  /// Of a root link that is free to move.
+  void set_root_twist(std::uint32_t body, const Twist& twist);
+  /// An angle or a way and its velocity, one of each for every axis; of a ball joint the quaternion x y z w of the
+  /// child in the parent and the angular velocity in the child's axes.
+  void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                       std::span<const double> velocities);
+
   /// In the order of the bodies' solids: the same for any number of workers.
   std::span<const Contact> contacts() const;
 
   /// Adds all that decides how `body` goes on: pose, velocities, joints, tracks, targets, warm-start impulses.
   void hash_body(std::uint32_t body, StateHash& hash) const;
-  /// Adds every cached contact point with what the solver's warm start takes from it.
+  /// Adds every contact point and every connection with what the solver's warm start takes from it.
   void hash_contacts(StateHash& hash) const;
 
  private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  std::unique_ptr<Stepper> stepper_;
 };
 
 }  // namespace cohort::physics

@@ -17,7 +17,7 @@ std::vector<Channel> TreelEncoder::channels() const {
 void TreelEncoder::sense(std::uint64_t, std::span<double> values) const {
   std::size_t i = 0;
   for (const physics::Side side : {physics::Side::left, physics::Side::right}) {
-    const physics::TrackState& track = mount_.world.track(mount_.body, encoder_.drive, side);
+    const physics::TrackState track = mount_.world.track(mount_.body, encoder_.drive, side);
     values[i++] = track.position;
     values[i++] = track.velocity;
   }

@@ -67,7 +67,8 @@ class RunBook {
   void start();  ///< the first frame is about to go out
   void stop();   ///< the last step is done, or there will be none
   /// A step is done.
-  void stepped() const {
+  void stepped() {
+    for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
     if (listener_.boundary) listener_.boundary();
   }
   /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 #include "server/core/hash.hpp"
 
@@ -133,8 +134,19 @@ void Simulation::step() {
   }
   world_.step();
   ++tick_;
+  name_quarantined();
   count_touches();
   sense();
+}
+
+void Simulation::name_quarantined() {
+  quarantined_.clear();
+  for (const physics::Quarantine& event : world_.quarantined()) {
+    const bool broke = event.reason == physics::Quarantine::Reason::not_finite;
+    quarantined_.push_back("'" + experiment_.world.instances[event.body].name +
+                           (broke ? "': its state is no longer finite" : "' has left the world"));
+  }
+  if (experiment_.world.physics.strict && !quarantined_.empty()) throw std::runtime_error(quarantined_[0]);
 }
 
 void Simulation::sense() {

@@ -74,9 +74,11 @@ class Simulation {
   /// The same with every channel's neutral value.
   void set_neutral_command(std::uint32_t robot);
 
-  /// Actuates in the order of the robots, steps the world to the next boundary and senses there. Throws
-  /// std::runtime_error if a body's state is no longer finite.
+  /// Actuates in the order of the robots, steps the world to the next boundary and senses there. A body whose state
+  /// breaks is quarantined; in a `strict` world std::runtime_error is thrown, which names it.
   void step();
+  /// What the last step took out of the world: a sentence for each body, with its name.
+  const std::vector<std::string>& quarantined() const { return quarantined_; }
 
   /// Of this boundary: everything that decides how the run goes on, and the observations.
   std::uint64_t state_hash() const;
@@ -101,6 +103,7 @@ class Simulation {
   void build_robot(std::uint32_t id);
   void sense();
   void count_touches();
+  void name_quarantined();
 
   const description::Experiment& experiment_;
   mutable WorkerPool workers_;
@@ -113,6 +116,7 @@ class Simulation {
   std::vector<char> is_ground_;  // by body
   std::uint64_t tick_ = 0;
   TouchCounts touches_;
+  std::vector<std::string> quarantined_;
   mutable std::vector<std::uint64_t> body_hashes_;
 };
 

@@ -1,6 +1,6 @@
-#include <signal.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -39,7 +39,7 @@ class Misbehaving final : public cohort::Controller {
       std::abort();
     }
     if (fault == "print") std::fputs("a line of a controller\n\"quoted\"\n", stderr);
-    if (fault == "be deaf") signal(SIGTERM, SIG_IGN);
+    if (fault == "be deaf") std::signal(SIGTERM, SIG_IGN);
     if (fault == "loop" || fault == "be deaf") {
       std::fputs("stuck\n", stderr);
       for (volatile bool forever = true; forever;) {

@@ -258,18 +258,19 @@ TEST(World, GivesTheSameBitsForAnyNumberOfWorkers) {
   EXPECT_EQ(hash_with(8), expected);
 }
 
-TEST(Islands, PutsLinkedMembersIntoOneBatchInTheOrderOfTheirLeastMember) {
+TEST(Islands, HoldsWhatIsLinkedInTheOrderOfTheLeastMember) {
   Islands islands;
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> links = {{5, 1}, {3, 4}, {1, 7}};
-  islands.build(8, links, 3);
-  EXPECT_EQ(islands.batch_of(5), islands.batch_of(1));
-  EXPECT_EQ(islands.batch_of(7), islands.batch_of(1));
-  EXPECT_EQ(islands.batch_of(3), islands.batch_of(4));
-  EXPECT_EQ(islands.batch_of(0), 0u);
-  EXPECT_EQ(islands.batch_of(1), 1u) << "an island of three does not fit beside member 0";
-  EXPECT_EQ(islands.batch_of(2), 2u);
-  EXPECT_EQ(islands.batch_of(3), 2u);
-  EXPECT_EQ(islands.batch_count(), 4u);
+  islands.reset(8);
+  islands.link(5, 1);
+  islands.link(3, 4);
+  islands.link(1, 7);
+  islands.finish();
+  std::vector<std::vector<std::uint32_t>> found;
+  for (std::uint32_t island = 0; island < islands.count(); ++island) {
+    const auto members = islands.members(island);
+    found.emplace_back(members.begin(), members.end());
+  }
+  EXPECT_EQ(found, (std::vector<std::vector<std::uint32_t>>{{0}, {1, 5, 7}, {2}, {3, 4}, {6}}));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ description::Experiment experiment_of(description::World world, description::Pol
 
 // In the order of the model's devices: turret, treel encoder, ring; and treel drive, turret motor.
 constexpr std::size_t turret_position = 0, left_position = 2, left_velocity = 3, first_reading = 6;
-constexpr std::size_t command_left = 0, command_right = 1;
+constexpr std::size_t command_left = 0;
 
 TEST(Simulation, DescribesItsRobotsByChannel) {
   description::World world = world_with_floor();

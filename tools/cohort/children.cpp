@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::seconds patience{2};
 constexpr std::chrono::milliseconds poll_interval{100};  // where the kernel does not say when a child ends
-constexpr std::size_t longest_line = 64 * 1024;
+constexpr std::size_t longest_line = std::size_t{64} * 1024;
 
 int open_pidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
@@ -32,11 +32,18 @@ void close_if_open(int& descriptor) {
   descriptor = -1;
 }
 
+// What strsignal says, which need not be thread-safe.
+std::string description_of(int signal_number) {
+  if (const char* description = sigdescr_np(signal_number); description != nullptr) return description;
+  if (signal_number < SIGRTMIN) return "Unknown signal " + std::to_string(signal_number);
+  return "Real-time signal " + std::to_string(signal_number - SIGRTMIN);
+}
+
 std::string end_of(pid_t pid, int status) {
   const std::string process = "controller process " + std::to_string(pid);
   if (!WIFSIGNALED(status)) return process + " ended with exit code " + std::to_string(WEXITSTATUS(status));
   const int number = WTERMSIG(status);
-  return process + " was ended by signal " + std::to_string(number) + " (" + strsignal(number) + ")";
+  return process + " was ended by signal " + std::to_string(number) + " (" + description_of(number) + ")";
 }
 
 // Between fork and exec, where only what is safe in a signal handler may be called.
@@ -52,6 +59,14 @@ std::string end_of(pid_t pid, int status) {
   close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   execv(arguments[0], arguments);
   _exit(127);
+}
+
+// As poll takes it: -1 is without end, 0 only when the deadline is over.
+int poll_timeout(Clock::time_point deadline, bool all_announced) {
+  if (deadline == Clock::time_point::max()) return all_announced ? -1 : static_cast<int>(poll_interval.count());
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
+  if (left.count() <= 0) return 0;
+  return static_cast<int>(all_announced ? left.count() : std::min(left, poll_interval).count());
 }
 
 }  // namespace
@@ -81,6 +96,7 @@ void Children::join() {
   watcher_.join();
 }
 
+// NOLINTNEXTLINE(readability-make-member-function-const): the child that it changes is one of ours.
 void Children::start(Child& child) {
   std::vector<char*> arguments;
   for (std::string& argument : child.command.arguments) arguments.push_back(argument.data());
@@ -142,12 +158,8 @@ bool Children::reap_until(Clock::time_point deadline) {
       polled.push_back({child.output, POLLIN, 0});
     }
     if (!any && was_finishing) return true;
-    int timeout = all_announced ? -1 : static_cast<int>(poll_interval.count());
-    if (deadline != Clock::time_point::max()) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
-      if (left.count() <= 0) return !any;
-      timeout = static_cast<int>(all_announced ? left.count() : std::min(left, poll_interval).count());
-    }
+    const int timeout = poll_timeout(deadline, all_announced);
+    if (timeout == 0) return !any;
     poll(polled.data(), polled.size(), timeout);
     for (Child& child : children_) {
       read_output(child);
@@ -191,6 +203,7 @@ void Children::handle_end(Child& child, int status) {
   start(child);
 }
 
+// NOLINTNEXTLINE(readability-make-member-function-const): the child that it changes is one of ours.
 void Children::read_output(Child& child) {
   if (child.output < 0) return;
   char buffer[4096];

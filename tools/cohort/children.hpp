@@ -67,7 +67,7 @@ class Children {
 
   std::vector<Child> children_;
   Listener listener_;
-  int wake_pipe_[2];
+  int wake_pipe_[2] = {-1, -1};
   std::atomic<bool> restarting_ = true;
   std::atomic<bool> finishing_ = false;
   std::atomic<bool> patient_ = false;  // they were told that it is over

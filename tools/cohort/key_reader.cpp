@@ -62,7 +62,7 @@ std::optional<std::string> KeyReader::read(std::chrono::milliseconds at_most) {
   if (*first != escape) return std::string(1, *first);
   // ESC [ A or ESC O A is an arrow; longer sequences are other keys.
   std::optional<char> last = next(rest_of_a_sequence);
-  if (last != '[' && last != 'O') return std::nullopt;
+  if (!last || (*last != '[' && *last != 'O')) return std::nullopt;
   bool is_short = true;
   for (last = next(rest_of_a_sequence); last && !ends_a_sequence(*last); last = next(rest_of_a_sequence))
     is_short = false;

@@ -17,8 +17,9 @@ using namespace cohort::tool;
 constexpr double most_seconds = 9e9;  // fits into nanoseconds
 constexpr std::uint32_t last_domain = 230;
 
-// Signals and Cyclone DDS reach them by no other way.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
 std::atomic<bool> stop_requested = false;
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
 Log* dds_log = nullptr;
 
 void stop_on_signals() {

@@ -62,7 +62,7 @@ Served open_domain(const RunCommand& command, bool has_outsiders) {
     const std::uint32_t domain = command.domain.value_or(0);
     return {wire::Participant::server(domain, command.network), domain};
   }
-  const std::uint32_t start = static_cast<std::uint32_t>(getpid());
+  const auto start = static_cast<std::uint32_t>(getpid());
   for (std::uint32_t i = 0;; ++i) {
     const std::uint32_t domain = first_own_domain + (start + i) % own_domain_count;
     try {
@@ -125,6 +125,7 @@ RunResult run_here(const RunCommand& command, const description::Experiment& exp
                    const std::vector<TeamController>& controllers, const session::RunListener& listener,
                    const std::atomic<bool>& stop) {
   std::vector<ControllerKind> teams;
+  teams.reserve(controllers.size());
   for (const TeamController& controller : controllers) teams.push_back(controller.kind());
   return session::run_in_process(experiment, simulation, teams, {speed_of(command, experiment)}, listener, stop);
 }

@@ -68,6 +68,7 @@ class TraceRecorder {
     std::uint32_t robot;
     ContactMark::Kind kind;
     std::int64_t x, y;
+    // NOLINTNEXTLINE(modernize-use-nullptr): the 0 in it is the compiler's (LLVM's issue 53961).
     auto operator<=>(const ContactCell&) const = default;
   };
 

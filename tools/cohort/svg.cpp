@@ -126,8 +126,8 @@ Points simplified(const Points& points, double tolerance) {
     }
     if (split == first) continue;
     kept[split] = 1;
-    spans.push_back({first, split});
-    spans.push_back({split, last});
+    spans.emplace_back(first, split);
+    spans.emplace_back(split, last);
   }
   Points result;
   for (std::size_t i = 0; i < points.size(); ++i)

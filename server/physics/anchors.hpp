@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace cohort::physics {
+
+/// A segment of a body in a problem, or the world.
+struct Anchor {
+  int body = -1;  ///< index of the body in the problem, -1: the world
+  int segment = 0;
+};
+
+/// Where the solids of the scene are in the problems of this step.
+struct Anchors {
+  static constexpr std::uint32_t nobody = 0xffffffffu;
+  struct Part {
+    std::uint32_t member = nobody;  ///< whose it is among the bodies that move; `nobody`: it is part of the world
+    int segment = 0;
+  };
+
+  std::vector<Part> part_of_solid;
+  std::vector<int> index_of_member;  ///< in its island's problem, -1 while it is out of it
+
+  bool moves(std::uint32_t solid) const { return part_of_solid[solid].member != nobody; }
+  std::uint32_t member(std::uint32_t solid) const { return part_of_solid[solid].member; }
+  Anchor of(std::uint32_t solid) const {
+    const Part& part = part_of_solid[solid];
+    if (part.member == nobody) return {};
+    return {index_of_member[part.member], part.segment};
+  }
+};
+
+}  // namespace cohort::physics

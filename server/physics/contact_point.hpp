@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "server/geometry/shapes.hpp"
+
+namespace cohort::physics {
+
+/// Where two solids touch, or are about to.
+struct ContactPoint {
+  Eigen::Vector3d position_W = Eigen::Vector3d::Zero();  ///< halfway between the surfaces
+  Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();    ///< unit, from b towards a
+  double gap = 0.0;                                      ///< [m], negative: they overlap
+
+  // What the solver keeps from step to step: impulses along the normal and two tangents [N s], and against rolling
+  // about the tangents [N m s].
+  std::array<double, 3> impulse{};
+  std::array<double, 2> rolling_impulse{};
+};
+
+/// The points of one pair of solids; four hold any face on any other.
+struct ContactPoints {
+  static constexpr int most = 4;
+
+  std::array<ContactPoint, most> points;
+  int count = 0;
+
+  void add(const Eigen::Vector3d& position_W, const Eigen::Vector3d& normal_W, double gap) {
+    if (count < most) points[static_cast<std::size_t>(count++)] = {position_W, normal_W, gap, {}, {}};
+  }
+  ContactPoint* begin() { return points.data(); }
+  ContactPoint* end() { return points.data() + count; }
+  const ContactPoint* begin() const { return points.data(); }
+  const ContactPoint* end() const { return points.data() + count; }
+};
+
+}  // namespace cohort::physics

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "server/physics/collision.hpp"
+#include "server/physics/connection.hpp"
+#include "server/physics/contact_rows.hpp"
+#include "server/physics/islands.hpp"
+#include "server/physics/multibody.hpp"
+#include "server/physics/world.hpp"
+
+namespace cohort::physics {
+
+/// One step of the bodies of a world: where they touch, which of them hang together, and, island by island, their
+/// velocities under gravity, motors, joints and contacts and the way that these take them. Islands do not know of each
+/// other, so it does not matter which worker has which.
+class Stepper {
+ public:
+  Stepper(const description::World& description, WorkerPool& workers);
+
+  void step();
+  std::span<const Quarantine> quarantined() const { return quarantined_; }
+  bool is_active(std::uint32_t body) const;
+  std::uint32_t add_body(std::size_t model, const Pose& X_WM);
+  void remove_body(std::uint32_t body);
+
+  std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                        std::size_t link_b, const ConnectionLimits& limits);
+  void disconnect(std::uint32_t connection) { connections_[connection].release(); }
+  const Connection& connection(std::uint32_t index) const { return connections_[index]; }
+  std::span<const std::uint32_t> broken_connections() const { return broken_; }
+  double step_size() const { return step_; }
+
+  const geometry::Scene& scene() const { return scene_; }
+  std::size_t body_count() const { return bodies_.size(); }
+  /// Null if the body is static.
+  Multibody* multibody(std::uint32_t body) { return bodies_[body].multibody.get(); }
+  const Multibody* multibody(std::uint32_t body) const { return bodies_[body].multibody.get(); }
+  Pose resting_link_pose(std::uint32_t body, std::size_t link) const;
+  /// Takes a body's poses into the scene.
+  void place_solids(std::uint32_t body);
+  std::span<const Contact> contacts() const { return contacts_; }
+  void hash_contacts(StateHash& hash) const;
+
+ private:
+  struct Part {  // a solid of a body that moves
+    std::uint32_t solid = 0;
+    int segment = 0;
+    Pose X_SC;
+  };
+  struct Body {
+    std::size_t model = 0;
+    Pose X_WM;  // at first; of a static body for ever
+    std::uint32_t member = Anchors::nobody;
+    std::unique_ptr<Multibody> multibody;  // null for what is static
+  };
+  struct Member {  // a body that moves
+    std::uint32_t body = 0;
+    std::vector<Part> parts;                   // ascending solids
+    std::vector<std::uint32_t> connections{};  // whose end a is here, ascending
+    bool is_active = true;
+    // Of this step:
+    bool is_finite = true;
+    bool is_inside = true;
+  };
+  struct Memory {  // of one worker
+    Problem problem;
+    std::vector<std::uint32_t> near;
+    std::vector<std::uint32_t> members;
+  };
+
+  std::uint32_t create_body(std::size_t model, const Pose& X_WM);
+  void add_solid(std::uint32_t body, const description::Collision& collision, const Pose& X_WC, Anchors::Part part,
+                 std::shared_ptr<const BulletShape> shape);
+  void add_static_solids(std::uint32_t body);
+  void add_moving_solids(std::uint32_t body);
+  void find_lowest();
+  bool may_touch(std::uint32_t solid, std::uint32_t other) const;
+  void find_ground();
+  void find_islands();
+  void solve_island(std::span<const std::uint32_t> members, Memory& memory);
+  bool try_island(const std::vector<std::uint32_t>& members, Problem& problem);
+  void add_connection_rows_of(const Member& member, Problem& problem);
+  void break_connections();
+  void quarantine();
+  void take_out(Member& member);
+  void solve(Problem& problem) const;
+  void place_solids_of(const Member& member);
+  void add_contact_rows_of(const Member& member, Problem& problem);
+  void report_contacts();
+  Multibody& of(const Member& member) { return *bodies_[member.body].multibody; }
+  const Multibody& of(const Member& member) const { return *bodies_[member.body].multibody; }
+
+  const description::World& description_;
+  WorkerPool& workers_;
+  double step_;
+  double lowest_ = 0.0;  // a body below this has left the world
+  SurfacePairs surfaces_;
+  geometry::Scene scene_;
+  std::vector<std::unique_ptr<Mechanism>> mechanisms_;                   // by model, null for what is static
+  std::vector<std::vector<std::shared_ptr<const BulletShape>>> shapes_;  // by model, of its collisions in their order
+  std::vector<Body> bodies_;
+  std::vector<Member> members_;
+  Anchors anchors_;
+  Collision collision_;
+  Islands islands_;
+  std::vector<Connection> connections_;
+  std::vector<std::uint32_t> broken_;
+  std::vector<Contact> contacts_;
+  std::vector<Quarantine> quarantined_;
+  std::vector<Memory> memory_;  // by worker
+};
+
+}  // namespace cohort::physics

@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include "server/core/random.hpp"
+#include "tests/support/small_world.hpp"
+
+namespace cohort::testing {
+namespace {
+
+using Eigen::Vector3d;
+using physics::Side;
+
+constexpr double spacing = 0.13;
+constexpr std::size_t turret = 1;
+
+// Robots in a row, each turret held to the one before.
+struct Chain {
+  SmallWorld small;
+  std::vector<std::uint32_t> robots;
+  std::vector<std::uint32_t> connections;
+
+  explicit Chain(int count, const physics::ConnectionLimits& limits = {},
+                 description::Solver solver = description::Solver::iterative) {
+    small.description.physics.solver = solver;
+    for (int i = 0; i < count; ++i) robots.push_back(small.add(tracked_robot(), at(spacing * i, 0, 0)));
+    for (std::size_t i = 1; i < robots.size(); ++i)
+      connections.push_back(
+          small.world().connect(robots[i - 1], turret, {{0.5 * spacing, 0, 0.02}}, robots[i], turret, limits));
+  }
+
+  // The greatest distance between the two ends of a connection [m].
+  double gap() {
+    double greatest = 0.0;
+    for (std::size_t i = 1; i < robots.size(); ++i) {
+      const Vector3d a = small.world().link_pose(robots[i - 1], turret) * Vector3d(0.5 * spacing, 0, 0.02);
+      const Vector3d b = small.world().link_pose(robots[i], turret) * Vector3d(-0.5 * spacing, 0, 0.02);
+      greatest = std::max(greatest, (a - b).norm());
+    }
+    return greatest;
+  }
+  void drive_at_random(int tick) {
+    const RandomStream random(1, "chain", "drive");
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const auto draw = static_cast<std::uint32_t>(3 * i);
+      small.drive(robots[i], 0.4 * random.uniform(tick / 20, draw) - 0.2,
+                  0.4 * random.uniform(tick / 20, draw + 1) - 0.2);
+      small.world().set_joint_velocity_target(robots[i], 0, 2.0 * random.uniform(tick / 20, draw + 2) - 1.0);
+    }
+  }
+};
+
+TEST(Formations, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetres) {
+  Chain chain(25);
+  for (int tick = 0; tick < 1000; ++tick) {
+    chain.drive_at_random(tick);
+    chain.small.world().step();
+    ASSERT_LT(chain.gap(), 2e-3) << "at tick " << tick;
+  }
+  for (const std::uint32_t robot : chain.robots) EXPECT_GT(chain.small.up(robot).z(), 0.99);
+}
+
+TEST(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
+  Chain chain(128);
+  for (int tick = 0; tick < 300; ++tick) {
+    chain.drive_at_random(tick);
+    chain.small.world().step();
+  }
+  EXPECT_LT(chain.gap(), 3e-3);
+}
+
+TEST(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
+  Chain chain(2);
+  // One pulls with all it has, the other is held by the world.
+  const auto held = chain.small.world().connect(chain.robots[0], 0, {}, 0, 0);
+  chain.small.drive(chain.robots[1], 0.2, 0.2);
+  chain.small.run(2.0);
+  const double pull = 2.0 * 0.02 / 0.022;  // both motors' torque over the radius of the wheels
+  EXPECT_NEAR(chain.small.world().connection_wrench(chain.connections[0]).force_W.x(), pull, 0.01);
+  // What holds the other is the world, and its own tracks, which are told to stand still.
+  double own = 0.0;
+  for (const Side side : {Side::left, Side::right})
+    own += chain.small.world().track(chain.robots[0], 0, side).traction;
+  EXPECT_NEAR(chain.small.world().connection_wrench(held).force_W.x() + own, -pull, 0.01);
+}
+
+TEST(Formations, AConnectionBreaksWhereItBearsLess) {
+  Chain chain(3, {.force = 1.0});
+  chain.small.drive(chain.robots[0], -0.2, -0.2);
+  chain.small.drive(chain.robots[2], 0.2, 0.2);
+  std::vector<std::uint32_t> broken;
+  for (int tick = 0; tick < 200; ++tick) {
+    chain.small.world().step();
+    const auto now = chain.small.world().broken_connections();
+    broken.insert(broken.end(), now.begin(), now.end());
+  }
+  EXPECT_FALSE(broken.empty());
+  for (const std::uint32_t connection : broken) EXPECT_FALSE(chain.small.world().is_connected(connection));
+  EXPECT_GT(chain.gap(), 0.1);
+}
+
+TEST(Formations, TwoThatLetGoOfEachOtherDriveApart) {
+  Chain chain(2);
+  chain.small.run(0.5);
+  chain.small.world().disconnect(chain.connections[0]);
+  chain.small.drive(chain.robots[0], -0.1, -0.1);
+  chain.small.drive(chain.robots[1], 0.1, 0.1);
+  chain.small.run(2.0);
+  EXPECT_NEAR(chain.gap(), 0.4, 0.03);
+}
+
+// Each solver on the same chain: all hold it together.
+class EverySolver : public ::testing::TestWithParam<description::Solver> {};
+
+TEST_P(EverySolver, HoldsAChainOfFour) {
+  Chain chain(4, {}, GetParam());
+  for (int tick = 0; tick < 300; ++tick) {
+    chain.drive_at_random(tick);
+    chain.small.world().step();
+    ASSERT_LT(chain.gap(), 2e-3) << "at tick " << tick;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formations, EverySolver,
+                         ::testing::Values(description::Solver::iterative, description::Solver::direct,
+                                           description::Solver::hybrid));
+
+}  // namespace
+}  // namespace cohort::testing

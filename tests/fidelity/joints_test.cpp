@@ -1,0 +1,279 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/small_world.hpp"
+
+namespace cohort::testing {
+namespace {
+
+using description::Joint;
+using description::JointType;
+using Eigen::Vector3d;
+
+constexpr double g = 9.81;
+
+description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
+  description::World world;
+  world.name = "empty";
+  world.step = step;
+  return world;
+}
+
+// A bob on a rod of length 1 m without mass, hung up at the origin of the model.
+description::Model pendulum(JointType type, double mass = 2.0) {
+  description::Model model;
+  model.name = "pendulum";
+  description::Inertial bob = solid_sphere(mass, 1e-3);
+  bob.X_LI.position = {0, 0, -1.0};
+  model.links.push_back({"rod", {}, bob, {}});
+  Joint joint;
+  joint.name = "pivot";
+  joint.type = type;
+  joint.parent = Joint::world;
+  joint.child = 0;
+  joint.axis.direction = Vector3d::UnitY();
+  joint.second_axis.direction = Vector3d::UnitX();
+  model.joints.push_back(joint);
+  return model;
+}
+
+// Seconds between the first and the last of `count` returns of x from negative to positive.
+double period(SmallWorld& small, const std::function<double()>& x, int count) {
+  const double step = std::chrono::duration<double>(small.description.step).count();
+  double first = -1.0;
+  int seen = 0;
+  double before = x();
+  for (int i = 1; i < 100000; ++i) {
+    small.world().step();
+    const double now = x();
+    if (before < 0.0 && now >= 0.0) {
+      const double when = (i - now / (now - before)) * step;
+      if (first < 0.0) {
+        first = when;
+      } else if (++seen == count) {
+        return (when - first) / count;
+      }
+    }
+    before = now;
+  }
+  return -1.0;
+}
+
+Vector3d bob_of(SmallWorld& small, std::uint32_t body) {
+  return small.world().link_pose(body, 0) * Vector3d(0, 0, -1.0);
+}
+
+TEST(Joints, APendulumHasThePeriodOfItsLength) {
+  for (const JointType type : {JointType::revolute, JointType::ball, JointType::universal}) {
+    SmallWorld small(empty_world(std::chrono::milliseconds(1)));
+    const auto body = small.add(pendulum(type), turned(0, 0, 0, Vector3d::UnitY(), 0.1));
+    // 2 pi sqrt(l / g) (1 + a^2 / 16), of a small amplitude a.
+    const double expected = 2.0 * M_PI * std::sqrt(1.0 / g) * (1.0 + 0.01 / 16.0);
+    EXPECT_NEAR(period(
+                    small, [&] { return bob_of(small, body).x(); }, 5),
+                expected, 1e-3);
+    EXPECT_NEAR(bob_of(small, body).norm(), 1.0, 1e-9) << "length of the rod";
+  }
+}
+
+TEST(Joints, AConicalPendulumOnABallJointGoesRoundAtItsHeight) {
+  SmallWorld small(empty_world(std::chrono::milliseconds(1)));
+  const double angle = 0.5;
+  const auto body = small.add(pendulum(JointType::ball), turned(0, 0, 0, Vector3d::UnitY(), -angle));
+  // Velocity on a circle of radius sin(angle): v^2 = g r tan(angle).
+  const double r = std::sin(angle);
+  const double v = std::sqrt(g * r * std::tan(angle));
+  const Vector3d rate_L = small.world().link_pose(body, 0).orientation.conjugate() * Vector3d(0, 0, v / r);
+  small.world().set_joint_state(body, 0, std::array{0.0, 0.0, 0.0, 1.0}, {rate_L.data(), 3});
+  const double height = bob_of(small, body).z();
+  for (int i = 0; i < 2000; ++i) {
+    small.world().step();
+    ASSERT_NEAR(bob_of(small, body).z(), height, 5e-3) << "at step " << i;
+  }
+}
+
+TEST(Joints, AUniversalJointTurnsAboutTwoAxesAndNotAboutTheThird) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(pendulum(JointType::universal), turned(0, 0, 0, Vector3d(1, 1, 0), 0.3));
+  for (int i = 0; i < 500; ++i) {
+    small.world().step();
+    // The second axis, x of the child, turns about the first, y of the model: so the two stay square to each other.
+    const Pose X_WL = small.world().link_pose(body, 0);
+    const Eigen::Quaterniond q_ML =
+        Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d(1, 1, 0).normalized())).conjugate() * X_WL.orientation;
+    ASSERT_NEAR((q_ML * Vector3d::UnitX()).y(), 0.0, 1e-9) << "at step " << i;
+  }
+}
+
+description::Model cart(double stiffness, double damping) {
+  description::Model model;
+  model.name = "cart";
+  model.links.push_back({"cart", {}, solid_box(2.0, {0.1, 0.1, 0.1}), {}});
+  Joint joint;
+  joint.name = "rail";
+  joint.type = JointType::prismatic;
+  joint.parent = Joint::world;
+  joint.child = 0;
+  joint.axis.direction = Vector3d::UnitX();
+  joint.axis.spring_stiffness = stiffness;
+  joint.axis.spring_reference = 0.1;
+  joint.axis.damping = damping;
+  model.joints.push_back(joint);
+  return model;
+}
+
+TEST(Joints, ASpringSwingsAtTheFrequencyOfItsStiffness) {
+  SmallWorld small(empty_world(std::chrono::milliseconds(1)));
+  const auto body = small.add(cart(50.0, 0.0), at(0, 0, 0));
+  EXPECT_NEAR(period(
+                  small, [&] { return small.position(body).x() - 0.1; }, 5),
+              2.0 * M_PI * std::sqrt(2.0 / 50.0), 2e-3);
+}
+
+TEST(Joints, ASpringFarStifferThanTheStepAllowsStaysAtRest) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(cart(1e8, 0.0), at(0, 0, 0));
+  small.run(2.0);
+  EXPECT_NEAR(small.position(body).x(), 0.1, 1e-3);
+}
+
+TEST(Joints, DampingSlowsDownExponentially) {
+  SmallWorld small(empty_world(std::chrono::milliseconds(1)));
+  const auto body = small.add(cart(0.0, 3.0), at(0, 0, 0));
+  small.world().set_joint_state(body, 0, std::array{0.0}, std::array{1.0});
+  small.run(1.0);
+  EXPECT_NEAR(small.world().joint_velocity(body, 0), std::exp(-3.0 / 2.0), 1e-3);
+}
+
+TEST(Joints, FrictionBringsAJointToRestAndHoldsIt) {
+  SmallWorld small(empty_world(std::chrono::milliseconds(1)));
+  description::Model model = cart(0.0, 0.0);
+  model.joints[0].axis.friction = 4.0;
+  const auto body = small.add(model, at(0, 0, 0));
+  small.world().set_joint_state(body, 0, std::array{0.0}, std::array{1.0});
+  small.run(1.0);
+  // a = F / m = 2 m/s^2: it stops after v^2 / 2a.
+  EXPECT_NEAR(small.world().joint_position(body, 0), 0.25, 1e-3);
+  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.0, 1e-9);
+}
+
+TEST(Joints, AMotorGivesNoMoreThanItsEffortAndKeepsItsVelocity) {
+  SmallWorld small(empty_world());
+  description::Model model = cart(0.0, 0.0);
+  model.devices.push_back(description::VelocityMotor{"motor", 0, 1.0, 3.0});
+  const auto body = small.add(model, at(0, 0, 0));
+  small.world().set_joint_velocity_target(body, 0, 0.6);
+  small.run(0.2);
+  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.2 * 3.0 / 2.0, 1e-9) << "a = F / m";
+  small.run(1.0);
+  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.6, 1e-6);
+}
+
+TEST(Joints, ALimitStopsAJointThatFallsOnIt) {
+  SmallWorld small(empty_world());
+  description::Model model = pendulum(JointType::revolute);
+  model.joints[0].axis.lower = -0.5;
+  model.joints[0].axis.upper = 0.2;
+  const auto body = small.add(model, turned(0, 0, 0, Vector3d::UnitY(), 1.2));
+  double least = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    small.world().step();
+    least = std::min(least, small.world().joint_position(body, 0));
+    ASSERT_LT(small.world().joint_position(body, 0), 0.205);
+  }
+  EXPECT_GT(least, -0.52);
+  EXPECT_NEAR(small.world().joint_position(body, 0), -0.5, 1e-3) << "it hangs against its limit";
+}
+
+// Two links on two hinges, let go from the side: without damping its energy stays.
+TEST(Joints, ADoublePendulumKeepsItsEnergy) {
+  SmallWorld small(empty_world(std::chrono::milliseconds(1)));
+  description::Model model = pendulum(JointType::revolute, 1.0);
+  description::Inertial bob = solid_sphere(1.0, 1e-3);
+  bob.X_LI.position = {0, 0, -0.5};
+  model.links.push_back({"second", {{0, 0, -1.0}}, bob, {}});
+  Joint elbow;
+  elbow.name = "elbow";
+  elbow.type = JointType::revolute;
+  elbow.parent = 0;
+  elbow.child = 1;
+  elbow.axis.direction = Vector3d::UnitY();
+  model.joints.push_back(elbow);
+  const auto body = small.add(model, turned(0, 0, 0, Vector3d::UnitY(), 1.5));
+  const auto energy = [&] {
+    double sum = 0.0;
+    const double arms[] = {1.0, 0.5};
+    for (std::size_t link = 0; link < 2; ++link) {
+      const Pose X_WL = small.world().link_pose(body, link);
+      const physics::Twist twist = small.world().link_twist(body, link);
+      const Vector3d arm = X_WL.orientation * Vector3d(0, 0, -arms[link]);
+      sum += 0.5 * (twist.linear_W + twist.angular_W.cross(arm)).squaredNorm() + g * (X_WL.position + arm).z();
+    }
+    return sum;
+  };
+  const double before = energy();
+  for (int i = 0; i < 5000; ++i) {
+    small.world().step();
+    ASSERT_NEAR(energy(), before, 0.3) << "at step " << i << ", of 24 J that go back and forth";
+  }
+}
+
+// A cart with four wheels as real links, which touch the ground.
+description::Model four_wheels() {
+  description::Model model;
+  model.name = "rover";
+  description::Inertial chassis = solid_box(2.0, {0.3, 0.2, 0.1});
+  chassis.X_LI.position = {0, 0, 0.08};
+  model.links.push_back({"chassis", {}, chassis, {}});
+  for (const double x : {0.1, -0.1}) {
+    for (const double y : {0.12, -0.12}) {
+      const Eigen::Quaterniond lying(Eigen::AngleAxisd(-M_PI / 2, Vector3d::UnitX()));
+      const std::string name = "wheel_" + std::to_string(model.links.size());
+      const Pose X_ML{{x, y, 0.05}, lying};
+      model.links.push_back({name,
+                             X_ML,
+                             solid_cylinder(0.2, 0.05, 0.03, 0.0),
+                             {{"tyre", {}, description::Cylinder{0.05, 0.03}, {0.9, 0}}}});
+      Joint joint;
+      joint.name = name + "_axle";
+      joint.type = JointType::revolute;
+      joint.parent = 0;
+      joint.child = model.links.size() - 1;
+      joint.axis.direction = Vector3d::UnitZ();  // of the lying wheel: y of the rover
+      model.joints.push_back(joint);
+      model.devices.push_back(description::VelocityMotor{name, model.joints.size() - 1, 20.0, 0.5});
+    }
+  }
+  return model;
+}
+
+TEST(Joints, WheelsRollAtTheirRadiusTimesTheirRate) {
+  SmallWorld small;
+  const auto body = small.add(four_wheels(), at(0, 0, 0));
+  for (std::size_t wheel = 0; wheel < 4; ++wheel) small.world().set_joint_velocity_target(body, wheel, 4.0);
+  small.run(2.0);
+  EXPECT_NEAR(small.velocity(body).x(), 0.2, 0.001);
+  const double before = small.position(body).x();
+  small.run(5.0);
+  EXPECT_NEAR(small.position(body).x() - before, 1.0, 0.005);
+  EXPECT_NEAR(small.position(body).y(), 0.0, 1e-3) << "straight on";
+  EXPECT_NEAR(small.position(body).z(), 0.0, 1e-3);
+}
+
+TEST(Joints, AWheelWithoutAMotorRollsDownASlopeAsItsInertiaSays) {
+  constexpr double slope = 0.1;
+  SmallWorld small;
+  small.description.instances.clear();
+  small.description.models.clear();
+  small.add(static_shape("ramp", description::Plane{}), turned(0, 0, 0, Vector3d::UnitY(), slope));
+  const Eigen::Quaterniond lying(Eigen::AngleAxisd(-M_PI / 2, Vector3d::UnitX()));
+  const Vector3d normal(std::sin(slope), 0, std::cos(slope));
+  description::Model wheel =
+      loose("wheel", description::Cylinder{0.1, 0.05}, solid_cylinder(1.0, 0.1, 0.05, 0.0), {1.0, 0.0});
+  const auto body = small.add(wheel, {0.1 * normal, lying});
+  small.run(2.0);
+  // a = g sin(slope) / (1 + I / m r^2), of a solid cylinder 2/3 of a slide.
+  EXPECT_NEAR(small.velocity(body).norm(), 2.0 * g * std::sin(slope) * 2.0 / 3.0, 0.01);
+}
+
+}  // namespace
+}  // namespace cohort::testing

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+
+#include "server/physics/world.hpp"
+#include "tests/support/robots.hpp"
+
+namespace cohort::testing {
+
+/// A world that a test puts together and then steps. Bodies are added before the first step.
+class SmallWorld {
+ public:
+  explicit SmallWorld(description::World its_description = world_with_floor())
+      : description(std::move(its_description)) {}
+
+  std::uint32_t add(const description::Model& model, const Pose& X_WM) {
+    return place(description, model, model.name + "_" + std::to_string(description.instances.size()), X_WM);
+  }
+  physics::World& world() {
+    if (!world_) world_.emplace(description, workers_);
+    return *world_;
+  }
+  void run(double seconds) {
+    const double step = std::chrono::duration<double>(description.step).count();
+    for (auto steps = std::lround(seconds / step); steps > 0; --steps) world().step();
+  }
+  /// Of a robot as `tracked_robot` makes it.
+  void drive(std::uint32_t body, double left, double right) {
+    world().set_track_velocity_target(body, 0, physics::Side::left, left);
+    world().set_track_velocity_target(body, 0, physics::Side::right, right);
+  }
+  Eigen::Vector3d position(std::uint32_t body, std::size_t link = 0) { return world().link_pose(body, link).position; }
+  Eigen::Vector3d velocity(std::uint32_t body, std::size_t link = 0) { return world().link_twist(body, link).linear_W; }
+  Eigen::Vector3d up(std::uint32_t body) { return world().link_pose(body, 0).orientation * Eigen::Vector3d::UnitZ(); }
+
+  description::World description;
+
+ private:
+  WorkerPool workers_{1};
+  std::optional<physics::World> world_;
+};
+
+/// The principal moments of inertia of a solid box about its centre [kg m^2].
+inline description::Inertial solid_box(double mass, const Eigen::Vector3d& size) {
+  const Eigen::Vector3d squares = size.cwiseProduct(size);
+  description::Inertial inertial;
+  inertial.mass = mass;
+  inertial.inertia =
+      (mass / 12.0 * Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
+          .asDiagonal();
+  return inertial;
+}
+
+inline description::Inertial solid_sphere(double mass, double radius) {
+  description::Inertial inertial;
+  inertial.mass = mass;
+  inertial.inertia = 0.4 * mass * radius * radius * Eigen::Matrix3d::Identity();
+  return inertial;
+}
+
+/// One link with one collision at its centre of mass.
+inline description::Model loose(const std::string& name, const description::Shape& shape,
+                                const description::Inertial& inertial, description::Surface surface = {}) {
+  description::Model model;
+  model.name = name;
+  model.links.push_back({"link", {}, inertial, {{"collision", {}, shape, surface}}});
+  return model;
+}
+
+inline Pose turned(double x, double y, double z, const Eigen::Vector3d& axis, double angle) {
+  return {{x, y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()))};
+}
+
+}  // namespace cohort::testing

@@ -27,7 +27,7 @@ const std::vector<StepScene>& step_scenes() {
          scene.drive = Drive::wheels;
          return scene;
        }},
-      {"chain", {8, 25}, [](std::uint32_t robots, std::uint64_t) { return chain(robots); }},
+      {"chain", {25, 128}, [](std::uint32_t robots, std::uint64_t) { return chain(robots); }},
   };
   return scenes;
 }

@@ -145,7 +145,12 @@ class CohortEngine final : public Engine {
         description_(describe(scene)),
         first_robot_(static_cast<std::uint32_t>(description_.robots.front())),
         workers_(threads),
-        world_(description_, workers_) {}
+        world_(description_, workers_) {
+    if (!scene.connected) return;
+    const Pose X_LP{{0.5 * scene.connection_length, 0.0, robot_.turret.z - robot_.turret_joint_height}};
+    for (std::uint32_t body = first_robot_ + 1; body < world_.body_count(); ++body)
+      world_.connect(body, turret_link, X_LP, body - 1, turret_link);
+  }
 
   void set_command(std::uint32_t robot, const Command& command) override {
     const std::uint32_t body = first_robot_ + robot;

@@ -14,11 +14,6 @@ constexpr std::size_t most_connected_in_world_step = 32;
 
 Limitation none(const Scene&) { return std::nullopt; }
 
-Limitation cohort_limitation(const Scene& scene) {
-  if (scene.connected) return "connections between robots are not there yet";
-  return std::nullopt;
-}
-
 Limitation world_step_limitation(const Scene& scene) {
   if (scene.connected && scene.robots.size() > most_connected_in_world_step)
     return fmt::format("more than {} connected robots take it seconds a step", most_connected_in_world_step);
@@ -38,7 +33,7 @@ Limitation enki_limitation(const Scene& scene) {
 }
 
 std::vector<EngineKind> known_engines() {
-  std::vector<EngineKind> kinds = {{"cohort", "", make_cohort_engine, cohort_limitation},
+  std::vector<EngineKind> kinds = {{"cohort", "", make_cohort_engine, none},
                                    {"ode-worldstep", "libode-dev", {}, world_step_limitation},
                                    {"ode-quickstep", "libode-dev", {}, none},
                                    {"mujoco", "libmujoco-dev", {}, mujoco_limitation},

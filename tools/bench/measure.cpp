@@ -39,8 +39,8 @@ class Run {
   Run(const EngineKind& kind, unsigned threads, const Scene& scene, const Options& options)
       : name_(kind.name),
         threads_(threads),
+        scene_(scene),
         robots_(static_cast<double>(scene.robots.size())),
-        turret_radius_(scene.robot.turret.radius),
         driving_(options.seed, static_cast<std::uint32_t>(scene.robots.size())),
         engine_(kind.make(scene, threads)) {}
 
@@ -59,7 +59,7 @@ class Run {
       const auto [tick_cpu, tick_wall] = drive_one_tick();
       cpu += tick_cpu;
       wall += tick_wall;
-      touches += static_cast<double>(look_at_touches());
+      touches += static_cast<double>(look());
     }
     const double robot_steps = robots_ * ticks * steps_a_control_tick;
     cpu_.push_back(cpu / robot_steps);
@@ -70,7 +70,7 @@ class Run {
   const std::vector<double>& cpu() const { return cpu_; }
   const std::vector<double>& wall() const { return wall_; }
   double touches() const { return median(touches_); }
-  double overlap() const { return overlap_; }
+  double error() const { return error_; }
 
  private:
   std::pair<double, double> drive_one_tick() {
@@ -82,29 +82,36 @@ class Run {
     return {cpu_seconds() - cpu, wall_seconds() - wall};
   }
 
-  // Returns how many pairs there are.
-  std::size_t look_at_touches() {
+  // Returns how many pairs touch.
+  std::size_t look() {
     std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
     for (const Touch& touch : engine_->touches()) pairs.insert(std::minmax(touch.robot, touch.other));
-    for (const auto& [a, b] : pairs) {
-      if (b == Touch::wall) continue;
-      const double distance = (engine_->turret_centre(a) - engine_->turret_centre(b)).head<2>().norm();
-      overlap_ = std::max(overlap_, 2.0 * turret_radius_ - distance);
+    if (scene_.connected) {
+      for (std::uint32_t robot = 1; robot < scene_.robots.size(); ++robot)
+        error_ = std::max(error_, std::abs(between(robot - 1, robot).norm() - scene_.connection_length));
+    } else {
+      for (const auto& [a, b] : pairs)
+        if (b != Touch::wall)
+          error_ = std::max(error_, 2.0 * scene_.robot.turret.radius - between(a, b).head<2>().norm());
     }
     return pairs.size();
   }
 
+  Eigen::Vector3d between(std::uint32_t a, std::uint32_t b) const {
+    return engine_->turret_centre(a) - engine_->turret_centre(b);
+  }
+
   std::string name_;
   unsigned threads_;
+  const Scene& scene_;
   double robots_;
-  double turret_radius_;
   RandomDriving driving_;
   std::unique_ptr<Engine> engine_;
   std::uint64_t tick_ = 0;
   std::vector<double> cpu_;  // one for each repetition, of one robot and step
   std::vector<double> wall_;
   std::vector<double> touches_;
-  double overlap_ = 0.0;
+  double error_ = 0.0;
 };
 
 // A second to get going, then the way of a second.
@@ -138,7 +145,7 @@ StepCost cost_of(const Run& run, const std::vector<std::unique_ptr<Run>>& runs) 
   cost.cpu = spread_of(run.cpu());
   cost.wall = spread_of(run.wall());
   cost.touches = run.touches();
-  cost.overlap = run.overlap();
+  cost.error = run.error();
   if (const Run* reference = find(runs, reference_engine))
     cost.against_reference = median_ratio(reference->cpu(), run.cpu());
   if (const Run* single = find(runs, run.name()); single != nullptr && run.threads() > 1)
@@ -151,6 +158,7 @@ class Measurement {
   Measurement(const std::string& name, const Scene& scene, const Options& options, const Surroundings& surroundings)
       : scene_(scene), options_(options), surroundings_(surroundings) {
     result_.scene = name;
+    result_.connected = scene.connected;
     result_.robots = static_cast<std::uint32_t>(scene.robots.size());
     result_.step = scene.step;
   }

@@ -48,17 +48,18 @@ struct LeftOut {
 struct StepCost {
   std::string engine;
   unsigned threads = 1;
-  Spread cpu;                               ///< of all threads, of one robot and step [s]
-  Spread wall;                              ///< the same
-  double touches = 0.0;                     ///< pairs that touch, of robots or of a robot and a wall, for each robot
-  double overlap = 0.0;                     ///< of two turrets, the deepest [m]
-  double speed_ratio = 0.0;                 ///< reached to commanded, straight on and alone
+  Spread cpu;                ///< of all threads, of one robot and step [s]
+  Spread wall;               ///< the same
+  double touches = 0.0;      ///< pairs that touch, of robots or of a robot and a wall, for each robot
+  double error = 0.0;        ///< the worst: of two turrets the overlap, of a connection's length what it is off [m]
+  double speed_ratio = 0.0;  ///< reached to commanded, straight on and alone
   std::optional<double> against_reference;  ///< CPU time of the reference engine to this one's, median of repetitions
   std::optional<double> speed_up;           ///< wall time with one thread to this, median of repetitions
 };
 
 struct StepResult {
   std::string scene;
+  bool connected = false;
   std::uint32_t robots = 0;
   double step = 0.0;  ///< [s]
   std::vector<StepCost> costs;

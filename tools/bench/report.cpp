@@ -47,12 +47,12 @@ std::string table(const StepResult& result) {
       std::any_of(result.costs.begin(), result.costs.end(), [](const auto& c) { return c.threads > 1; });
   std::string text = title(result.scene, result.robots, fmt::format(", steps of {:g} ms", milli * result.step));
   text += fmt::format("  {:<14}{:>9}{:>17}{:>10}{:>12}{:>8}{:>14}", "engine", "CPU us", "min-max", "touches",
-                      "overlap mm", "speed", "vs quickstep");
+                      result.connected ? "stretch mm" : "overlap mm", "speed", "vs quickstep");
   if (has_threads) text += fmt::format("{:>9}{:>9}{:>17}{:>10}", "threads", "wall us", "min-max", "speed-up");
   text += '\n';
   for (const StepCost& cost : result.costs) {
     text += fmt::format("  {:<14}{:>9.2f}{:>17}{:>10.3f}{:>12.1f}{:>8.3f}{:>14}", cost.engine, micro * cost.cpu.median,
-                        range_of(cost.cpu, micro), cost.touches, milli * cost.overlap, cost.speed_ratio,
+                        range_of(cost.cpu, micro), cost.touches, milli * cost.error, cost.speed_ratio,
                         or_dash(cost.against_reference));
     if (has_threads)
       text += fmt::format("{:>9}{:>9.2f}{:>17}{:>10}", cost.threads, micro * cost.wall.median,
@@ -88,7 +88,7 @@ Json to_json(const StepResult& result) {
                        {"cpu_us_per_robot_step", spread_json(cost.cpu, micro)},
                        {"wall_us_per_robot_step", spread_json(cost.wall, micro)},
                        {"touches_per_robot", cost.touches},
-                       {"deepest_overlap_m", cost.overlap},
+                       {result.connected ? "connection_error_m" : "deepest_overlap_m", cost.error},
                        {"speed_ratio", cost.speed_ratio},
                        {"vs_ode_quickstep", optional_json(cost.against_reference)},
                        {"speed_up", optional_json(cost.speed_up)}});

@@ -60,7 +60,8 @@ struct Scene {
   Drive drive = Drive::tracks;
   std::vector<Placement> robots;
   std::optional<double> half_arena;  ///< four walls at this distance from the middle [m]
-  bool connected = false;            ///< the turret of each robot is fixed to that of the one before
+  bool connected = false;            ///< the turret of each robot is fixed to that of the one before it
+  double connection_length = 0.13;   ///< between the middles of two connected turrets, which do not touch [m]
   double step = 0.01;                ///< [s]
   double gravity = 9.81;             ///< [m/s^2]
   double ground_friction = 1.0;

@@ -182,7 +182,7 @@ void add_bench_options(CLI::App& app, BenchCommand& command) {
       "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what "
       "they\n"
       "can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with speed;\n"
-      "Enki is flat, without masses that matter, turrets or torque limits. docs/bench.md says all of it.\n"
+      "Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
       "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
 }
 

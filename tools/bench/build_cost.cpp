@@ -4,9 +4,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <string_view>
 
 #include "tools/bench/clocks.hpp"
 
@@ -15,8 +17,9 @@ namespace {
 
 // What a child tells its parent.
 struct Built {
-  double cpu = 0.0;       // [s]
-  double resident = 0.0;  // of the whole process [bytes]
+  double cpu = 0.0;               // [s]
+  double resident = 0.0;          // of the whole process [bytes]
+  std::array<char, 200> error{};  // why it gave up; empty if it did not
 };
 
 double resident_bytes() {
@@ -32,18 +35,19 @@ Built build_here(const EngineKind& kind, std::uint32_t robots, std::uint64_t see
   const Scene scene = crowd(robots, seed);
   const std::unique_ptr<Engine> engine = kind.make(scene, 1);
   engine->step();
-  return {cpu_seconds() - before, resident_bytes()};
+  return {cpu_seconds() - before, resident_bytes(), {}};
 }
 
-// The child: leaves without tidying up, which is the parent's business. No report: it failed, and has said why.
+// The child: leaves without tidying up, which is the parent's business.
 [[noreturn]] void build_and_report(const EngineKind& kind, std::uint32_t robots, std::uint64_t seed, int report) {
+  Built built;
   try {
-    const Built built = build_here(kind, robots, seed);
-    if (write(report, &built, sizeof built) == sizeof built) _exit(0);
+    built = build_here(kind, robots, seed);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "cohort: error: {}: {}\n", kind.name, error.what());
+    const std::string_view text = error.what();
+    std::copy_n(text.begin(), std::min(text.size(), built.error.size() - 1), built.error.begin());
   }
-  _exit(1);
+  _exit(write(report, &built, sizeof built) == sizeof built ? 0 : 1);
 }
 
 Built build_in_child(const EngineKind& kind, std::uint32_t robots, std::uint64_t seed) {
@@ -62,6 +66,7 @@ Built build_in_child(const EngineKind& kind, std::uint32_t robots, std::uint64_t
   while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
   if (!reported) throw std::runtime_error("the process that built it ended without a result");
+  if (built.error[0] != '\0') throw std::runtime_error(built.error.data());
   return built;
 }
 

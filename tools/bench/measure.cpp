@@ -166,9 +166,7 @@ class Measurement {
   StepResult measure(const std::vector<EngineKind>& engines) {
     for (const EngineKind& kind : engines) build(kind);
     const unsigned ticks = control_ticks(options_.seconds, scene_.step);
-    for (unsigned repetition = 0; repetition < options_.repetitions; ++repetition)
-      for_each_run(fmt::format("repetition {} of {}", repetition + 1, options_.repetitions),
-                   [&](Run& run) { run.measure(ticks); });
+    for (unsigned repetition = 1; repetition <= options_.repetitions; ++repetition) measure_each(repetition, ticks);
     for (const auto& run : runs_) result_.costs.push_back(cost_of(*run, runs_));
     for (StepCost& cost : result_.costs) {
       const auto kind =
@@ -188,29 +186,33 @@ class Measurement {
     if (options_.threads > 1 && kind.package.empty()) threads.push_back(options_.threads);
     for (const unsigned count : threads) {
       say(kind.name, "warm-up");
-      runs_.push_back(std::make_unique<Run>(kind, count, scene_, options_));
-      attempt(runs_.size() - 1, [&](Run& run) { run.warm_up_for(control_ticks(warm_up, scene_.step)); });
-    }
-  }
-
-  template <class Act>
-  void for_each_run(const std::string& what, Act&& act) {
-    for (std::size_t i = 0; i < runs_.size();) {
-      say(runs_[i]->name(), what);
-      if (attempt(i, act)) ++i;
+      attempt(kind.name, [&] {
+        auto run = std::make_unique<Run>(kind, count, scene_, options_);
+        run->warm_up_for(control_ticks(warm_up, scene_.step));
+        runs_.push_back(std::move(run));
+      });
     }
   }
 
   // An engine that gives up is left out from then on.
+  void measure_each(unsigned repetition, unsigned ticks) {
+    for (std::size_t i = 0; i < runs_.size();) {
+      say(runs_[i]->name(), fmt::format("repetition {} of {}", repetition, options_.repetitions));
+      if (attempt(runs_[i]->name(), [&] { runs_[i]->measure(ticks); }))
+        ++i;
+      else
+        runs_.erase(runs_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+
   template <class Act>
-  bool attempt(std::size_t run, Act&& act) {
+  bool attempt(const std::string& engine, Act&& act) {
     if (surroundings_.stop) throw Interrupted();
     try {
-      act(*runs_[run]);
+      act();
       return true;
     } catch (const std::runtime_error& error) {
-      result_.left_out.push_back({runs_[run]->name(), error.what()});
-      runs_.erase(runs_.begin() + static_cast<std::ptrdiff_t>(run));
+      result_.left_out.push_back({engine, error.what()});
       return false;
     }
   }

@@ -18,7 +18,8 @@ constexpr int most_points = 4;  // of one pair of shapes
 constexpr int smallest_cell = -4;
 constexpr int largest_cell = 2;
 
-// Who may touch whom. Wheels and casters touch the ground only.
+// Who may touch whom; one of a pair has to name the other. Wheels and casters touch the ground only.
+constexpr unsigned long nothing = 0;
 constexpr unsigned long ground_bit = 1;
 constexpr unsigned long wall_bit = 2;
 constexpr unsigned long shell_bit = 4;
@@ -38,7 +39,7 @@ class OdeEngine final : public Engine {
     dWorldSetQuickStepNumIterations(world_, quick_step_iterations);
     dHashSpaceSetLevels(space_, smallest_cell, largest_cell);
 
-    set_surface(dCreatePlane(space_, 0.0, 0.0, 1.0, 0.0), scene.ground_friction, ground_bit, ~0ul, Touch::wall);
+    set_surface(dCreatePlane(space_, 0.0, 0.0, 1.0, 0.0), scene.ground_friction, ground_bit, nothing, Touch::wall);
     if (scene.half_arena) add_walls();
     for (const Placement& placement : scene.robots) add_robot(placement);
   }

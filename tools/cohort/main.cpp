@@ -179,10 +179,9 @@ void add_bench_options(CLI::App& app, BenchCommand& command) {
       "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies), chain\n"
       "(connected robots), rays, build (time and memory). Engines: cohort, and as Debian ships them ode-worldstep,\n"
       "ode-quickstep, mujoco and enki.\n"
-      "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what "
-      "they\n"
-      "can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with speed;\n"
-      "Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
+      "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
+      "they can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with\n"
+      "speed; Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
       "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
 }
 

@@ -1,15 +1,12 @@
 #include "server/description/extension_values.hpp"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
 #include <set>
 
 #include "server/description/text.hpp"
 
 namespace cohort::description {
 namespace {
-
-constexpr std::uint64_t most_instances = 1'000'000;
 
 std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
 
@@ -30,42 +27,6 @@ std::string text_of(const sdf::ElementPtr& element) {
   return element->GetValue() ? std::string(trimmed(element->GetValue()->GetAsString())) : std::string();
 }
 
-std::string expected(ExtensionValue kind) {
-  switch (kind) {
-    case ExtensionValue::name: return "a name";
-    case ExtensionValue::uri: return "model://NAME or a path";
-    case ExtensionValue::real: return "a number";
-    case ExtensionValue::non_negative: return "a number >= 0";
-    case ExtensionValue::positive: return "a number > 0";
-    case ExtensionValue::count: return "a whole number from 1 to " + std::to_string(most_instances);
-    case ExtensionValue::whole: return "a whole number >= 0";
-    case ExtensionValue::point: return "two numbers 'x y'";
-    case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw'";
-    case ExtensionValue::group: return "elements";
-  }
-  return {};
-}
-
-template <std::size_t count>
-std::optional<std::array<double, count>> finite_numbers(std::string_view text) {
-  const std::vector<std::string_view> parts = words(text);
-  std::array<double, count> numbers{};
-  if (parts.size() != count) return std::nullopt;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::optional<double> number = parse_real(parts[i]);
-    if (!number || !std::isfinite(*number)) return std::nullopt;
-    numbers[i] = *number;
-  }
-  return numbers;
-}
-
-Pose pose_of(const std::array<double, 6>& v) {
-  const auto about = [](double angle, const Eigen::Vector3d& axis) { return Eigen::AngleAxisd(angle, axis); };
-  return {{v[0], v[1], v[2]},
-          Eigen::Quaterniond(about(v[5], Eigen::Vector3d::UnitZ()) * about(v[4], Eigen::Vector3d::UnitY()) *
-                             about(v[3], Eigen::Vector3d::UnitX()))};
-}
-
 // The names that an element of this parent may have, with their prefix.
 std::vector<std::string> names_in(std::string_view parent) {
   std::vector<std::string> names;
@@ -74,11 +35,16 @@ std::vector<std::string> names_in(std::string_view parent) {
   return names;
 }
 
+bool is_extension(std::string_view name) {
+  const std::span<const Extension> all = extensions();
+  return std::any_of(all.begin(), all.end(), [&](const Extension& extension) { return extension.name == name; });
+}
+
 void report_misplaced(const sdf::ElementPtr& element, std::string_view parent, const SdfReport& report) {
   for (const Extension& extension : extensions())
     if (has_prefix(element) && extension.name == without_prefix(element)) {
-      const bool in_sdf = extension.parent == "model" || extension.parent == "world";
-      const std::string home = in_sdf ? std::string(extension.parent) : prefixed(extension.parent);
+      const std::string home =
+          is_extension(extension.parent) ? prefixed(extension.parent) : std::string(extension.parent);
       report.problem(element, "<" + element->GetName() + "> belongs in <" + home + ">");
       return;
     }
@@ -87,10 +53,12 @@ void report_misplaced(const sdf::ElementPtr& element, std::string_view parent, c
 
 void report_extensions_below(const sdf::ElementPtr& element, const SdfReport& report) {
   for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (has_prefix(child))
-      report_misplaced(child, element->GetName(), report);
-    else if (child->GetName() != "plugin")
+    if (has_prefix(child)) {
+      if (find_extension(without_prefix(child), element->GetName()) == nullptr)
+        report_misplaced(child, element->GetName(), report);
+    } else if (child->GetName() != "plugin") {
       report_extensions_below(child, report);
+    }
   }
 }
 
@@ -101,13 +69,16 @@ std::optional<ExtensionValues> ExtensionValues::read(const sdf::ElementPtr& elem
   ExtensionValues values;
   values.element_ = element;
   const bool name_is_right = values.read_name(extension, report);
-  const bool children_are_right = values.read_children(extension, report);
-  if (!name_is_right || !children_are_right) return std::nullopt;
+  const ExtensionKey itself{extension.name, extension.value, "", "", extension.doc};
+  const bool content_is_right = extension.value == ExtensionValue::group ? values.read_children(extension, report)
+                                                                         : values.read_value(element, itself, report);
+  if (!name_is_right || !content_is_right) return std::nullopt;
   return values;
 }
 
-sdf::ElementPtr ExtensionValues::where(std::string_view key) const {
-  const sdf::ElementPtr child = element_->FindElement(prefixed(key));
+sdf::ElementPtr ExtensionValues::where(std::string_view key, std::size_t place) const {
+  sdf::ElementPtr child = element_->FindElement(prefixed(key));
+  while (child && place-- > 0) child = child->GetNextElement(prefixed(key));
   return child ? child : element_;
 }
 
@@ -140,11 +111,11 @@ bool ExtensionValues::read_children(const Extension& extension, const SdfReport&
       report.problem(child, "unknown element" + suggestion(child->GetName(), known));
       if (const auto meant = nearest(child->GetName(), known)) misspelt.insert(*meant);
       valid = false;
-    } else if (child != element_->FindElement(child->GetName())) {
+    } else if (!key->repeats && child != element_->FindElement(child->GetName())) {
       report.problem(child, "<" + child->GetName() + "> is given twice");
       valid = false;
-    } else {
-      valid = read_child(child, *key, report) && valid;
+    } else if (key->value != ExtensionValue::group) {
+      valid = read_value(child, *key, report) && valid;
     }
   }
   for (const ExtensionKey& key : extension.keys) {
@@ -153,62 +124,26 @@ bool ExtensionValues::read_children(const Extension& extension, const SdfReport&
     if (key.required()) {
       report.problem(element_, "missing: " + std::string(key.doc), prefixed(key.name));
       valid = false;
-    } else if (key.value != ExtensionValue::group) {
-      values_[key.name] = *parse(key.fallback, key.value);
+    } else if (key.fallback != no_value) {
+      add(key.name, *parse_value(key.fallback, key));
     }
   }
   return valid;
 }
 
-bool ExtensionValues::read_child(const sdf::ElementPtr& child, const ExtensionKey& key, const SdfReport& report) {
-  if (key.value == ExtensionValue::group) return true;
-  if (const sdf::ElementPtr stray = child->GetFirstElement()) {
-    report.problem(stray, "unexpected element; <" + child->GetName() + "> holds " + expected(key.value));
+bool ExtensionValues::read_value(const sdf::ElementPtr& element, const ExtensionKey& key, const SdfReport& report) {
+  if (const sdf::ElementPtr stray = element->GetFirstElement()) {
+    report.problem(stray, "unexpected element; <" + element->GetName() + "> holds " + expected(key));
     return false;
   }
-  const std::string text = text_of(child);
-  if (const std::optional<Value> value = parse(text, key.value)) {
-    values_[key.name] = *value;
-    return true;
+  const std::string text = text_of(element);
+  std::optional<Value> value = parse_value(text, key);
+  if (!value) {
+    report.problem(element, why_wrong(text, key));
+    return false;
   }
-  report.problem(child, "expected " + expected(key.value) + (text.empty() ? "" : ", not '" + text + "'"));
-  return false;
-}
-
-std::optional<ExtensionValues::Value> ExtensionValues::parse(std::string_view text, ExtensionValue kind) {
-  switch (kind) {
-    case ExtensionValue::name:
-    case ExtensionValue::uri:
-      if (text.empty()) return std::nullopt;
-      return Value(std::string(text));
-    case ExtensionValue::real:
-    case ExtensionValue::non_negative:
-    case ExtensionValue::positive: {
-      const std::optional<double> number = parse_real(text);
-      if (!number || !std::isfinite(*number) || (kind == ExtensionValue::non_negative && *number < 0.0) ||
-          (kind == ExtensionValue::positive && *number <= 0.0))
-        return std::nullopt;
-      return Value(*number);
-    }
-    case ExtensionValue::count:
-    case ExtensionValue::whole: {
-      const std::optional<std::uint64_t> number = parse_whole(text);
-      if (!number || (kind == ExtensionValue::count && (*number == 0 || *number > most_instances))) return std::nullopt;
-      return Value(*number);
-    }
-    case ExtensionValue::point: {
-      const auto numbers = finite_numbers<2>(text);
-      if (!numbers) return std::nullopt;
-      return Value(Eigen::Vector2d((*numbers)[0], (*numbers)[1]));
-    }
-    case ExtensionValue::pose: {
-      const auto numbers = finite_numbers<6>(text);
-      if (!numbers) return std::nullopt;
-      return Value(pose_of(*numbers));
-    }
-    case ExtensionValue::group: break;
-  }
-  return std::nullopt;
+  add(key.name, *std::move(value));
+  return true;
 }
 
 std::vector<std::pair<sdf::ElementPtr, const Extension*>> extensions_in(const sdf::ElementPtr& element,

@@ -16,6 +16,8 @@ constexpr ExtensionKey treel_drive[] = {
     {"max_torque", positive, "N m", "", "of each side's motor"},
     {"max_velocity", positive, "m/s", "", "of each track along the ground"},
     {"friction", non_negative, "1", "", "Coulomb coefficient of the tracks; a pair of surfaces has the smaller one"},
+    {"left_wheel", name, "", no_value, "joint of a wheel that the left track stands for; any number", true},
+    {"right_wheel", name, "", no_value, "joint of a wheel that the right track stands for; any number", true},
 };
 
 constexpr ExtensionKey velocity_motor[] = {
@@ -60,12 +62,36 @@ constexpr ExtensionKey uniform[] = {
     {"max", point, "m", "", "corner with the greatest x and y"},
 };
 
+constexpr std::string_view fidelities[] = {"articulated", "treel", "planar"};
+constexpr std::string_view solvers[] = {"iterative", "direct", "hybrid"};
+
+constexpr ExtensionKey physics[] = {
+    {"fidelity", choice, "", "treel", "how much of a model is simulated: `articulated`, `treel` or `planar`", false,
+     fidelities},
+    {"solver", choice, "", "iterative", "of joints and contacts: `iterative`, `direct` or `hybrid`", false, solvers},
+    {"iterations", count, "1", "10", "of the iterative solver, at the most"},
+    {"direct_bodies", count, "1", "4", "`hybrid`: the most bodies that are solved directly together"},
+    {"lowest", real, "m", no_value, "a body below this z has left the world"},
+    {"strict", flag, "", "false", "whether a body that breaks or leaves the world ends the run"},
+};
+
+constexpr ExtensionKey material_pair[] = {
+    {"first", name, "", "", "a material"},
+    {"second", name, "", "", "another, or the same"},
+    {"friction", non_negative, "1", "", "Coulomb coefficient"},
+    {"restitution", fraction, "1", "0", "share of the normal velocity that comes back"},
+    {"rolling_resistance", non_negative, "m", "0", "torque against rolling for each newton of normal force"},
+};
+
 constexpr Extension table[] = {
     {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", treel_drive},
     {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", velocity_motor},
     {"joint_encoder", "model", true, "Measures position and velocity of one joint.", joint_encoder},
     {"treel_encoder", "model", true, "Measures way and velocity of each track relative to the hull.", treel_encoder},
     {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", proximity_ring},
+    {"material", "collision", false, "The name of what a collision is made of.", {}, name},
+    {"material_pair", "world", false, "What holds where two materials touch.", material_pair},
+    {"physics", "world", false, "How the world is simulated.", physics},
     {"population", "world", true, "Instances of one model, placed by the seed of the run.", population},
     {"placement", "population", false, "Where the instances of a population are put.", placement},
     {"uniform", "placement", false, "A rectangle of the ground.", uniform},

@@ -22,8 +22,9 @@ struct Footprint {
   Eigen::Vector2d half_extent() const;
 };
 
-/// Of a shape whose pose in the world is X_WC: exact for spheres and for boxes and cylinders that stand upright, and a
-/// rectangle around the shadow if they are tilted. None for a plane.
+/// Of a shape whose pose in the world is X_WC: exact for spheres, for capsules, and for boxes and cylinders that stand
+/// upright; a rectangle around the shadow if they are tilted, and of a mesh the least one; around that of an ellipsoid,
+/// one with rounded ends. None for a plane and a height map.
 std::optional<Footprint> footprint_of(const Shape& shape, const Pose& X_WC);
 
 /// Of all collisions of a model whose pose in the world is X_WM.

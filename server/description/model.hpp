@@ -7,28 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "server/core/pose.hpp"
+#include "server/description/shape.hpp"
 
 /// A model as plain data, read once and never changed. SI units; radians; frames as in SDFormat: M the model, L a link,
 /// C a collision, J a joint, S a sensor. A member `X_AB` is the pose of frame B in frame A.
 namespace cohort::description {
-
-struct Box {
-  Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< full edge lengths [m]
-};
-struct Sphere {
-  double radius = 1.0;
-};
-/// Axis along z, centred on the origin.
-struct Cylinder {
-  double radius = 1.0;
-  double length = 1.0;
-};
-/// The half-space below the plane through the origin is solid. Static models only.
-struct Plane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-};
-using Shape = std::variant<Box, Sphere, Cylinder, Plane>;
 
 /// Of two surfaces that touch, unless the world has a MaterialPair for them: the smaller friction, the larger
 /// restitution and the larger rolling resistance.

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "server/description/input_file.hpp"
 #include "server/description/xml_outline.hpp"
 
 namespace cohort::description {
@@ -74,7 +75,7 @@ fs::path ModelSearch::find_folder(const std::string& name) const {
   throw std::runtime_error("there is no model '" + name + "' in " + searched + "; COHORT_MODEL_PATH may name more");
 }
 
-FoundModel ModelSearch::find(const std::string& uri) const {
+fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder) const {
   fs::path path;
   if (uri.starts_with(model_scheme)) {
     const std::string inside = uri.substr(model_scheme.size());
@@ -85,14 +86,23 @@ FoundModel ModelSearch::find(const std::string& uri) const {
   } else if (uri.find("://") != std::string::npos) {
     throw std::runtime_error("'" + uri + "' cannot be fetched: expected model://NAME or a path");
   } else {
-    path = world_folder_ / uri;
+    path = folder / uri;
   }
   path = path.lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // it ended in a slash
+  return path.has_filename() ? path : path.parent_path();  // it ended in a slash
+}
 
+FoundModel ModelSearch::find(const std::string& uri) const {
+  const fs::path path = path_of(uri, world_folder_);
   if (fs::is_directory(path)) return {sdf_file_of(path), path, uri};
   if (fs::is_regular_file(path)) return {path, path.parent_path(), uri.substr(0, uri.rfind('/') + 1)};
   throw std::runtime_error("there is no '" + path.string() + "'");
+}
+
+fs::path ModelSearch::find_file(const std::string& uri, const fs::path& folder) const {
+  fs::path path = path_of(uri, folder);
+  if (const auto reason = why_unreadable(path)) throw std::runtime_error(*reason + ": '" + path.string() + "'");
+  return path;
 }
 
 }  // namespace cohort::description

@@ -23,8 +23,12 @@ class ModelSearch {
 
   /// Throws std::runtime_error that says what is missing and where it was looked for.
   FoundModel find(const std::string& uri) const;
+  /// A file that is no model, such as a mesh: `model://NAME/...` is in a model's folder, and a path is relative to
+  /// `folder`. Throws std::runtime_error as well.
+  std::filesystem::path find_file(const std::string& uri, const std::filesystem::path& folder) const;
 
  private:
+  std::filesystem::path path_of(const std::string& uri, const std::filesystem::path& folder) const;
   std::filesystem::path find_folder(const std::string& name) const;
 
   std::filesystem::path world_folder_;

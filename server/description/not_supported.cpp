@@ -22,12 +22,11 @@ constexpr Unsupported table[] = {
     {"world", "actor"},
     {"world", "state"},
     {"world", "population", "; use <cohort:population>"},
-    {"model", "self_collide", "; links of one model never collide with each other"},
     {"model", "enable_wind"},
     {"model", "gripper"},
     {"link", "gravity", "; gravity acts on every link"},
     {"link", "enable_wind"},
-    {"link", "self_collide", "; links of one model never collide with each other"},
+    {"link", "self_collide", "; <self_collide> of the model is for all of its links"},
     {"link", "kinematic"},
     {"link", "velocity_decay"},
     {"link", "sensor", "; sensors are cohort: elements of the model"},
@@ -37,15 +36,14 @@ constexpr Unsupported table[] = {
     {"link", "audio_source"},
     {"joint", "sensor", "; sensors are cohort: elements of the model"},
     {"joint", "physics"},
-    {"dynamics", "friction"},
-    {"dynamics", "spring_reference"},
-    {"dynamics", "spring_stiffness"},
     {"limit", "effort", "; the effort of a motor is the <cohort:max_effort> of its <cohort:velocity_motor>"},
     {"limit", "velocity", "; the velocity of a motor is the <cohort:max_velocity> of its <cohort:velocity_motor>"},
     {"limit", "stiffness", "; joint limits are rigid"},
     {"limit", "dissipation", "; joint limits are rigid"},
     {"friction", "torsional"},
-    {"friction", "bullet", "; friction is <friction><ode><mu>"},
+    {"bullet", "friction", "; friction is <friction><ode><mu>"},
+    {"bullet", "friction2", "; friction is <friction><ode><mu>"},
+    {"bullet", "fdir1", "; friction is the same in every direction"},
     {"ode", "fdir1", "; friction is the same in every direction"},
     {"ode", "slip1"},
     {"ode", "slip2"},
@@ -56,11 +54,13 @@ constexpr Unsupported table[] = {
     {"contact", "ode", "; contacts are rigid"},
     {"contact", "bullet", "; contacts are rigid"},
     {"surface", "soft_contact"},
+    {"mesh", "submesh", "; all of the mesh is read"},
 };
 
 // What is looked into; all else is of no consequence or read elsewhere.
-constexpr std::string_view containers[] = {"link",    "joint",  "axis",     "dynamics", "limit",  "collision",
-                                           "surface", "bounce", "friction", "ode",      "contact"};
+constexpr std::string_view containers[] = {"link",  "joint",     "axis",    "axis2",    "dynamics",
+                                           "limit", "collision", "surface", "bounce",   "friction",
+                                           "ode",   "bullet",    "contact", "geometry", "mesh"};
 
 bool is_container(std::string_view name) { return std::ranges::find(containers, name) != std::end(containers); }
 

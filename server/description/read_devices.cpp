@@ -28,33 +28,70 @@ class DeviceReader {
 
   /// The index of the link or joint that `key` names; reported if there is none.
   template <class Named>
-  std::optional<std::size_t> find(const ExtensionValues& values, const char* key, const std::vector<Named>& named);
+  std::optional<std::size_t> find(const ExtensionValues& values, const char* key, const std::vector<Named>& named) {
+    return find(values.text(key), values.where(key), key, named);
+  }
+  template <class Named>
+  std::optional<std::size_t> find(const std::string& name, const sdf::ElementPtr& where, const char* kind,
+                                  const std::vector<Named>& named);
+  /// One that has an angle or a way: its first axis is meant.
   std::optional<std::size_t> find_moving_joint(const ExtensionValues& values);
+  /// The joints of the wheels of one side; reported if they cannot be.
+  std::vector<std::size_t> read_wheels(const ExtensionValues& values, const char* key, std::size_t hull);
 
   const Model& model_;
   std::map<std::string, std::size_t> drives_;
   const SdfReport& report_;
   std::set<std::size_t> motorised_;  // joints
+  std::set<std::size_t> wheels_;     // joints
 };
 
 template <class Named>
-std::optional<std::size_t> DeviceReader::find(const ExtensionValues& values, const char* key,
+std::optional<std::size_t> DeviceReader::find(const std::string& name, const sdf::ElementPtr& where, const char* kind,
                                               const std::vector<Named>& named) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < named.size(); ++i) {
-    if (named[i].name == values.text(key)) return i;
+    if (named[i].name == name) return i;
     names.push_back(named[i].name);
   }
-  report_.problem(values.where(key), "the model has no " + std::string(key) + " '" + values.text(key) + "'" +
-                                         suggestion(values.text(key), names));
+  report_.problem(where, "the model has no " + std::string(kind) + " '" + name + "'" + suggestion(name, names));
   return std::nullopt;
 }
 
 std::optional<std::size_t> DeviceReader::find_moving_joint(const ExtensionValues& values) {
   const std::optional<std::size_t> joint = find(values, "joint", model_.joints);
-  if (!joint || model_.joints[*joint].type != JointType::fixed) return joint;
-  report_.problem(values.where("joint"), "the joint '" + values.text("joint") + "' is fixed");
+  if (!joint) return std::nullopt;
+  const JointType type = model_.joints[*joint].type;
+  if (type != JointType::fixed && type != JointType::ball) return joint;
+  report_.problem(values.where("joint"),
+                  "the joint '" + values.text("joint") + "' " +
+                      (type == JointType::fixed ? "is fixed" : "is a ball: it has no single axis"));
   return std::nullopt;
+}
+
+std::vector<std::size_t> DeviceReader::read_wheels(const ExtensionValues& values, const char* key, std::size_t hull) {
+  std::vector<std::size_t> wheels;
+  const std::vector<std::string> names = values.texts(key);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const sdf::ElementPtr where = values.where(key, i);
+    const std::optional<std::size_t> found = find(names[i], where, "joint", model_.joints);
+    if (!found) continue;
+    const Joint& joint = model_.joints[*found];
+    const auto problem = [&](const std::string& what) {
+      report_.problem(where, "the joint '" + joint.name + "' " + what);
+    };
+    if (joint.type != JointType::revolute)
+      problem("is not revolute, as that of a wheel is");
+    else if (joint.parent != hull)
+      problem("is not between '" + model_.links[hull].name + "' and a wheel");
+    else if (motorised_.contains(*found))
+      problem("has a motor already");
+    else if (!wheels_.insert(*found).second)
+      problem("is a wheel's already");
+    else
+      wheels.push_back(*found);
+  }
+  return wheels;
 }
 
 std::optional<Device> DeviceReader::read_treel_drive(const ExtensionValues& values) {
@@ -74,14 +111,19 @@ std::optional<Device> DeviceReader::read_treel_drive(const ExtensionValues& valu
   drive.max_torque = values.real("max_torque");
   drive.max_velocity = values.real("max_velocity");
   drive.friction = values.real("friction");
+  drive.left_wheels = read_wheels(values, "left_wheel", drive.link);
+  drive.right_wheels = read_wheels(values, "right_wheel", drive.link);
   return drive;
 }
 
 std::optional<Device> DeviceReader::read_velocity_motor(const ExtensionValues& values) {
   const std::optional<std::size_t> joint = find_moving_joint(values);
   if (!joint) return std::nullopt;
-  if (!motorised_.insert(*joint).second) {
-    report_.problem(values.where("joint"), "the joint '" + values.text("joint") + "' has a motor already");
+  const bool is_wheel = wheels_.contains(*joint);
+  if (is_wheel || !motorised_.insert(*joint).second) {
+    report_.problem(values.where("joint"),
+                    "the joint '" + values.text("joint") + "' " +
+                        (is_wheel ? "is a wheel's of a treel_drive, which moves it" : "has a motor already"));
     return std::nullopt;
   }
   return VelocityMotor{values.name(), *joint, values.real("max_velocity"), values.real("max_effort")};

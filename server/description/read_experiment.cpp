@@ -10,6 +10,7 @@
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/description/input_file.hpp"
+#include "server/description/physics_settings.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
 #include "server/description/yaml_map.hpp"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>::max();
 
-const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "teams"};
+const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "physics", "teams"};
 const std::vector<std::string> team_keys = {"name",  "robots", "controller", "parameters", "period",
                                             "phase", "delay",  "on_late",    "deadline",   "restart"};
 
@@ -133,6 +134,9 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   top.require("world", "the SDF file of the world, relative to this file");
   top.require("teams", "which robots have which controller");
   read_world_of(top);
+  if (top.has("physics"))
+    experiment_.world.physics =
+        with_values(experiment_.world.physics, read_physics_map(top.where("physics"), top.path_to("physics"), report_));
   read_teams(top);
 
   if (!problems_.empty()) throw InputError(std::move(problems_));

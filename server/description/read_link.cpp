@@ -1,18 +1,16 @@
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
-#include <sdf/Box.hh>
 #include <sdf/Collision.hh>
-#include <sdf/Cylinder.hh>
 #include <sdf/Geometry.hh>
-#include <sdf/Plane.hh>
-#include <sdf/Sphere.hh>
+#include <sdf/Heightmap.hh>
+#include <utility>
 
+#include "server/description/extension_values.hpp"
 #include "server/description/read_model.hpp"
 
 namespace cohort::description {
 namespace {
-
-constexpr const char* geometries = "box, sphere, cylinder or plane";
 
 // Here and below, NaN passes: check_numbers has reported it.
 Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
@@ -48,41 +46,6 @@ Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
   return inertial;
 }
 
-void check_size(const sdf::ElementPtr& geometry, std::initializer_list<const char*> path, double least,
-                const SdfReport& report) {
-  const sdf::ElementPtr element = find(geometry, path);
-  if (least <= 0.0 || std::isinf(least)) report.problem(element ? element : geometry, "expected a size > 0 m");
-}
-
-std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading) {
-  const sdf::ElementPtr element = geometry.Element();
-  const SdfReport& report = reading.report;
-  if (const sdf::Box* const box = geometry.BoxShape()) {
-    const Eigen::Vector3d size = to_eigen(box->Size());
-    check_size(element, {"box", "size"}, size.minCoeff(), report);
-    return Box{size};
-  }
-  if (const sdf::Sphere* const sphere = geometry.SphereShape()) {
-    check_size(element, {"sphere", "radius"}, sphere->Radius(), report);
-    return Sphere{sphere->Radius()};
-  }
-  if (const sdf::Cylinder* const cylinder = geometry.CylinderShape()) {
-    check_size(element, {"cylinder", "radius"}, cylinder->Radius(), report);
-    check_size(element, {"cylinder", "length"}, cylinder->Length(), report);
-    return Cylinder{cylinder->Radius(), cylinder->Length()};
-  }
-  if (const sdf::Plane* const plane = geometry.PlaneShape()) {
-    const Eigen::Vector3d normal = to_eigen(plane->Normal());
-    if (!reading.is_static) report.problem(element, "a plane needs <static>true</static> in its model");
-    if (normal.isZero()) report.problem(element, "expected a normal that is not zero");
-    return Plane{normal.normalized()};
-  }
-  const sdf::ElementPtr kind = element->GetFirstElement();
-  report.problem(element, (kind ? "<" + kind->GetName() + "> is not supported; expected " : "expected ") +
-                              std::string(geometries));
-  return std::nullopt;
-}
-
 double read_coefficient(const sdf::ElementPtr& element, double by_default, double greatest, const char* expected,
                         const SdfReport& report) {
   if (!element) return by_default;
@@ -91,13 +54,34 @@ double read_coefficient(const sdf::ElementPtr& element, double by_default, doubl
   return value;
 }
 
-Surface read_surface(const sdf::ElementPtr& collision, const SdfReport& report) {
+std::uint32_t read_material(const sdf::ElementPtr& collision, const ModelReading& reading) {
+  const sdf::ElementPtr element = collision->FindElement("cohort:material");
+  if (!element) return 0;
+  if (const sdf::ElementPtr again = element->GetNextElement("cohort:material"))
+    reading.report.problem(again, "<cohort:material> is given twice");
+  const auto values = ExtensionValues::read(element, *find_extension("material", "collision"), reading.report);
+  if (!values) return 0;
+  std::vector<std::string>& materials = reading.materials;
+  const auto found = std::find(materials.begin(), materials.end(), values->text("material"));
+  const auto index = static_cast<std::uint32_t>(found - materials.begin());
+  if (found == materials.end()) materials.push_back(values->text("material"));
+  return index;
+}
+
+Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& reading) {
   const Surface by_default;
+  const SdfReport& report = reading.report;
   const double most = std::numeric_limits<double>::max();
-  return {read_coefficient(find(collision, {"surface", "friction", "ode", "mu"}), by_default.friction, most,
-                           "expected a coefficient >= 0", report),
-          read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}), by_default.restitution,
-                           1.0, "expected a coefficient from 0 to 1", report)};
+  Surface surface;
+  surface.friction = read_coefficient(find(collision, {"surface", "friction", "ode", "mu"}), by_default.friction, most,
+                                      "expected a coefficient >= 0", report);
+  surface.restitution = read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}),
+                                         by_default.restitution, 1.0, "expected a coefficient from 0 to 1", report);
+  surface.rolling_resistance =
+      read_coefficient(find(collision, {"surface", "friction", "bullet", "rolling_friction"}),
+                       by_default.rolling_resistance, most, "expected a rolling resistance >= 0 m", report);
+  surface.material = read_material(collision, reading);
+  return surface;
 }
 
 }  // namespace
@@ -109,10 +93,13 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
   if (!reading.is_static) link.inertial = read_inertial(sdf_link, reading.report);
   for (std::uint64_t i = 0; i < sdf_link.CollisionCount(); ++i) {
     const sdf::Collision& sdf_collision = *sdf_link.CollisionByIndex(i);
-    const std::optional<Shape> shape = read_shape(*sdf_collision.Geom(), reading);
+    const sdf::Geometry& geometry = *sdf_collision.Geom();
+    std::optional<Shape> shape = read_shape(geometry, reading);
+    const Surface surface = read_surface(sdf_collision.Element(), reading);
     if (!shape) continue;
-    link.collisions.push_back({sdf_collision.Name(), resolved_pose(sdf_collision, reading), *shape,
-                               read_surface(sdf_collision.Element(), reading.report)});
+    Pose X_LC = resolved_pose(sdf_collision, reading);
+    if (const sdf::Heightmap* const map = geometry.HeightmapShape()) X_LC.position = X_LC * to_eigen(map->Position());
+    link.collisions.push_back({sdf_collision.Name(), X_LC, *std::move(shape), surface});
   }
   return link;
 }

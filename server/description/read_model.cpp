@@ -29,7 +29,8 @@ bool every_link_has_one_parent(const sdf::Model& sdf_model, const Model& model, 
 bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& report) {
   const std::size_t count = model.links.size();
   std::vector<std::size_t> parent(count, count);  // `count` is none
-  for (const Joint& joint : model.joints) parent[joint.child] = joint.parent;
+  for (const Joint& joint : model.joints)
+    if (joint.parent != Joint::world) parent[joint.child] = joint.parent;
 
   std::vector<std::size_t> order;  // old indices
   std::vector<std::size_t> place(count, count);
@@ -44,7 +45,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
     std::string names;
     for (const std::size_t root : roots) names += (names.empty() ? "'" : ", '") + model.links[root].name + "'";
     report.problem(sdf_model.Element(),
-                   "the links " + names + " have no joint to a parent; a model that moves has one such root");
+                   "the links " + names + " have no joint to a parent link; a model that moves has one such root");
     return false;
   }
   for (const std::size_t root : roots) put(root);
@@ -68,7 +69,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   for (const std::size_t link : order) links.push_back(std::move(model.links[link]));
   model.links = std::move(links);
   for (Joint& joint : model.joints) {
-    joint.parent = place[joint.parent];
+    if (joint.parent != Joint::world) joint.parent = place[joint.parent];
     joint.child = place[joint.child];
   }
   return true;
@@ -81,6 +82,7 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   Model model;
   model.name = sdf_model.Name();
   model.is_static = reading.is_static;
+  model.self_collide = sdf_model.SelfCollide();
   warn_of_unsupported(element, reading.report);
 
   for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i)

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <sdf/Error.hh>
+#include <sdf/Geometry.hh>
 #include <sdf/Joint.hh>
 #include <sdf/Link.hh>
 #include <sdf/Model.hh>
@@ -11,6 +13,7 @@
 #include "server/description/model.hpp"
 #include "server/description/sdf_report.hpp"
 #include "server/description/sdf_values.hpp"
+#include "server/description/shape_files.hpp"
 
 namespace cohort::description {
 
@@ -19,10 +22,15 @@ struct ModelReading {
   bool is_static = false;
   bool frames_resolve = false;  ///< libsdformat found no fault with the file; if it did, it has said why
   const SdfReport& report;
+  ShapeFiles& shape_files;
+  std::vector<std::string>& materials;  ///< of the world; a new name is added
 };
 
 /// A model, checked; what is wrong goes to the report, and the model is then not to be used.
 Model read_model(const sdf::Model& sdf_model, const ModelReading& reading);
+
+/// Nothing if there is no such shape; the report then has it.
+std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading);
 
 /// A link with its inertial and its collisions.
 Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);

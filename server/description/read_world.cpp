@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sdf/Error.hh>
@@ -10,10 +11,12 @@
 
 #include "server/description/extension_values.hpp"
 #include "server/description/not_supported.hpp"
+#include "server/description/physics_settings.hpp"
 #include "server/description/population.hpp"
 #include "server/description/read_model.hpp"
 #include "server/description/sdf_files.hpp"
 #include "server/description/sdf_values.hpp"
+#include "server/description/text.hpp"
 #include "server/description/world.hpp"
 
 namespace cohort::description {
@@ -23,7 +26,10 @@ class WorldReader {
  public:
   WorldReader(const std::filesystem::path& file, std::uint64_t seed,
               const std::vector<std::filesystem::path>& last_model_folders)
-      : seed_(seed), files_(file, last_model_folders, problems_), report_(files_, problems_, world_.warnings) {
+      : seed_(seed),
+        files_(file, last_model_folders, problems_),
+        shape_files_(files_),
+        report_(files_, problems_, world_.warnings) {
     world_.file = file;
   }
 
@@ -34,7 +40,13 @@ class WorldReader {
   void read_models(const sdf::World& sdf_world, const SdfFile& file);
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
   void read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file);
-  void read_populations(const sdf::World& sdf_world);
+  void read_extensions(const sdf::World& sdf_world);
+  void add_material_pair(const ExtensionValues& values);
+  /// The index of the material that `key` names; reported if nothing is made of it.
+  std::optional<std::uint32_t> find_material(const ExtensionValues& values, const char* key) const;
+  ModelReading reading(bool is_static, const SdfFile& file) {
+    return {is_static, file.sound, report_, shape_files_, world_.materials};
+  }
   void expand(const Population& population);
   /// The place in World::models of the model in a file: one for all that include it.
   std::size_t shared_model(const SdfFile& file, bool is_static);
@@ -45,6 +57,7 @@ class WorldReader {
   World world_;
   std::vector<Problem> problems_;
   SdfFiles files_;
+  ShapeFiles shape_files_;
   SdfReport report_;
   std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
   std::set<std::string> names_;
@@ -63,7 +76,7 @@ World WorldReader::read() {
   const sdf::World& sdf_world = *file.root.WorldByIndex(0);
   read_settings(sdf_world);
   read_models(sdf_world, file);
-  read_populations(sdf_world);
+  read_extensions(sdf_world);
   if (!problems_.empty()) throw InputError(std::move(problems_));
 
   for (std::size_t i = 0; i < world_.instances.size(); ++i)
@@ -125,28 +138,66 @@ void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) 
 }
 
 void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
-  const ModelReading reading{sdf_model.Static(), file.sound, report_};
-  world_.models.push_back(read_model(sdf_model, reading));
-  add_instance(sdf_model.Name(), world_.models.size() - 1, resolved_pose(sdf_model, reading));
+  const ModelReading how = reading(sdf_model.Static(), file);
+  world_.models.push_back(read_model(sdf_model, how));
+  add_instance(sdf_model.Name(), world_.models.size() - 1, resolved_pose(sdf_model, how));
 }
 
 void WorldReader::read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file) {
-  const ModelReading reading{sdf_model.Static(), file.sound, report_};
-  add_instance(sdf_model.Name(), shared_model(*include.file, sdf_model.Static()), resolved_pose(sdf_model, reading));
+  add_instance(sdf_model.Name(), shared_model(*include.file, sdf_model.Static()),
+               resolved_pose(sdf_model, reading(sdf_model.Static(), file)));
 }
 
 std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
   const auto [entry, is_new] = shared_.emplace(std::pair{&file, is_static}, world_.models.size());
   if (is_new) {
     check_numbers(file.root.Element(), report_);
-    world_.models.push_back(read_model(*file.root.Model(), {is_static, file.sound, report_}));
+    world_.models.push_back(read_model(*file.root.Model(), reading(is_static, file)));
   }
   return entry->second;
 }
 
-void WorldReader::read_populations(const sdf::World& sdf_world) {
-  for (const auto& [element, extension] : extensions_in(sdf_world.Element(), report_))
-    if (const auto population = read_population(element, *extension, seed_, report_)) expand(*population);
+void WorldReader::read_extensions(const sdf::World& sdf_world) {
+  const auto extensions = extensions_in(sdf_world.Element(), report_);
+  bool has_physics = false;
+  for (const auto& [element, extension] : extensions) {
+    if (extension->name == "population") {
+      if (const auto population = read_population(element, *extension, seed_, report_)) expand(*population);
+    } else if (extension->name == "physics") {
+      if (has_physics) report_.problem(element, "<cohort:physics> is given twice");
+      has_physics = true;
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.physics = with_values(world_.physics, *values);
+    }
+  }
+  // Last, when all materials are known; what could not be read may have had more.
+  const bool all_is_read = problems_.empty();
+  for (const auto& [element, extension] : extensions) {
+    if (extension->name != "material_pair") continue;
+    if (const auto values = ExtensionValues::read(element, *extension, report_); values && all_is_read)
+      add_material_pair(*values);
+  }
+}
+
+std::optional<std::uint32_t> WorldReader::find_material(const ExtensionValues& values, const char* key) const {
+  const std::vector<std::string> named(world_.materials.begin() + 1, world_.materials.end());
+  const auto found = std::find(named.begin(), named.end(), values.text(key));
+  if (found != named.end()) return static_cast<std::uint32_t>(found - named.begin() + 1);
+  report_.problem(values.where(key),
+                  "nothing is made of '" + values.text(key) + "'" + suggestion(values.text(key), named));
+  return std::nullopt;
+}
+
+void WorldReader::add_material_pair(const ExtensionValues& values) {
+  const std::optional<std::uint32_t> first = find_material(values, "first");
+  const std::optional<std::uint32_t> second = find_material(values, "second");
+  if (!first || !second) return;
+  for (const MaterialPair& other : world_.material_pairs)
+    if (std::minmax(other.first, other.second) == std::minmax(*first, *second))
+      report_.problem(values.element(), "another <cohort:material_pair> is of '" + values.text("first") + "' and '" +
+                                            values.text("second") + "'");
+  world_.material_pairs.push_back(
+      {*first, *second, values.real("friction"), values.real("restitution"), values.real("rolling_resistance")});
 }
 
 void WorldReader::expand(const Population& population) {

@@ -262,6 +262,10 @@ const SdfFile* SdfFiles::find(const std::string& path) const {
   return found == files_.end() ? nullptr : found->second.get();
 }
 
+fs::path SdfFiles::find_file(const sdf::ElementPtr& element) const {
+  return search_.find_file(element->Get<std::string>(), fs::path(element->FilePath()).parent_path());
+}
+
 Location SdfFiles::locate(const sdf::ElementPtr& element) const {
   Location location;
   const SdfFile* const file = find(element->FilePath());

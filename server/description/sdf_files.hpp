@@ -83,6 +83,10 @@ class SdfFiles {
     return open(found.file, found.file);
   }
 
+  /// The file that the URI in `element` names, such as a mesh; a path is relative to the file that the element stands
+  /// in. Throws std::runtime_error if there is none.
+  std::filesystem::path find_file(const sdf::ElementPtr& element) const;
+
   Location locate(const sdf::ElementPtr& element) const;
 
  private:

@@ -14,9 +14,17 @@ std::uint32_t Scene::add(Solid solid) {
   const auto index = static_cast<std::uint32_t>(solids_.size());
   bounds_.push_back(bounds_of(solid.shape, solid.X_WC));
   X_CW_.push_back(solid.X_WC.inverse());
+  const auto* const mesh = std::get_if<description::Mesh>(&solid.shape);
+  surfaces_.push_back(mesh != nullptr ? surface_of(*mesh) : nullptr);
   if (solid.moves) moving_.push_back(index);
   solids_.push_back(std::move(solid));
   return index;
+}
+
+std::shared_ptr<const MeshSurface> Scene::surface_of(const description::Mesh& mesh) {
+  std::shared_ptr<const MeshSurface>& surface = shared_[{mesh.triangles.get(), mesh.convex}];
+  if (!surface) surface = std::make_shared<const MeshSurface>(mesh);
+  return surface;
 }
 
 void Scene::build() {
@@ -52,8 +60,10 @@ void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
 double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                       const Eigen::Vector3d& direction_W, double range) const {
   const double reach = best ? best->distance : range;
-  const RayEntry entry =
-      geometry::cast_ray(solids_[index].shape, X_CW_[index] * origin_W, X_CW_[index].orientation * direction_W);
+  const Eigen::Vector3d origin_C = X_CW_[index] * origin_W;
+  const Eigen::Vector3d direction_C = X_CW_[index].orientation * direction_W;
+  const RayEntry entry = surfaces_[index] ? surfaces_[index]->cast_ray(origin_C, direction_C, reach)
+                                          : geometry::cast_ray(solids_[index].shape, origin_C, direction_C, reach);
   if (!(entry.distance < reach || (entry.distance == reach && (!best || index < best->solid)))) return reach;
   best = RayHit{entry.distance, index, solids_[index].X_WC.orientation * entry.normal};
   return entry.distance;

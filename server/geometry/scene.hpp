@@ -1,11 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "server/description/model.hpp"
 #include "server/geometry/grid.hpp"
+#include "server/geometry/mesh_surface.hpp"
 #include "server/geometry/shapes.hpp"
 
 namespace cohort::geometry {
@@ -68,6 +73,7 @@ class Scene {
   }
 
  private:
+  std::shared_ptr<const MeshSurface> surface_of(const description::Mesh& mesh);
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
   /// Makes `best` the solid's hit if that is nearer. Returns how far a nearer hit may be.
   double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
@@ -76,6 +82,8 @@ class Scene {
   std::vector<Solid> solids_;
   std::vector<Pose> X_CW_;  // inverse of each solid's pose
   std::vector<Bounds> bounds_;
+  std::vector<std::shared_ptr<const MeshSurface>> surfaces_;  // of each solid that is a mesh
+  std::map<std::pair<const description::TriangleMesh*, bool>, std::shared_ptr<const MeshSurface>> shared_;
   std::vector<std::uint32_t> moving_;
   std::vector<std::uint32_t> large_;  // planes, and what would fill many cells
   Grid static_grid_;

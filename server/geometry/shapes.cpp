@@ -1,13 +1,21 @@
 #include "server/geometry/shapes.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "server/geometry/height_field.hpp"
+#include "server/geometry/mesh_surface.hpp"
 
 namespace cohort::geometry {
 namespace {
 
 using description::Box;
+using description::Capsule;
 using description::Cylinder;
+using description::Ellipsoid;
+using description::Heightmap;
+using description::Mesh;
 using description::Plane;
 using description::Sphere;
 using Eigen::Vector3d;
@@ -27,7 +35,29 @@ Vector3d half_extents(const Cylinder& cylinder, const Eigen::Matrix3d& rotation)
   }
   return extents;
 }
+Vector3d half_extents(const Capsule& capsule, const Eigen::Matrix3d& rotation) {
+  return 0.5 * capsule.length * rotation.col(2).cwiseAbs() + Vector3d::Constant(capsule.radius);
+}
+Vector3d half_extents(const Ellipsoid& ellipsoid, const Eigen::Matrix3d& rotation) {
+  return (rotation * ellipsoid.radii.asDiagonal()).rowwise().norm();
+}
 Vector3d half_extents(const Plane&, const Eigen::Matrix3d&) { return Vector3d::Constant(infinity); }
+
+template <class Centred>
+Bounds bounds(const Centred& shape, const Pose& X_WC) {
+  const Vector3d half = half_extents(shape, X_WC.orientation.toRotationMatrix());
+  return {X_WC.position - half, X_WC.position + half};
+}
+Bounds bounds(const Mesh& mesh, const Pose& X_WC) {
+  Bounds box{Vector3d::Constant(infinity), Vector3d::Constant(-infinity)};
+  for (const Vector3d& vertex : mesh.triangles->vertices) {
+    const Vector3d vertex_W = X_WC * vertex;
+    box.lower = box.lower.cwiseMin(vertex_W);
+    box.upper = box.upper.cwiseMax(vertex_W);
+  }
+  return box;
+}
+Bounds bounds(const Heightmap& map, const Pose& X_WC) { return bounds_of(*map.grid, X_WC); }
 
 RayEntry enter(const Box& box, const Vector3d& origin, const Vector3d& direction) {
   const Vector3d half = 0.5 * box.size;
@@ -92,6 +122,40 @@ RayEntry enter(const Cylinder& cylinder, const Vector3d& origin, const Vector3d&
   return {distance, Vector3d(0.0, 0.0, end > 0.0 ? 1.0 : -1.0)};
 }
 
+RayEntry enter(const Capsule& capsule, const Vector3d& origin, const Vector3d& direction) {
+  const double half = 0.5 * capsule.length;
+  const double c = origin.head<2>().squaredNorm() - capsule.radius * capsule.radius;
+  double z = origin.z();
+  if (c > 0.0) {
+    const double a = direction.head<2>().squaredNorm();
+    const double b = origin.head<2>().dot(direction.head<2>());
+    const double discriminant = b * b - a * c;
+    if (b >= 0.0 || discriminant < 0.0) return {};  // leads away from the axis, or passes beside it
+    const double distance = (-b - std::sqrt(discriminant)) / a;
+    const Vector3d at = origin + distance * direction;
+    if (std::abs(at.z()) <= half) return {distance, Vector3d(at.x(), at.y(), 0.0) / capsule.radius};
+    z = at.z();
+  } else if (std::abs(z) <= half) {
+    return {0.0, Vector3d::Zero()};
+  }
+  // Beyond an end: the ray can only come in through the half sphere there.
+  return enter(Sphere{capsule.radius}, origin - Vector3d(0.0, 0.0, z > 0.0 ? half : -half), direction);
+}
+
+RayEntry enter(const Ellipsoid& ellipsoid, const Vector3d& origin, const Vector3d& direction) {
+  // In units of the radii it is a sphere.
+  const Vector3d o = origin.cwiseQuotient(ellipsoid.radii);
+  const Vector3d d = direction.cwiseQuotient(ellipsoid.radii);
+  const double c = o.squaredNorm() - 1.0;
+  if (c <= 0.0) return {0.0, Vector3d::Zero()};
+  const double a = d.squaredNorm();
+  const double b = o.dot(d);
+  const double discriminant = b * b - a * c;
+  if (b >= 0.0 || discriminant < 0.0) return {};
+  const double distance = (-b - std::sqrt(discriminant)) / a;
+  return {distance, (o + distance * d).cwiseQuotient(ellipsoid.radii).normalized()};
+}
+
 RayEntry enter(const Plane& plane, const Vector3d& origin, const Vector3d& direction) {
   const double height = plane.normal.dot(origin);
   if (height <= 0.0) return {0.0, Vector3d::Zero()};
@@ -100,16 +164,27 @@ RayEntry enter(const Plane& plane, const Vector3d& origin, const Vector3d& direc
   return {height / descent, plane.normal};
 }
 
+RayEntry enter(const Mesh& mesh, const Vector3d& origin, const Vector3d& direction, double range) {
+  return MeshSurface(mesh).cast_ray(origin, direction, range);
+}
+
+RayEntry enter(const Heightmap& map, const Vector3d& origin, const Vector3d& direction, double range) {
+  return cast_ray(*map.grid, origin, direction, range);
+}
+
+template <class Closed>
+RayEntry enter(const Closed& shape, const Vector3d& origin, const Vector3d& direction, double) {
+  return enter(shape, origin, direction);
+}
+
 }  // namespace
 
 Bounds bounds_of(const Shape& shape, const Pose& X_WC) {
-  const Eigen::Matrix3d rotation = X_WC.orientation.toRotationMatrix();
-  const Vector3d half = std::visit([&](const auto& s) { return half_extents(s, rotation); }, shape);
-  return {X_WC.position - half, X_WC.position + half};
+  return std::visit([&](const auto& s) { return bounds(s, X_WC); }, shape);
 }
 
-RayEntry cast_ray(const Shape& shape, const Vector3d& origin, const Vector3d& direction) {
-  return std::visit([&](const auto& s) { return enter(s, origin, direction); }, shape);
+RayEntry cast_ray(const Shape& shape, const Vector3d& origin, const Vector3d& direction, double range) {
+  return std::visit([&](const auto& s) { return enter(s, origin, direction, range); }, shape);
 }
 
 }  // namespace cohort::geometry

@@ -2,14 +2,20 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <variant>
 
 #include "server/core/pose.hpp"
-#include "server/description/model.hpp"
+#include "server/description/shape.hpp"
 
 /// Closed forms on the shapes of a description. Pure functions, callable from any thread.
 namespace cohort::geometry {
 
 using description::Shape;
+
+/// Whether a shape is what everything stands on: solid without end below its surface.
+inline bool is_ground(const Shape& shape) {
+  return std::holds_alternative<description::Plane>(shape) || std::holds_alternative<description::Heightmap>(shape);
+}
 
 /// Axis-aligned box in the world frame [m]; may be infinite.
 struct Bounds {
@@ -22,7 +28,8 @@ struct Bounds {
   Bounds grown_by(double margin) const { return {lower.array() - margin, upper.array() + margin}; }
 };
 
-/// The tightest bounds of `shape` at X_WC; those of a plane are all of space.
+/// The tightest bounds of `shape` at X_WC; those of a plane are all of space, and a height map has all that is below
+/// it.
 Bounds bounds_of(const Shape& shape, const Pose& X_WC);
 
 /// Where a ray enters a solid: `distance` along the unit direction, 0 if it starts inside, infinite if it misses.
@@ -32,7 +39,9 @@ struct RayEntry {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// The ray and the result are in the shape's own frame.
-RayEntry cast_ray(const Shape& shape, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+/// The ray and the result are in the shape's own frame. An entry further than `range` may be left out. Of a mesh this
+/// makes a MeshSurface first: for more than one ray, keep that.
+RayEntry cast_ray(const Shape& shape, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                  double range = std::numeric_limits<double>::infinity());
 
 }  // namespace cohort::geometry

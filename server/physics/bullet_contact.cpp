@@ -1,36 +1,10 @@
 #include "server/physics/bullet_contact.hpp"
 
-#include <stdexcept>
-
 #include "server/physics/bullet.hpp"
 
 namespace cohort::physics {
 
-class BulletShape {
- public:
-  explicit BulletShape(std::unique_ptr<btCollisionShape> shape) : shape_(std::move(shape)) {}
-  btCollisionShape* get() const { return shape_.get(); }
-
- private:
-  std::unique_ptr<btCollisionShape> shape_;
-};
-
 namespace {
-
-struct Make {
-  std::unique_ptr<btCollisionShape> operator()(const description::Box& box) const {
-    return std::make_unique<btBoxShape>(to_bullet(0.5 * box.size));
-  }
-  std::unique_ptr<btCollisionShape> operator()(const description::Sphere& sphere) const {
-    return std::make_unique<btSphereShape>(sphere.radius);
-  }
-  std::unique_ptr<btCollisionShape> operator()(const description::Cylinder& cylinder) const {
-    return std::make_unique<btCylinderShapeZ>(btVector3(cylinder.radius, cylinder.radius, 0.5 * cylinder.length));
-  }
-  std::unique_ptr<btCollisionShape> operator()(const description::Plane& plane) const {
-    return std::make_unique<btStaticPlaneShape>(to_bullet(plane.normal), 0.0);
-  }
-};
 
 btDefaultCollisionConstructionInfo without_pools() {
   btDefaultCollisionConstructionInfo info;
@@ -40,10 +14,6 @@ btDefaultCollisionConstructionInfo without_pools() {
 }
 
 }  // namespace
-
-std::shared_ptr<const BulletShape> make_bullet_shape(const geometry::Shape& shape) {
-  return std::make_shared<BulletShape>(std::visit(Make{}, shape));
-}
 
 // Bullet's dispatcher hands out manifolds and algorithms from pools that are not safe for several threads, and lists
 // all manifolds in one array; ours takes memory from the allocator and keeps no list.
@@ -87,6 +57,8 @@ struct BulletContact::State {
   btCollisionObject b;
   btCollisionAlgorithm* algorithm = nullptr;
 
+  btPersistentManifold* manifold() const;
+  void collide(const Pose& X_WA, const Pose& X_WB);
   ~State() {
     if (algorithm == nullptr) return;
     algorithm->~btCollisionAlgorithm();
@@ -108,45 +80,90 @@ BulletContact::~BulletContact() = default;
 BulletContact::BulletContact(BulletContact&&) noexcept = default;
 BulletContact& BulletContact::operator=(BulletContact&&) noexcept = default;
 
+namespace {
+
+// What of a point of Bullet's decides which points it keeps in the next step.
+template <class Point, class Visit>
+void visit_point(Point& point, Visit&& visit) {
+  for (auto* vector : {&point.m_localPointA, &point.m_localPointB, &point.m_positionWorldOnA, &point.m_positionWorldOnB,
+                       &point.m_normalWorldOnB})
+    for (int axis = 0; axis < 3; ++axis) visit((*vector)[axis]);
+  visit(point.m_distance1);
+  visit(point.m_lifeTime);
+}
+
+}  // namespace
+
+// The manifold, if the algorithm has one yet.
+btPersistentManifold* BulletContact::State::manifold() const {
+  if (algorithm == nullptr) return nullptr;
+  btManifoldArray manifolds;
+  algorithm->getAllContactManifolds(manifolds);
+  return manifolds.size() > 0 ? manifolds[0] : nullptr;
+}
+
+void BulletContact::State::collide(const Pose& X_WA, const Pose& X_WB) {
+  a.setWorldTransform(to_bullet(X_WA * Pose{shape_a->offset()}));
+  b.setWorldTransform(to_bullet(X_WB * Pose{shape_b->offset()}));
+  const btCollisionObjectWrapper wrapped_a(nullptr, a.getCollisionShape(), &a, a.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper wrapped_b(nullptr, b.getCollisionShape(), &b, b.getWorldTransform(), -1, -1);
+  if (algorithm == nullptr)
+    algorithm = dispatcher->findAlgorithm(&wrapped_a, &wrapped_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+  btManifoldResult result(&wrapped_a, &wrapped_b);
+  const btDispatcherInfo info;
+  algorithm->processCollision(&wrapped_a, &wrapped_b, info, &result);
+}
+
 void BulletContact::update(const Pose& X_WA, const Pose& X_WB, ContactPoints& points) {
   State& state = *state_;
-  state.a.setWorldTransform(to_bullet(X_WA));
-  state.b.setWorldTransform(to_bullet(X_WB));
-  const btCollisionObjectWrapper a(nullptr, state.a.getCollisionShape(), &state.a, state.a.getWorldTransform(), -1, -1);
-  const btCollisionObjectWrapper b(nullptr, state.b.getCollisionShape(), &state.b, state.b.getWorldTransform(), -1, -1);
-  btManifoldArray manifolds;
-  if (state.algorithm == nullptr) {
-    state.algorithm = state.dispatcher->findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
-  } else {
-    state.algorithm->getAllContactManifolds(manifolds);
-  }
-
   // Bullet moves its points about as it drops and replaces some: the impulses go along with them.
-  if (manifolds.size() > 0) {
-    for (int i = 0; i < manifolds[0]->getNumContacts(); ++i) {
+  if (btPersistentManifold* manifold = state.manifold()) {
+    for (int i = 0; i < manifold->getNumContacts(); ++i) {
       const ContactPoint& point = points.points[static_cast<std::size_t>(i)];
-      btManifoldPoint& theirs = manifolds[0]->getContactPoint(i);
+      btManifoldPoint& theirs = manifold->getContactPoint(i);
       theirs.m_appliedImpulse = point.impulse[0];
       theirs.m_appliedImpulseLateral1 = point.impulse[1];
       theirs.m_appliedImpulseLateral2 = point.impulse[2];
     }
   }
-  btManifoldResult result(&a, &b);
-  const btDispatcherInfo info;
-  state.algorithm->processCollision(&a, &b, info, &result);
-  manifolds.resize(0);
-  state.algorithm->getAllContactManifolds(manifolds);
+  state.collide(X_WA, X_WB);
   points.count = 0;
-  if (manifolds.size() == 0) return;
-  const bool flipped = manifolds[0]->getBody0() != &state.a;
-  for (int i = 0; i < manifolds[0]->getNumContacts(); ++i) {
-    const btManifoldPoint& theirs = manifolds[0]->getContactPoint(i);
+  const btPersistentManifold* manifold = state.manifold();
+  if (manifold == nullptr) return;
+  const bool flipped = manifold->getBody0() != &state.a;
+  for (int i = 0; i < manifold->getNumContacts(); ++i) {
+    const btManifoldPoint& theirs = manifold->getContactPoint(i);
     const Eigen::Vector3d normal_W = (flipped ? -1.0 : 1.0) * to_eigen(theirs.m_normalWorldOnB);
     const Eigen::Vector3d position_W =
         0.5 * (to_eigen(theirs.getPositionWorldOnA()) + to_eigen(theirs.getPositionWorldOnB()));
     points.add(position_W, normal_W, theirs.getDistance());
     points.points[static_cast<std::size_t>(i)].impulse = {theirs.m_appliedImpulse, theirs.m_appliedImpulseLateral1,
                                                           theirs.m_appliedImpulseLateral2};
+  }
+}
+
+void BulletContact::save(SnapshotWriter& writer) const {
+  const btPersistentManifold* manifold = state_->manifold();
+  const int count = manifold == nullptr ? 0 : manifold->getNumContacts();
+  writer.add(count);
+  for (int i = 0; i < count; ++i)
+    visit_point(manifold->getContactPoint(i), [&](const auto& number) { writer.add(number); });
+}
+
+void BulletContact::restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& reader) {
+  int count = 0;
+  reader.read(count);
+  if (count < 0 || count > ContactPoints::most) throw SnapshotError("the snapshot has a contact of too many points");
+  state_->collide(X_WA, X_WB);  // makes the manifold
+  btPersistentManifold* manifold = state_->manifold();
+  if (manifold == nullptr && count > 0) throw SnapshotError("the snapshot has a contact where there is none");
+  if (manifold == nullptr) return;
+  manifold->clearManifold();
+  manifold->setNumContacts(count);
+  for (int i = 0; i < count; ++i) {
+    btManifoldPoint point;
+    visit_point(point, [&](auto& number) { reader.read(number); });
+    manifold->getContactPoint(i) = point;
   }
 }
 

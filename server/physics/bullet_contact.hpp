@@ -2,13 +2,11 @@
 
 #include <memory>
 
+#include "server/core/snapshot.hpp"
+#include "server/physics/bullet_shape.hpp"
 #include "server/physics/contact_point.hpp"
 
 namespace cohort::physics {
-
-/// A shape as Bullet takes it. May be shared.
-class BulletShape;
-std::shared_ptr<const BulletShape> make_bullet_shape(const geometry::Shape& shape);
 
 /// Bullet's narrow phase for shapes of any kind. May be used from several threads at once.
 class BulletNarrowPhase {
@@ -38,6 +36,11 @@ class BulletContact {
 
   /// `points` are those of the last call, with the impulses that the solver has given them since.
   void update(const Pose& X_WA, const Pose& X_WB, ContactPoints& points);
+
+  /// Bullet's side of the points; `points` holds the rest.
+  void save(SnapshotWriter& writer) const;
+  /// For the poses that the shapes had when it was saved.
+  void restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& reader);
 
  private:
   struct State;

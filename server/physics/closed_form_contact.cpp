@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "server/physics/box_contact.hpp"
 #include "server/physics/prism_contact.hpp"
@@ -11,7 +13,10 @@ namespace cohort::physics {
 namespace {
 
 using description::Box;
+using description::Capsule;
 using description::Cylinder;
+using description::Ellipsoid;
+using description::Mesh;
 using description::Plane;
 using description::Sphere;
 using Eigen::Matrix3d;
@@ -79,6 +84,50 @@ void on_plane(const Cylinder& cylinder, const Pose& X_W, const HalfSpace& plane,
   touch_plane(X_W.position + cylinder.radius * down + to_end, plane, margin, found);
 }
 
+void on_plane(const Capsule& capsule, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
+  const Vector3d to_end = X_W.orientation * Vector3d(0.0, 0.0, 0.5 * capsule.length);
+  const Vector3d down = -capsule.radius * plane.normal_W;
+  touch_plane(X_W.position - to_end + down, plane, margin, found);
+  touch_plane(X_W.position + to_end + down, plane, margin, found);
+}
+
+void on_plane(const Ellipsoid& ellipsoid, const Pose& X_W, const HalfSpace& plane, double margin,
+              ContactPoints& found) {
+  const Vector3d scaled = ellipsoid.radii.cwiseProduct(X_W.orientation.conjugate() * plane.normal_W);
+  const Vector3d lowest = -ellipsoid.radii.cwiseProduct(scaled) / scaled.norm();
+  touch_plane(X_W * lowest, plane, margin, found);
+}
+
+// Of the corners near the plane the lowest, and those furthest out to three sides of it.
+void on_plane(const Mesh& mesh, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
+  if (!mesh.convex) return;  // it does not move, and neither does the plane
+  std::vector<Vector3d> near;
+  Vector3d lowest = Vector3d::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vector3d& vertex : mesh.triangles->vertices) {
+    const Vector3d point_W = X_W * vertex;
+    const double height = plane.height(point_W);
+    if (height >= margin) continue;
+    near.push_back(point_W);
+    if (height >= least) continue;
+    least = height;
+    lowest = point_W;
+  }
+  if (near.empty()) return;
+  const Vector3d x = plane.normal_W.unitOrthogonal();
+  const Vector3d y = plane.normal_W.cross(x);
+  touch_plane(lowest, plane, margin, found);
+  for (const Vector3d& direction : {x, Vector3d(-0.5 * x + y), Vector3d(-0.5 * x - y)}) {
+    const Vector3d& outermost = *std::max_element(near.begin(), near.end(), [&](const Vector3d& a, const Vector3d& b) {
+      return direction.dot(a) < direction.dot(b);
+    });
+    const bool is_new = std::none_of(found.begin(), found.end(), [&](const ContactPoint& point) {
+      return (point.position_W - outermost + 0.5 * plane.height(outermost) * plane.normal_W).squaredNorm() == 0.0;
+    });
+    if (is_new) touch_plane(outermost, plane, margin, found);
+  }
+}
+
 // The point of a box nearest to `point`, both in the box's frame; if that is inside, the way out through the nearest
 // face.
 struct Nearest {
@@ -117,6 +166,14 @@ std::optional<Nearest> nearest_on(const Cylinder& cylinder, const Vector3d& poin
   const Vector3d offset = std::max(0.0, beyond_side) * outwards + std::max(0.0, beyond_end) * up;
   const double distance = offset.norm();
   return Nearest{point - offset, offset / distance, distance};
+}
+
+std::optional<Nearest> nearest_on(const Capsule& capsule, const Vector3d& point) {
+  const Vector3d on_axis(0.0, 0.0, std::clamp(point.z(), -0.5 * capsule.length, 0.5 * capsule.length));
+  const Vector3d offset = point - on_axis;
+  const double distance = offset.norm();
+  const Vector3d normal = distance > 0.0 ? Vector3d(offset / distance) : Vector3d(Vector3d::UnitX());
+  return Nearest{on_axis + capsule.radius * normal, normal, distance - capsule.radius};
 }
 
 std::optional<Nearest> nearest_on(const Sphere& sphere, const Vector3d& point) {

@@ -112,4 +112,43 @@ void Collision::find_contact(SolidPair& pair) {
   pair.general->update(a.X_WC, b.X_WC, pair.contact);
 }
 
+void Collision::save(SnapshotWriter& writer) const {
+  writer.add_count(pairs_.size());
+  for (const std::vector<SolidPair>& pairs : pairs_) {
+    writer.add_count(pairs.size());
+    for (const SolidPair& pair : pairs) {
+      writer.add(pair.b);
+      writer.add(pair.contact.count);
+      for (const ContactPoint& point : pair.contact)
+        ContactPoint::visit_state(point, [&](const double& number) { writer.add(number); });
+      writer.add(pair.general.has_value());
+      if (pair.general) pair.general->save(writer);
+    }
+  }
+}
+
+void Collision::restore(SnapshotReader& reader) {
+  reader.expect_count(pairs_.size(), "solids");
+  for (std::uint32_t solid = 0; solid < pairs_.size(); ++solid) {
+    std::vector<SolidPair>& pairs = pairs_[solid];
+    pairs.clear();
+    constexpr std::size_t least_bytes = 9;
+    for (std::size_t count = reader.read_count(least_bytes); count > 0; --count) {
+      SolidPair& pair = pairs.emplace_back();
+      pair.a = solid;
+      reader.read(pair.b);
+      reader.read(pair.contact.count);
+      if (pair.b >= pairs_.size() || pair.contact.count < 0 || pair.contact.count > ContactPoints::most)
+        throw SnapshotError("the snapshot has a contact of a solid that is not there");
+      for (ContactPoint& point : pair.contact)
+        ContactPoint::visit_state(point, [&](double& number) { reader.read(number); });
+      bool is_general = false;
+      reader.read(is_general);
+      if (!is_general) continue;
+      pair.general.emplace(narrow_phase_, shapes_[pair.a], shapes_[pair.b]);
+      pair.general->restore(scene_.solid(pair.a).X_WC, scene_.solid(pair.b).X_WC, reader);
+    }
+  }
+}
+
 }  // namespace cohort::physics

@@ -30,7 +30,7 @@ class Collision {
   /// The scene must outlive this.
   Collision(const geometry::Scene& scene, MayTouch may_touch);
 
-  /// Solids in the order of the scene, each with Bullet's shape as `make_bullet_shape` gives it.
+  /// Solids in the order of the scene, each with Bullet's shape of it.
   void add(std::shared_ptr<const BulletShape> shape);
   /// Forgets a solid that is no longer in the scene.
   void remove(std::uint32_t solid);
@@ -38,6 +38,11 @@ class Collision {
   /// Finds near pairs and their contact points for the present poses. Points that were there before keep their
   /// impulses.
   void detect(WorkerPool& workers);
+
+  /// All points and what decides the next ones.
+  void save(SnapshotWriter& writer) const;
+  /// With the solids where they were when it was saved.
+  void restore(SnapshotReader& reader);
 
   /// The pairs that solid `a` reports.
   std::span<SolidPair> pairs_of(std::uint32_t solid) { return pairs_[solid]; }

@@ -44,9 +44,4 @@ bool Connection::is_overloaded(double step) const {
   return load.force_W.norm() > limits_.force || load.torque_W.norm() > limits_.torque;
 }
 
-void Connection::hash(StateHash& hash) const {
-  hash.add(static_cast<std::uint64_t>(holds_));
-  for (const double impulse : impulses_) hash.add(impulse);
-}
-
 }  // namespace cohort::physics

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "server/core/hash.hpp"
 #include "server/physics/anchors.hpp"
 #include "server/physics/multibody.hpp"
 #include "server/physics/rows.hpp"
@@ -25,6 +24,7 @@ class Connection {
 
   const End& a() const { return a_; }
   const End& b() const { return b_; }
+  const ConnectionLimits& limits() const { return limits_; }
   bool holds() const { return holds_; }
   void release();
 
@@ -35,7 +35,12 @@ class Connection {
   /// Whether the last step took more than it can bear.
   bool is_overloaded(double step) const;
 
-  void hash(StateHash& hash) const;
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    visit(self.holds_);
+    for (auto& impulse : self.impulses_) visit(impulse);
+  }
 
  private:
   End a_;

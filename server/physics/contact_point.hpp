@@ -17,6 +17,16 @@ struct ContactPoint {
   // about the tangents [N m s].
   std::array<double, 3> impulse{};
   std::array<double, 2> rolling_impulse{};
+
+  /// Calls `visit` for each number, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (int i = 0; i < 3; ++i) visit(self.position_W[i]);
+    for (int i = 0; i < 3; ++i) visit(self.normal_W[i]);
+    visit(self.gap);
+    for (auto& each : self.impulse) visit(each);
+    for (auto& each : self.rolling_impulse) visit(each);
+  }
 };
 
 /// The points of one pair of solids; four hold any face on any other.

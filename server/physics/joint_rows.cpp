@@ -62,16 +62,4 @@ void JointRows::add_rows(Problem& problem, int index, const Multibody& body, dou
   }
 }
 
-void JointRows::hash(StateHash& hash) const {
-  for (const Motor& motor : motors_) {
-    hash.add(motor.target);
-    hash.add(motor.impulse);
-  }
-  for (const Limit& limit : limits_) {
-    hash.add(limit.lower_impulse);
-    hash.add(limit.upper_impulse);
-  }
-  for (const Friction& friction : frictions_) hash.add(friction.impulse);
-}
-
 }  // namespace cohort::physics

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/core/hash.hpp"
 #include "server/physics/mechanism.hpp"
 
 namespace cohort::physics {
@@ -25,7 +24,20 @@ class JointRows {
   double motor_impulse(int dof) const { return motor(dof).impulse; }
 
   void add_rows(Problem& problem, int index, const Multibody& body, double step);
-  void hash(StateHash& hash) const;
+
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (auto& motor : self.motors_) {
+      visit(motor.target);
+      visit(motor.impulse);
+    }
+    for (auto& limit : self.limits_) {
+      visit(limit.lower_impulse);
+      visit(limit.upper_impulse);
+    }
+    for (auto& friction : self.frictions_) visit(friction.impulse);
+  }
 
  private:
   struct Motor {

@@ -229,15 +229,4 @@ void Multibody::integrate(const double* velocities, double step) {
   update_poses();
 }
 
-void Multibody::hash(StateHash& hash) const {
-  if (mechanism_->has_free_root()) {
-    for (int i = 0; i < 3; ++i) hash.add(reference_W_[i]);
-    for (int i = 0; i < 4; ++i) hash.add(root_rotation_.coeffs()[i]);
-  }
-  for (const double coordinate : coordinates_) hash.add(coordinate);
-  for (const double velocity : velocities_) hash.add(velocity);
-  joints_.hash(hash);
-  for (const TreelDrive& treel : treels_) treel.hash(hash);
-}
-
 }  // namespace cohort::physics

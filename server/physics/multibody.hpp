@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "server/core/hash.hpp"
 #include "server/geometry/scene.hpp"
 #include "server/physics/joint_rows.hpp"
 #include "server/physics/mechanism.hpp"
@@ -57,7 +56,19 @@ class Multibody {
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
   /// Takes the velocities that the solver found and moves the body by them.
   void integrate(const double* velocities, double step);
-  void hash(StateHash& hash) const;
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (int i = 0; i < 3; ++i) visit(self.reference_W_[i]);
+    for (int i = 0; i < 4; ++i) visit(self.root_rotation_.coeffs()[i]);
+    for (auto& coordinate : self.coordinates_) visit(coordinate);
+    for (auto& velocity : self.velocities_) visit(velocity);
+    JointRows::visit_state(self.joints_, visit);
+    for (auto& treel : self.treels_) TreelDrive::visit_state(treel, visit);
+    visit(self.last_step_);
+  }
+  /// After the state was changed through `visit_state`.
+  void update_poses();
 
  private:
   /// Drives whose wheels are simulated: how the velocity of a track becomes that of its joints.
@@ -74,7 +85,6 @@ class Multibody {
   void build_devices();
   void add_drive(std::size_t device, const description::TreelDrive& drive);
   void add_motor(int dof, double max_effort, const std::string& device);
-  void update_poses();
 
   const Mechanism* mechanism_;
   std::uint32_t body_;

@@ -58,7 +58,7 @@ std::uint32_t Stepper::create_body(std::size_t model_index, const Pose& X_WM) {
   if (shapes_[model_index].empty())
     for (const description::Link& link : model.links)
       for (const description::Collision& collision : link.collisions)
-        shapes_[model_index].push_back(make_bullet_shape(collision.shape));
+        shapes_[model_index].push_back(std::make_shared<BulletShape>(collision.shape));
   if (model.is_static) {
     bodies_.push_back({model_index, X_WM, Anchors::nobody, nullptr});
     add_static_solids(body);
@@ -338,26 +338,6 @@ void Stepper::report_contacts() {
           if (point.gap > 0.0 && point.impulse[0] == 0.0) continue;  // near, but it did not touch
           contacts_.push_back({scene_.solid(pair.a).body, scene_.solid(pair.b).body, point.position_W, point.normal_W,
                                point.gap, point.impulse[0]});
-        }
-      }
-    }
-  }
-}
-
-void Stepper::hash_contacts(StateHash& hash) const {
-  for (const Connection& connection : connections_) connection.hash(hash);
-  for (const Member& member : members_) {
-    for (const Part& part : member.parts) {
-      for (const SolidPair& pair : collision_.pairs_of(part.solid)) {
-        if (pair.contact.count == 0) continue;
-        hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
-        for (const ContactPoint& point : pair.contact) {
-          for (int axis = 0; axis < 3; ++axis) {
-            hash.add(point.position_W[axis]);
-            hash.add(point.normal_W[axis]);
-          }
-          for (const double impulse : point.impulse) hash.add(impulse);
-          for (const double impulse : point.rolling_impulse) hash.add(impulse);
         }
       }
     }

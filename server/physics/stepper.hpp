@@ -42,7 +42,11 @@ class Stepper {
   /// Takes a body's poses into the scene.
   void place_solids(std::uint32_t body);
   std::span<const Contact> contacts() const { return contacts_; }
+
+  void hash_body(std::uint32_t body, StateHash& hash) const;
   void hash_contacts(StateHash& hash) const;
+  void save(SnapshotWriter& writer) const;
+  void restore(SnapshotReader& reader);
 
  private:
   struct Part {  // a solid of a body that moves

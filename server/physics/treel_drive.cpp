@@ -110,15 +110,4 @@ void TreelDrive::read_rows(const Problem& problem, double step) {
   }
 }
 
-void TreelDrive::hash(StateHash& hash) const {
-  for (const Track& track : tracks_) {
-    hash.add(track.target);
-    hash.add(track.state.position);
-    hash.add(track.state.velocity);
-    hash.add(track.impulse);
-  }
-  for (const Point& point : points_) hash.add(point.impulse);
-  hash.add(lateral_impulse_);
-}
-
 }  // namespace cohort::physics

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "server/core/hash.hpp"
 #include "server/description/model.hpp"
 #include "server/physics/anchors.hpp"
 #include "server/physics/ground.hpp"
@@ -39,7 +38,19 @@ class TreelDrive {
   /// Takes over what the tracks do from the solved rows.
   void read_rows(const Problem& problem, double step);
 
-  void hash(StateHash& hash) const;
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (auto& track : self.tracks_) {
+      visit(track.target);
+      visit(track.state.position);
+      visit(track.state.velocity);
+      visit(track.state.traction);
+      visit(track.impulse);
+    }
+    for (auto& point : self.points_) visit(point.impulse);
+    visit(self.lateral_impulse_);
+  }
 
  private:
   struct Track {

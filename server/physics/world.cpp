@@ -62,10 +62,9 @@ void World::set_joint_state(std::uint32_t body, std::size_t joint, std::span<con
   stepper_->place_solids(body);
 }
 
-void World::hash_body(std::uint32_t body, StateHash& hash) const {
-  if (const Multibody* multibody = stepper_->multibody(body)) multibody->hash(hash);
-}
-
+void World::hash_body(std::uint32_t body, StateHash& hash) const { stepper_->hash_body(body, hash); }
 void World::hash_contacts(StateHash& hash) const { stepper_->hash_contacts(hash); }
+void World::save(SnapshotWriter& writer) const { stepper_->save(writer); }
+void World::restore(SnapshotReader& reader) { stepper_->restore(reader); }
 
 }  // namespace cohort::physics

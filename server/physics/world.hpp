@@ -7,6 +7,7 @@
 #include <span>
 
 #include "server/core/hash.hpp"
+#include "server/core/snapshot.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/world.hpp"
 #include "server/geometry/scene.hpp"
@@ -122,6 +123,12 @@ class World {
   void hash_body(std::uint32_t body, StateHash& hash) const;
   /// Adds every contact point and every connection with what the solver's warm start takes from it.
   void hash_contacts(StateHash& hash) const;
+
+  /// Everything that decides how the world goes on; between steps.
+  void save(SnapshotWriter& writer) const;
+  /// Into a world as it is after its construction, of the same description. Throws SnapshotError if the snapshot is of
+  /// something else; the world is then not to be used.
+  void restore(SnapshotReader& reader);
 
  private:
   std::unique_ptr<Stepper> stepper_;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "server/core/hash.hpp"
+#include "server/core/random.hpp"
+#include "server/core/snapshot.hpp"
 
 namespace cohort {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 constexpr std::size_t robots_a_chunk = 32;
 constexpr std::size_t bodies_a_chunk = 64;
 constexpr std::uint32_t none = 0xffffffffu;
+constexpr std::uint64_t snapshot_mark = 0x746f6873'74726f68u;
 
 std::size_t total_size(const std::vector<Channel>& channels) {
   std::size_t size = 0;
@@ -35,8 +38,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
   robot_of_body_.assign(world.instances.size(), none);
   is_ground_.assign(world.instances.size(), 0);
   for (std::uint32_t solid = 0; solid < world_.scene().size(); ++solid)
-    if (std::holds_alternative<description::Plane>(world_.scene().solid(solid).shape))
-      is_ground_[world_.scene().solid(solid).body] = 1;
+    if (geometry::is_ground(world_.scene().solid(solid).shape)) is_ground_[world_.scene().solid(solid).body] = 1;
 
   robots_.resize(world.robots.size());
   for (const description::Team& team : experiment.teams)
@@ -178,6 +180,53 @@ void Simulation::count_touches() {
   touches_.robot_ticks += robots_.size();
   for (const char touched : touches_obstacle) touches_.obstacles += static_cast<std::uint64_t>(touched);
   for (const char touched : touches_robot) touches_.robots += static_cast<std::uint64_t>(touched);
+}
+
+std::vector<std::byte> Simulation::save() const {
+  SnapshotWriter writer;
+  writer.add(snapshot_mark);
+  writer.add(hash_name(COHORT_VERSION));
+  writer.add(static_cast<std::uint64_t>(experiment_.seed));
+  writer.add(static_cast<std::uint64_t>(experiment_.world.step.count()));
+  writer.add(tick_);
+  world_.save(writer);
+  writer.add_count(robots_.size());
+  for (const Robot& robot : robots_) {
+    writer.add_count(robot.command.size());
+    writer.add_all(robot.command.data(), robot.command.size());
+  }
+  writer.add_count(observations_.size());
+  writer.add_all(observations_.data(), observations_.size());
+  writer.add(touches_.robot_ticks);
+  writer.add(touches_.obstacles);
+  writer.add(touches_.robots);
+  return writer.bytes();
+}
+
+void Simulation::restore(std::span<const std::byte> snapshot) {
+  SnapshotReader reader(snapshot);
+  std::uint64_t mark = 0;
+  reader.read(mark);
+  if (mark != snapshot_mark) throw SnapshotError("this is no snapshot");
+  std::uint64_t version = 0;
+  reader.read(version);
+  if (version != hash_name(COHORT_VERSION))
+    throw SnapshotError("the snapshot is of another version than " COHORT_VERSION);
+  reader.expect_count(experiment_.seed, "as its seed");
+  reader.expect_count(static_cast<std::size_t>(experiment_.world.step.count()), "ns as its step");
+  reader.read(tick_);
+  world_.restore(reader);
+  reader.expect_count(robots_.size(), "robots");
+  for (Robot& robot : robots_) {
+    reader.expect_count(robot.command.size(), "commanded values of a robot");
+    reader.read_all(robot.command.data(), robot.command.size());
+  }
+  reader.expect_count(observations_.size(), "observed values");
+  reader.read_all(observations_.data(), observations_.size());
+  reader.read(touches_.robot_ticks);
+  reader.read(touches_.obstacles);
+  reader.read(touches_.robots);
+  if (!reader.is_at_end()) throw SnapshotError("the snapshot goes on after its end");
 }
 
 std::uint64_t Simulation::state_hash() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -79,6 +80,13 @@ class Simulation {
   void step();
   /// What the last step took out of the world: a sentence for each body, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }
+
+  /// Everything that decides how the run goes on from this boundary, for `restore` in this process or another. Bytes
+  /// are little-endian; the format is that of this version of Cohort.
+  std::vector<std::byte> save() const;
+  /// Of a simulation of the same experiment, right after the construction of this one. Throws SnapshotError if the
+  /// snapshot is of something else, cut short, or of another version; this is then not to be used.
+  void restore(std::span<const std::byte> snapshot);
 
   /// Of this boundary: everything that decides how the run goes on, and the observations.
   std::uint64_t state_hash() const;

@@ -77,8 +77,7 @@ TEST(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
   EXPECT_NEAR(chain.small.world().connection_wrench(chain.connections[0]).force_W.x(), pull, 0.01);
   // What holds the other is the world, and its own tracks, which are told to stand still.
   double own = 0.0;
-  for (const Side side : {Side::left, Side::right})
-    own += chain.small.world().track(chain.robots[0], 0, side).traction;
+  for (const Side side : {Side::left, Side::right}) own += chain.small.world().track(chain.robots[0], 0, side).traction;
   EXPECT_NEAR(chain.small.world().connection_wrench(held).force_W.x() + own, -pull, 0.01);
 }
 

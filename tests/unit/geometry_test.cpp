@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -50,9 +51,33 @@ TEST(Ray, EntersASphereAndAPlane) {
   EXPECT_EQ(plane.normal, Vector3d(0, 0, 1));
 }
 
+TEST(Ray, EntersACapsuleThroughItsSideOrItsEnds) {
+  const description::Capsule capsule{0.5, 2.0};
+  const RayEntry side = cast_ray(capsule, {-2, 0.3, 0.5}, {1, 0, 0});
+  EXPECT_NEAR(side.distance, 2.0 - 0.4, 1e-15);
+  EXPECT_LT((side.normal - Vector3d(-0.8, 0.6, 0)).norm(), 1e-12);
+  const RayEntry top = cast_ray(capsule, {0.3, 0, 3.0}, {0, 0, -1});
+  EXPECT_NEAR(top.distance, 3.0 - 1.4, 1e-15);
+  EXPECT_LT((top.normal - Vector3d(0.6, 0, 0.8)).norm(), 1e-12);
+  EXPECT_NEAR(cast_ray(capsule, {-2, 0, -1.3}, {1, 0, 0}).distance, 2.0 - 0.4, 1e-15) << "beyond the cylinder";
+  EXPECT_TRUE(std::isinf(cast_ray(capsule, {-2, 0, 1.6}, {1, 0, 0}).distance)) << "passes above";
+}
+
+TEST(Ray, EntersAnEllipsoid) {
+  const description::Ellipsoid ellipsoid{{1, 2, 3}};
+  const RayEntry side = cast_ray(ellipsoid, {-3, 0, 0}, {1, 0, 0});
+  EXPECT_DOUBLE_EQ(side.distance, 2.0);
+  EXPECT_EQ(side.normal, Vector3d(-1, 0, 0));
+  const RayEntry off_axis = cast_ray(ellipsoid, {-3, 1.2, 0}, {1, 0, 0});
+  EXPECT_NEAR(off_axis.distance, 3.0 - 0.8, 1e-12);
+  EXPECT_LT((off_axis.normal - Vector3d(-0.8, 1.2 / 4.0, 0).normalized()).norm(), 1e-12);
+  EXPECT_TRUE(std::isinf(cast_ray(ellipsoid, {-3, 2.1, 0}, {1, 0, 0}).distance));
+}
+
 TEST(Ray, ThatStartsInsideASolidHitsItAtOnce) {
-  const std::vector<Shape> shapes = {description::Box{{1, 1, 1}}, description::Sphere{0.5},
-                                     description::Cylinder{0.5, 1.0}, description::Plane{}};
+  const std::vector<Shape> shapes = {description::Box{{1, 1, 1}},     description::Sphere{0.5},
+                                     description::Cylinder{0.5, 1.0}, description::Plane{},
+                                     description::Capsule{0.2, 0.2},  description::Ellipsoid{{0.3, 0.4, 0.5}}};
   for (const Shape& shape : shapes)
     EXPECT_EQ(cast_ray(shape, {0.1, 0.1, -0.1}, {1, 0, 0}).distance, 0.0) << shape.index();
 }
@@ -64,6 +89,12 @@ double marched_distance(const Shape& shape, const Vector3d& origin, const Vector
     if (const auto* box = std::get_if<description::Box>(&shape))
       return (p.cwiseAbs().array() <= 0.5 * box->size.array()).all();
     if (const auto* sphere = std::get_if<description::Sphere>(&shape)) return p.norm() <= sphere->radius;
+    if (const auto* ellipsoid = std::get_if<description::Ellipsoid>(&shape))
+      return p.cwiseQuotient(ellipsoid->radii).norm() <= 1.0;
+    if (const auto* capsule = std::get_if<description::Capsule>(&shape)) {
+      const double half = 0.5 * capsule->length;
+      return (p - Vector3d(0, 0, std::clamp(p.z(), -half, half))).norm() <= capsule->radius;
+    }
     const auto& cylinder = std::get<description::Cylinder>(shape);
     return p.head<2>().norm() <= cylinder.radius && std::abs(p.z()) <= 0.5 * cylinder.length;
   };
@@ -75,10 +106,11 @@ double marched_distance(const Shape& shape, const Vector3d& origin, const Vector
 TEST(Ray, AgreesWithMarchingAlongItForRandomRays) {
   const RandomStream random(7, "geometry_test", "rays");
   const std::vector<Shape> shapes = {description::Box{{1.0, 0.6, 0.4}}, description::Sphere{0.5},
-                                     description::Cylinder{0.4, 0.8}};
+                                     description::Cylinder{0.4, 0.8}, description::Capsule{0.3, 0.6},
+                                     description::Ellipsoid{{0.3, 0.6, 0.4}}};
   int hits = 0;
-  for (std::uint64_t n = 0; n < 600; ++n) {
-    const Shape& shape = shapes[n % 3];
+  for (std::uint64_t n = 0; n < 1000; ++n) {
+    const Shape& shape = shapes[n % shapes.size()];
     const Vector3d origin = random_vector(random, n, 2.0);
     const Vector3d direction = (random_vector(random, n + 5000, 0.4) - origin).normalized();
     const double exact = cast_ray(shape, origin, direction).distance;
@@ -90,7 +122,28 @@ TEST(Ray, AgreesWithMarchingAlongItForRandomRays) {
       ++hits;
     }
   }
-  EXPECT_GT(hits, 300);
+  EXPECT_GT(hits, 500);
+}
+
+TEST(Bounds, OfCapsulesAndEllipsoidsTouchThemOnEverySide) {
+  const RandomStream random(13, "geometry_test", "bounds");
+  for (const Shape& shape : {Shape(description::Capsule{0.3, 0.6}), Shape(description::Ellipsoid{{0.3, 0.6, 0.9}})})
+    for (std::uint64_t n = 0; n < 10; ++n) {
+      const Pose X_WC = random_pose(random, n, 1.0);
+      const Bounds bounds = bounds_of(shape, X_WC);
+      for (int axis = 0; axis < 3; ++axis) {
+        double highest = -10.0;
+        for (std::uint64_t m = 0; m < 4000; ++m) {
+          const Vector3d on = Vector3d(random.normal(m, 0), random.normal(m, 1), random.normal(m, 2)).normalized();
+          const auto* ellipsoid = std::get_if<description::Ellipsoid>(&shape);
+          const Vector3d point = ellipsoid != nullptr ? on.cwiseProduct(ellipsoid->radii).eval()
+                                                      : (0.3 * on + Vector3d(0, 0, on.z() > 0 ? 0.3 : -0.3)).eval();
+          highest = std::max(highest, (X_WC * point)[axis]);
+        }
+        EXPECT_LE(highest, bounds.upper[axis] + 1e-12);
+        EXPECT_NEAR(highest, bounds.upper[axis], 5e-3);
+      }
+    }
 }
 
 class RandomScene : public ::testing::Test {

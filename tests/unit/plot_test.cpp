@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "tests/support/robots.hpp"
+#include "tools/cohort/outline.hpp"
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/svg.hpp"
 
@@ -184,6 +186,30 @@ TEST(Plot, DrawsABoxByItsFourCornersTurnedByItsYaw) {
   EXPECT_NEAR(edges[0], 0.2, 1e-3);
   EXPECT_NEAR(edges[3], 0.4, 1e-3);
   EXPECT_TRUE(turned) << points;
+}
+
+// Size of the least upright rectangle around an outline.
+Eigen::Vector2d extent_of(const geometry::Shape& shape, const Pose& X_WC) {
+  const Outline outline = outline_of({TracedSolid::Kind::obstacle, shape, X_WC});
+  if (outline.corners_W.empty()) return Eigen::Vector2d::Constant(2.0 * outline.radius);
+  Eigen::Vector2d lower = outline.corners_W[0], upper = outline.corners_W[0];
+  for (const Eigen::Vector2d& corner : outline.corners_W) {
+    lower = lower.cwiseMin(corner);
+    upper = upper.cwiseMax(corner);
+  }
+  return upper - lower;
+}
+
+TEST(Plot, OutlinesShapesAsTheyAreSeenFromAbove) {
+  const Pose lying{{0, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitY()))};
+  EXPECT_TRUE(extent_of(description::Capsule{0.5, 2.0}, {}).isApprox(Eigen::Vector2d(1, 1), 1e-12));
+  EXPECT_TRUE(extent_of(description::Capsule{0.5, 2.0}, lying).isApprox(Eigen::Vector2d(3, 1), 1e-12));
+  EXPECT_TRUE(extent_of(description::Ellipsoid{{1, 2, 3}}, {}).isApprox(Eigen::Vector2d(2, 4), 1e-12));
+  EXPECT_TRUE(extent_of(description::Ellipsoid{{1, 2, 3}}, lying).isApprox(Eigen::Vector2d(6, 4), 1e-12));
+  const description::TriangleMesh wedge{{{0, 0, 0}, {3, 0, 0}, {0, 2, 0}, {0, 0, 1}}, {}};
+  const description::Mesh mesh{std::make_shared<const description::TriangleMesh>(wedge)};
+  EXPECT_TRUE(extent_of(mesh, {}).isApprox(Eigen::Vector2d(3, 2), 1e-12));
+  EXPECT_TRUE(extent_of(mesh, lying).isApprox(Eigen::Vector2d(1, 2), 1e-12));
 }
 
 TEST(Plot, ShowsRobotsWhereTheyStartAndEndInTheirRealSize) {

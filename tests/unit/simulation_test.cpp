@@ -179,5 +179,41 @@ TEST(Simulation, CountsRobotTicksThatTouchObstaclesAndRobotsApart) {
   EXPECT_EQ(simulation.touches().robots, 0u);
 }
 
+TEST(Simulation, NamesTheRobotThatFellOutOfTheWorldAndGoesOn) {
+  description::World world;
+  world.physics.lowest = -1.0;
+  place(world, static_shape("table", description::Box{{1.0, 1.0, 0.1}}), "table", at(0, 0, -0.05));
+  place(world, tracked_robot(), "falls", at(2, 0, 0));
+  place(world, tracked_robot(), "stays", at(0, 0, 0));
+  description::Experiment experiment = experiment_of(world);
+  {
+    Simulation simulation(experiment, 1);
+    std::vector<std::string> quarantined;
+    while (simulation.tick() < 100) {
+      simulation.step();
+      quarantined.insert(quarantined.end(), simulation.quarantined().begin(), simulation.quarantined().end());
+    }
+    EXPECT_EQ(quarantined, std::vector<std::string>{"'falls' has left the world"});
+    EXPECT_NEAR(simulation.robot_pose(1).position.z(), 0.0, 1e-3);
+  }
+  experiment.world.physics.strict = true;
+  Simulation strict(experiment, 1);
+  EXPECT_THROW(while (strict.tick() < 100) strict.step(), std::runtime_error);
+}
+
+TEST(Simulation, BuiltAgainItGivesTheSameBits) {
+  description::World world = world_with_floor();
+  for (int i = 0; i < 5; ++i) place(world, tracked_robot(0.01), "robot_" + std::to_string(i), at(0.13 * i, 0, 0, i));
+  const description::Experiment experiment = experiment_of(world);
+  const auto hash = [&] {
+    Simulation simulation(experiment, 1);
+    const std::vector<double> command{0.1, 0.12, 0.3};
+    for (std::uint32_t robot = 0; robot < 5; ++robot) simulation.set_command(robot, command);
+    for (int i = 0; i < 100; ++i) simulation.step();
+    return simulation.state_hash();
+  };
+  EXPECT_EQ(hash(), hash());
+}
+
 }  // namespace
 }  // namespace cohort

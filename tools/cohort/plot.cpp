@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <set>
 #include <utility>
-#include <variant>
 
+#include "tools/cohort/outline.hpp"
 #include "tools/cohort/plot_view.hpp"
 #include "tools/cohort/svg.hpp"
 
@@ -142,41 +141,19 @@ class Drawing {
 
   void draw_frame() { text_ += map_rectangle(fmt::format("fill=\"none\" stroke=\"{}\"", frame_colour)) + "\n"; }
 
-  // Seen from above.
   void draw_footprint(const TracedSolid& solid) {
-    const auto round = [&](double radius) {
-      const Vector2d centre = view_(solid.X_WC.position.head<2>());
+    const Outline outline = outline_of(solid);
+    if (outline.corners_W.empty()) {
+      const Vector2d centre = view_(outline.centre_W);
       fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", number(centre.x()), number(centre.y()),
-                     number(view_.scale * radius));
-    };
-    const auto hull_of = [&](const std::vector<Eigen::Vector3d>& points_C) {
-      svg::Points points;
-      // Rounded as they are written: corners above each other are then one.
-      for (const Eigen::Vector3d& point_C : points_C)
-        points.push_back((100.0 * view_((solid.X_WC * point_C).head<2>())).array().round() / 100.0);
-      fmt::format_to(out_, "<polygon points=\"{}\"/>\n", svg::polygon_points(svg::convex_hull(std::move(points))));
-    };
-    if (const auto* sphere = std::get_if<description::Sphere>(&solid.shape)) {
-      round(sphere->radius);
-    } else if (const auto* box = std::get_if<description::Box>(&solid.shape)) {
-      std::vector<Eigen::Vector3d> corners;
-      for (const double x : {-0.5, 0.5})
-        for (const double y : {-0.5, 0.5})
-          for (const double z : {-0.5, 0.5}) corners.push_back(Eigen::Vector3d(x, y, z).cwiseProduct(box->size));
-      hull_of(corners);
-    } else if (const auto* cylinder = std::get_if<description::Cylinder>(&solid.shape)) {
-      const Eigen::Vector3d axis_W = solid.X_WC.orientation * Eigen::Vector3d::UnitZ();
-      if (axis_W.head<2>().norm() < 1e-3) return round(cylinder->radius);
-      constexpr int corners = 48;
-      std::vector<Eigen::Vector3d> rims;
-      for (int i = 0; i < corners; ++i) {
-        const double angle = 2.0 * std::numbers::pi * i / corners;
-        for (const double z : {-0.5, 0.5})
-          rims.emplace_back(cylinder->radius * std::cos(angle), cylinder->radius * std::sin(angle),
-                            z * cylinder->length);
-      }
-      hull_of(rims);
+                     number(view_.scale * outline.radius));
+      return;
     }
+    svg::Points points;
+    // Rounded as they are written: corners above each other are then one.
+    for (const Vector2d& corner_W : outline.corners_W)
+      points.push_back((100.0 * view_(corner_W)).array().round() / 100.0);
+    fmt::format_to(out_, "<polygon points=\"{}\"/>\n", svg::polygon_points(svg::convex_hull(std::move(points))));
   }
 
   void draw_solids() {

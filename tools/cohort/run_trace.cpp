@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include "server/description/footprint.hpp"
+
 namespace cohort::tool {
 namespace {
 
@@ -14,8 +16,6 @@ using geometry::Solid;
 
 constexpr std::uint32_t none = 0xffffffffu;
 constexpr double floor_tolerance = 1e-3;  // [m]; robots sink in a little
-
-bool is_plane(const Solid& solid) { return std::holds_alternative<description::Plane>(solid.shape); }
 
 // How far the shape reaches from `centre_W`, seen from above.
 struct Reach {
@@ -37,7 +37,21 @@ struct Reach {
     const Eigen::Vector3d half_axis_W = X_WC.orientation * Eigen::Vector3d(0.0, 0.0, cylinder.length / 2.0);
     return (X_WC.position.head<2>() - centre_W).norm() + cylinder.radius + half_axis_W.head<2>().norm();
   }
+  double operator()(const description::Mesh& mesh) const {
+    double reach = 0.0;
+    for (const Eigen::Vector3d& vertex : mesh.triangles->vertices)
+      reach = std::max(reach, ((X_WC * vertex).head<2>() - centre_W).norm());
+    return reach;
+  }
+  double operator()(const description::Capsule& capsule) const { return around_footprint(capsule); }
+  double operator()(const description::Ellipsoid& ellipsoid) const { return around_footprint(ellipsoid); }
   double operator()(const description::Plane&) const { return 0.0; }
+  double operator()(const description::Heightmap&) const { return 0.0; }
+
+  double around_footprint(const geometry::Shape& shape) const {  // an upper bound
+    const auto footprint = description::footprint_of(shape, X_WC);
+    return (footprint->centre - centre_W).norm() + footprint->half.norm() + footprint->radius;
+  }
 };
 
 }  // namespace
@@ -72,7 +86,7 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const bool below = !solid.moves && scene.bounds(i).upper.z() <= lowest_robot + floor_tolerance;
-    if (!is_plane(solid) && !below) is_floor_[solid.body] = 0;
+    if (!geometry::is_ground(solid.shape) && !below) is_floor_[solid.body] = 0;
   }
   sample();
 }
@@ -119,7 +133,8 @@ RunTrace TraceRecorder::finish() {
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const bool of_robot = robot_of_body_[solid.body] != none;
-    if (!of_robot && !is_plane(solid) && scene.bounds(i).lower.allFinite() && scene.bounds(i).upper.allFinite())
+    if (!of_robot && !geometry::is_ground(solid.shape) && scene.bounds(i).lower.allFinite() &&
+        scene.bounds(i).upper.allFinite())
       order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {

@@ -42,7 +42,7 @@ struct ContactMark {
 };
 
 struct RunTrace {
-  std::vector<TracedSolid> solids;  ///< the lowest first; planes are not among them
+  std::vector<TracedSolid> solids;  ///< the lowest first; planes and height maps are not among them
   std::vector<RobotTrace> robots;   ///< by id
   std::vector<ContactMark> contacts;
 };

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace cohort {
+
+/// A snapshot that cannot be read, or is of something else.
+class SnapshotError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Numbers one after the other, as they are in the memory of a little-endian machine.
+class SnapshotWriter {
+ public:
+  template <class Number>
+  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
+  void add(Number number) {
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + sizeof number);
+    std::memcpy(bytes_.data() + at, &number, sizeof number);
+  }
+  template <class Number>
+  void add_all(const Number* numbers, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) add(numbers[i]);
+  }
+  /// How many follow; `SnapshotReader::read_count` checks it.
+  void add_count(std::size_t count) { add(static_cast<std::uint64_t>(count)); }
+
+  const std::vector<std::byte>& bytes() const { return bytes_; }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// Reads what a SnapshotWriter wrote, in the same order. Throws SnapshotError at the end of the bytes.
+class SnapshotReader {
+ public:
+  explicit SnapshotReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class Number>
+  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
+  void read(Number& number) {
+    if (bytes_.size() < sizeof number) throw SnapshotError("the snapshot ends too early");
+    std::memcpy(&number, bytes_.data(), sizeof number);
+    bytes_ = bytes_.subspan(sizeof number);
+  }
+  template <class Number>
+  void read_all(Number* numbers, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) read(numbers[i]);
+  }
+  /// A count of things that take at least `bytes_each`.
+  std::size_t read_count(std::size_t bytes_each) {
+    std::uint64_t count = 0;
+    read(count);
+    if (count > bytes_.size() / bytes_each) throw SnapshotError("the snapshot ends too early");
+    return static_cast<std::size_t>(count);
+  }
+  /// Checks that what was saved had as many `what` as there are here.
+  void expect_count(std::size_t count, const std::string& what) {
+    std::uint64_t saved = 0;
+    read(saved);
+    if (saved != count)
+      throw SnapshotError("the snapshot is of something else: it has " + std::to_string(saved) + " " + what + ", not " +
+                          std::to_string(count));
+  }
+  bool is_at_end() const { return bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+}  // namespace cohort

@@ -1,0 +1,109 @@
+#include "server/description/mesh_file.hpp"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cohort::description {
+namespace {
+
+void check_format(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  for (const char* const known : {".stl", ".obj", ".dae"})
+    if (extension == known) return;
+  throw std::runtime_error("'" + file.string() + "' is in no format that is read: expected .stl, .obj or .dae");
+}
+
+Eigen::Matrix4d to_eigen(const aiMatrix4x4& m) {
+  Eigen::Matrix4d matrix;
+  matrix << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return matrix;
+}
+
+// Adds triangles to a mesh. Formats such as STL repeat a vertex for each triangle that has it.
+class MeshBuilder {
+ public:
+  void add(const aiMesh& part, const Eigen::Matrix4d& transform) {
+    std::vector<std::uint32_t> places(part.mNumVertices);
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      const aiVector3D& v = part.mVertices[i];
+      places[i] = place_of((transform * Eigen::Vector4d(v.x, v.y, v.z, 1.0)).head<3>());
+    }
+    const bool mirrors = transform.topLeftCorner<3, 3>().determinant() < 0.0;
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+      const aiFace& face = part.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // a point or a line
+      std::array<std::uint32_t, 3> triangle{};
+      for (unsigned corner = 0; corner < 3; ++corner) {
+        if (face.mIndices[corner] >= part.mNumVertices) throw std::runtime_error("a triangle has no such vertex");
+        triangle[corner] = places[face.mIndices[corner]];
+      }
+      if (mirrors) std::swap(triangle[1], triangle[2]);
+      if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
+        mesh_.triangles.push_back(triangle);
+    }
+  }
+
+  TriangleMesh take() { return std::move(mesh_); }
+
+ private:
+  std::uint32_t place_of(const Eigen::Vector3d& vertex) {
+    if (!vertex.allFinite()) throw std::runtime_error("a vertex is not finite");
+    const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
+    const auto [entry, is_new] = places_.emplace(std::array{vertex.x(), vertex.y(), vertex.z()}, next);
+    if (is_new) mesh_.vertices.push_back(vertex);
+    return entry->second;
+  }
+
+  TriangleMesh mesh_;
+  std::map<std::array<double, 3>, std::uint32_t> places_;
+};
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+  check_format(file);
+  Assimp::Importer importer;
+  // Otherwise a file whose z axis points upwards would be turned.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw std::runtime_error("'" + file.string() + "' cannot be read: " + importer.GetErrorString());
+
+  MeshBuilder builder;
+  struct Placed {
+    const aiNode* node;
+    Eigen::Matrix4d transform;
+  };
+  Eigen::Matrix4d scaling = Eigen::Matrix4d::Identity();
+  scaling.diagonal().head<3>() = scale;
+  std::vector<Placed> waiting{{scene->mRootNode, scaling}};
+  try {
+    while (!waiting.empty()) {
+      const auto [node, parent] = waiting.back();
+      waiting.pop_back();
+      const Eigen::Matrix4d transform = parent * to_eigen(node->mTransformation);
+      for (unsigned i = 0; i < node->mNumMeshes; ++i) builder.add(*scene->mMeshes[node->mMeshes[i]], transform);
+      for (unsigned i = node->mNumChildren; i-- > 0;) waiting.push_back({node->mChildren[i], transform});
+    }
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("'" + file.string() + "' cannot be used: " + error.what());
+  }
+  TriangleMesh mesh = builder.take();
+  if (mesh.triangles.empty()) throw std::runtime_error("'" + file.string() + "' has no triangles");
+  return mesh;
+}
+
+}  // namespace cohort::description

@@ -1,0 +1,58 @@
+#include "server/description/physics_settings.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include "server/description/text.hpp"
+
+namespace cohort::description {
+namespace {
+
+constexpr std::pair<std::string_view, Fidelity> fidelities[] = {
+    {"articulated", Fidelity::articulated}, {"treel", Fidelity::treel}, {"planar", Fidelity::planar}};
+constexpr std::pair<std::string_view, Solver> solvers[] = {
+    {"iterative", Solver::iterative}, {"direct", Solver::direct}, {"hybrid", Solver::hybrid}};
+
+template <class Named>
+auto named(const Named& choices, std::string_view name) {
+  const auto* const found =
+      std::find_if(std::begin(choices), std::end(choices), [&](const auto& choice) { return choice.first == name; });
+  if (found == std::end(choices)) throw std::logic_error("no meaning for the choice " + std::string(name));
+  return found->second;
+}
+
+}  // namespace
+
+PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values) {
+  if (values.has("fidelity")) settings.fidelity = named(fidelities, values.text("fidelity"));
+  if (values.has("solver")) settings.solver = named(solvers, values.text("solver"));
+  if (values.has("iterations")) settings.iterations = static_cast<std::uint32_t>(values.whole("iterations"));
+  if (values.has("direct_bodies")) settings.direct_bodies = static_cast<std::uint32_t>(values.whole("direct_bodies"));
+  if (values.has("lowest")) settings.lowest = values.real("lowest");
+  if (values.has("strict")) settings.strict = values.flag("strict");
+  return settings;
+}
+
+KeyValues read_physics_map(const YAML::Node& node, const std::string& path, const YamlReport& report) {
+  const Extension& extension = *find_extension("physics", "world");
+  std::vector<std::string> known;
+  for (const ExtensionKey& key : extension.keys) known.emplace_back(key.name);
+  const YamlMap map(node, path, known, report);
+
+  KeyValues values;
+  for (const ExtensionKey& key : extension.keys) {
+    const std::string name(key.name);
+    if (!map.has(name)) continue;
+    const YAML::Node value = map.where(name);
+    const std::string_view text = value.IsScalar() ? trimmed(value.Scalar()) : std::string_view();
+    if (std::optional<KeyValues::Value> parsed = parse_value(text, key))
+      values.add(name, *std::move(parsed));
+    else
+      map.problem(name, text.empty() ? "expected " + expected(key) + ", not " + shown(value) : why_wrong(text, key));
+  }
+  return values;
+}
+
+}  // namespace cohort::description

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "server/description/key_values.hpp"
+#include "server/description/world.hpp"
+#include "server/description/yaml_map.hpp"
+
+namespace cohort::description {
+
+/// Settings of which the keys of `cohort:physics` that are given replace those of `settings`.
+PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values);
+
+/// The keys of `cohort:physics` in YAML, only those that are there. What is wrong with them is reported.
+KeyValues read_physics_map(const YAML::Node& node, const std::string& path, const YamlReport& report);
+
+}  // namespace cohort::description

@@ -1,0 +1,42 @@
+#include "server/description/shape_files.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "server/description/convex_hull.hpp"
+#include "server/description/height_image.hpp"
+#include "server/description/mesh_file.hpp"
+
+namespace cohort::description {
+namespace {
+
+TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file) {
+  try {
+    return convex_hull(mesh.vertices);
+  } catch (const std::invalid_argument&) {
+    throw std::runtime_error("the mesh of '" + file.string() +
+                             "' is flat; in a model that moves, its convex hull is solid, and needs a volume");
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri, const Eigen::Vector3d& scale,
+                                                     bool convex) {
+  const std::filesystem::path file = files_.find_file(uri);
+  std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
+  if (mesh) return mesh;
+  TriangleMesh read = read_mesh(file, scale);
+  if (convex) read = hull_of(read, file);
+  mesh = std::make_shared<const TriangleMesh>(std::move(read));
+  return mesh;
+}
+
+std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size) {
+  const std::filesystem::path file = files_.find_file(uri);
+  std::shared_ptr<const HeightGrid>& grid = grids_[{file, size.x(), size.y(), size.z()}];
+  if (!grid) grid = std::make_shared<const HeightGrid>(read_height_image(file, size));
+  return grid;
+}
+
+}  // namespace cohort::description

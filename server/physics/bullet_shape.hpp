@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "server/geometry/shapes.hpp"
+
+class btCollisionShape;
+
+namespace cohort::physics {
+
+/// A shape as Bullet takes it. Constant; may be shared between solids.
+class BulletShape {
+ public:
+  explicit BulletShape(const geometry::Shape& shape);
+  ~BulletShape();
+  BulletShape(const BulletShape&) = delete;
+  BulletShape& operator=(const BulletShape&) = delete;
+
+  btCollisionShape* get() const;
+  /// Bullet's frame of the shape in ours: it puts the middle of a height map's heights at the origin.
+  const Eigen::Vector3d& offset() const { return offset_; }
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace cohort::physics

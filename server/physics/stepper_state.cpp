@@ -1,0 +1,127 @@
+// The state of a world, hashed, saved and restored: all three see the same numbers.
+
+#include "server/physics/stepper.hpp"
+
+namespace cohort::physics {
+namespace {
+
+// Adds whatever number a state holds.
+struct Hasher {
+  StateHash& hash;
+  void operator()(const double& number) const { hash.add(number); }
+  void operator()(const bool& flag) const { hash.add(static_cast<std::uint64_t>(flag)); }
+};
+struct Saver {
+  SnapshotWriter& writer;
+  template <class Number>
+  void operator()(const Number& number) const {
+    writer.add(number);
+  }
+};
+struct Restorer {
+  SnapshotReader& reader;
+  template <class Number>
+  void operator()(Number& number) const {
+    reader.read(number);
+  }
+};
+
+template <class PoseType, class Visit>
+void visit_pose(PoseType& pose, Visit&& visit) {
+  for (int i = 0; i < 3; ++i) visit(pose.position[i]);
+  for (int i = 0; i < 4; ++i) visit(pose.orientation.coeffs()[i]);
+}
+
+template <class End, class Visit>
+void visit_end(End& end, Visit&& visit) {
+  visit(end.member);
+  visit(end.segment);
+  visit_pose(end.X_SP, visit);
+}
+
+}  // namespace
+
+void Stepper::hash_body(std::uint32_t body, StateHash& hash) const {
+  if (bodies_[body].member == Anchors::nobody) return;
+  Hasher{hash}(members_[bodies_[body].member].is_active);
+  Multibody::visit_state(*bodies_[body].multibody, Hasher{hash});
+}
+
+void Stepper::hash_contacts(StateHash& hash) const {
+  for (const Connection& connection : connections_) Connection::visit_state(connection, Hasher{hash});
+  for (const Member& member : members_) {
+    for (const Part& part : member.parts) {
+      for (const SolidPair& pair : collision_.pairs_of(part.solid)) {
+        if (pair.contact.count == 0) continue;
+        hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
+        for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, Hasher{hash});
+      }
+    }
+  }
+}
+
+void Stepper::save(SnapshotWriter& writer) const {
+  const Saver save{writer};
+  writer.add_count(description_.instances.size());
+  writer.add_count(bodies_.size());
+  for (std::size_t body = description_.instances.size(); body < bodies_.size(); ++body) {
+    writer.add_count(bodies_[body].model);
+    visit_pose(bodies_[body].X_WM, save);
+  }
+  for (const Member& member : members_) {
+    save(member.is_active);
+    Multibody::visit_state(of(member), save);
+  }
+  writer.add_count(connections_.size());
+  for (const Connection& connection : connections_) {
+    visit_end(connection.a(), save);
+    visit_end(connection.b(), save);
+    save(connection.limits().force);
+    save(connection.limits().torque);
+    Connection::visit_state(connection, save);
+  }
+  collision_.save(writer);
+}
+
+void Stepper::restore(SnapshotReader& reader) {
+  const Restorer restore{reader};
+  reader.expect_count(description_.instances.size(), "models in its world");
+  constexpr std::size_t least_bytes = 1;
+  const std::size_t body_count = reader.read_count(least_bytes);
+  while (bodies_.size() < body_count) {
+    const std::size_t model = reader.read_count(least_bytes);
+    if (model >= description_.models.size()) throw SnapshotError("the snapshot has a model that is not there");
+    Pose X_WM;
+    visit_pose(X_WM, restore);
+    create_body(model, X_WM);
+  }
+  scene_.build();
+  for (Member& member : members_) {
+    bool is_active = true;
+    restore(is_active);
+    Multibody& multibody = of(member);
+    Multibody::visit_state(multibody, restore);
+    multibody.update_poses();
+    place_solids_of(member);
+    if (!is_active) take_out(member);
+  }
+  scene_.update();
+  constexpr std::size_t connection_bytes = 100;
+  for (std::size_t count = reader.read_count(connection_bytes); count > 0; --count) {
+    Connection::End a;
+    Connection::End b;
+    ConnectionLimits limits;
+    visit_end(a, restore);
+    visit_end(b, restore);
+    restore(limits.force);
+    restore(limits.torque);
+    if (a.member >= members_.size() || (b.member >= members_.size() && b.member != Anchors::nobody))
+      throw SnapshotError("the snapshot has a connection of a body that is not there");
+    members_[a.member].connections.push_back(static_cast<std::uint32_t>(connections_.size()));
+    Connection::visit_state(connections_.emplace_back(a, b, limits), restore);
+  }
+  collision_.restore(reader);
+  report_contacts();
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,198 @@
+#include <cmath>
+#include <limits>
+
+#include "tests/support/written_worlds.hpp"
+
+// Joints, and the devices that name them.
+namespace cohort::description {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::string model(const std::string& content) { return "<model name=\"m\">" + content + "</model>"; }
+std::string universal(const std::string& second) {
+  return "<joint name=\"j\" type=\"universal\"><parent>a</parent><child>b</child><axis><xyz>1 0 0</xyz></axis>\n" +
+         second + "</joint>";
+}
+
+using Joints = Description;
+
+TEST_F(Joints, AUniversalJointHasTwoAxesWithLimitsAndDynamicsOfTheirOwn) {
+  const World world = read(model(
+      links("ab") + universal("<axis2><xyz>0 2 0</xyz><limit><lower>-1</lower><upper>0.5</upper></limit><dynamics>"
+                              "<damping>0.1</damping><friction>0.2</friction><spring_stiffness>3</spring_stiffness>"
+                              "<spring_reference>-0.4</spring_reference></dynamics></axis2>")));
+  const Joint& found = world.models[0].joints[0];
+  EXPECT_EQ(found.type, JointType::universal);
+  EXPECT_EQ(found.axis.direction, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(found.axis.upper, infinity);
+  EXPECT_EQ(found.axis.spring_stiffness, 0.0);
+  EXPECT_EQ(found.second_axis.direction, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(found.second_axis.lower, -1.0);
+  EXPECT_EQ(found.second_axis.upper, 0.5);
+  EXPECT_EQ(found.second_axis.damping, 0.1);
+  EXPECT_EQ(found.second_axis.friction, 0.2);
+  EXPECT_EQ(found.second_axis.spring_stiffness, 3.0);
+  EXPECT_EQ(found.second_axis.spring_reference, -0.4);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+}
+
+TEST_F(Joints, ABallHasDampingAndFrictionAndNoAxis) {
+  const World world =
+      read(model(links("abc") +
+                 joint("j", "a", "b",
+                       "<xyz>0 0 1</xyz><dynamics><damping>0.1</damping><friction>0.2</friction></dynamics>", "ball") +
+                 "<joint name=\"k\" type=\"ball\"><parent>b</parent><child>c</child></joint>"));
+  const Joint& found = world.models[0].joints[0];
+  EXPECT_EQ(found.type, JointType::ball);
+  EXPECT_EQ(found.axis.damping, 0.1);
+  EXPECT_EQ(found.axis.friction, 0.2);
+  EXPECT_EQ(world.models[0].joints[1].axis.damping, 0.0);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+}
+
+TEST_F(Joints, LimitsAndASpringOfABallAreSaidToBeIgnored) {
+  const World world =
+      read(model(links("ab") + joint("j", "a", "b",
+                                     "<xyz>0 0 1</xyz>\n<limit><lower>-1</lower><upper>1</upper></limit>\n<dynamics>"
+                                     "<spring_stiffness>1</spring_stiffness></dynamics>",
+                                     "ball")));
+  EXPECT_EQ(world.models[0].joints[0].axis.upper, infinity);
+  EXPECT_EQ(world.models[0].joints[0].axis.spring_stiffness, 0.0);
+  const std::string all = texts_of(world.warnings);
+  EXPECT_EQ(world.warnings.size(), 2u) << all;
+  EXPECT_NE(all.find(":3: world/model[m]/joint[j]/axis/limit: "), std::string::npos) << all;
+  EXPECT_NE(all.find(":4: world/model[m]/joint[j]/axis/dynamics/spring_stiffness: "), std::string::npos) << all;
+}
+
+TEST_F(Joints, AJointToTheWorldAnchorsTheRoot) {
+  const World world =
+      read(model(links("cab") + joint("one", "a", "b") + joint("hinge", "world", "a") + joint("two", "b", "c")));
+  const Model& found = world.models[0];
+  EXPECT_EQ(found.links[0].name, "a");
+  EXPECT_EQ(found.joints[1].parent, Joint::world);
+  EXPECT_EQ(found.joints[1].child, 0u);
+  EXPECT_EQ(found.joints[0].parent, 0u);
+  EXPECT_EQ(found.joints[2].child, 2u);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+}
+
+TEST_F(Joints, LinksOfAModelCollideWithEachOtherIfItSaysSo) {
+  EXPECT_FALSE(read(model(links("a"))).models[0].self_collide);
+  const World world = read(model("<self_collide>true</self_collide>" + links("a")));
+  EXPECT_TRUE(world.models[0].self_collide);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+}
+
+TEST_F(Joints, EffortAndVelocityOfALimitAreSaidToBeIgnoredOnEitherAxis) {
+  const World world = read(
+      model(links("ab") +
+            universal("<axis2><xyz>0 1 0</xyz><limit><effort>3</effort>\n<velocity>2</velocity></limit></axis2>")));
+  const std::string all = texts_of(world.warnings);
+  EXPECT_EQ(world.warnings.size(), 2u) << all;
+  EXPECT_NE(all.find("<cohort:max_effort>"), std::string::npos) << all;
+  EXPECT_NE(all.find("<cohort:max_velocity>"), std::string::npos) << all;
+}
+
+std::string device(const std::string& kind, const std::string& keys) {
+  return "<cohort:" + kind + " name=\"d\">\n" + keys + "</cohort:" + kind + ">";
+}
+std::string key(const std::string& name, const std::string& value) {
+  return "<cohort:" + name + ">" + value + "</cohort:" + name + ">";
+}
+std::string motor_of(const std::string& joint_name) {
+  return key("joint", joint_name) + key("max_velocity", "1") + key("max_effort", "1");
+}
+std::string drive_with(const std::string& wheels) {
+  return device("treel_drive", key("link", "a") + key("half_gauge", "0.1") + key("half_contact_length", "0.1") +
+                                   key("ground_height", "0") + key("wheel_radius", "0.1") + key("max_torque", "1") +
+                                   key("max_velocity", "1") + key("friction", "1") + "\n" + wheels);
+}
+std::string cart() {
+  return links("abcde") + joint("to_b", "a", "b") + joint("to_c", "a", "c") + joint("to_d", "a", "d") +
+         joint("to_e", "b", "e") + "\n";
+}
+
+TEST_F(Joints, MotorAndEncoderOfAUniversalJointAreOnItsFirstAxis) {
+  const World world = read(model(links("ab") + universal("<axis2><xyz>0 1 0</xyz></axis2>") +
+                                 device("velocity_motor", motor_of("j")) + device("joint_encoder", key("joint", "j"))));
+  EXPECT_EQ(std::get<VelocityMotor>(world.models[0].devices[0]).joint, 0u);
+  EXPECT_EQ(std::get<JointEncoder>(world.models[0].devices[1]).joint, 0u);
+}
+
+TEST_F(Joints, ATreelDriveNamesTheWheelsThatItStandsFor) {
+  const World world = read(
+      model(cart() + drive_with(key("left_wheel", "to_d") + key("right_wheel", "to_c") + key("left_wheel", "to_b"))));
+  const auto& drive = std::get<TreelDrive>(world.models[0].devices[0]);
+  EXPECT_EQ(drive.left_wheels, (std::vector<std::size_t>{2, 0}));
+  EXPECT_EQ(drive.right_wheels, std::vector<std::size_t>{1});
+  EXPECT_TRUE(std::get<TreelDrive>(read(model(cart() + drive_with(""))).models[0].devices[0]).left_wheels.empty());
+}
+
+class FlawOfAJoint : public Joints, public testing::WithParamInterface<Flaw> {};
+
+TEST_P(FlawOfAJoint, IsReportedAloneWithFileLineAndElement) {
+  expect_only_flaw(GetParam(), write_world(GetParam().content));
+}
+
+const std::string in_joint = "world/model[m]/joint[j]";
+const std::string in_drive = "world/model[m]/cohort:treel_drive[d]";
+
+std::string with_dynamics(const std::string& dynamics) {
+  return model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz><dynamics>\n" + dynamics + "</dynamics>"));
+}
+std::string of_type(const std::string& type) {
+  return model(links("ab") + "\n" + joint("j", "a", "b", "<xyz>0 0 1</xyz>", type));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Joints, FlawOfAJoint,
+    testing::Values(
+        Flaw{of_type("screw"), 3, in_joint, "'screw' is not supported; expected fixed, revolute"},
+        Flaw{of_type("gearbox"), 3, in_joint, "'gearbox' is not supported"},
+        Flaw{of_type("revolute2"), 3, in_joint, "'revolute2' is not supported"},
+        Flaw{with_dynamics("<damping>-1</damping>"), 3, in_joint + "/axis/dynamics/damping", "expected a damping >= 0"},
+        Flaw{with_dynamics("<friction>-1</friction>"), 3, in_joint + "/axis/dynamics/friction",
+             "expected a friction >= 0"},
+        Flaw{with_dynamics("<spring_stiffness>-1</spring_stiffness>"), 3, in_joint + "/axis/dynamics/spring_stiffness",
+             "expected a stiffness >= 0"},
+        Flaw{with_dynamics("<spring_reference>inf</spring_reference>"), 3, in_joint + "/axis/dynamics/spring_reference",
+             "expected a finite position"},
+        Flaw{model(links("ab") + universal("<axis2><xyz>0 0 0</xyz></axis2>")), 3, in_joint + "/axis2/xyz", "not zero"},
+        Flaw{model(links("ab") + universal("<axis2><xyz>-1 0 0</xyz></axis2>")), 3, in_joint + "/axis2",
+             "another direction than that of <axis>"},
+        Flaw{model(links("ab") +
+                   universal("<axis2><xyz>0 1 0</xyz><limit><lower>1</lower><upper>0</upper></limit></axis2>")),
+             3, in_joint + "/axis2/limit", "the lower limit exceeds"},
+        Flaw{model(links("ab") + "\n" + universal("")), 3, in_joint + "/axis2", "missing"},
+        Flaw{model(links("ab") + joint("i", "a", "b") + "\n" + joint("j", "world", "b")), 3, in_joint,
+             "'b' is the child of joint 'i' already"},
+        Flaw{model(links("ab") + joint("j", "world", "b")), 2, "world/model[m]",
+             "the links 'a', 'b' have no joint to a parent link"},
+        Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "ball") +
+                   device("velocity_motor", motor_of("j"))),
+             3, "world/model[m]/cohort:velocity_motor[d]/cohort:joint", "has no single axis"},
+        Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "ball") +
+                   device("joint_encoder", key("joint", "j"))),
+             3, "world/model[m]/cohort:joint_encoder[d]/cohort:joint", "has no single axis"},
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_bb"))), 5, in_drive + "/cohort:left_wheel",
+             "no joint 'to_bb'"},
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_e"))), 5, in_drive + "/cohort:left_wheel",
+             "is not between 'a' and a wheel"},
+        Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "prismatic") +
+                   drive_with(key("right_wheel", "j"))),
+             4, in_drive + "/cohort:right_wheel", "is not revolute"},
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_b") + "\n" + key("right_wheel", "to_b"))), 6,
+             in_drive + "/cohort:right_wheel", "is a wheel's already"},
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_b") + "\n" + key("left_wheel", "to_c") + "\n" +
+                                       key("left_wheel", "to_b"))),
+             7, in_drive + "/cohort:left_wheel", "is a wheel's already"},
+        Flaw{model(cart() + drive_with(key("left_wheel", "to_b")) + "<cohort:velocity_motor name=\"n\">\n" +
+                   motor_of("to_b") + "</cohort:velocity_motor>"),
+             6, "world/model[m]/cohort:velocity_motor[n]/cohort:joint", "is a wheel's of a treel_drive"},
+        Flaw{model(cart() + "<cohort:velocity_motor name=\"n\">" + motor_of("to_b") + "</cohort:velocity_motor>" +
+                   drive_with(key("left_wheel", "to_b"))),
+             5, in_drive + "/cohort:left_wheel", "has a motor already"}));
+
+}  // namespace
+}  // namespace cohort::description

@@ -1,0 +1,205 @@
+#include <cmath>
+
+#include "server/description/experiment.hpp"
+#include "tests/support/written_worlds.hpp"
+
+// Surfaces, materials, and the settings of physics.
+namespace cohort::description {
+namespace {
+
+const std::string ball = "<sphere><radius>1</radius></sphere>";
+
+std::string made_of(const std::string& material, const std::string& name = "m") {
+  return static_model(collision(ball, "\n<cohort:material>" + material + "</cohort:material>"), name);
+}
+std::string pair(const std::string& first, const std::string& second, const std::string& rest = "") {
+  return "\n<cohort:material_pair>\n<cohort:first>" + first + "</cohort:first>\n<cohort:second>" + second +
+         "</cohort:second><cohort:friction>0.4</cohort:friction>" + rest + "</cohort:material_pair>";
+}
+const Surface& surface_of(const World& world, std::size_t model) {
+  return world.models[model].links[0].collisions[0].surface;
+}
+
+using Surfaces = Description;
+
+TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
+  const World world = read(static_model(
+      collision(ball,
+                "<surface><friction><ode><mu>0.3</mu></ode><bullet><rolling_friction>0.002</rolling_friction>"
+                "</bullet></friction></surface>")));
+  EXPECT_EQ(surface_of(world, 0).friction, 0.3);
+  EXPECT_EQ(surface_of(world, 0).rolling_resistance, 0.002);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_EQ(surface_of(read(static_model(collision(ball, "<surface><friction><bullet/></friction></surface>"))), 0)
+                .rolling_resistance,
+            0.0);
+}
+
+TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByName) {
+  const World world = read(static_model(
+      collision(ball,
+                "<surface><friction><bullet><friction>0.5</friction><friction2>0.5</friction2><fdir1>1 0 0</fdir1>"
+                "</bullet></friction></surface>")));
+  const std::string all = texts_of(world.warnings);
+  EXPECT_EQ(world.warnings.size(), 3u) << all;
+  for (const char* const name : {"bullet/friction: ", "bullet/friction2: ", "bullet/fdir1: "})
+    EXPECT_NE(all.find(name), std::string::npos) << all;
+}
+
+TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
+  const World world =
+      read(made_of("rubber", "a") + made_of("wood", "b") + made_of("rubber", "c") + static_model(collision(ball), "d") +
+           pair("wood", "rubber", "<cohort:restitution>0.1</cohort:restitution>") +
+           pair("rubber", "rubber", "<cohort:rolling_resistance>0.01</cohort:rolling_resistance>"));
+  EXPECT_EQ(world.materials, (std::vector<std::string>{"", "rubber", "wood"}));
+  EXPECT_EQ(surface_of(world, 0).material, 1u);
+  EXPECT_EQ(surface_of(world, 1).material, 2u);
+  EXPECT_EQ(surface_of(world, 2).material, 1u);
+  EXPECT_EQ(surface_of(world, 3).material, 0u);
+  ASSERT_EQ(world.material_pairs.size(), 2u);
+  EXPECT_EQ(world.material_pairs[0].first, 2u);
+  EXPECT_EQ(world.material_pairs[0].second, 1u);
+  EXPECT_EQ(world.material_pairs[0].friction, 0.4);
+  EXPECT_EQ(world.material_pairs[0].restitution, 0.1);
+  EXPECT_EQ(world.material_pairs[0].rolling_resistance, 0.0);
+  EXPECT_EQ(world.material_pairs[1].restitution, 0.0);
+  EXPECT_EQ(world.material_pairs[1].rolling_resistance, 0.01);
+}
+
+TEST_F(Surfaces, AMaterialOfAnIncludedModelCounts) {
+  write_model("tyre",
+              made_of("rubber").substr(std::string("<model name=\"m\">").size(),
+                                       made_of("rubber").size() - std::string("<model name=\"m\"></model>").size()));
+  const World world = read("<include><uri>model://tyre</uri></include>" + pair("rubber", "rubber"));
+  EXPECT_EQ(world.material_pairs.size(), 1u);
+}
+
+using PhysicsOfAWorld = Description;
+
+std::string physics(const std::string& keys) { return "<cohort:physics>\n" + keys + "</cohort:physics>"; }
+
+TEST_F(PhysicsOfAWorld, HasTheDefaultsOfTheManualWhereNothingIsGiven) {
+  for (const std::string& content : {std::string(), physics("")}) {
+    const PhysicsSettings settings = read(content).physics;
+    EXPECT_EQ(settings.fidelity, Fidelity::treel);
+    EXPECT_EQ(settings.solver, Solver::iterative);
+    EXPECT_EQ(settings.iterations, 10u);
+    EXPECT_EQ(settings.direct_bodies, 4u);
+    EXPECT_EQ(settings.lowest, -std::numeric_limits<double>::infinity());
+    EXPECT_FALSE(settings.strict);
+  }
+}
+
+TEST_F(PhysicsOfAWorld, IsReadWholly) {
+  const PhysicsSettings settings =
+      read(physics("<cohort:fidelity>articulated</cohort:fidelity><cohort:solver>hybrid</cohort:solver>"
+                   "<cohort:iterations>50</cohort:iterations><cohort:direct_bodies>8</cohort:direct_bodies>"
+                   "<cohort:lowest>-2.5</cohort:lowest><cohort:strict>true</cohort:strict>"))
+          .physics;
+  EXPECT_EQ(settings.fidelity, Fidelity::articulated);
+  EXPECT_EQ(settings.solver, Solver::hybrid);
+  EXPECT_EQ(settings.iterations, 50u);
+  EXPECT_EQ(settings.direct_bodies, 8u);
+  EXPECT_EQ(settings.lowest, -2.5);
+  EXPECT_TRUE(settings.strict);
+  EXPECT_EQ(
+      read(physics("<cohort:fidelity>planar</cohort:fidelity><cohort:solver>direct</cohort:solver>")).physics.fidelity,
+      Fidelity::planar);
+}
+
+class FlawOfASurface : public Description, public testing::WithParamInterface<Flaw> {};
+
+TEST_P(FlawOfASurface, IsReportedAloneWithFileLineAndElement) {
+  expect_only_flaw(GetParam(), write_world(GetParam().content));
+}
+
+const std::string in_collision = "world/model[m]/link[l]/collision[c]";
+const std::string in_pair = "world/cohort:material_pair";
+const std::string in_physics = "world/cohort:physics";
+
+INSTANTIATE_TEST_SUITE_P(
+    Surfaces, FlawOfASurface,
+    testing::Values(
+        Flaw{static_model(collision(
+                 ball,
+                 "<surface><friction><bullet>\n<rolling_friction>-1</rolling_friction></bullet></friction></surface>")),
+             3, in_collision + "/surface/friction/bullet/rolling_friction", "expected a rolling resistance >= 0 m"},
+        Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},
+        Flaw{made_of("<cohort:name>x</cohort:name>"), 3, in_collision + "/cohort:material/cohort:name", "holds a name"},
+        Flaw{made_of("a</cohort:material>\n<cohort:material>b"), 4, in_collision + "/cohort:material", "given twice"},
+        Flaw{static_model(collision(ball, "\n<cohort:materiel>a</cohort:materiel>")), 3,
+             in_collision + "/cohort:materiel", "did you mean 'cohort:material'?"},
+        Flaw{static_model("\n<cohort:material>a</cohort:material>" + collision(ball)), 3,
+             "world/model[m]/cohort:material", "belongs in <collision>"},
+        Flaw{made_of("rubber") + pair("ruber", "rubber"), 5, in_pair + "/cohort:first",
+             "nothing is made of 'ruber'; did you mean 'rubber'?"},
+        Flaw{made_of("rubber") + pair("rubber", "steel"), 6, in_pair + "/cohort:second",
+             "nothing is made of 'steel'; known: rubber"},
+        Flaw{made_of("rubber") + made_of("wood", "n") + pair("rubber", "wood") + pair("wood", "rubber"), 8, in_pair,
+             "another <cohort:material_pair> is of 'wood' and 'rubber'"},
+        Flaw{made_of("rubber") + pair("rubber", "rubber", "<cohort:restitution>1.5</cohort:restitution>"), 6,
+             in_pair + "/cohort:restitution", "expected a number from 0 to 1, not '1.5'"},
+        Flaw{made_of("rubber") + "\n<cohort:material_pair><cohort:first>rubber</cohort:first><cohort:second>rubber</"
+                                 "cohort:second></cohort:material_pair>",
+             4, in_pair + "/cohort:friction", "missing"},
+        Flaw{physics("<cohort:fidelity>artculated</cohort:fidelity>"), 3, in_physics + "/cohort:fidelity",
+             "unknown value 'artculated'; did you mean 'articulated'?"},
+        Flaw{physics("<cohort:solver>x</cohort:solver>"), 3, in_physics + "/cohort:solver",
+             "known: iterative, direct, hybrid"},
+        Flaw{physics("<cohort:solver/>"), 3, in_physics + "/cohort:solver",
+             "expected one of iterative, direct, hybrid"},
+        Flaw{physics("<cohort:iterations>0</cohort:iterations>"), 3, in_physics + "/cohort:iterations", "from 1 to"},
+        Flaw{physics("<cohort:lowest>inf</cohort:lowest>"), 3, in_physics + "/cohort:lowest",
+             "expected a number, not 'inf'"},
+        Flaw{physics("<cohort:strict>yes</cohort:strict>"), 3, in_physics + "/cohort:strict",
+             "expected true or false, not 'yes'"},
+        Flaw{physics("<cohort:solvr>direct</cohort:solvr>"), 3, in_physics + "/cohort:solvr",
+             "did you mean 'cohort:solver'?"},
+        Flaw{physics("") + physics(""), 3, in_physics, "given twice"}));
+
+class PhysicsOfAnExperiment : public Description {
+ protected:
+  PhysicsOfAnExperiment() {
+    write_world("<include><uri>model://sbot</uri></include>" +
+                physics("<cohort:solver>direct</cohort:solver><cohort:iterations>20</cohort:iterations>"));
+  }
+  std::filesystem::path write_experiment(const std::string& settings) const {
+    return write("e.yaml",
+                 "world: world.sdf\nduration: 1\nteams: [{name: a, controller: x, robots: all}]\n" + settings);
+  }
+};
+
+TEST_F(PhysicsOfAnExperiment, ReplacesThatOfTheWorldKeyByKey) {
+  EXPECT_EQ(read_experiment(write_experiment("")).world.physics.iterations, 20u);
+  const PhysicsSettings settings =
+      read_experiment(
+          write_experiment("physics:\n  iterations: 30\n  fidelity: planar\n  strict: true\n  lowest: -1\n"))
+          .world.physics;
+  EXPECT_EQ(settings.solver, Solver::direct);
+  EXPECT_EQ(settings.iterations, 30u);
+  EXPECT_EQ(settings.fidelity, Fidelity::planar);
+  EXPECT_TRUE(settings.strict);
+  EXPECT_EQ(settings.lowest, -1.0);
+}
+
+class FlawOfPhysicsInAnExperiment : public PhysicsOfAnExperiment, public testing::WithParamInterface<Flaw> {};
+
+TEST_P(FlawOfPhysicsInAnExperiment, IsReportedAloneWithFileLineAndKey) {
+  const std::filesystem::path file = write_experiment(GetParam().content);
+  const auto problems = problems_of([&] { read_experiment(file); });
+  expect_problem(problems, file, GetParam());
+  EXPECT_EQ(problems.size(), 1u);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Experiments, FlawOfPhysicsInAnExperiment,
+    testing::Values(Flaw{"physics: 3\n", 4, "physics", "expected 'KEY: VALUE' lines, not '3'"},
+                    Flaw{"physics:\n  solvr: direct\n", 5, "physics.solvr", "did you mean 'solver'?"},
+                    Flaw{"physics:\n  solver: dircet\n", 5, "physics.solver",
+                         "unknown value 'dircet'; did you mean 'direct'?"},
+                    Flaw{"physics:\n  iterations: 0\n", 5, "physics.iterations", "from 1 to 1000000, not '0'"},
+                    Flaw{"physics:\n  strict: [true]\n", 5, "physics.strict", "expected true or false, not a list"},
+                    Flaw{"physics:\n  lowest: deep\n", 5, "physics.lowest", "expected a number, not 'deep'"}));
+
+}  // namespace
+}  // namespace cohort::description

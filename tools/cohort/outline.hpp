@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tools/cohort/run_trace.hpp"
+
+namespace cohort::tool {
+
+/// A solid seen from above: the convex hull of its corners, or a circle if it has none [m].
+struct Outline {
+  std::vector<Eigen::Vector2d> corners_W;
+  Eigen::Vector2d centre_W = Eigen::Vector2d::Zero();
+  double radius = 0.0;
+};
+
+/// Of a plane and of a height map, a circle without size.
+Outline outline_of(const TracedSolid& solid);
+
+}  // namespace cohort::tool

@@ -241,7 +241,7 @@ TEST_P(MistypedCommand, IsOneMessageThatSaysWhatToDo) {
 INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
-        Typed{{}, "expected a command; known: run, serve, host, teleop, check. Try 'cohort --help'"},
+        Typed{{}, "expected a command; known: run, serve, host, teleop, check, bench. Try 'cohort --help'"},
         Typed{{"rn", "x"}, "there is no command 'rn'; did you mean 'run'?"},
         Typed{{"run"}, "FILE is required. Try 'cohort run --help'"}, Typed{{"run", "x", "y"}, "unexpected 'y'"},
         Typed{{"run", "x", "--thread", "3"}, "there is no option '--thread'; did you mean '--threads'?"},
@@ -259,10 +259,14 @@ INSTANTIATE_TEST_SUITE_P(
         Typed{{"run", "x"}, "COHORT_LOG_FORMAT is 'xml'; known: text, json", {{"COHORT_LOG_FORMAT", "xml"}}},
         Typed{{"run", "x"}, "COHORT_LOG is 'loud'; known: debug, info, warn, error, off", {{"COHORT_LOG", "loud"}}},
         Typed{{"serve", "x", "--netwrk", "y"}, "there is no option '--netwrk'; did you mean '--network'?"},
-        Typed{{"host", "x"}, "--robots is required"}, Typed{{"check"}, "FILE is required"}));
+        Typed{{"host", "x"}, "--robots is required"}, Typed{{"check"}, "FILE is required"},
+        Typed{{"bench", "--scene", "crowd,crwd"}, "--scene: there is no 'crwd'; did you mean 'crowd'?"},
+        Typed{{"bench", "--engines", "mujocko"}, "--engines: there is no 'mujocko'; did you mean 'mujoco'?"},
+        Typed{{"bench", "--robots", "0"}, "--robots: expected a whole number from 1 to 100000, not '0'"},
+        Typed{{"bench", "--json", "/nowhere/at/all"}, "the results cannot be written to /nowhere/at/all: "}));
 
 TEST(Help, IsThereForEveryCommandWithAnExample) {
-  for (const char* command : {"", "run", "serve", "host", "check"}) {
+  for (const char* command : {"", "run", "serve", "host", "check", "bench"}) {
     std::vector<std::string> arguments = {cohort_program(), command, "--help"};
     if (*command == '\0') arguments.erase(arguments.begin() + 1);
     const Ended help = run_to_end(arguments);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/bench/measure.hpp"
 #include "tools/cohort/log.hpp"
 
 /// The commands of `cohort`, one file each. Every command returns the process's exit code.
@@ -59,5 +60,11 @@ struct TeleopCommand {
 int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop);
 
 int check(const std::filesystem::path& file, Log& log);
+
+struct BenchCommand {
+  bench::Options options;
+  std::filesystem::path json;  ///< file to write; empty: none
+};
+int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop);
 
 }  // namespace cohort::tool

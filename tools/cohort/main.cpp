@@ -5,6 +5,7 @@
 
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
+#include "tools/bench/bench.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
 #include "tools/cohort/usage.hpp"
@@ -143,6 +144,47 @@ void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::st
       ->type_name("N");
 }
 
+void add_bench_options(CLI::App& app, BenchCommand& command) {
+  cohort::bench::Options& options = command.options;
+  const auto list = [&](const char* name, auto& values, const char* text) {
+    return app.add_option(name, values, text)->delimiter(',')->allow_extra_args(false);
+  };
+  list("--scene", options.scenes, "Scenes (default: all)")
+      ->check(one_of(cohort::bench::scene_names()))
+      ->type_name("NAME[,NAME...]");
+  list("--engines", options.engines, "Engines to compare (default: all in this build)")
+      ->check(one_of(cohort::bench::engine_names()))
+      ->type_name("NAME[,NAME...]");
+  list("--robots", options.robots, "How many robots, one run for each number (default: some for each scene)")
+      ->check(whole_number(1, 100'000))
+      ->type_name("N[,N...]");
+  app.add_option("--seconds", options.seconds, "Simulated seconds of each repetition")
+      ->check(number_above_zero(1e6))
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_option("--repetitions", options.repetitions, "Repetitions, the engines in turns")
+      ->check(whole_number(1, 1000))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--threads", options.threads, "Run Cohort with this many threads too, in turns with one")
+      ->check(whole_number(1, 1024))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--seed", options.seed, "Seed of places and commands")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
+  app.footer(
+      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies), chain\n"
+      "(connected robots), rays, build (time and memory). Engines: cohort, and as Debian ships them ode-worldstep,\n"
+      "ode-quickstep, mujoco and enki.\n"
+      "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
+      "they can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with\n"
+      "speed; Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
+      "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -205,6 +247,11 @@ int main(int argc, char** argv) {
   add_log_options(*check_app, log_flags);
   check_app->footer("Example: cohort check worlds/arenas/obstacles.sdf");
 
+  BenchCommand bench_command;
+  CLI::App* bench_app = app.add_subcommand("bench", "Measure Cohort and other physics engines on the same scenes");
+  add_bench_options(*bench_app, bench_command);
+  add_log_options(*bench_app, log_flags);
+
   std::optional<LogOptions> options;
   try {
     app.parse(argc, argv);
@@ -233,5 +280,6 @@ int main(int argc, char** argv) {
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
+  if (bench_app->parsed()) return bench(bench_command, log, stop_requested);
   return check(checked_file, log);
 }

@@ -1,0 +1,49 @@
+#include <benchmark/benchmark.h>
+
+#include <numeric>
+
+#include "server/geometry/scene.hpp"
+#include "tools/bench/ray_field.hpp"
+#include "tools/bench/scene.hpp"
+
+namespace cohort::bench {
+namespace {
+
+constexpr std::uint64_t seed = 1;
+constexpr std::uint32_t robots = 1000;
+
+double spacing_of(const benchmark::State& state) { return 0.01 * static_cast<double>(state.range(0)); }
+
+// 24 rays of each robot, spaced by the argument in centimetres.
+void cast_rays(benchmark::State& state) {
+  const RayField field(robots, spacing_of(state), seed);
+  for ([[maybe_unused]] auto iteration : state) benchmark::DoNotOptimize(field.cast());
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(field.rays()));
+}
+BENCHMARK(cast_rays)->Arg(70)->Arg(14)->Unit(benchmark::kMicrosecond);
+
+// Poses set and taken into the grid.
+void move_all(benchmark::State& state) {
+  RayField field(robots, spacing_of(state), seed);
+  for ([[maybe_unused]] auto iteration : state) field.move_all();
+  state.SetItemsProcessed(state.iterations() * robots);
+}
+BENCHMARK(move_all)->Arg(70)->Arg(14)->Unit(benchmark::kMicrosecond);
+
+void build_grid(benchmark::State& state) {
+  const Scene scene = crowd(static_cast<std::uint32_t>(state.range(0)), seed);
+  const double radius = scene.robot.turret.radius;
+  std::vector<geometry::Bounds> bounds;
+  for (const Placement& at : scene.robots)
+    bounds.push_back({{at.x - radius, at.y - radius, 0.0}, {at.x + radius, at.y + radius, 0.1}});
+  std::vector<std::uint32_t> items(bounds.size());
+  std::iota(items.begin(), items.end(), 0u);
+  geometry::Grid grid;
+  grid.set_cell_size(4.0 * radius);
+  for ([[maybe_unused]] auto iteration : state) grid.build(items, bounds);
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(build_grid)->Arg(100)->Arg(10000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace cohort::bench

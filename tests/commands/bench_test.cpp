@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/support/process.hpp"
+
+// What `cohort bench` prints and writes. How long anything takes is nobody's guarantee.
+namespace cohort::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Measured {
+  Ended ended;
+  Json json;
+};
+
+Measured measure(std::vector<std::string> arguments) {
+  const ScratchFolder folder;
+  const std::string file = (folder / "results.json").string();
+  arguments.insert(arguments.begin(), {cohort_program(), "bench"});
+  arguments.insert(arguments.end(), {"--repetitions", "2", "--json", file});
+  Measured measured{run_to_end(arguments), {}};
+  EXPECT_EQ(measured.ended.exit_code, 0) << measured.ended.err;
+  measured.json = Json::parse(read_file(file), nullptr, false);
+  return measured;
+}
+
+std::vector<std::string> known_engines() { return {"cohort", "ode-worldstep", "ode-quickstep", "mujoco", "enki"}; }
+
+// Each known engine is measured, left out of this scene, or missing in this build; measured ones are returned.
+std::vector<Json> measured_engines(const Json& all, const Json& result) {
+  std::vector<Json> measured;
+  for (const std::string& name : known_engines()) {
+    int mentioned = 0;
+    for (const Json& engine : result["engines"]) {
+      if (engine.value("engine", "") != name) continue;
+      ++mentioned;
+      if (!engine.contains("left_out")) measured.push_back(engine);
+    }
+    for (const Json& engine : all["missing_engines"])
+      if (engine.value("engine", "") == name) ++mentioned;
+    EXPECT_EQ(mentioned, 1) << name << " in " << result.dump(2);
+  }
+  return measured;
+}
+
+void expect_spread(const Json& spread) {
+  EXPECT_GT(spread.value("min", 0.0), 0.0) << spread;
+  EXPECT_LE(spread.value("min", 0.0), spread.value("median", 0.0)) << spread;
+  EXPECT_LE(spread.value("median", 0.0), spread.value("max", 0.0)) << spread;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Bench, MeasuresEveryEngineThatIsThereOnTheSameCrowd) {
+  const Measured measured = measure({"--scene", "crowd", "--robots", "16", "--seconds", "0.2"});
+  ASSERT_EQ(measured.json["results"].size(), 1u) << measured.json;
+  const Json& result = measured.json["results"][0];
+  EXPECT_EQ(result.value("scene", ""), "crowd");
+  EXPECT_EQ(result.value("robots", 0), 16);
+  EXPECT_EQ(result.value("step_s", 0.0), 0.01);
+
+  const std::vector<Json> engines = measured_engines(measured.json, result);
+  ASSERT_FALSE(engines.empty());
+  EXPECT_EQ(engines.front().value("engine", ""), "cohort");
+  for (const Json& engine : engines) {
+    expect_spread(engine["cpu_us_per_robot_step"]);
+    expect_spread(engine["wall_us_per_robot_step"]);
+    EXPECT_EQ(engine.value("threads", 0), 1);
+    EXPECT_GE(engine.value("touches_per_robot", -1.0), 0.0);
+    EXPECT_NEAR(engine.value("speed_ratio", 0.0), 1.0, 0.05) << engine;
+    if (engine.value("engine", "") == "ode-quickstep") {
+      EXPECT_EQ(engine["vs_ode_quickstep"], 1.0);
+    }
+  }
+}
+
+TEST(Bench, PrintsALineForEachEngineUnderOneHeading) {
+  const Measured measured = measure({"--scene", "crowd", "--robots", "4", "--seconds", "0.1"});
+  const std::vector<std::string> lines = lines_of(measured.ended.out);
+  const auto title = std::find(lines.begin(), lines.end(), "crowd, 4 robots, steps of 10 ms");
+  ASSERT_NE(title, lines.end()) << measured.ended.out;
+  ASSERT_GT(std::distance(title, lines.end()), 2) << measured.ended.out;
+  EXPECT_TRUE((title + 1)->starts_with("  engine ")) << measured.ended.out;
+  for (const Json& engine : measured_engines(measured.json, measured.json["results"][0])) {
+    const std::string start = "  " + engine.value("engine", "") + " ";
+    const auto line = std::find_if(title, lines.end(), [&](const auto& text) { return text.starts_with(start); });
+    ASSERT_NE(line, lines.end()) << start;
+    EXPECT_EQ(line->size(), (title + 1)->size()) << "columns are not aligned: " << measured.ended.out;
+  }
+  for (const Json& engine : measured.json["missing_engines"]) {
+    EXPECT_NE(measured.ended.out.find("not in this build: " + engine.value("engine", "")), std::string::npos);
+    EXPECT_NE(measured.ended.out.find(engine.value("package", "?")), std::string::npos);
+  }
+}
+
+TEST(Bench, ComparesThreadsOfCohortInTheSameRun) {
+  const Measured measured = measure(
+      {"--scene", "crowd_wheels", "--robots", "4", "--seconds", "0.1", "--engines", "cohort", "--threads", "2"});
+  const Json& engines = measured.json["results"][0]["engines"];
+  ASSERT_EQ(engines.size(), 2u) << engines;
+  EXPECT_EQ(engines[0].value("threads", 0), 1);
+  EXPECT_TRUE(engines[0]["speed_up"].is_null());
+  EXPECT_EQ(engines[1].value("threads", 0), 2);
+  EXPECT_GT(engines[1].value("speed_up", 0.0), 0.0);
+  EXPECT_EQ(engines[0]["touches_per_robot"], engines[1]["touches_per_robot"]) << "they do not drive alike";
+  EXPECT_NEAR(engines[0].value("speed_ratio", 0.0), 1.0, 0.05);
+}
+
+TEST(Bench, RobotsThatAreApartNeverTouch) {
+  const Measured measured = measure({"--scene", "free", "--robots", "4", "--seconds", "0.2"});
+  for (const Json& engine : measured_engines(measured.json, measured.json["results"][0]))
+    EXPECT_EQ(engine.value("touches_per_robot", -1.0), 0.0) << engine;
+}
+
+TEST(Bench, TellsWhichEnginesCannotConnectRobots) {
+  const Measured measured = measure({"--scene", "chain", "--robots", "3", "--seconds", "0.1"});
+  for (const Json& engine : measured.json["results"][0]["engines"]) {
+    EXPECT_EQ(engine.contains("left_out"), !engine.contains("cpu_us_per_robot_step")) << engine;
+    if (!engine.contains("left_out")) continue;
+    EXPECT_NE(measured.ended.out.find("left out: " + engine.value("engine", "") + ": "), std::string::npos);
+  }
+}
+
+TEST(Bench, MeasuresRaysAndTheBuildingOfAWorld) {
+  const Measured measured = measure({"--scene", "rays,build", "--robots", "50"});
+  ASSERT_EQ(measured.json["results"].size(), 2u) << measured.json;
+  for (const Json& result : measured.json["results"]) {
+    if (result.value("scene", "") == "build") {
+      for (const Json& engine : measured_engines(measured.json, result)) {
+        expect_spread(engine["cpu_s"]);
+        EXPECT_TRUE(engine["resident_bytes_per_robot"].is_number());
+      }
+    } else {
+      EXPECT_EQ(result.value("scene", ""), "rays");
+      ASSERT_EQ(result["densities"].size(), 2u);
+      for (const Json& density : result["densities"]) expect_spread(density["mrays_per_s"]);
+      EXPECT_LT(result["densities"][0]["hit_share"], result["densities"][1]["hit_share"]);
+    }
+  }
+}
+
+TEST(Bench, AnEngineThatIsNotInThisBuildIsRefusedWithItsPackage) {
+  const Measured some = measure({"--scene", "rays", "--robots", "1"});
+  for (const Json& engine : some.json["missing_engines"]) {
+    const Ended ended = run_to_end({cohort_program(), "bench", "--engines", engine.value("engine", "")});
+    EXPECT_EQ(ended.exit_code, 2);
+    EXPECT_NE(ended.err.find("is not in this build: install Debian's " + engine.value("package", "?")),
+              std::string::npos)
+        << ended.err;
+    EXPECT_EQ(ended.out, "");
+  }
+}
+
+}  // namespace
+}  // namespace cohort::testing

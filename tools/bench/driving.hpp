@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "server/core/random.hpp"
+
+namespace cohort::bench {
+
+struct Command {
+  double left = 0.0;    ///< of the track over ground [m/s]
+  double right = 0.0;   ///< the same
+  double turret = 0.0;  ///< relative to the chassis [rad/s]
+};
+
+/// Random driving: each robot draws a new command every 5 to 19 control ticks, uniform in +-0.2 m/s for each track and
+/// +-1 rad/s for the turret. A function of seed, robot and tick: the same for every engine.
+class RandomDriving {
+ public:
+  RandomDriving(std::uint64_t seed, std::uint32_t robots);
+
+  /// Calls `set(robot, command)` for each robot with a new command at this tick. Ticks come one by one, from 0.
+  template <class Set>
+  void update(std::uint64_t tick, Set&& set) {
+    for (std::uint32_t robot = 0; robot < random_.size(); ++robot)
+      if (next_draw_[robot] == tick) set(robot, draw(robot, tick));
+  }
+
+ private:
+  Command draw(std::uint32_t robot, std::uint64_t tick);
+
+  std::vector<RandomStream> random_;
+  std::vector<std::uint64_t> next_draw_;  // tick
+};
+
+}  // namespace cohort::bench

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/bench/build_cost.hpp"
+#include "tools/bench/rays.hpp"
+
+/// Results as tables for people and as JSON; docs/bench.md lists the keys.
+namespace cohort::bench {
+
+std::string table(const StepResult& result);
+std::string table(const BuildResult& result);
+std::string table(const RayResult& result);
+
+nlohmann::ordered_json to_json(const StepResult& result);
+nlohmann::ordered_json to_json(const BuildResult& result);
+nlohmann::ordered_json to_json(const RayResult& result);
+
+}  // namespace cohort::bench

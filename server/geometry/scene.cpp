@@ -63,7 +63,6 @@ void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
 double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                       const Eigen::Vector3d& direction_W, double range) const {
   const double reach = best ? best->distance : range;
-  if (misses(index, origin_W, direction_W, reach)) return reach;
   const Eigen::Vector3d origin_C = X_CW_[index] * origin_W;
   const Eigen::Vector3d direction_C = X_CW_[index].orientation * direction_W;
   const RayEntry entry = surfaces_[index] ? surfaces_[index]->cast_ray(origin_C, direction_C, reach)
@@ -77,7 +76,8 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eig
                                       std::uint32_t ignored_body) const {
   std::optional<RayHit> best;
   const auto test = [&](std::uint32_t index) {
-    if (solids_[index].body == ignored_body) return best ? best->distance : range;
+    const double reach = best ? best->distance : range;
+    if (solids_[index].body == ignored_body || misses(index, origin_W, direction_W, reach)) return reach;
     return improve(best, index, origin_W, direction_W, range);
   };
   for (const std::uint32_t index : large_) test(index);
@@ -97,7 +97,9 @@ std::vector<std::uint32_t> Scene::solids_in(const Bounds& region, std::uint32_t 
 std::optional<RayHit> Scene::cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
                                             const Eigen::Vector3d& direction_W, double range) const {
   std::optional<RayHit> best;
-  for (const std::uint32_t index : candidates) improve(best, index, origin_W, direction_W, range);
+  for (const std::uint32_t index : candidates)
+    if (!misses(index, origin_W, direction_W, best ? best->distance : range))
+      improve(best, index, origin_W, direction_W, range);
   return best;
 }
 

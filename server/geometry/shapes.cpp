@@ -179,6 +179,14 @@ RayEntry enter(const Closed& shape, const Vector3d& origin, const Vector3d& dire
 
 }  // namespace
 
+Bounds bounds_of_disc(const Pose& X_WS, double radius) {
+  constexpr double rounding = 1e-9;
+  const Vector3d normal_W = X_WS.orientation * Vector3d::UnitZ();
+  Vector3d half;
+  for (int i = 0; i < 3; ++i) half[i] = radius * std::sqrt(std::max(0.0, 1.0 - normal_W[i] * normal_W[i]));
+  return Bounds{X_WS.position - half, X_WS.position + half}.grown_by(rounding);
+}
+
 double radius_of(const Shape& shape) {
   struct Radius {
     double operator()(const Box& box) const { return 0.5 * box.size.norm(); }

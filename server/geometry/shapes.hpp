@@ -36,6 +36,10 @@ struct Bounds {
 /// it.
 Bounds bounds_of(const Shape& shape, const Pose& X_WC);
 
+/// Of the disc of `radius` around the origin in the xy plane of S, a little thickened against rounding: what rays in
+/// that plane can reach.
+Bounds bounds_of_disc(const Pose& X_WS, double radius);
+
 /// Of the smallest ball around the shape's origin that holds it [m]; infinite for planes and height maps.
 double radius_of(const Shape& shape);
 

@@ -23,8 +23,8 @@ std::vector<Channel> ProximityRing::channels() const {
 void ProximityRing::sense(std::uint64_t tick, std::span<double> values) const {
   const Pose X_WS = mount_.world.link_pose(mount_.body, ring_.link) * ring_.X_LS;
   const geometry::Scene& scene = mount_.world.scene();
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(ring_.ring_radius + ring_.range);
-  const std::vector<std::uint32_t> near = scene.solids_in({X_WS.position - reach, X_WS.position + reach}, mount_.body);
+  const geometry::Bounds disc = geometry::bounds_of_disc(X_WS, ring_.ring_radius + ring_.range);
+  const std::vector<std::uint32_t> near = scene.solids_in(disc, mount_.body);
   for (std::size_t i = 0; i < ring_.count; ++i) {
     const Eigen::Vector3d direction_W = X_WS.orientation * directions_S_[i];
     const Eigen::Vector3d origin_W = X_WS.position + ring_.ring_radius * direction_W;

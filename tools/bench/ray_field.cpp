@@ -35,10 +35,10 @@ void RayField::move_all() {
 
 std::size_t RayField::cast() const {
   std::size_t hits = 0;
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(turret.radius + range);
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
     const Pose& X_WS = poses_[i];
-    const std::vector<std::uint32_t> near = scene_.solids_in({X_WS.position - reach, X_WS.position + reach}, i);
+    const geometry::Bounds disc = geometry::bounds_of_disc(X_WS, turret.radius + range);
+    const std::vector<std::uint32_t> near = scene_.solids_in(disc, i);
     for (const Eigen::Vector3d& direction : directions_) {
       const Eigen::Vector3d direction_W = X_WS.orientation * direction;
       const Eigen::Vector3d origin_W = X_WS.position + turret.radius * direction_W;

@@ -18,6 +18,7 @@ enum class Place : std::uint8_t { between, lower, upper };
 
 class Guessing {
  public:
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): of each array only the first `count_` are ever read.
   explicit Guessing(Problem& problem) : problem_(problem), rows_(problem.rows()), count_(problem.row_count()) {
     for (int i = 0; i < count_; ++i) {
       const Row& row = row_at(i);
@@ -94,8 +95,8 @@ class Guessing {
         impulses_[i] = places_[i] == Place::lower ? lower_[i] : upper_[i];
       }
     }
-    std::array<double, most_rows> x;
-    std::array<double, most_rows> inverse;  // of D
+    std::array<double, most_rows> x{};
+    std::array<double, most_rows> inverse{};  // of D
     for (int i = 0; i < free_count; ++i) {
       const auto& gains = gains_[free_[i]];
       double right = wanted_[free_[i]];

@@ -49,7 +49,7 @@ void on_plane(const Box& box, const Pose& X_W, const HalfSpace& plane, double ma
       return height < other.height || (height == other.height && index < other.index);
     }
   };
-  std::array<Corner, 8> corners;
+  std::array<Corner, 8> corners{};
   std::array<Vector3d, 8> positions_W;
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
     const Vector3d signs((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5, (i & 4) != 0 ? 0.5 : -0.5);
@@ -58,7 +58,7 @@ void on_plane(const Box& box, const Pose& X_W, const HalfSpace& plane, double ma
   }
   std::partial_sort(corners.begin(), corners.begin() + ContactPoints::most, corners.end());
   // In the order of the corners, so that the solver sees the same rows step after step.
-  std::array<std::uint32_t, ContactPoints::most> lowest;
+  std::array<std::uint32_t, ContactPoints::most> lowest{};
   for (std::size_t i = 0; i < lowest.size(); ++i) lowest[i] = corners[i].index;
   std::sort(lowest.begin(), lowest.end());
   for (const std::uint32_t corner : lowest) touch_plane(positions_W[corner], plane, margin, found);
@@ -229,6 +229,7 @@ bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const 
   if (const auto* plane = std::get_if<Plane>(&a))
     return anything_on_plane(b, X_WB, HalfSpace(*plane, X_WA), margin, true, found);
   if (const auto* sphere = std::get_if<Sphere>(&a)) return ball_on(*sphere, X_WA, b, X_WB, margin, false, found);
+  // NOLINTNEXTLINE(readability-suspicious-call-argument): the two change places, and `flipped` says so.
   if (const auto* sphere = std::get_if<Sphere>(&b)) return ball_on(*sphere, X_WB, a, X_WA, margin, true, found);
 
   const auto* cylinder_a = std::get_if<Cylinder>(&a);
@@ -240,6 +241,7 @@ bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const 
   if (cylinder_a != nullptr && box_b != nullptr)
     return find_side_contact(*cylinder_a, X_WA, *box_b, X_WB, margin, found);
   if (box_a != nullptr && cylinder_b != nullptr) {
+    // NOLINTNEXTLINE(readability-suspicious-call-argument): the two change places, and the normals are turned round.
     const bool known = find_side_contact(*cylinder_b, X_WB, *box_a, X_WA, margin, found);
     for (ContactPoint& point : found) point.normal_W = -point.normal_W;
     return known;

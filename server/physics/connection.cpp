@@ -29,7 +29,7 @@ void Connection::add_rows(Problem& problem, const Anchors& anchors, const Pose& 
         -correction_share * gap_W[axis] / step;
   }
   for (int axis = 0; axis < 3; ++axis) {
-    double* kept = &impulses_[static_cast<std::size_t>(3 + axis)];
+    double* kept = &impulses_[3 + static_cast<std::size_t>(axis)];
     problem.add_torque_row(a, b, Eigen::Vector3d::Unit(axis), kept).target = -correction_share * twist_W[axis] / step;
   }
 }

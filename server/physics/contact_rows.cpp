@@ -68,7 +68,7 @@ void start_friction(ContactPoints& contact, bool on_the_world) {
 void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, const SurfacePair& surfaces,
                     double step) {
   const int normal = problem.row_count();
-  Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, &point.impulse[0]);
+  Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, point.impulse.data());
   // Apart: may close the gap within the step. Overlapping: pushed out gently.
   push.target =
       point.gap > 0.0 ? -point.gap / step : std::min(max_correction_velocity, -point.gap * correction_share / step);

@@ -52,7 +52,7 @@ void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, do
 // Velocities and, with the joints unaccelerated, accelerations from the root to the leaves, and the force that this
 // takes of each segment. Gravity is an acceleration of the world upwards.
 void Equations::move_outwards(const Eigen::Vector3d& gravity) {
-  const Eigen::Vector3d& reference = body_->reference_W();
+  const Eigen::Vector3d& reference = body_->reference();
   const double* velocities = body_->velocities();
   const Spatial resting{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   const Spatial world{Eigen::Vector3d::Zero(), -gravity};
@@ -221,7 +221,7 @@ void Equations::add_generalised(int segment, const Spatial& force, double* jacob
 
 void Equations::add_force(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& direction_W,
                           double* jacobian) const {
-  add_generalised(segment, {(point_W - body_->reference_W()).cross(direction_W), direction_W}, jacobian);
+  add_generalised(segment, {(point_W - body_->reference()).cross(direction_W), direction_W}, jacobian);
 }
 
 void Equations::add_torque(int segment, const Eigen::Vector3d& direction_W, double* jacobian) const {

@@ -31,7 +31,7 @@ class Multibody {
   const double* velocities() const { return velocities_.data(); }
   /// Where the spatial velocities of this body are taken: the centre of mass of the root segment, or the origin of a
   /// root that is tied to the world [m].
-  const Eigen::Vector3d& reference_W() const { return reference_W_; }
+  const Eigen::Vector3d& reference() const { return reference_W_; }
 
   const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
   Pose link_pose(std::size_t link) const;  ///< X_WL

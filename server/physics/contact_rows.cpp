@@ -97,7 +97,8 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
     point.impulse[1] = point.impulse[2] = 0.0;
   }
   if (surfaces.rolling_resistance > 0.0) {
-    limit_by_load(problem.add_torque_row(a, b, tangents.first, &point.rolling_impulse[0]), surfaces.rolling_resistance);
+    limit_by_load(problem.add_torque_row(a, b, tangents.first, point.rolling_impulse.data()),
+                  surfaces.rolling_resistance);
     limit_by_load(problem.add_torque_row(a, b, tangents.second, &point.rolling_impulse[1]),
                   surfaces.rolling_resistance);
   } else {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int free_dofs = 6;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(std::ptrdiff_t index) { return static_cast<std::size_t>(index); }
 
 // Up to this many dofs the inverse of the mass matrix is cheaper to have than to do without.
 constexpr int most_inverted = 12;
@@ -111,38 +111,9 @@ void Equations::gather_inwards() {
     const Segment& segment = mechanism_->segments()[s];
     const Work& work = work_[s];
     if (segment.motion == Motion::free) {
-      const Eigen::Vector3d& h = work.moment;
-      double* m = matrix_.data();
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j <= i; ++j) m[i * stride_ + j] = work.inertia(i, j);
-      for (int i = 3; i < free_dofs; ++i) m[i * stride_ + i] = work.mass;
-      m[3 * stride_ + 1] = h.z();
-      m[3 * stride_ + 2] = -h.y();
-      m[4 * stride_ + 0] = -h.z();
-      m[4 * stride_ + 2] = h.x();
-      m[5 * stride_ + 0] = h.y();
-      m[5 * stride_ + 1] = -h.x();
-      for (int i = 0; i < 3; ++i) {
-        bias_[at(i)] = work.force.angular[i];
-        bias_[at(3 + i)] = work.force.linear[i];
-      }
-      continue;
-    }
-    for (int i = segment.first_dof; i < segment.first_dof + segment.dofs; ++i) {
-      const Spatial& axis = axes_[at(i)];
-      bias_[at(i)] = axis.angular.dot(work.force.angular) + axis.linear.dot(work.force.linear);
-      const Spatial momentum{work.inertia * axis.angular + work.moment.cross(axis.linear),
-                             work.mass * axis.linear - work.moment.cross(axis.angular)};
-      double* row = matrix_.data() + i * stride_;
-      int j = i;
-      for (; j >= 0 && !(mechanism_->has_free_root() && j < free_dofs); j = mechanism_->parents()[at(j)])
-        row[j] = axes_[at(j)].angular.dot(momentum.angular) + axes_[at(j)].linear.dot(momentum.linear);
-      if (j >= 0) {
-        for (int k = 0; k < 3; ++k) {
-          row[k] = momentum.angular[k];
-          row[3 + k] = momentum.linear[k];
-        }
-      }
+      take_free_root(work);
+    } else {
+      for (int i = segment.first_dof; i < segment.first_dof + segment.dofs; ++i) take_joint(i, work);
     }
     if (segment.parent < 0) continue;
     Work& parent = work_[at(segment.parent)];
@@ -151,6 +122,41 @@ void Equations::gather_inwards() {
     parent.inertia += work.inertia;
     parent.moment += work.moment;
     parent.mass += work.mass;
+  }
+}
+
+void Equations::take_free_root(const Work& whole) {
+  const Eigen::Vector3d& h = whole.moment;
+  double* m = matrix_.data();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j <= i; ++j) m[i * stride_ + j] = whole.inertia(i, j);
+  for (int i = 3; i < free_dofs; ++i) m[i * stride_ + i] = whole.mass;
+  m[3 * stride_ + 1] = h.z();
+  m[3 * stride_ + 2] = -h.y();
+  m[4 * stride_ + 0] = -h.z();
+  m[4 * stride_ + 2] = h.x();
+  m[5 * stride_ + 0] = h.y();
+  m[5 * stride_ + 1] = -h.x();
+  for (int i = 0; i < 3; ++i) {
+    bias_[at(i)] = whole.force.angular[i];
+    bias_[at(3 + i)] = whole.force.linear[i];
+  }
+}
+
+// `beyond`: the joint's segment with all that hangs on it.
+void Equations::take_joint(int dof, const Work& beyond) {
+  const Spatial& axis = axes_[at(dof)];
+  bias_[at(dof)] = axis.angular.dot(beyond.force.angular) + axis.linear.dot(beyond.force.linear);
+  const Spatial momentum{beyond.inertia * axis.angular + beyond.moment.cross(axis.linear),
+                         beyond.mass * axis.linear - beyond.moment.cross(axis.angular)};
+  double* row = matrix_.data() + dof * stride_;
+  int j = dof;
+  for (; j >= 0 && !(mechanism_->has_free_root() && j < free_dofs); j = mechanism_->parents()[at(j)])
+    row[j] = axes_[at(j)].angular.dot(momentum.angular) + axes_[at(j)].linear.dot(momentum.linear);
+  if (j < 0) return;
+  for (int k = 0; k < 3; ++k) {
+    row[k] = momentum.angular[k];
+    row[3 + k] = momentum.linear[k];
   }
 }
 

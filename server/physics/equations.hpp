@@ -20,8 +20,8 @@ class Equations {
 
   const Multibody& body() const { return *body_; }
   const Mechanism& mechanism() const { return *mechanism_; }
-  int size() const { return size_; }      ///< degrees of freedom
-  int stride() const { return stride_; }  ///< doubles of every vector below, zero beyond `size`
+  int size() const { return size_; }                 ///< degrees of freedom
+  std::ptrdiff_t stride() const { return stride_; }  ///< doubles of every vector below, zero beyond `size`
 
   /// The velocities: at first without impulses, then as the solver changes them.
   double* velocity() { return velocity_.data(); }
@@ -51,6 +51,8 @@ class Equations {
 
   void move_outwards(const Eigen::Vector3d& gravity);
   void gather_inwards();
+  void take_free_root(const Work& whole);
+  void take_joint(int dof, const Work& beyond);
   void add_generalised(int segment, const Spatial& force, double* jacobian) const;
   void factorise();
   void invert();
@@ -59,7 +61,7 @@ class Equations {
   const Multibody* body_ = nullptr;
   const Mechanism* mechanism_ = nullptr;
   int size_ = 0;
-  int stride_ = 0;
+  std::ptrdiff_t stride_ = 0;
   std::vector<Work> work_;
   std::vector<Spatial> axes_;    // by dof; those of a free root stay unused
   std::vector<double> matrix_;   // size_ x stride_, lower triangle: the mass matrix, then its factors

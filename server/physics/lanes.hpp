@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
+
 /// Arithmetic on vectors whose length is a multiple of `lanes`, always in that many sums: the same bits whatever the
 /// width of the instructions that a compiler makes of it.
 namespace cohort::physics {
 
-inline constexpr int lanes = 4;
+inline constexpr std::ptrdiff_t lanes = 4;
 
 /// Half of `lanes`, which fits into a register of every x86-64.
 using Half = double __attribute__((vector_size(16)));
@@ -13,10 +15,10 @@ using HalfInMemory = double __attribute__((vector_size(16), aligned(8), may_alia
 inline Half load(const double* from) { return *reinterpret_cast<const HalfInMemory*>(from); }
 inline void store(Half half, double* to) { *reinterpret_cast<HalfInMemory*>(to) = half; }
 
-inline double dot(const double* a, const double* b, int length) {
+inline double dot(const double* a, const double* b, std::ptrdiff_t length) {
   Half low = load(a) * load(b);
   Half high = load(a + 2) * load(b + 2);
-  for (int i = lanes; i < length; i += lanes) {
+  for (std::ptrdiff_t i = lanes; i < length; i += lanes) {
     low += load(a + i) * load(b + i);
     high += load(a + i + 2) * load(b + i + 2);
   }
@@ -25,8 +27,8 @@ inline double dot(const double* a, const double* b, int length) {
 }
 
 /// y += factor * x.
-inline void add_scaled(double factor, const double* x, double* y, int length) {
-  for (int i = 0; i < length; i += lanes) {
+inline void add_scaled(double factor, const double* x, double* y, std::ptrdiff_t length) {
+  for (std::ptrdiff_t i = 0; i < length; i += lanes) {
     store(load(y + i) + factor * load(x + i), y + i);
     store(load(y + i + 2) + factor * load(x + i + 2), y + i + 2);
   }

@@ -67,7 +67,7 @@ class Mechanism {
 
   int dof_count() const { return static_cast<int>(dofs_.size()); }
   /// Doubles that a vector of velocities takes in the solver, padded with zeros.
-  int stride() const { return (dof_count() + lanes - 1) / lanes * lanes; }
+  std::ptrdiff_t stride() const { return (dof_count() + lanes - 1) / lanes * lanes; }
   /// By dof: the next one on the way to the root, -1: none.
   const std::vector<int>& parents() const { return parents_; }
   /// Whether the way from each dof to the root is the next lower dof, and so on down to 0.

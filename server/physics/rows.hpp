@@ -33,8 +33,8 @@ struct Row {
 
   double* velocity_a = nullptr;
   double* velocity_b = nullptr;  ///< null: only one body
-  int stride_a = 0;
-  int stride_b = 0;
+  std::ptrdiff_t stride_a = 0;
+  std::ptrdiff_t stride_b = 0;
   std::size_t numbers = 0;  ///< where Jacobian and response of a, then of b, begin in the problem's numbers
   double* kept = nullptr;   ///< where the impulse stays for the next step's start
 

@@ -77,7 +77,7 @@ class Mechanism {
   void add_link(std::size_t link, const std::vector<char>& welded);
   int add_segment(int parent, Motion motion, const Pose& X_PS, const Eigen::Vector3d& axis_S,
                   const description::JointAxis* axis);
-  void add_mass(int segment, const description::Inertial& inertial, const Pose& X_SL);
+  void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
 
   const description::Model* model_;
   std::vector<Segment> segments_;

@@ -186,35 +186,36 @@ void Stepper::quarantine() {
   }
 }
 
-// What each body touches and stands on: one look around for all of it.
 void Stepper::detect() {
   workers_.for_each_chunk(members_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
-    std::vector<std::uint32_t>& near = memory_[worker].near;
-    std::vector<std::uint32_t>& candidates = memory_[worker].candidates;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Member& member = members_[i];
-      Multibody& multibody = of(member);
-      if (!member.is_active || (member.parts.empty() && multibody.treels().empty())) continue;
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      geometry::Bounds around{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
-      for (const Part& part : member.parts) around.include(scene_.bounds(part.solid).grown_by(Collision::margin));
-      const Pose& X_WS = multibody.segment_pose(0);
-      for (const TreelDrive& treel : multibody.treels()) around.include(treel.ground_region(X_WS));
-      near.clear();
-      scene_.for_each_overlap(around, [&](std::uint32_t solid) { near.push_back(solid); });
-      std::sort(near.begin(), near.end());
-
-      for (const Part& part : member.parts) collision_.detect(part.solid, near);
-      for (TreelDrive& treel : multibody.treels()) {
-        const geometry::Bounds region = treel.ground_region(X_WS);
-        candidates.clear();
-        for (const std::uint32_t solid : near)
-          if (scene_.solid(solid).body != member.body && scene_.reaches_into(solid, region))
-            candidates.push_back(solid);
-        treel.find_ground(scene_, X_WS, candidates);
-      }
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      if (members_[i].is_active) look_around(members_[i], memory_[worker]);
   });
+}
+
+// What a body touches and stands on: one look around the scene for all of it.
+void Stepper::look_around(const Member& member, Memory& memory) {
+  Multibody& multibody = of(member);
+  if (member.parts.empty() && multibody.treels().empty()) return;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  geometry::Bounds around{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
+  for (const Part& part : member.parts) around.include(scene_.bounds(part.solid).grown_by(Collision::margin));
+  const Pose& X_WS = multibody.segment_pose(0);
+  for (const TreelDrive& treel : multibody.treels()) around.include(treel.ground_region(X_WS));
+  std::vector<std::uint32_t>& near = memory.near;
+  near.clear();
+  scene_.for_each_overlap(around, [&](std::uint32_t solid) { near.push_back(solid); });
+  std::sort(near.begin(), near.end());
+
+  for (const Part& part : member.parts) collision_.detect(part.solid, near);
+  for (TreelDrive& treel : multibody.treels()) {
+    const geometry::Bounds region = treel.ground_region(X_WS);
+    memory.candidates.clear();
+    for (const std::uint32_t solid : near)
+      if (scene_.solid(solid).body != member.body && scene_.reaches_into(solid, region))
+        memory.candidates.push_back(solid);
+    treel.find_ground(scene_, X_WS, memory.candidates);
+  }
 }
 
 void Stepper::find_islands() {

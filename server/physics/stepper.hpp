@@ -84,6 +84,7 @@ class Stepper {
   void find_lowest();
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;
   void detect();
+  void look_around(const Member& member, Memory& memory);
   void find_islands();
   void solve_island(std::span<const std::uint32_t> members, Memory& memory);
   bool try_island(const std::vector<std::uint32_t>& members, Problem& problem);

@@ -116,6 +116,7 @@ TEST(Contacts, AStackOfBoxesStands) {
   SmallWorld small;
   const Vector3d size(0.2, 0.2, 0.2);
   std::vector<std::uint32_t> boxes;
+  boxes.reserve(6);
   for (int i = 0; i < 6; ++i)
     boxes.push_back(small.add(loose("box", Box{size}, solid_box(1.0, size)), at(0, 0, 0.1 + 0.2 * i)));
   small.run(10.0);

@@ -20,7 +20,9 @@ struct Crowd {
   std::vector<std::uint32_t> robots;
 
   Crowd() {
-    for (int i = 0; i < 12; ++i) robots.push_back(small.add(tracked_robot(), at(0.13 * (i % 4), 0.13 * (i / 4), 0, i)));
+    for (int row = 0; row < 3; ++row)
+      for (int i = 0; i < 4; ++i)
+        robots.push_back(small.add(tracked_robot(), at(0.13 * i, 0.13 * row, 0, 4 * row + i)));
   }
   void set_off() {
     for (const std::uint32_t robot : robots) small.drive(robot, 0.1, 0.1 + 0.005 * robot);

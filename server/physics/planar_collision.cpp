@@ -67,6 +67,7 @@ void PlanarCollision::add_static() {
 
 void PlanarCollision::add_member(bool is_fixed) {
   members_.push_back({.first_solid = static_cast<std::uint32_t>(outlines_.size()), .is_fixed = is_fixed});
+  places_.emplace_back();
 }
 
 void PlanarCollision::add_moving() {
@@ -84,6 +85,13 @@ void PlanarCollision::remove(std::uint32_t member) {
 
 void PlanarCollision::detect(WorkerPool& workers) {
   memory_.resize(workers.threads());
+  discs_.clear();
+  for (std::uint32_t member = 0; member < members_.size(); ++member) {
+    const Place& place = places_[member];
+    if (members_[member].is_active && members_[member].solid_count > 0)
+      discs_.push_back({place.centre_W.x(), place.centre_W.y(), place.radius, member});
+  }
+  grid_.build(discs_);
   workers.for_each_chunk(members_.size(), members_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (std::size_t member = begin; member < end; ++member)
       if (members_[member].is_active && members_[member].solid_count > 0)
@@ -91,23 +99,32 @@ void PlanarCollision::detect(WorkerPool& workers) {
   });
 }
 
+// Solids that this member may report.
+void PlanarCollision::find_near(std::uint32_t index, std::vector<std::uint32_t>& near) const {
+  near.clear();
+  const Member& member = members_[index];
+  const Place& place = places_[index];
+  const Eigen::Vector2d& at = place.centre_W;
+  grid_.for_each_near({at.x(), at.y(), place.radius, index}, contact_margin, [&](std::uint32_t other) {
+    if (other <= index) return;  // the other one reports it
+    const Member& two = members_[other];
+    if (member.is_fixed && two.is_fixed) return;
+    for (std::uint32_t solid = two.first_solid; solid < two.first_solid + two.solid_count; ++solid)
+      near.push_back(solid);
+  });
+  if (member.is_fixed) return;
+  const Eigen::Vector3d lower(at.x() - place.radius, at.y() - place.radius, place.lowest);
+  const Eigen::Vector3d upper(at.x() + place.radius, at.y() + place.radius, place.highest);
+  const geometry::Bounds bounds = geometry::Bounds{lower, upper}.grown_by(contact_margin);
+  scene_.for_each_static_overlap(bounds, [&](std::uint32_t solid) {
+    if (!std::holds_alternative<std::monostate>(outlines_[solid])) near.push_back(solid);
+  });
+}
+
 void PlanarCollision::find_pairs(std::uint32_t index, Memory& memory) {
+  find_near(index, memory.near);
   Member& member = members_[index];
   const std::uint32_t end = member.first_solid + member.solid_count;
-  geometry::Bounds all = scene_.bounds(member.first_solid);
-  for (std::uint32_t solid = member.first_solid + 1; solid < end; ++solid) {
-    all.lower = all.lower.cwiseMin(scene_.bounds(solid).lower);
-    all.upper = all.upper.cwiseMax(scene_.bounds(solid).upper);
-  }
-  memory.near.clear();
-  scene_.for_each_overlap(all.grown_by(contact_margin), [&](std::uint32_t other) {
-    const std::uint32_t owner = member_of_solid_[other];
-    if (std::holds_alternative<std::monostate>(outlines_[other])) return;
-    if (owner == Anchors::nobody ? member.is_fixed : owner <= index) return;  // the other one reports it
-    if (owner != Anchors::nobody && member.is_fixed && members_[owner].is_fixed) return;
-    memory.near.push_back(other);
-  });
-
   memory.pairs.clear();
   for (std::uint32_t solid = member.first_solid; solid < end; ++solid)
     for (const std::uint32_t other : memory.near) find_contact(solid, other, memory);

@@ -9,6 +9,7 @@
 #include "server/geometry/scene.hpp"
 #include "server/physics/anchors.hpp"
 #include "server/physics/planar_contact.hpp"
+#include "server/physics/planar_grid.hpp"
 
 namespace cohort::physics {
 
@@ -46,6 +47,11 @@ class PlanarCollision {
   }
   /// As `move`, with its shape and heights too.
   void set_outline(std::uint32_t solid, const description::Footprint& outline_W) { outlines_[solid] = outline_W; }
+  /// Where a member is now; its solids lie within `radius` of there and between two heights.
+  void move_member(std::uint32_t member, const Eigen::Vector2d& centre_W) { places_[member].centre_W = centre_W; }
+  void set_extent(std::uint32_t member, double radius, double lowest, double highest) {
+    places_[member] = {places_[member].centre_W, radius, lowest, highest};
+  }
 
   /// Points that were there before keep their impulses.
   void detect(WorkerPool& workers);
@@ -67,10 +73,17 @@ class PlanarCollision {
     bool is_active = true;
     std::vector<PlanarPair> pairs{};
   };
+  struct Place {
+    Eigen::Vector2d centre_W = Eigen::Vector2d::Zero();
+    double radius = 0.0;
+    double lowest = 0.0;
+    double highest = 0.0;
+  };
   struct Memory {  // of one chunk
     std::vector<std::uint32_t> near;
     std::vector<PlanarPair> pairs;
   };
+  void find_near(std::uint32_t index, std::vector<std::uint32_t>& near) const;
   void find_pairs(std::uint32_t index, Memory& memory);
   void find_contact(std::uint32_t solid, std::uint32_t other, Memory& memory);
 
@@ -78,6 +91,9 @@ class PlanarCollision {
   std::vector<Outline> outlines_;               // by solid
   std::vector<std::uint32_t> member_of_solid_;  // `nobody`: does not move
   std::vector<Member> members_;
+  std::vector<Place> places_;  // by member
+  std::vector<PlanarGrid::Disc> discs_;
+  PlanarGrid grid_;             // of the active members that have solids
   std::vector<Memory> memory_;  // by worker
 };
 

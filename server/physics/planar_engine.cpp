@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
+#include <limits>
 
 namespace cohort::physics {
 namespace {
@@ -136,22 +135,32 @@ void PlanarEngine::move(std::uint32_t index) {
 }
 
 void PlanarEngine::find_parts_in_body(const Member& member, std::uint32_t index) {
+  double radius = 0.0;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
   for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i) {
     Part& part = parts_[i];
-    part.X_BC = planar_.segment_in_body(index, part.segment) * part.X_SC;
+    const Pose X_BC = planar_.segment_in_body(index, part.segment) * part.X_SC;
     // Nothing that moves is a plane or a height map, so it has one.
-    part.outline_B = *description::footprint_of(scene_.solid(part.solid).shape, part.X_BC);
-    collision_.set_outline(part.solid, part.outline_B);
+    const description::Footprint outline = *description::footprint_of(scene_.solid(part.solid).shape, X_BC);
+    part.outline_B = outline;
+    parts_in_body_[i] = {X_BC, outline.centre, outline.axis};
+    collision_.set_outline(part.solid, outline);
+    radius = std::max(radius, outline.centre.norm() + outline.half.norm() + outline.radius);
+    lowest = std::min(lowest, outline.lowest);
+    highest = std::max(highest, outline.highest);
   }
+  collision_.set_extent(index, radius, lowest, highest);
 }
 
 void PlanarEngine::place_solids(std::uint32_t index) {
   const Member& member = members_[index];
   const PlanarPlace& place = planar_.place(index);
+  collision_.move_member(index, {place.x, place.y});
   for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i) {
-    const Part& part = parts_[i];
-    scene_.set_pose(part.solid, place * part.X_BC);
-    collision_.move(part.solid, place * part.outline_B.centre, place.rotate(part.outline_B.axis));
+    const PartInBody& part = parts_in_body_[i];
+    scene_.set_pose(parts_[i].solid, place * part.X_BC);
+    collision_.move(parts_[i].solid, place * part.centre_B, place.rotate(part.axis_B));
   }
 }
 

@@ -98,8 +98,12 @@ class PlanarEngine final : public Engine {
     std::uint32_t solid = 0;
     int segment = 0;
     Pose X_SC;
-    Pose X_BC;
     description::Footprint outline_B;
+  };
+  struct PartInBody {  // what is read in every step
+    Pose X_BC;
+    Eigen::Vector2d centre_B = Eigen::Vector2d::Zero();  // of the outline
+    Eigen::Vector2d axis_B = Eigen::Vector2d::UnitX();
   };
   struct Before {  // what a solution changes at once, for the case that it is not good
     PlanarVelocity velocity;
@@ -139,6 +143,7 @@ class PlanarEngine final : public Engine {
   std::vector<Body> bodies_;
   std::vector<Member> members_;
   std::vector<Part> parts_;
+  std::vector<PartInBody> parts_in_body_;  // of parts_
   std::vector<Anchors::Part> part_of_solid_;
   PlanarBodies planar_;
   std::vector<PlanarGround> grounds_;  // by member

@@ -37,6 +37,10 @@ PlanarGround::PlanarGround(const description::TreelDrive& drive, const Pose& X_B
     const double mobility = inertia.inverse_mass + row.lever * row.lever * inertia.inverse_inertia;
     row.mass = mobility > 0.0 ? 1.0 / mobility : 0.0;
   }
+  coupling_ = inertia.inverse_mass + rows_[0].lever * rows_[1].lever * inertia.inverse_inertia;
+  const double determinant =
+      rows_[0].mass * rows_[1].mass > 0.0 ? 1.0 / (rows_[0].mass * rows_[1].mass) - coupling_ * coupling_ : 0.0;
+  if (determinant > 0.0) inverse_determinant_ = 1.0 / determinant;
 }
 
 PlanarGround::PlanarGround(double friction, double weight, double arm, double step) {
@@ -60,9 +64,28 @@ void PlanarGround::begin(const PlanarPlace& place, const PlanarInertia& inertia,
 
 double PlanarGround::solve(const PlanarInertia& inertia, PlanarVelocity& velocity) {
   if (!is_drive_) return solve_patch(inertia, velocity);
-  double change = solve_row(0, tracks_[0].target, forward_W_, inertia, velocity);
-  change = std::max(change, solve_row(1, tracks_[1].target, forward_W_, inertia, velocity));
+  double change = 0.0;
+  if (!solve_tracks(inertia, velocity, change)) {
+    change = solve_row(0, tracks_[0].target, forward_W_, inertia, velocity);
+    change = std::max(change, solve_row(1, tracks_[1].target, forward_W_, inertia, velocity));
+  }
   return std::max(change, solve_row(2, 0.0, left_of(forward_W_), inertia, velocity));
+}
+
+bool PlanarGround::solve_tracks(const PlanarInertia& inertia, PlanarVelocity& velocity, double& change) {
+  if (inverse_determinant_ == 0.0) return false;
+  const double missing_left = tracks_[0].target - speed_along(forward_W_, rows_[0].lever, velocity);
+  const double missing_right = tracks_[1].target - speed_along(forward_W_, rows_[1].lever, velocity);
+  const double left = (missing_left / rows_[1].mass - coupling_ * missing_right) * inverse_determinant_;
+  const double right = (missing_right / rows_[0].mass - coupling_ * missing_left) * inverse_determinant_;
+  if (std::abs(impulse_[0] + left) > rows_[0].limit || std::abs(impulse_[1] + right) > rows_[1].limit) return false;
+  impulse_[0] += left;
+  impulse_[1] += right;
+  velocity.x += (left + right) * inertia.inverse_mass * forward_W_.x();
+  velocity.y += (left + right) * inertia.inverse_mass * forward_W_.y();
+  velocity.spin += (left * rows_[0].lever + right * rows_[1].lever) * inertia.inverse_inertia;
+  change = std::max(std::abs(left), std::abs(right)) * inertia.inverse_mass;
+  return true;
 }
 
 double PlanarGround::solve_row(std::size_t index, double target, const Vector2d& direction_W,

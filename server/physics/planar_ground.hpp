@@ -56,12 +56,16 @@ class PlanarGround {
     double limit = 0.0;  // [N s]
   };
   double solve_patch(const PlanarInertia& inertia, PlanarVelocity& velocity);
+  /// Both tracks at once, where neither comes to its limit. False if one would.
+  bool solve_tracks(const PlanarInertia& inertia, PlanarVelocity& velocity, double& change);
   double solve_row(std::size_t row, double target, const Eigen::Vector2d& direction_W, const PlanarInertia& inertia,
                    PlanarVelocity& velocity);
 
   bool is_drive_ = false;
   std::array<Row, 3> rows_;  // left, right, sideways; of a patch the limits along x, along y, about z
   double motor_limit_ = 0.0;
+  double coupling_ = 0.0;             // velocity that the impulse of one track gives at the other [1/kg]
+  double inverse_determinant_ = 0.0;  // of the two tracks' equations
   Eigen::Vector2d forward_B_ = Eigen::Vector2d::UnitX();
   std::array<double, 3> impulse_{};  // of the rows
   std::array<Track, 2> tracks_;

@@ -106,8 +106,8 @@ void PlanarEngine::add_moving(std::uint32_t body) {
     for (const description::Collision& collision : links[link].collisions) {
       const Pose X_SC = place.X_SL * collision.X_LC;
       const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
-      parts_.push_back(
-          {scene_.add({collision.shape, collision.surface, body, true, X_WC}), place.segment, X_SC, {}, {}});
+      parts_.push_back({scene_.add({collision.shape, collision.surface, body, true, X_WC}), place.segment, X_SC, {}});
+      parts_in_body_.emplace_back();
       collision_.add_moving();
       part_of_solid_.push_back({index, place.segment});
       ++member.part_count;

@@ -30,16 +30,15 @@ PlanarGround::PlanarGround(const description::TreelDrive& drive, const Pose& X_B
     return (X_BL * Eigen::Vector3d(0.0, y, drive.ground_height)).head<2>();
   };
   const double grip = friction * weight * step;
-  rows_[0] = {cross(point(drive.half_gauge), forward_B_), 0.0, std::min(motor_limit_, 0.5 * grip)};
-  rows_[1] = {cross(point(-drive.half_gauge), forward_B_), 0.0, std::min(motor_limit_, 0.5 * grip)};
-  rows_[2] = {cross(point(0.0), left_of(forward_B_)), 0.0, grip};
+  rows_[0] = {cross(point(drive.half_gauge), forward_B_), 0.0, 0.0, std::min(motor_limit_, 0.5 * grip)};
+  rows_[1] = {cross(point(-drive.half_gauge), forward_B_), 0.0, 0.0, std::min(motor_limit_, 0.5 * grip)};
+  rows_[2] = {cross(point(0.0), left_of(forward_B_)), 0.0, 0.0, grip};
   for (Row& row : rows_) {
-    const double mobility = inertia.inverse_mass + row.lever * row.lever * inertia.inverse_inertia;
-    row.mass = mobility > 0.0 ? 1.0 / mobility : 0.0;
+    row.mobility = inertia.inverse_mass + row.lever * row.lever * inertia.inverse_inertia;
+    row.mass = row.mobility > 0.0 ? 1.0 / row.mobility : 0.0;
   }
   coupling_ = inertia.inverse_mass + rows_[0].lever * rows_[1].lever * inertia.inverse_inertia;
-  const double determinant =
-      rows_[0].mass * rows_[1].mass > 0.0 ? 1.0 / (rows_[0].mass * rows_[1].mass) - coupling_ * coupling_ : 0.0;
+  const double determinant = rows_[0].mobility * rows_[1].mobility - coupling_ * coupling_;
   if (determinant > 0.0) inverse_determinant_ = 1.0 / determinant;
 }
 
@@ -76,8 +75,8 @@ bool PlanarGround::solve_tracks(const PlanarInertia& inertia, PlanarVelocity& ve
   if (inverse_determinant_ == 0.0) return false;
   const double missing_left = tracks_[0].target - speed_along(forward_W_, rows_[0].lever, velocity);
   const double missing_right = tracks_[1].target - speed_along(forward_W_, rows_[1].lever, velocity);
-  const double left = (missing_left / rows_[1].mass - coupling_ * missing_right) * inverse_determinant_;
-  const double right = (missing_right / rows_[0].mass - coupling_ * missing_left) * inverse_determinant_;
+  const double left = (missing_left * rows_[1].mobility - coupling_ * missing_right) * inverse_determinant_;
+  const double right = (missing_right * rows_[0].mobility - coupling_ * missing_left) * inverse_determinant_;
   if (std::abs(impulse_[0] + left) > rows_[0].limit || std::abs(impulse_[1] + right) > rows_[1].limit) return false;
   impulse_[0] += left;
   impulse_[1] += right;
@@ -95,6 +94,7 @@ double PlanarGround::solve_row(std::size_t index, double target, const Vector2d&
   const double before = impulse_[index];
   impulse_[index] = std::clamp(before + row.mass * missing, -row.limit, row.limit);
   const double change = impulse_[index] - before;
+  if (change == 0.0) return 0.0;
   push(change, direction_W, row.lever, inertia, velocity);
   return std::abs(change) * inertia.inverse_mass;
 }

@@ -51,9 +51,10 @@ class PlanarGround {
     TrackState state;
   };
   struct Row {
-    double lever = 0.0;  // of the row's direction about the centre of mass [m]
-    double mass = 0.0;   // that it sees [kg]
-    double limit = 0.0;  // [N s]
+    double lever = 0.0;     // of the row's direction about the centre of mass [m]
+    double mobility = 0.0;  // velocity that a unit of impulse gives [1/kg]
+    double mass = 0.0;      // its inverse, zero of what cannot move
+    double limit = 0.0;     // [N s]
   };
   double solve_patch(const PlanarInertia& inertia, PlanarVelocity& velocity);
   /// Both tracks at once, where neither comes to its limit. False if one would.

@@ -153,14 +153,14 @@ double PlanarSolver::solve(ContactRows& rows) {
   const double side_impulse = std::clamp(rows.side_impulse + rows.side_mass * (rows.side_target - slip), -limit, limit);
   const double sideways = side_impulse - rows.side_impulse;
   rows.side_impulse = side_impulse;
-  push(rows, 0.0, sideways);
+  if (sideways != 0.0) push(rows, 0.0, sideways);
 
   const double approach = along(rows.normal_W, rows.normal_lever_a, *rows.a.velocity) -
                           along(rows.normal_W, rows.normal_lever_b, *rows.b.velocity);
   const double normal_impulse = std::max(0.0, rows.normal_impulse + rows.normal_mass * (rows.normal_target - approach));
   const double along_normal = normal_impulse - rows.normal_impulse;
   rows.normal_impulse = normal_impulse;
-  push(rows, along_normal, 0.0);
+  if (along_normal != 0.0) push(rows, along_normal, 0.0);
   return std::max(std::abs(sideways), std::abs(along_normal)) *
          std::max(rows.a.inertia.inverse_mass, rows.b.inertia.inverse_mass);
 }

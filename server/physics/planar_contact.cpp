@@ -105,7 +105,7 @@ bool clip(std::array<Vector2d, 2>& edge, const Vector2d& direction, double limit
   return true;
 }
 
-// Two corners that face each other, where that is nearer than any edge.
+// Of rectangles that are apart: two corners that face each other, where that is nearer than any edge.
 bool find_corner_corner(const Footprint& a, const Footprint& b, double margin, PlanarPoints& found) {
   double nearest = std::numeric_limits<double>::infinity();
   bool is_corner = false;
@@ -132,8 +132,9 @@ void find_edges(const Footprint& a, const Footprint& b, double margin, PlanarPoi
   const double reach = a.radius + b.radius + margin;
   const Face face_a = furthest_face(a, b);
   const Face face_b = furthest_face(b, a);
-  if (std::max(face_a.separation, face_b.separation) >= reach) return;
-  if (a.radius + b.radius > 0.0 && find_corner_corner(a, b, margin, found)) return;
+  const double separation = std::max(face_a.separation, face_b.separation);
+  if (separation >= reach) return;
+  if (separation > 0.0 && a.radius + b.radius > 0.0 && find_corner_corner(a, b, margin, found)) return;
 
   // A little in favour of a, lest rounding swaps the two from step to step.
   constexpr double favour = 1e-6;

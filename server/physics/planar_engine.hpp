@@ -22,8 +22,9 @@ namespace cohort::physics {
 /// - Bodies run into each other and into walls by the outlines of their collisions, seen from above
 ///   (description::footprint_of), where these share heights. What is no upright prism, such as an ellipsoid or a mesh,
 ///   has the outline of description::Footprint. Links of one body do not touch each other.
-/// - The ground is what was under the body when it was placed: it gives friction, by half the weight to each track, and
-///   is no contact. Nothing falls, tips, climbs, or rolls as a ball does.
+/// - The ground is what was under the centre of mass when the body was placed, for ever: it gives friction, by half the
+///   weight to each track, or by all of it to the lowest collision of a body without a drive, and is no contact.
+///   Nothing falls, tips or climbs; a ball slides and does not roll; rolling resistance has no meaning.
 /// - Connections hold in the plane: their wrench is a force in x and y and a torque about z.
 /// - The solver is always the iterative one.
 class PlanarEngine final : public Engine {

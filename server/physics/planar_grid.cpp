@@ -6,9 +6,10 @@
 namespace cohort::physics {
 
 void PlanarGrid::build(std::span<const Disc> discs) {
-  double widest = 0.0;
+  constexpr double narrowest = 0.02;  // so that a margin spans few cells [m]
+  double widest = narrowest;
   for (const Disc& disc : discs) widest = std::max(widest, 2.0 * disc.radius);
-  inverse_ = widest > 0.0 ? 1.0 / widest : 1.0;
+  inverse_ = 1.0 / widest;
   const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(16, 2 * discs.size()));
   mask_ = buckets - 1;
 

@@ -228,6 +228,24 @@ TEST(Planar, BoxesInARowStayBeforeTheWallTheyArePushedAgainst) {
   EXPECT_NEAR(heading(small, second), 0.0, 0.02);
 }
 
+TEST(Planar, ALyingCapsuleIsPushedByItsSideAndByItsEnd) {
+  for (const double yaw : {0.0, M_PI / 2}) {
+    SmallWorld small(planar_world(0.3));
+    const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+    Pose X_WM = at(0.2, 0, 0.05, yaw);
+    X_WM.orientation = X_WM.orientation * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY());
+    const auto capsule =
+        small.add(loose("capsule", description::Capsule{0.04, 0.1}, solid_box(0.2, {0.1, 0.1, 0.2})), X_WM);
+    const auto block = small.add(box(0.2, {0.1, 0.1, 0.1}), at(0.36, 0, 0.05));
+    small.drive(robot, 0.1, 0.1);
+    small.run(4.0);
+    const double reach = yaw == 0.0 ? 0.05 + 0.04 : 0.04;
+    EXPECT_NEAR(small.position(capsule).x() - small.position(robot).x(), reach + 0.058, 2e-3);
+    EXPECT_NEAR(small.position(block).x() - small.position(capsule).x(), reach + 0.05, 2e-3);
+    EXPECT_GT(small.position(block).x(), 0.45);
+  }
+}
+
 TEST(Planar, AMotorTurnsItsJointAsCommandedUpToItsLimit) {
   description::Model model = tracked_robot();
   model.joints[0].axis.upper = 1.0;

@@ -56,7 +56,14 @@ PlanarEngine::PlanarEngine(const description::World& description, WorkerPool& wo
 std::uint32_t PlanarEngine::add_body(std::size_t model, const Pose& X_WM) {
   const std::uint32_t body = create_body(model, X_WM);
   scene_.build();
-  if (bodies_[body].member != Anchors::nobody) put_on_ground(bodies_[body].member);
+  if (const std::uint32_t member = bodies_[body].member; member != Anchors::nobody) {
+    try {
+      put_on_ground(member);
+    } catch (const std::invalid_argument&) {
+      take_out(member);
+      throw;
+    }
+  }
   return body;
 }
 

@@ -224,6 +224,18 @@ TEST(PlanarWorld, RefusesWhatCannotBePlanarByTheNameOfItsModel) {
   EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': there is no ground under it, so it cannot be planar");
 }
 
+TEST(PlanarWorld, ABodyAddedWhereThereIsNoGroundIsRefusedAndTheWorldGoesOn) {
+  SmallWorld small(planar_world());
+  small.description.models.clear();
+  small.description.instances.clear();
+  small.add(static_shape("table", Box{{2, 2, 0.1}}), at(0, 0, -0.05));
+  const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+  EXPECT_THROW(small.world().add_body(1, at(5, 0, 0)), std::invalid_argument);
+  small.drive(robot, 0.1, 0.1);
+  small.run(1.0);
+  EXPECT_GT(small.position(robot).x(), 0.09);
+}
+
 TEST(PlanarWorld, ABodyFixedToTheWorldStaysAndIsInTheWay) {
   SmallWorld small(planar_world());
   description::Model post = loose("post", Box{{0.1, 0.1, 0.2}}, solid_box(1, {0.1, 0.1, 0.2}));

@@ -18,16 +18,15 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
       for (std::int64_t x = lower.x; x <= upper.x; ++x) act(bucket_of({x, y}));
   };
 
-  // Counting sort into buckets: sizes, then offsets, then items in ascending order.
+  // Counting sort into buckets: sizes, then ends, then items from the last to the first, which leaves the beginnings.
   const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(16, 4 * items.size()));
   mask_ = buckets - 1;
   begin_.assign(buckets + 1, 0);
-  for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket + 1]; });
+  for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];
   entries_.resize(begin_[buckets]);
-  std::vector<std::uint32_t> fill(begin_.begin(), begin_.end() - 1);
-  for (const std::uint32_t item : items)
-    for_each_cell(item, [&](std::size_t bucket) { entries_[fill[bucket]++] = item; });
+  for (auto item = items.rbegin(); item != items.rend(); ++item)
+    for_each_cell(*item, [&](std::size_t bucket) { entries_[--begin_[bucket]] = *item; });
 }
 
 }  // namespace cohort::geometry

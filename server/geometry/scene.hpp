@@ -72,10 +72,15 @@ class Scene {
   /// Calls `visit(index)` once for each solid whose bounds overlap `query` (for a plane: that it reaches into).
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
+    for_each_static_overlap(query, visit);
+    moving_grid_.for_each_overlap(query, bounds_, visit);
+  }
+  /// The same, of those that do not move.
+  template <class Visit>
+  void for_each_static_overlap(const Bounds& query, Visit&& visit) const {
     for (const std::uint32_t index : large_)
       if (reaches(index, query)) visit(index);
     static_grid_.for_each_overlap(query, bounds_, visit);
-    moving_grid_.for_each_overlap(query, bounds_, visit);
   }
 
  private:

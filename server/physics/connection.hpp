@@ -30,6 +30,9 @@ class Connection {
 
   /// Adds three rows against moving apart and three against turning; X_WS: of the segments of both ends.
   void add_rows(Problem& problem, const Anchors& anchors, const Pose& X_WSa, const Pose& X_WSb, double step);
+  /// On a by b over the last step: linear [N s], then angular [N m s], in world axes. For a solver with rows of its
+  /// own.
+  std::array<double, 6>& impulses() { return impulses_; }
   /// On a by b, at the connection, over the last step.
   Wrench wrench(double step) const;
   /// Whether the last step took more than it can bear.

@@ -1,5 +1,7 @@
 #include "server/physics/mechanism.hpp"
 
+#include "server/physics/rotation.hpp"
+
 namespace cohort::physics {
 namespace {
 
@@ -17,6 +19,20 @@ const description::Joint* joint_above(const description::Model& model, std::size
 }
 
 }  // namespace
+
+Pose moved_by_joint(const Segment& segment, const Pose& X_WS, const double* coordinates) {
+  Pose moved = X_WS;
+  switch (segment.motion) {
+    case Motion::free:
+    case Motion::anchored: break;
+    case Motion::revolute: moved.orientation *= rotation_about(segment.axis_S, coordinates[0]); break;
+    case Motion::prismatic: moved.position += coordinates[0] * (moved.orientation * segment.axis_S); break;
+    case Motion::ball:
+      moved.orientation *= Eigen::Quaterniond(coordinates[3], coordinates[0], coordinates[1], coordinates[2]);
+      break;
+  }
+  return moved;
+}
 
 Mechanism::Mechanism(const description::Model& model, description::Fidelity fidelity)
     : model_(&model), links_(model.links.size()), joints_(model.joints.size()) {

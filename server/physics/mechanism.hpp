@@ -27,6 +27,9 @@ struct Segment {
   Eigen::Matrix3d inertia_S = Eigen::Matrix3d::Zero();  ///< about the centre of mass
 };
 
+/// Where a segment that a joint holds is: `X_WS` with its coordinates at zero, `coordinates` its own.
+Pose moved_by_joint(const Segment& segment, const Pose& X_WS, const double* coordinates);
+
 /// One degree of freedom of a joint, or one of the six of a free root (which has no damping, spring or limit).
 struct Dof {
   int coordinate = -1;  ///< of a revolute or prismatic joint

@@ -87,16 +87,7 @@ void Multibody::update_poses() {
       continue;
     }
     const Pose& X_WP = segment.parent < 0 ? X_WM_ : X_WS_[static_cast<std::size_t>(segment.parent)];
-    Pose X_WS = X_WP * segment.X_PS;
-    const double* coordinates = coordinates_.data() + segment.first_coordinate;
-    switch (segment.motion) {
-      case Motion::free:
-      case Motion::anchored: break;
-      case Motion::revolute: X_WS.orientation *= rotation_about(segment.axis_S, coordinates[0]); break;
-      case Motion::prismatic: X_WS.position += coordinates[0] * (X_WS.orientation * segment.axis_S); break;
-      case Motion::ball: X_WS.orientation *= ball_rotation(coordinates); break;
-    }
-    X_WS_[s] = X_WS;
+    X_WS_[s] = moved_by_joint(segment, X_WP * segment.X_PS, coordinates_.data() + segment.first_coordinate);
   }
   if (!mechanism_->has_free_root()) reference_W_ = X_WS_[0].position;
 }

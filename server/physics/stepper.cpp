@@ -142,8 +142,22 @@ void Stepper::take_out(Member& member) {
   }
 }
 
-Pose Stepper::resting_link_pose(std::uint32_t body, std::size_t link) const {
+Pose Stepper::link_pose(std::uint32_t body, std::size_t link) const {
+  if (const Multibody* multibody = bodies_[body].multibody.get()) return multibody->link_pose(link);
   return bodies_[body].X_WM * description_.models[bodies_[body].model].links[link].X_ML;
+}
+
+Twist Stepper::link_twist(std::uint32_t body, std::size_t link) const {
+  if (const Multibody* multibody = bodies_[body].multibody.get(); multibody != nullptr && is_active(body))
+    return multibody->link_twist(link);
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
+void Stepper::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                              std::span<const double> velocities) {
+  bodies_[body].multibody->set_joint_state(joint, coordinates, velocities);
+  place_solids_of(members_[bodies_[body].member]);
+  scene_.update();
 }
 
 // Solids of one body: only if the model says so, and not beside a joint, where they overlap by design.
@@ -289,11 +303,6 @@ bool Stepper::try_island(const std::vector<std::uint32_t>& members, Problem& pro
 void Stepper::place_solids_of(const Member& member) {
   const Multibody& multibody = of(member);
   for (const Part& part : member.parts) scene_.set_pose(part.solid, multibody.segment_pose(part.segment) * part.X_SC);
-}
-
-void Stepper::place_solids(std::uint32_t body) {
-  place_solids_of(members_[bodies_[body].member]);
-  scene_.update();
 }
 
 void Stepper::solve(Problem& problem) const {

@@ -7,6 +7,7 @@
 #include "server/physics/collision.hpp"
 #include "server/physics/connection.hpp"
 #include "server/physics/contact_rows.hpp"
+#include "server/physics/engine.hpp"
 #include "server/physics/islands.hpp"
 #include "server/physics/multibody.hpp"
 #include "server/physics/world.hpp"
@@ -16,37 +17,54 @@ namespace cohort::physics {
 /// One step of the bodies of a world: where they touch, which of them hang together, and, island by island, their
 /// velocities under gravity, motors, joints and contacts and the way that these take them. Islands do not know of each
 /// other, so it does not matter which worker has which.
-class Stepper {
+class Stepper final : public Engine {
  public:
   Stepper(const description::World& description, WorkerPool& workers);
 
-  void step();
-  std::span<const Quarantine> quarantined() const { return quarantined_; }
-  bool is_active(std::uint32_t body) const;
-  std::uint32_t add_body(std::size_t model, const Pose& X_WM);
-  void remove_body(std::uint32_t body);
+  void step() override;
+  std::span<const Quarantine> quarantined() const override { return quarantined_; }
+  bool is_active(std::uint32_t body) const override;
+  std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
+  void remove_body(std::uint32_t body) override;
+
+  const geometry::Scene& scene() const override { return scene_; }
+  std::size_t body_count() const override { return bodies_.size(); }
+  Pose link_pose(std::uint32_t body, std::size_t link) const override;
+  Twist link_twist(std::uint32_t body, std::size_t link) const override;
+  double joint_position(std::uint32_t body, std::size_t joint) const override {
+    return bodies_[body].multibody->joint_position(joint);
+  }
+  double joint_velocity(std::uint32_t body, std::size_t joint) const override {
+    return bodies_[body].multibody->joint_velocity(joint);
+  }
+  TrackState track(std::uint32_t body, std::size_t drive, Side side) const override {
+    return bodies_[body].multibody->track(drive, side);
+  }
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
-                        std::size_t link_b, const ConnectionLimits& limits);
-  void disconnect(std::uint32_t connection) { connections_[connection].release(); }
-  const Connection& connection(std::uint32_t index) const { return connections_[index]; }
-  std::span<const std::uint32_t> broken_connections() const { return broken_; }
-  double step_size() const { return step_; }
+                        std::size_t link_b, const ConnectionLimits& limits) override;
+  void disconnect(std::uint32_t connection) override { connections_[connection].release(); }
+  bool is_connected(std::uint32_t connection) const override { return connections_[connection].holds(); }
+  Wrench connection_wrench(std::uint32_t connection) const override { return connections_[connection].wrench(step_); }
+  std::span<const std::uint32_t> broken_connections() const override { return broken_; }
 
-  const geometry::Scene& scene() const { return scene_; }
-  std::size_t body_count() const { return bodies_.size(); }
-  /// Null if the body is static.
-  Multibody* multibody(std::uint32_t body) { return bodies_[body].multibody.get(); }
-  const Multibody* multibody(std::uint32_t body) const { return bodies_[body].multibody.get(); }
-  Pose resting_link_pose(std::uint32_t body, std::size_t link) const;
-  /// Takes a body's poses into the scene.
-  void place_solids(std::uint32_t body);
-  std::span<const Contact> contacts() const { return contacts_; }
+  void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
+    bodies_[body].multibody->set_joint_velocity_target(joint, velocity);
+  }
+  void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) override {
+    bodies_[body].multibody->set_track_velocity_target(drive, side, velocity);
+  }
+  void set_root_twist(std::uint32_t body, const Twist& twist) override {
+    bodies_[body].multibody->set_root_twist(twist);
+  }
+  void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                       std::span<const double> velocities) override;
 
-  void hash_body(std::uint32_t body, StateHash& hash) const;
-  void hash_contacts(StateHash& hash) const;
-  void save(SnapshotWriter& writer) const;
-  void restore(SnapshotReader& reader);
+  std::span<const Contact> contacts() const override { return contacts_; }
+  void hash_body(std::uint32_t body, StateHash& hash) const override;
+  void hash_contacts(StateHash& hash) const override;
+  void save(SnapshotWriter& writer) const override;
+  void restore(SnapshotReader& reader) override;
 
  private:
   struct Part {  // a solid of a body that moves

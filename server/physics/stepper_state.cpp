@@ -1,67 +1,31 @@
 // The state of a world, hashed, saved and restored: all three see the same numbers.
 
+#include "server/physics/state_visitors.hpp"
 #include "server/physics/stepper.hpp"
 
 namespace cohort::physics {
-namespace {
-
-// Adds whatever number a state holds.
-struct Hasher {
-  StateHash& hash;
-  void operator()(const double& number) const { hash.add(number); }
-  void operator()(const bool& flag) const { hash.add(static_cast<std::uint64_t>(flag)); }
-};
-struct Saver {
-  SnapshotWriter& writer;
-  template <class Number>
-  void operator()(const Number& number) const {
-    writer.add(number);
-  }
-};
-struct Restorer {
-  SnapshotReader& reader;
-  template <class Number>
-  void operator()(Number& number) const {
-    reader.read(number);
-  }
-};
-
-template <class PoseType, class Visit>
-void visit_pose(PoseType& pose, Visit&& visit) {
-  for (int i = 0; i < 3; ++i) visit(pose.position[i]);
-  for (int i = 0; i < 4; ++i) visit(pose.orientation.coeffs()[i]);
-}
-
-template <class End, class Visit>
-void visit_end(End& end, Visit&& visit) {
-  visit(end.member);
-  visit(end.segment);
-  visit_pose(end.X_SP, visit);
-}
-
-}  // namespace
 
 void Stepper::hash_body(std::uint32_t body, StateHash& hash) const {
   if (bodies_[body].member == Anchors::nobody) return;
-  Hasher{hash}(members_[bodies_[body].member].is_active);
-  Multibody::visit_state(*bodies_[body].multibody, Hasher{hash});
+  StateHasher{hash}(members_[bodies_[body].member].is_active);
+  Multibody::visit_state(*bodies_[body].multibody, StateHasher{hash});
 }
 
 void Stepper::hash_contacts(StateHash& hash) const {
-  for (const Connection& connection : connections_) Connection::visit_state(connection, Hasher{hash});
+  for (const Connection& connection : connections_) Connection::visit_state(connection, StateHasher{hash});
   for (const Member& member : members_) {
     for (const Part& part : member.parts) {
       for (const SolidPair& pair : collision_.pairs_of(part.solid)) {
         if (pair.contact.count == 0) continue;
         hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
-        for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, Hasher{hash});
+        for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateHasher{hash});
       }
     }
   }
 }
 
 void Stepper::save(SnapshotWriter& writer) const {
-  const Saver save{writer};
+  const StateSaver save{writer};
   writer.add_count(description_.instances.size());
   writer.add_count(bodies_.size());
   for (std::size_t body = description_.instances.size(); body < bodies_.size(); ++body) {
@@ -84,7 +48,7 @@ void Stepper::save(SnapshotWriter& writer) const {
 }
 
 void Stepper::restore(SnapshotReader& reader) {
-  const Restorer restore{reader};
+  const StateRestorer restore{reader};
   reader.expect_count(description_.instances.size(), "models in its world");
   constexpr std::size_t least_bytes = 1;
   const std::size_t body_count = reader.read_count(least_bytes);

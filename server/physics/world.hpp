@@ -58,12 +58,15 @@ struct Quarantine {
   Reason reason = Reason::not_finite;
 };
 
-class Stepper;
+class Engine;
 
 /// The moving part of a world: rigid multibodies in reduced coordinates, stepped by semi-implicit Euler with a
 /// warm-started sequential-impulse solver. Bodies are the instances of the description, under the same indices; links,
 /// joints and devices keep their indices in the model. Poses and states are those of the last completed step. Setters
 /// and `step` belong to one thread; getters may run from any thread between steps.
+///
+/// With Fidelity::planar bodies have a position and a heading only, on flat ground: planar_engine.hpp says what of all
+/// this is then different.
 class World {
  public:
   /// Keeps a reference to both. Throws std::invalid_argument for a model that cannot be simulated.
@@ -131,7 +134,7 @@ class World {
   void restore(SnapshotReader& reader);
 
  private:
-  std::unique_ptr<Stepper> stepper_;
+  std::unique_ptr<Engine> engine_;
 };
 
 }  // namespace cohort::physics

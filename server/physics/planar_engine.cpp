@@ -1,0 +1,230 @@
+#include "server/physics/planar_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cohort::physics {
+namespace {
+
+constexpr std::size_t members_a_chunk = 64;
+constexpr std::size_t islands_a_chunk = 32;
+
+// Further from the origin a body has left the world [m].
+constexpr double furthest = 1e6;
+
+}  // namespace
+
+bool PlanarEngine::is_active(std::uint32_t body) const {
+  return bodies_[body].member == Anchors::nobody || members_[bodies_[body].member].is_active;
+}
+
+Pose PlanarEngine::link_pose(std::uint32_t body, std::size_t link) const {
+  if (bodies_[body].member != Anchors::nobody) return planar_.link_pose(bodies_[body].member, link);
+  return bodies_[body].X_WM * description_.models[bodies_[body].model].links[link].X_ML;
+}
+
+Twist PlanarEngine::link_twist(std::uint32_t body, std::size_t link) const {
+  if (bodies_[body].member != Anchors::nobody && is_active(body)) return planar_.link_twist(bodies_[body].member, link);
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
+void PlanarEngine::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                                   std::span<const double> velocities) {
+  const std::uint32_t member = bodies_[body].member;
+  planar_.set_joint_state(member, joint, coordinates, velocities);
+  find_parts_in_body(members_[member], member);
+  place_solids(member);
+  scene_.update();
+}
+
+void PlanarEngine::step() {
+  collision_.detect(workers_);
+  find_islands();
+  workers_.for_each_chunk(islands_.count(), islands_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    for (std::size_t i = begin; i < end; ++i)
+      solve_island(islands_.members(static_cast<std::uint32_t>(i)), memory_[worker]);
+  });
+  workers_.for_each_chunk(members_.size(), members_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t member = begin; member < end; ++member) move(static_cast<std::uint32_t>(member));
+  });
+  report_contacts();
+  break_connections();
+  quarantine();
+  scene_.update();
+}
+
+void PlanarEngine::find_islands() {
+  const auto count = static_cast<std::uint32_t>(members_.size());
+  islands_.reset(count);
+  for (std::uint32_t member = 0; member < count; ++member) {
+    if (!members_[member].is_active) continue;
+    for (const PlanarPair& pair : collision_.pairs_of(member))
+      if (pair.member_b != Anchors::nobody) islands_.link(member, pair.member_b);
+    for (const std::uint32_t index : members_[member].connections) {
+      const Connection& connection = connections_[index];
+      if (connection.holds() && connection.b().member != Anchors::nobody) islands_.link(member, connection.b().member);
+    }
+  }
+  islands_.finish();
+}
+
+// Whose state breaks is left out, and the rest of the island is solved without it.
+void PlanarEngine::solve_island(std::span<const std::uint32_t> members, Memory& memory) {
+  std::vector<std::uint32_t>& sound = memory.members;
+  sound.clear();
+  for (const std::uint32_t member : members) {
+    if (!members_[member].is_active) continue;
+    planar_.drive_joints(member, step_);
+    members_[member].is_finite = planar_.is_sensible(member);
+    if (members_[member].is_finite) sound.push_back(member);
+  }
+  while (!sound.empty() && !try_island(sound, memory))
+    std::erase_if(sound, [&](std::uint32_t member) { return !members_[member].is_finite; });
+}
+
+// False, and nothing changed, if a body has no sensible velocities then: its member says so.
+bool PlanarEngine::try_island(const std::vector<std::uint32_t>& members, Memory& memory) {
+  PlanarSolver& solver = memory.solver;
+  solver.clear();
+  memory.before.clear();
+  for (const std::uint32_t member : members) {
+    memory.before.push_back({planar_.velocity(member), grounds_[member].impulse()});
+    solver.add_member(member);
+    add_rows_of(member, solver);
+  }
+  solver.solve(description_.physics.iterations);
+  bool is_good = true;
+  for (const std::uint32_t member : members) {
+    members_[member].is_finite = planar_.is_sensible(member);
+    is_good = is_good && members_[member].is_finite;
+  }
+  if (is_good) {
+    solver.keep(step_);
+    return true;
+  }
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    planar_.velocity(members[i]) = memory.before[i].velocity;
+    grounds_[members[i]].set_impulse(memory.before[i].ground_impulse);
+  }
+  return false;
+}
+
+void PlanarEngine::add_rows_of(std::uint32_t member, PlanarSolver& solver) {
+  const auto is_out = [&](std::uint32_t other) { return other != Anchors::nobody && !members_[other].is_finite; };
+  for (const std::uint32_t index : members_[member].connections) {
+    Connection& connection = connections_[index];
+    if (connection.holds() && !is_out(connection.b().member)) solver.add_connection(connection, step_);
+  }
+  for (PlanarPair& pair : collision_.pairs_of(member)) {
+    if (is_out(pair.member_b)) continue;
+    const SurfacePair surfaces = surfaces_.of(scene_.solid(pair.a).surface, scene_.solid(pair.b).surface);
+    for (PlanarPoint& point : pair.contact)
+      solver.add_contact(part_of(pair.a), part_of(pair.b), point, pair.z, surfaces, step_);
+  }
+}
+
+void PlanarEngine::move(std::uint32_t index) {
+  Member& member = members_[index];
+  if (!member.is_active || !member.is_finite) return;
+  if (planar_.integrate(index, step_)) find_parts_in_body(member, index);
+  place_solids(index);
+  const PlanarPlace& place = planar_.place(index);
+  member.is_inside = std::abs(place.x) < furthest && std::abs(place.y) < furthest &&
+                     planar_.segment_in_body(index, 0).position.z() >= description_.physics.lowest;
+}
+
+void PlanarEngine::find_parts_in_body(const Member& member, std::uint32_t index) {
+  double radius = 0.0;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i) {
+    Part& part = parts_[i];
+    const Pose X_BC = planar_.segment_in_body(index, part.segment) * part.X_SC;
+    // Nothing that moves is a plane or a height map, so it has one.
+    const description::Footprint outline = *description::footprint_of(scene_.solid(part.solid).shape, X_BC);
+    part.outline_B = outline;
+    parts_in_body_[i] = {X_BC, outline.centre, outline.axis};
+    collision_.set_outline(part.solid, outline);
+    radius = std::max(radius, outline.centre.norm() + outline.half.norm() + outline.radius);
+    lowest = std::min(lowest, outline.lowest);
+    highest = std::max(highest, outline.highest);
+  }
+  collision_.set_extent(index, radius, lowest, highest);
+}
+
+void PlanarEngine::place_solids(std::uint32_t index) {
+  const Member& member = members_[index];
+  const PlanarPlace& place = planar_.place(index);
+  collision_.move_member(index, {place.x, place.y});
+  for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i) {
+    const PartInBody& part = parts_in_body_[i];
+    scene_.set_pose(parts_[i].solid, place * part.X_BC);
+    collision_.move(parts_[i].solid, place * part.centre_B, place.rotate(part.axis_B));
+  }
+}
+
+void PlanarEngine::report_contacts() {
+  contacts_.clear();
+  for (std::uint32_t member = 0; member < members_.size(); ++member) {
+    for (const PlanarPair& pair : collision_.pairs_of(member)) {
+      for (const PlanarPoint& point : pair.contact) {
+        if (point.gap > 0.0 && point.normal_impulse == 0.0) continue;  // near, but it did not touch
+        contacts_.push_back({scene_.solid(pair.a).body, scene_.solid(pair.b).body,
+                             Eigen::Vector3d(point.position_W.x(), point.position_W.y(), pair.z),
+                             Eigen::Vector3d(point.normal_W.x(), point.normal_W.y(), 0.0), point.gap,
+                             point.normal_impulse});
+      }
+    }
+  }
+}
+
+std::uint32_t PlanarEngine::connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                                    std::size_t link_b, const ConnectionLimits& limits) {
+  const auto link_of = [&](std::uint32_t body, std::size_t link) -> const Mechanism::LinkPlace& {
+    return planar_.model(bodies_[body].member).mechanism().link(link);
+  };
+  const Mechanism::LinkPlace& place_a = link_of(body_a, link_a);
+  const Connection::End end_a{bodies_[body_a].member, place_a.segment, place_a.X_SL * X_LP};
+  const Pose X_WP = planar_.segment_pose(end_a.member, end_a.segment) * end_a.X_SP;
+  Connection::End end_b{Anchors::nobody, 0, X_WP};
+  if (const std::uint32_t member = bodies_[body_b].member; member != Anchors::nobody) {
+    const int segment = link_of(body_b, link_b).segment;
+    end_b = {member, segment, planar_.segment_pose(member, segment).inverse() * X_WP};
+  }
+  const auto index = static_cast<std::uint32_t>(connections_.size());
+  connections_.emplace_back(end_a, end_b, limits);
+  members_[end_a.member].connections.push_back(index);
+  return index;
+}
+
+void PlanarEngine::break_connections() {
+  broken_.clear();
+  for (std::uint32_t index = 0; index < connections_.size(); ++index) {
+    if (!connections_[index].holds() || !connections_[index].is_overloaded(step_)) continue;
+    connections_[index].release();
+    broken_.push_back(index);
+  }
+}
+
+void PlanarEngine::quarantine() {
+  quarantined_.clear();
+  for (std::uint32_t index = 0; index < members_.size(); ++index) {
+    const Member& member = members_[index];
+    if (!member.is_active || (member.is_finite && member.is_inside)) continue;
+    using Reason = Quarantine::Reason;
+    quarantined_.push_back({member.body, member.is_finite ? Reason::left_world : Reason::not_finite});
+    take_out(index);
+  }
+}
+
+void PlanarEngine::take_out(std::uint32_t index) {
+  members_[index].is_active = false;
+  for (Connection& connection : connections_)
+    if (connection.a().member == index || connection.b().member == index) connection.release();
+  for (std::uint32_t i = 0; i < members_[index].part_count; ++i)
+    scene_.remove(parts_[members_[index].first_part + i].solid);
+  collision_.remove(index);
+}
+
+}  // namespace cohort::physics

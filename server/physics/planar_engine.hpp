@@ -1,0 +1,160 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "server/physics/connection.hpp"
+#include "server/physics/contact_rows.hpp"
+#include "server/physics/engine.hpp"
+#include "server/physics/islands.hpp"
+#include "server/physics/planar_collision.hpp"
+#include "server/physics/planar_ground.hpp"
+#include "server/physics/planar_solver.hpp"
+
+namespace cohort::physics {
+
+/// Bodies on flat ground, each with a position and a heading only: for large swarms. Height, roll and pitch stay as
+/// they were when the body was placed. Against the full model:
+///
+/// - A body has the mass and the inertia of its model with all joints at zero. A VelocityMotor turns its joint as
+///   commanded, within the joint's limits, whatever it meets; other joints stay where they are.
+/// - Bodies run into each other and into walls by the outlines of their collisions, seen from above
+///   (description::footprint_of), where these share heights. What is no upright prism, such as an ellipsoid or a mesh,
+///   has the outline of description::Footprint. Links of one body do not touch each other.
+/// - The ground is what was under the centre of mass when the body was placed, for ever: it gives friction, by half the
+///   weight to each track, or by all of it to the lowest collision of a body without a drive, and is no contact.
+///   Nothing falls, tips or climbs; a ball slides and does not roll; rolling resistance has no meaning.
+/// - Connections hold in the plane: their wrench is a force in x and y and a torque about z.
+/// - The solver is always the iterative one.
+class PlanarEngine final : public Engine {
+ public:
+  /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, ground
+  /// that is not level, none under a body, a joint that moves against the world, or a robot that leans by more than a
+  /// milliradian.
+  PlanarEngine(const description::World& description, WorkerPool& workers);
+
+  void step() override;
+  std::span<const Quarantine> quarantined() const override { return quarantined_; }
+  bool is_active(std::uint32_t body) const override;
+  std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
+  void remove_body(std::uint32_t body) override { take_out(bodies_[body].member); }
+
+  const geometry::Scene& scene() const override { return scene_; }
+  std::size_t body_count() const override { return bodies_.size(); }
+  Pose link_pose(std::uint32_t body, std::size_t link) const override;
+  Twist link_twist(std::uint32_t body, std::size_t link) const override;
+  double joint_position(std::uint32_t body, std::size_t joint) const override {
+    return planar_.joint_position(bodies_[body].member, joint);
+  }
+  double joint_velocity(std::uint32_t body, std::size_t joint) const override {
+    return planar_.joint_velocity(bodies_[body].member, joint);
+  }
+  TrackState track(std::uint32_t body, std::size_t, Side side) const override {
+    return grounds_[bodies_[body].member].track(side);
+  }
+
+  std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                        std::size_t link_b, const ConnectionLimits& limits) override;
+  void disconnect(std::uint32_t connection) override { connections_[connection].release(); }
+  bool is_connected(std::uint32_t connection) const override { return connections_[connection].holds(); }
+  Wrench connection_wrench(std::uint32_t connection) const override { return connections_[connection].wrench(step_); }
+  std::span<const std::uint32_t> broken_connections() const override { return broken_; }
+
+  void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
+    planar_.set_joint_velocity_target(bodies_[body].member, joint, velocity);
+  }
+  void set_track_velocity_target(std::uint32_t body, std::size_t, Side side, double velocity) override {
+    grounds_[bodies_[body].member].set_target(side, velocity);
+  }
+  void set_root_twist(std::uint32_t body, const Twist& twist) override {
+    planar_.set_root_twist(bodies_[body].member, twist);
+  }
+  void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                       std::span<const double> velocities) override;
+
+  std::span<const Contact> contacts() const override { return contacts_; }
+  void hash_body(std::uint32_t body, StateHash& hash) const override;
+  void hash_contacts(StateHash& hash) const override;
+  void save(SnapshotWriter& writer) const override;
+  void restore(SnapshotReader& reader) override;
+
+ private:
+  struct Body {
+    std::size_t model = 0;
+    Pose X_WM;  // at first; of a static body for ever
+    std::uint32_t member = Anchors::nobody;
+  };
+  struct Member {  // a body that moves
+    std::uint32_t body = 0;
+    std::uint32_t first_part = 0;
+    std::uint32_t part_count = 0;
+    std::vector<std::uint32_t> connections{};  // whose end a is here, ascending
+    bool is_active = true;
+    // Of this step:
+    bool is_finite = true;
+    bool is_inside = true;
+  };
+  struct Part {  // a solid of a body that moves
+    std::uint32_t solid = 0;
+    int segment = 0;
+    Pose X_SC;
+    description::Footprint outline_B;
+  };
+  struct PartInBody {  // what is read in every step
+    Pose X_BC;
+    Eigen::Vector2d centre_B = Eigen::Vector2d::Zero();  // of the outline
+    Eigen::Vector2d axis_B = Eigen::Vector2d::UnitX();
+  };
+  struct Before {  // what a solution changes at once, for the case that it is not good
+    PlanarVelocity velocity;
+    std::array<double, 3> ground_impulse;
+  };
+  struct Memory {  // of one worker
+    PlanarSolver solver;
+    std::vector<std::uint32_t> members;
+    std::vector<Before> before;
+  };
+
+  std::uint32_t create_body(std::size_t model, const Pose& X_WM);
+  void add_static(std::uint32_t body);
+  void add_moving(std::uint32_t body);
+  void put_on_ground(std::uint32_t member);
+  std::uint32_t ground_under(std::uint32_t member, double z) const;
+
+  void find_islands();
+  void solve_island(std::span<const std::uint32_t> members, Memory& memory);
+  bool try_island(const std::vector<std::uint32_t>& members, Memory& memory);
+  void add_rows_of(std::uint32_t member, PlanarSolver& solver);
+  void move(std::uint32_t member);
+  void find_parts_in_body(const Member& member, std::uint32_t index);
+  void place_solids(std::uint32_t member);
+  void report_contacts();
+  void break_connections();
+  void quarantine();
+  void take_out(std::uint32_t member);
+  Anchors::Part part_of(std::uint32_t solid) const { return part_of_solid_[solid]; }
+
+  const description::World& description_;
+  WorkerPool& workers_;
+  double step_;
+  SurfacePairs surfaces_;
+  geometry::Scene scene_;
+  std::vector<std::unique_ptr<PlanarModel>> models_;  // null for what is static
+  std::vector<Body> bodies_;
+  std::vector<Member> members_;
+  std::vector<Part> parts_;
+  std::vector<PartInBody> parts_in_body_;  // of parts_
+  std::vector<Anchors::Part> part_of_solid_;
+  PlanarBodies planar_;
+  std::vector<PlanarGround> grounds_;  // by member
+  PlanarCollision collision_;
+  Islands islands_;
+  std::vector<Connection> connections_;
+  std::vector<std::uint32_t> broken_;
+  std::vector<Contact> contacts_;
+  std::vector<Quarantine> quarantined_;
+  std::vector<Memory> memory_;  // by worker
+};
+
+}  // namespace cohort::physics

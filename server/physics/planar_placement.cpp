@@ -1,0 +1,172 @@
+// How the bodies of a planar world are made and what each stands on.
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "server/physics/planar_engine.hpp"
+
+namespace cohort::physics {
+namespace {
+
+using Eigen::Vector3d;
+
+// What leans by less is upright, and ground level [rad].
+constexpr double most_lean = 1e-3;
+
+// The mean distance of the points of a rectangle with rounded corners from a point in the plane.
+double mean_distance(const description::Footprint& outline, const Eigen::Vector2d& point) {
+  constexpr int points_across = 32;
+  const Eigen::Vector2d half = outline.half_extent();
+  double sum = 0.0;
+  int count = 0;
+  for (int row = 0; row < points_across; ++row) {
+    for (int column = 0; column < points_across; ++column) {
+      const Eigen::Vector2d share((2.0 * column + 1.0) / points_across - 1.0, (2.0 * row + 1.0) / points_across - 1.0);
+      const Eigen::Vector2d at = outline.centre + half.cwiseProduct(share);
+      if (outline.distance(at) > 0.0) continue;
+      sum += (at - point).norm();
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+}  // namespace
+
+PlanarEngine::PlanarEngine(const description::World& description, WorkerPool& workers)
+    : description_(description),
+      workers_(workers),
+      step_(std::chrono::duration<double>(description.step).count()),
+      surfaces_(description),
+      models_(description.models.size()),
+      collision_(scene_) {
+  const Vector3d& gravity = description.gravity;
+  if (gravity.head<2>().norm() > -most_lean * gravity.z())
+    throw std::invalid_argument("planar physics needs gravity along -z");
+  for (unsigned worker = 0; worker < workers.threads(); ++worker)
+    memory_.push_back({PlanarSolver(planar_, grounds_), {}, {}});
+  bodies_.reserve(description.instances.size());
+  for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
+  scene_.build();
+  for (std::uint32_t member = 0; member < members_.size(); ++member) put_on_ground(member);
+}
+
+std::uint32_t PlanarEngine::add_body(std::size_t model, const Pose& X_WM) {
+  const std::uint32_t body = create_body(model, X_WM);
+  scene_.build();
+  if (const std::uint32_t member = bodies_[body].member; member != Anchors::nobody) {
+    try {
+      put_on_ground(member);
+    } catch (const std::invalid_argument&) {
+      take_out(member);
+      throw;
+    }
+  }
+  return body;
+}
+
+std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_WM) {
+  const auto body = static_cast<std::uint32_t>(bodies_.size());
+  const description::Model& model = description_.models[model_index];
+  try {
+    if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_unique<PlanarModel>(model);
+    const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
+    if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
+      throw std::invalid_argument("a robot that leans cannot be planar");
+    bodies_.push_back({model_index, X_WM, Anchors::nobody});
+    if (model.is_static) {
+      add_static(body);
+    } else {
+      add_moving(body);
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("model '" + model.name + "': " + error.what());
+  }
+  return body;
+}
+
+void PlanarEngine::add_static(std::uint32_t body) {
+  for (const description::Link& link : description_.models[bodies_[body].model].links) {
+    for (const description::Collision& collision : link.collisions) {
+      scene_.add({collision.shape, collision.surface, body, false, bodies_[body].X_WM * link.X_ML * collision.X_LC});
+      collision_.add_static();
+      part_of_solid_.emplace_back();
+    }
+  }
+}
+
+void PlanarEngine::add_moving(std::uint32_t body) {
+  const PlanarModel& model = *models_[bodies_[body].model];
+  const std::uint32_t index = planar_.add(model, bodies_[body].X_WM);
+  bodies_[body].member = index;
+  collision_.add_member(model.is_fixed());
+  grounds_.emplace_back();
+  Member& member = members_.emplace_back();
+  member.body = body;
+  member.first_part = static_cast<std::uint32_t>(parts_.size());
+  const std::vector<description::Link>& links = model.mechanism().model().links;
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    const Mechanism::LinkPlace& place = model.mechanism().link(link);
+    if (!place.collides) continue;
+    for (const description::Collision& collision : links[link].collisions) {
+      const Pose X_SC = place.X_SL * collision.X_LC;
+      const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
+      parts_.push_back({scene_.add({collision.shape, collision.surface, body, true, X_WC}), place.segment, X_SC, {}});
+      parts_in_body_.emplace_back();
+      collision_.add_moving();
+      part_of_solid_.push_back({index, place.segment});
+      ++member.part_count;
+    }
+  }
+  find_parts_in_body(member, index);
+  place_solids(index);
+}
+
+void PlanarEngine::put_on_ground(std::uint32_t index) {
+  const Member& member = members_[index];
+  const PlanarModel& model = planar_.model(index);
+  const double weight = -description_.gravity.z() * model.mass();
+  if (model.is_fixed() || weight == 0.0) return;
+  const std::span<const Part> parts(parts_.data() + member.first_part, member.part_count);
+  const auto is_lower = [](const Part& a, const Part& b) { return a.outline_B.lowest < b.outline_B.lowest; };
+  const auto lowest = std::min_element(parts.begin(), parts.end(), is_lower);
+
+  // From the middle of the body: it may be placed a little into the ground.
+  double highest = planar_.segment_in_body(index, 0).position.z();
+  for (const Part& part : parts) highest = std::max(highest, part.outline_B.highest);
+  const double from = lowest != parts.end() ? 0.5 * (lowest->outline_B.lowest + highest) : highest;
+  std::uint32_t ground = 0;
+  try {
+    ground = ground_under(index, from);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("model '" + model.mechanism().model().name + "': " + error.what());
+  }
+  const description::Surface& under = scene_.solid(ground).surface;
+  if (const description::TreelDrive* drive = model.drive()) {
+    const Mechanism::LinkPlace& place = model.mechanism().link(drive->link);
+    grounds_[index] = PlanarGround(*drive, planar_.segment_in_body(index, place.segment) * place.X_SL,
+                                   std::min(drive->friction, under.friction), weight, planar_.inertia(index), step_);
+  } else if (lowest != parts.end()) {
+    const SurfacePair surfaces = surfaces_.of(scene_.solid(lowest->solid).surface, under);
+    grounds_[index] =
+        PlanarGround(surfaces.friction, weight, mean_distance(lowest->outline_B, Eigen::Vector2d::Zero()), step_);
+  }
+}
+
+// The first solid below the centre of mass that does not move.
+std::uint32_t PlanarEngine::ground_under(std::uint32_t index, double z) const {
+  constexpr double depth = 10.0;  // [m]
+  const PlanarPlace& place = planar_.place(index);
+  const Vector3d origin_W(place.x, place.y, z);
+  std::vector<std::uint32_t> below = scene_.solids_in({origin_W - depth * Vector3d::UnitZ(), origin_W});
+  std::erase_if(below, [&](std::uint32_t solid) { return scene_.solid(solid).moves; });
+  const auto hit = scene_.cast_ray_among(below, origin_W, -Vector3d::UnitZ(), depth);
+  if (!hit || hit->distance == 0.0) throw std::invalid_argument("there is no ground under it, so it cannot be planar");
+  if (hit->normal_W.head<2>().norm() > most_lean)
+    throw std::invalid_argument("the ground under it is not level, so it cannot be planar");
+  return hit->solid;
+}
+
+}  // namespace cohort::physics

@@ -60,8 +60,8 @@ struct Quarantine {
 
 class Engine;
 
-/// The moving part of a world: rigid multibodies in reduced coordinates, stepped by semi-implicit Euler with a
-/// warm-started sequential-impulse solver. Bodies are the instances of the description, under the same indices; links,
+/// The moving part of a world: rigid multibodies in reduced coordinates, stepped by semi-implicit Euler with the
+/// description's solver. Bodies are the instances of the description, under the same indices; links,
 /// joints and devices keep their indices in the model. Poses and states are those of the last completed step. Setters
 /// and `step` belong to one thread; getters may run from any thread between steps.
 ///

@@ -161,6 +161,7 @@ TEST(Scenes, SmallThingsLieOnAVeryLargeOneThatMoves) {
   small.description.models.back().links[0].collisions[0].surface.friction = 1.0;
   small.description.models[0].links[0].collisions[0].surface.friction = 0.0;
   std::vector<std::uint32_t> balls;
+  balls.reserve(20);
   for (int i = 0; i < 20; ++i)
     balls.push_back(small.add(loose("ball", description::Sphere{0.02}, solid_sphere(0.03, 0.02)),
                               at(-2.0 + 0.2 * i, 0.1 * (i % 3), 0.52)));

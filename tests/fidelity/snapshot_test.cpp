@@ -18,15 +18,16 @@ std::uint64_t hash_of(const physics::World& world) {
 // joints with limits and friction.
 description::World busy_world() {
   description::World world = world_with_floor();
-  for (int i = 0; i < 16; ++i)
-    place(world, tracked_robot(), "robot_" + std::to_string(i), at(0.14 * (i % 4), 0.14 * (i / 4), 0, 0.7 * i));
+  for (int row = 0; row < 4; ++row)
+    for (int i = 0; i < 4; ++i)
+      place(world, tracked_robot(), "robot_" + std::to_string(4 * row + i), at(0.14 * i, 0.14 * row, 0, 0.7 * i + row));
   auto hull = std::make_shared<description::TriangleMesh>();
   hull->vertices = {{0, 0, 0.1}, {0.1, 0, -0.05}, {-0.05, 0.09, -0.05}, {-0.05, -0.09, -0.05}};
   for (int i = 0; i < 6; ++i) {
     const description::Shape shapes[] = {description::Sphere{0.05}, description::Mesh{hull, true},
                                          description::Ellipsoid{{0.08, 0.06, 0.05}}};
     place(world, loose("loose_" + std::to_string(i), shapes[i % 3], solid_sphere(0.2, 0.06)),
-          "loose_" + std::to_string(i), at(-0.12 - 0.01 * i, 0.1 * (i % 3), 0.1 + 0.15 * (i / 3)));
+          "loose_" + std::to_string(i), at(-0.12 - 0.01 * i, 0.1 * (i % 3), i < 3 ? 0.1 : 0.25));
   }
   return world;
 }

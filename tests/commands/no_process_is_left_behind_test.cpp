@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <fstream>
 #include <mutex>
@@ -93,6 +94,7 @@ TEST_F(NoProcessIsLeftBehind, WhenItsTerminalIsClosed) {
     execv(arguments[0], arguments.data());
     _exit(127);
   }
+  if (pid < 0 && errno == ENOENT) GTEST_SKIP() << "this machine has no pseudo-terminals";
   ASSERT_GT(pid, 0);
   std::string seen;
   char buffer[256];

@@ -29,7 +29,7 @@ std::uint32_t PlanarBodies::add(const PlanarModel& model, const Pose& X_WM) {
   const Mechanism& mechanism = model.mechanism();
   members_.push_back({&model, X_BS_.size(), coordinates_.size(), motors_.size(), false});
 
-  const Vector3d centre_W = X_WM * model.centre_M();
+  const Vector3d centre_W = X_WM * model.centre();
   PlanarPlace place;
   place.x = centre_W.x();
   place.y = centre_W.y();
@@ -37,7 +37,7 @@ std::uint32_t PlanarBodies::add(const PlanarModel& model, const Pose& X_WM) {
   velocities_.emplace_back();
   const Vector3d up_M = X_WM.orientation.conjugate() * Vector3d::UnitZ();
   inertias_.push_back(model.is_fixed() ? PlanarInertia{}
-                                       : PlanarInertia{1.0 / model.mass(), 1.0 / up_M.dot(model.inertia_M() * up_M)});
+                                       : PlanarInertia{1.0 / model.mass(), 1.0 / up_M.dot(model.inertia() * up_M)});
 
   const Pose X_BM{X_WM.position - Vector3d(centre_W.x(), centre_W.y(), 0.0), X_WM.orientation};
   X_BS_.push_back(X_BM * mechanism.segments()[0].X_PS);

@@ -74,15 +74,15 @@ class PlanarBodies {
   void set_joint_velocity_target(std::uint32_t member, std::size_t joint, double velocity);
 
   /// Takes the commands of the motors: from here on they are the velocities of this step, as far as limits let them.
-  void drive_joints(std::uint32_t member, double step);
+  void drive_joints(std::uint32_t index, double step);
   /// Whether any motor turns in this step.
   bool has_moving_joints(std::uint32_t member) const { return members_[member].has_moving_joints; }
   /// What the joints in between give a point of a segment: its twist against B.
-  Twist twist_in_body(std::uint32_t member, int segment, const Eigen::Vector3d& point_W) const;
+  Twist twist_in_body(std::uint32_t index, int segment, const Eigen::Vector3d& point_W) const;
   /// False if the next step would leave the numbers.
-  bool is_sensible(std::uint32_t member) const;
+  bool is_sensible(std::uint32_t index) const;
   /// Moves by the velocities of this step. True if segments moved in the body.
-  bool integrate(std::uint32_t member, double step);
+  bool integrate(std::uint32_t index, double step);
 
   /// Calls `visit` for each number of the state, always in the same order.
   template <class Self, class Visit>

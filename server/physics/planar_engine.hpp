@@ -108,7 +108,7 @@ class PlanarEngine final : public Engine {
   };
   struct Before {  // what a solution changes at once, for the case that it is not good
     PlanarVelocity velocity;
-    std::array<double, 3> ground_impulse;
+    std::array<double, 3> ground_impulse{};
   };
   struct Memory {  // of one worker
     PlanarSolver solver;
@@ -119,20 +119,20 @@ class PlanarEngine final : public Engine {
   std::uint32_t create_body(std::size_t model, const Pose& X_WM);
   void add_static(std::uint32_t body);
   void add_moving(std::uint32_t body);
-  void put_on_ground(std::uint32_t member);
-  std::uint32_t ground_under(std::uint32_t member, double z) const;
+  void put_on_ground(std::uint32_t index);
+  std::uint32_t ground_under(std::uint32_t index, double z) const;
 
   void find_islands();
   void solve_island(std::span<const std::uint32_t> members, Memory& memory);
   bool try_island(const std::vector<std::uint32_t>& members, Memory& memory);
-  void add_rows_of(std::uint32_t member, PlanarSolver& solver);
-  void move(std::uint32_t member);
+  void add_rows_of(std::uint32_t index, PlanarSolver& solver);
+  void move(std::uint32_t index);
   void find_parts_in_body(const Member& member, std::uint32_t index);
-  void place_solids(std::uint32_t member);
+  void place_solids(std::uint32_t index);
   void report_contacts();
   void break_connections();
   void quarantine();
-  void take_out(std::uint32_t member);
+  void take_out(std::uint32_t index);
   Anchors::Part part_of(std::uint32_t solid) const { return part_of_solid_[solid]; }
 
   const description::World& description_;

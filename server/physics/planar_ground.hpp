@@ -59,7 +59,7 @@ class PlanarGround {
   double solve_patch(const PlanarInertia& inertia, PlanarVelocity& velocity);
   /// Both tracks at once, where neither comes to its limit. False if one would.
   bool solve_tracks(const PlanarInertia& inertia, PlanarVelocity& velocity, double& change);
-  double solve_row(std::size_t row, double target, const Eigen::Vector2d& direction_W, const PlanarInertia& inertia,
+  double solve_row(std::size_t index, double target, const Eigen::Vector2d& direction_W, const PlanarInertia& inertia,
                    PlanarVelocity& velocity);
 
   bool is_drive_ = false;

@@ -33,8 +33,8 @@ class PlanarModel {
 
   // Of the whole model with all its joints at zero.
   double mass() const { return mass_; }
-  const Eigen::Vector3d& centre_M() const { return centre_M_; }
-  const Eigen::Matrix3d& inertia_M() const { return inertia_M_; }  ///< about the centre of mass
+  const Eigen::Vector3d& centre() const { return centre_M_; }    ///< of mass, in M
+  const Eigen::Matrix3d& inertia() const { return inertia_M_; }  ///< about the centre of mass, in M
 
  private:
   void add_motor(const description::VelocityMotor& motor);

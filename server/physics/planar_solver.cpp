@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <ranges>
 
 namespace cohort::physics {
 namespace {
@@ -194,8 +195,7 @@ void PlanarSolver::solve(std::uint32_t iterations) {
     if (i % 2 == 0) {
       for (ConnectionRows& rows : connections_) change = std::max(change, solve(rows));
     } else {
-      for (auto rows = connections_.rbegin(); rows != connections_.rend(); ++rows)
-        change = std::max(change, solve(*rows));
+      for (ConnectionRows& rows : std::views::reverse(connections_)) change = std::max(change, solve(rows));
     }
     for (ContactRows& rows : contacts_) change = std::max(change, solve(rows));
     if (change < tolerance) break;

@@ -37,11 +37,11 @@ class PlanarSolver {
     Side a;
     Side b;
     Eigen::Vector2d normal_W;
-    double normal_lever_a, normal_lever_b, normal_mass, normal_target;
-    double side_lever_a, side_lever_b, side_mass, side_target;
-    double friction;
-    double normal_impulse, side_impulse;
-    PlanarPoint* point;
+    double normal_lever_a = 0.0, normal_lever_b = 0.0, normal_mass = 0.0, normal_target = 0.0;
+    double side_lever_a = 0.0, side_lever_b = 0.0, side_mass = 0.0, side_target = 0.0;
+    double friction = 0.0;
+    double normal_impulse = 0.0, side_impulse = 0.0;
+    PlanarPoint* point = nullptr;
   };
   struct ConnectionRows {
     Side a;
@@ -50,7 +50,7 @@ class PlanarSolver {
     Eigen::Matrix3d mass;
     Eigen::Vector3d target;
     Eigen::Vector3d impulse;
-    Connection* connection;
+    Connection* connection = nullptr;
   };
   Side side_of(std::uint32_t member);
   /// Velocity that the joints in between give a point of the body: x, y and the turning.

@@ -1,38 +1,11 @@
 #include "server/physics/collision.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "server/physics/closed_form_contact.hpp"
+#include "server/physics/same_point.hpp"
 
 namespace cohort::physics {
-namespace {
-
-// A point may move this far from one step to the next and still be the same [m].
-constexpr double same_point = 0.01;
-
-// Each point starts from the impulses of the nearest one of the last step.
-void take_over_impulses(const ContactPoints& before, ContactPoints& now) {
-  std::array<bool, ContactPoints::most> taken{};
-  for (ContactPoint& point : now) {
-    double nearest = same_point * same_point;
-    int best = -1;
-    for (int i = 0; i < before.count; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      const double distance = (before.points[index].position_W - point.position_W).squaredNorm();
-      if (taken[index] || distance >= nearest) continue;
-      nearest = distance;
-      best = i;
-    }
-    if (best < 0) continue;
-    const auto index = static_cast<std::size_t>(best);
-    taken[index] = true;
-    point.impulse = before.points[index].impulse;
-    point.rolling_impulse = before.points[index].rolling_impulse;
-  }
-}
-
-}  // namespace
 
 Collision::Collision(const geometry::Scene& scene, MayTouch may_touch)
     : scene_(scene), may_touch_(std::move(may_touch)), narrow_phase_(margin) {}
@@ -93,7 +66,10 @@ void Collision::find_contact(SolidPair& pair) {
   ContactPoints found;
   if (find_closed_form_contact(a.shape, a.X_WC, b.shape, b.X_WC, margin, found)) {
     pair.general.reset();
-    take_over_impulses(pair.contact, found);
+    match_points(pair.contact, found, [](const ContactPoint& old, ContactPoint& point) {
+      point.impulse = old.impulse;
+      point.rolling_impulse = old.rolling_impulse;
+    });
     pair.contact = found;
     return;
   }

@@ -61,7 +61,7 @@ class DirectSolver {
       for (int j = 0; j <= i; ++j)
         gains_[index(i) * size_ + index(j)] = gains_[index(j) * size_ + index(i)] = gain(row, row_at(j));
       double& own = gains_[index(i) * size_ + index(i)];
-      own += own * give + row.softness;
+      own += own * give;
     }
   }
 

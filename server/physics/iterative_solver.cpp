@@ -53,9 +53,7 @@ class Pass {
   }
 
   // The impulse with which the row would be met, were there no limits.
-  double wanted(const Row& row) const {
-    return row.impulse + (row.target - velocity(row) - row.softness * row.impulse) * row.inverse;
-  }
+  double wanted(const Row& row) const { return row.impulse + (row.target - velocity(row)) * row.inverse; }
 
   double change(Row& row, double impulse) {
     const double difference = impulse - row.impulse;

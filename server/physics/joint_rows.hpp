@@ -19,7 +19,6 @@ class JointRows {
   void add_motor(int dof, double max_effort);
   bool has_motor(int dof) const { return motor_of_[static_cast<std::size_t>(dof)] >= 0; }
   void set_target(int dof, double velocity) { motor(dof).target = velocity; }
-  double target(int dof) const { return motor(dof).target; }
   /// Impulse of the motor over the last step [N s] or [N m s].
   double motor_impulse(int dof) const { return motor(dof).impulse; }
 

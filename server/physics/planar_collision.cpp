@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "server/physics/same_point.hpp"
+
 namespace cohort::physics {
 namespace {
 
 // As in the full model: this near, a point counts for the solver, which lets it close the gap within the step [m].
 constexpr double contact_margin = 0.005;
-// A point may move this far from one step to the next and still be the same [m].
-constexpr double same_point = 0.01;
 
 // Solids that share less of their heights pass over each other, as what stands on a floor does over the floor [m].
 constexpr double least_shared_height = 1e-4;
@@ -17,26 +17,6 @@ constexpr double least_shared_height = 1e-4;
 constexpr double level = 1e-3;
 
 constexpr std::size_t members_a_chunk = 32;
-
-void take_over_impulses(const PlanarPoints& before, PlanarPoints& now) {
-  std::array<bool, PlanarPoints::most> taken{};
-  for (PlanarPoint& point : now) {
-    double nearest = same_point * same_point;
-    int best = -1;
-    for (int i = 0; i < before.count; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      const double distance = (before.points[index].position_W - point.position_W).squaredNorm();
-      if (taken[index] || distance >= nearest) continue;
-      nearest = distance;
-      best = i;
-    }
-    if (best < 0) continue;
-    const auto index = static_cast<std::size_t>(best);
-    taken[index] = true;
-    point.normal_impulse = before.points[index].normal_impulse;
-    point.friction_impulse = before.points[index].friction_impulse;
-  }
-}
 
 bool is_before(const PlanarPair& one, const PlanarPair& two) { return one.a != two.a ? one.a < two.a : one.b < two.b; }
 
@@ -133,7 +113,11 @@ void PlanarCollision::find_pairs(std::uint32_t index, Memory& memory) {
   auto old = member.pairs.begin();
   for (PlanarPair& pair : memory.pairs) {
     while (old != member.pairs.end() && is_before(*old, pair)) ++old;
-    if (old != member.pairs.end() && !is_before(pair, *old)) take_over_impulses(old->contact, pair.contact);
+    if (old == member.pairs.end() || is_before(pair, *old)) continue;
+    match_points(old->contact, pair.contact, [](const PlanarPoint& before, PlanarPoint& now) {
+      now.normal_impulse = before.normal_impulse;
+      now.friction_impulse = before.friction_impulse;
+    });
   }
   member.pairs.assign(memory.pairs.begin(), memory.pairs.end());
 }

@@ -19,9 +19,8 @@ struct Row {
   /// a disc.
   enum class Limits : std::uint8_t { fixed, friction, cone, coned };
 
-  double target = 0.0;    ///< [m/s] or [rad/s]
-  double inverse = 0.0;   ///< 1 / (velocity that a unit impulse gives, plus softness)
-  double softness = 0.0;  ///< velocity given way to for each unit of impulse
+  double target = 0.0;   ///< [m/s] or [rad/s]
+  double inverse = 0.0;  ///< 1 / velocity that a unit impulse gives; 0: none
   double lower = -unlimited;
   double upper = unlimited;
   double impulse = 0.0;  ///< [N s] or [N m s]
@@ -41,11 +40,6 @@ struct Row {
   void set_limits(double least, double most) {
     lower = least;
     upper = most;
-  }
-  /// The row gives way by `by` for each unit of impulse.
-  void soften(double by) {
-    if (inverse > 0.0) inverse = 1.0 / (1.0 / inverse + by);
-    softness = by;
   }
 };
 

@@ -21,7 +21,6 @@ class TreelDrive {
   TreelDrive(const description::TreelDrive& drive, const Pose& X_SL) : drive_(drive), X_SL_(X_SL) {}
 
   void set_target(Side side, double velocity) { side_of(side).target = velocity; }
-  double target(Side side) const { return side_of(side).target; }
   const TrackState& track(Side side) const { return side_of(side).state; }
 
   /// Where the ground is looked for. `X_WS`: the root segment.

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "server/physics/connection.hpp"
+#include "server/physics/connections.hpp"
 #include "server/physics/contact_rows.hpp"
 #include "server/physics/engine.hpp"
 #include "server/physics/islands.hpp"
@@ -56,10 +56,10 @@ class PlanarEngine final : public Engine {
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
-  void disconnect(std::uint32_t connection) override { connections_[connection].release(); }
+  void disconnect(std::uint32_t connection) override { connections_.release(connection); }
   bool is_connected(std::uint32_t connection) const override { return connections_[connection].holds(); }
   Wrench connection_wrench(std::uint32_t connection) const override { return connections_[connection].wrench(step_); }
-  std::span<const std::uint32_t> broken_connections() const override { return broken_; }
+  std::span<const std::uint32_t> broken_connections() const override { return connections_.broken(); }
 
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
     planar_.set_joint_velocity_target(bodies_[body].member, joint, velocity);
@@ -89,7 +89,6 @@ class PlanarEngine final : public Engine {
     std::uint32_t body = 0;
     std::uint32_t first_part = 0;
     std::uint32_t part_count = 0;
-    std::vector<std::uint32_t> connections{};  // whose end a is here, ascending
     bool is_active = true;
     // Of this step:
     bool is_finite = true;
@@ -130,7 +129,6 @@ class PlanarEngine final : public Engine {
   void find_parts_in_body(const Member& member, std::uint32_t index);
   void place_solids(std::uint32_t index);
   void report_contacts();
-  void break_connections();
   void quarantine();
   void take_out(std::uint32_t index);
   Anchors::Part part_of(std::uint32_t solid) const { return part_of_solid_[solid]; }
@@ -150,8 +148,7 @@ class PlanarEngine final : public Engine {
   std::vector<PlanarGround> grounds_;  // by member
   PlanarCollision collision_;
   Islands islands_;
-  std::vector<Connection> connections_;
-  std::vector<std::uint32_t> broken_;
+  Connections connections_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
   std::vector<Memory> memory_;  // by worker

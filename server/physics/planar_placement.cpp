@@ -160,8 +160,9 @@ std::uint32_t PlanarEngine::ground_under(std::uint32_t index, double z) const {
   constexpr double depth = 10.0;  // [m]
   const PlanarPlace& place = planar_.place(index);
   const Vector3d origin_W(place.x, place.y, z);
-  std::vector<std::uint32_t> below = scene_.solids_in({origin_W - depth * Vector3d::UnitZ(), origin_W});
-  std::erase_if(below, [&](std::uint32_t solid) { return scene_.solid(solid).moves; });
+  std::vector<std::uint32_t> below;
+  scene_.for_each_static_overlap({origin_W - depth * Vector3d::UnitZ(), origin_W},
+                                 [&](std::uint32_t solid) { below.push_back(solid); });
   const auto hit = scene_.cast_ray_among(below, origin_W, -Vector3d::UnitZ(), depth);
   if (!hit || hit->distance == 0.0) throw std::invalid_argument("there is no ground under it, so it cannot be planar");
   if (hit->normal_W.head<2>().norm() > most_lean)

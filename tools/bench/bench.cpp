@@ -27,6 +27,13 @@ const std::vector<StepScene>& step_scenes() {
          scene.drive = Drive::wheels;
          return scene;
        }},
+      {"crowd_planar",
+       {128, 1000},
+       [](std::uint32_t robots, std::uint64_t seed) {
+         Scene scene = crowd(robots, seed);
+         scene.planar = true;
+         return scene;
+       }},
       {"chain", {25, 128}, [](std::uint32_t robots, std::uint64_t) { return chain(robots); }},
   };
   return scenes;

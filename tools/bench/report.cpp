@@ -82,6 +82,24 @@ std::string table(const RayResult& result) {
   return text;
 }
 
+std::string table(const AccuracyResult& result) {
+  std::string text = result.scene + ": how far off the known solution\n";
+  bool has_heading = false;
+  for (const AccuracyCase& of : result.cases) {
+    if (!has_heading) {
+      text += fmt::format("  {:<50}{:>6}", "case", "unit");
+      for (const AccuracyError& error : of.errors)
+        text += fmt::format("{:>15}", fmt::format("{} {:g} ms", error.engine, milli * error.step));
+      text += '\n';
+      has_heading = true;
+    }
+    text += fmt::format("  {:<50}{:>6}", of.name, of.unit);
+    for (const AccuracyError& error : of.errors) text += fmt::format("{:>15.2g}", error.error);
+    text += '\n';
+  }
+  return text;
+}
+
 Json to_json(const StepResult& result) {
   Json engines = Json::array();
   for (const StepCost& cost : result.costs)
@@ -117,6 +135,17 @@ Json to_json(const RayResult& result) {
                          {"hit_share", cost.hits},
                          {"mrays_per_s", spread_json(cost.rays_a_second, mega)}});
   return {{"scene", result.scene}, {"robots", result.robots}, {"densities", densities}};
+}
+
+Json to_json(const AccuracyResult& result) {
+  Json cases = Json::array();
+  for (const AccuracyCase& of : result.cases) {
+    Json errors = Json::array();
+    for (const AccuracyError& error : of.errors)
+      errors.push_back({{"engine", error.engine}, {"step_s", error.step}, {"error", error.error}});
+    cases.push_back({{"case", of.name}, {"unit", of.unit}, {"errors", errors}});
+  }
+  return {{"scene", result.scene}, {"cases", cases}};
 }
 
 }  // namespace cohort::bench

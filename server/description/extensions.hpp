@@ -19,6 +19,8 @@ enum class ExtensionValue {
   count,         ///< a whole number from 1 to 1 000 000
   whole,         ///< a whole number >= 0 of at most 64 bits
   point,         ///< "x y"
+  vector,        ///< "x y z"
+  place,         ///< "x y heading"
   pose,          ///< "x y z roll pitch yaw", rotated about the fixed axes x, then y, then z
   group          ///< an extension of its own, described by its own entry
 };

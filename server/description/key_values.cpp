@@ -41,13 +41,6 @@ bool is_in_range(double number, ExtensionValue kind) {
 
 }  // namespace
 
-std::vector<std::string> KeyValues::texts(std::string_view key) const {
-  std::vector<std::string> found;
-  if (const auto values = values_.find(key); values != values_.end())
-    for (const Value& value : values->second) found.push_back(std::get<std::string>(value));
-  return found;
-}
-
 std::optional<KeyValues::Value> parse_value(std::string_view text, const ExtensionKey& key) {
   using Value = KeyValues::Value;
   switch (key.value) {
@@ -83,6 +76,12 @@ std::optional<KeyValues::Value> parse_value(std::string_view text, const Extensi
       if (!numbers) return std::nullopt;
       return Value(Eigen::Vector2d((*numbers)[0], (*numbers)[1]));
     }
+    case ExtensionValue::vector:
+    case ExtensionValue::place: {
+      const auto numbers = finite_numbers<3>(text);
+      if (!numbers) return std::nullopt;
+      return Value(Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]));
+    }
     case ExtensionValue::pose: {
       const auto numbers = finite_numbers<6>(text);
       if (!numbers) return std::nullopt;
@@ -110,6 +109,8 @@ std::string expected(const ExtensionKey& key) {
     case ExtensionValue::count: return "a whole number from 1 to " + std::to_string(greatest_count);
     case ExtensionValue::whole: return "a whole number >= 0";
     case ExtensionValue::point: return "two numbers 'x y'";
+    case ExtensionValue::vector: return "three numbers 'x y z'";
+    case ExtensionValue::place: return "three numbers 'x y heading'";
     case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw'";
     case ExtensionValue::group: return "elements";
   }

@@ -19,6 +19,7 @@ std::uint32_t Scene::add(Solid solid) {
   const auto* const mesh = std::get_if<description::Mesh>(&solid.shape);
   surfaces_.push_back(mesh != nullptr ? surface_of(*mesh) : nullptr);
   if (solid.moves) moving_.push_back(index);
+  is_out_.push_back(0);
   solids_.push_back(std::move(solid));
   return index;
 }
@@ -41,7 +42,7 @@ void Scene::build() {
   large_.clear();
   std::vector<std::uint32_t> small;
   for (std::uint32_t index = 0; index < solids_.size(); ++index) {
-    if (solids_[index].moves) continue;
+    if (solids_[index].moves || is_out_[index]) continue;
     (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
   }
   static_grid_.build(small, bounds_);
@@ -49,7 +50,17 @@ void Scene::build() {
 }
 
 void Scene::remove(std::uint32_t index) {
+  is_out_[index] = 1;
+  if (!solids_[index].moves) return build();
   std::erase(moving_, index);
+  update();
+}
+
+void Scene::put_back(std::uint32_t index) {
+  is_out_[index] = 0;
+  if (!solids_[index].moves) return build();
+  const auto place = std::lower_bound(moving_.begin(), moving_.end(), index);
+  if (place == moving_.end() || *place != index) moving_.insert(place, index);
   update();
 }
 

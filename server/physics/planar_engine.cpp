@@ -16,7 +16,7 @@ constexpr double furthest = 1e6;
 }  // namespace
 
 bool PlanarEngine::is_active(std::uint32_t body) const {
-  return bodies_[body].member == Anchors::nobody || members_[bodies_[body].member].is_active;
+  return bodies_[body].member == Anchors::nobody ? !bodies_[body].is_out : members_[bodies_[body].member].is_active;
 }
 
 Pose PlanarEngine::link_pose(std::uint32_t body, std::size_t link) const {
@@ -51,6 +51,7 @@ void PlanarEngine::step() {
   report_contacts();
   break_connections();
   quarantine();
+  pushes_.clear();
   scene_.update();
 }
 
@@ -90,6 +91,7 @@ bool PlanarEngine::try_island(const std::vector<std::uint32_t>& members, Memory&
   memory.before.clear();
   for (const std::uint32_t member : members) {
     memory.before.push_back({planar_.velocity(member), grounds_[member].impulse()});
+    if (!pushes_.empty()) add_pushes_of(member);
     solver.add_member(member);
     add_rows_of(member, solver);
   }
@@ -220,8 +222,7 @@ void PlanarEngine::quarantine() {
 
 void PlanarEngine::take_out(std::uint32_t index) {
   members_[index].is_active = false;
-  for (Connection& connection : connections_)
-    if (connection.a().member == index || connection.b().member == index) connection.release();
+  release_connections_of(index);
   for (std::uint32_t i = 0; i < members_[index].part_count; ++i)
     scene_.remove(parts_[members_[index].first_part + i].solid);
   collision_.remove(index);

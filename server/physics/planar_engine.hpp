@@ -38,7 +38,10 @@ class PlanarEngine final : public Engine {
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   bool is_active(std::uint32_t body) const override;
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
-  void remove_body(std::uint32_t body) override { take_out(bodies_[body].member); }
+  void remove_body(std::uint32_t body) override;
+  void put_back_body(std::uint32_t body) override;
+  void place_body(std::uint32_t body, const Pose& X_WM) override;
+  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
 
   const geometry::Scene& scene() const override { return scene_; }
   std::size_t body_count() const override { return bodies_.size(); }
@@ -82,8 +85,17 @@ class PlanarEngine final : public Engine {
  private:
   struct Body {
     std::size_t model = 0;
-    Pose X_WM;  // at first; of a static body for ever
+    Pose X_WM;  // where it was placed; a static body is there
     std::uint32_t member = Anchors::nobody;
+    bool is_placed_again = false;         // X_WM is not what the description says
+    bool is_out = false;                  // of what is static
+    std::vector<std::uint32_t> solids{};  // of what is static
+  };
+  struct Push {
+    std::uint32_t member = 0;
+    int segment = 0;
+    Eigen::Vector3d point_W;
+    Wrench wrench;
   };
   struct Member {  // a body that moves
     std::uint32_t body = 0;
@@ -133,6 +145,8 @@ class PlanarEngine final : public Engine {
   void break_connections();
   void quarantine();
   void take_out(std::uint32_t index);
+  void release_connections_of(std::uint32_t member);
+  void add_pushes_of(std::uint32_t member);
   Anchors::Part part_of(std::uint32_t solid) const { return part_of_solid_[solid]; }
 
   const description::World& description_;
@@ -154,6 +168,7 @@ class PlanarEngine final : public Engine {
   std::vector<std::uint32_t> broken_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
+  std::vector<Push> pushes_;    // of the next step, by member
   std::vector<Memory> memory_;  // by worker
 };
 

@@ -51,6 +51,8 @@ PlanarEngine::PlanarEngine(const description::World& description, WorkerPool& wo
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
   scene_.build();
   for (std::uint32_t member = 0; member < members_.size(); ++member) put_on_ground(member);
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(body);
 }
 
 std::uint32_t PlanarEngine::add_body(std::size_t model, const Pose& X_WM) {
@@ -75,7 +77,7 @@ std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_W
     const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
     if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
       throw std::invalid_argument("a robot that leans cannot be planar");
-    bodies_.push_back({model_index, X_WM, Anchors::nobody});
+    bodies_.push_back({model_index, X_WM, Anchors::nobody, false, false, {}});
     if (model.is_static) {
       add_static(body);
     } else {
@@ -90,7 +92,8 @@ std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_W
 void PlanarEngine::add_static(std::uint32_t body) {
   for (const description::Link& link : description_.models[bodies_[body].model].links) {
     for (const description::Collision& collision : link.collisions) {
-      scene_.add({collision.shape, collision.surface, body, false, bodies_[body].X_WM * link.X_ML * collision.X_LC});
+      bodies_[body].solids.push_back(scene_.add(
+          {collision.shape, collision.surface, body, false, bodies_[body].X_WM * link.X_ML * collision.X_LC}));
       collision_.add_static();
       part_of_solid_.emplace_back();
     }

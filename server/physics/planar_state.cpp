@@ -7,6 +7,8 @@ namespace cohort::physics {
 
 void PlanarEngine::hash_body(std::uint32_t body, StateHash& hash) const {
   const std::uint32_t member = bodies_[body].member;
+  if (bodies_[body].is_placed_again) visit_pose(bodies_[body].X_WM, StateHasher{hash});
+  if (bodies_[body].is_out) StateHasher{hash}(bodies_[body].is_out);
   if (member == Anchors::nobody) return;
   StateHasher{hash}(members_[member].is_active);
   PlanarBodies::visit_state(planar_, member, StateHasher{hash});
@@ -31,8 +33,15 @@ void PlanarEngine::save(SnapshotWriter& writer) const {
     writer.add_count(bodies_[body].model);
     visit_pose(bodies_[body].X_WM, save);
   }
+  for (const Body& body : bodies_) {
+    save(body.is_placed_again);
+    if (body.is_placed_again) visit_pose(body.X_WM, save);
+    save(body.is_out);
+  }
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     save(members_[member].is_active);
+    save(members_[member].is_finite);
+    save(members_[member].is_inside);
     PlanarBodies::visit_state(planar_, member, save);
     PlanarGround::visit_state(grounds_[member], save);
   }
@@ -63,9 +72,22 @@ void PlanarEngine::restore(SnapshotReader& reader) {
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     if (members_[member].body >= description_.instances.size()) put_on_ground(member);
   }
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
+    bool is_placed_again = false;
+    restore(is_placed_again);
+    Pose X_WM;
+    if (is_placed_again) visit_pose(X_WM, restore);
+    if (is_placed_again) place_body(body, X_WM);
+    bool is_out = false;
+    restore(is_out);
+    if (is_out) remove_body(body);
+    if (!is_out) put_back_body(body);
+  }
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     bool is_active = true;
     restore(is_active);
+    restore(members_[member].is_finite);
+    restore(members_[member].is_inside);
     PlanarBodies::visit_state(planar_, member, restore);
     PlanarGround::visit_state(grounds_[member], restore);
     planar_.update_poses(member);

@@ -53,6 +53,7 @@ class Problem {
   int add_body(const Multibody& body, const Eigen::Vector3d& gravity, double step);
 
   int body_count() const { return body_count_; }
+  Equations& equations(int body) { return equations_[static_cast<std::size_t>(body)]; }
   const Equations& equations(int body) const { return equations_[static_cast<std::size_t>(body)]; }
   std::vector<Row>& rows() { return rows_; }
   const std::vector<Row>& rows() const { return rows_; }

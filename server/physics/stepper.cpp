@@ -45,6 +45,8 @@ Stepper::Stepper(const description::World& description, WorkerPool& workers)
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
   scene_.build();
   find_lowest();
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(body);
 }
 
 std::uint32_t Stepper::add_body(std::size_t model, const Pose& X_WM) {
@@ -62,12 +64,13 @@ std::uint32_t Stepper::create_body(std::size_t model_index, const Pose& X_WM) {
       for (const description::Collision& collision : link.collisions)
         shapes_[model_index].push_back(std::make_shared<BulletShape>(collision.shape));
   if (model.is_static) {
-    bodies_.push_back({model_index, X_WM, Anchors::nobody, nullptr});
+    bodies_.push_back({model_index, X_WM, Anchors::nobody, nullptr, false, false, {}});
     add_static_solids(body);
   } else {
     try {
       if (!mechanism) mechanism = std::make_unique<Mechanism>(model, description_.physics.fidelity);
-      bodies_.push_back({model_index, X_WM, Anchors::nobody, std::make_unique<Multibody>(*mechanism, X_WM, body)});
+      bodies_.push_back(
+          {model_index, X_WM, Anchors::nobody, std::make_unique<Multibody>(*mechanism, X_WM, body), false, false, {}});
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("model '" + model.name + "': " + error.what());
     }
@@ -87,8 +90,10 @@ void Stepper::add_static_solids(std::uint32_t body) {
   const std::size_t model = bodies_[body].model;
   std::size_t index = 0;
   for (const description::Link& link : description_.models[model].links)
-    for (const description::Collision& collision : link.collisions)
+    for (const description::Collision& collision : link.collisions) {
+      bodies_[body].solids.push_back(static_cast<std::uint32_t>(scene_.size()));
       add_solid(body, collision, bodies_[body].X_WM * link.X_ML * collision.X_LC, {}, shapes_[model][index++]);
+    }
 }
 
 void Stepper::add_moving_solids(std::uint32_t body) {
@@ -126,16 +131,12 @@ void Stepper::find_lowest() {
 }
 
 bool Stepper::is_active(std::uint32_t body) const {
-  return bodies_[body].member == Anchors::nobody || members_[bodies_[body].member].is_active;
+  return bodies_[body].member == Anchors::nobody ? !bodies_[body].is_out : members_[bodies_[body].member].is_active;
 }
-
-void Stepper::remove_body(std::uint32_t body) { take_out(members_[bodies_[body].member]); }
 
 void Stepper::take_out(Member& member) {
   member.is_active = false;
-  const std::uint32_t index = bodies_[member.body].member;
-  for (Connection& connection : connections_)
-    if (connection.a().member == index || connection.b().member == index) connection.release();
+  release_connections_of(bodies_[member.body].member);
   for (const Part& part : member.parts) {
     scene_.remove(part.solid);
     collision_.remove(part.solid);
@@ -187,6 +188,7 @@ void Stepper::step() {
   report_contacts();
   break_connections();
   quarantine();
+  pushes_.clear();
   scene_.update();
 }
 
@@ -278,6 +280,8 @@ bool Stepper::try_island(const std::vector<std::uint32_t>& members, Problem& pro
   problem.clear();
   for (const std::uint32_t member : members)
     anchors_.index_of_member[member] = problem.add_body(of(members_[member]), description_.gravity, step_);
+  if (!pushes_.empty())
+    for (const std::uint32_t member : members) add_pushes_of(member, problem);
   if (!all_are_finite()) return false;
 
   for (const std::uint32_t member : members)

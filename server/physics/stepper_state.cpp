@@ -6,7 +6,10 @@
 namespace cohort::physics {
 
 void Stepper::hash_body(std::uint32_t body, StateHash& hash) const {
-  if (bodies_[body].member == Anchors::nobody) return;
+  const Body& placed = bodies_[body];
+  if (placed.is_placed_again) visit_pose(placed.X_WM, StateHasher{hash});
+  if (placed.is_out) StateHasher{hash}(placed.is_out);
+  if (placed.member == Anchors::nobody) return;
   StateHasher{hash}(members_[bodies_[body].member].is_active);
   Multibody::visit_state(*bodies_[body].multibody, StateHasher{hash});
 }
@@ -32,8 +35,15 @@ void Stepper::save(SnapshotWriter& writer) const {
     writer.add_count(bodies_[body].model);
     visit_pose(bodies_[body].X_WM, save);
   }
+  for (const Body& body : bodies_) {
+    save(body.is_placed_again);
+    if (body.is_placed_again) visit_pose(body.X_WM, save);
+    save(body.is_out);
+  }
   for (const Member& member : members_) {
     save(member.is_active);
+    save(member.is_finite);
+    save(member.is_inside);
     Multibody::visit_state(of(member), save);
   }
   writer.add_count(connections_.size());
@@ -60,9 +70,22 @@ void Stepper::restore(SnapshotReader& reader) {
     create_body(model, X_WM);
   }
   scene_.build();
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
+    bool is_placed_again = false;
+    restore(is_placed_again);
+    Pose X_WM;
+    if (is_placed_again) visit_pose(X_WM, restore);
+    if (is_placed_again) place_body(body, X_WM);
+    bool is_out = false;
+    restore(is_out);
+    if (is_out) remove_body(body);
+    if (!is_out) put_back_body(body);
+  }
   for (Member& member : members_) {
     bool is_active = true;
     restore(is_active);
+    restore(member.is_finite);
+    restore(member.is_inside);
     Multibody& multibody = of(member);
     Multibody::visit_state(multibody, restore);
     multibody.update_poses();

@@ -107,21 +107,22 @@ constexpr ExtensionKey history[] = {
 };
 
 constexpr Extension table[] = {
-    {"experiment", "", false, "A world, a seed, a duration, and who controls which robot.", experiment},
-    {"teams", "experiment", false, "Robots that share a controller.", team},
-    {"add", "events", false, "An object or a robot comes into the world.", add},
-    {"remove", "events", false, "Objects leave the world for good.", objects_only},
-    {"disable", "events", false, "Objects leave the world and may come back as they were.", objects_only},
-    {"enable", "events", false, "Objects come back.", objects_only},
-    {"move", "events", false, "Objects are put somewhere else, at rest, with their joints as they are.", move},
-    {"set_velocity", "events", false, "Objects get a velocity.", set_velocity},
-    {"apply_force", "events", false, "A force and a torque act for some time.", apply_force},
-    {"inside", "stop", false, "All of the objects are within a rectangle.", inside},
-    {"beyond", "stop", false, "One of the objects is beyond a line.", beyond},
-    {"at_rest", "stop", false, "None of the objects moves.", at_rest},
-    {"quarantined", "stop", false, "One of the objects broke or left the world.", quarantined},
-    {"print", "experiment", false, "A quantity of some objects, printed at times.", print},
-    {"history", "experiment", false, "Poses of some objects that are kept.", history},
+    {"experiment", "", false, "A world, a seed, a duration, and who controls which robot.", experiment, "experiment"},
+    {"teams", "experiment", false, "Robots that share a controller.", team, "experiment"},
+    {"add", "events", false, "An object or a robot comes into the world.", add, "events"},
+    {"remove", "events", false, "Objects leave the world for good.", objects_only, "events"},
+    {"disable", "events", false, "Objects leave the world and may come back as they were.", objects_only, "events"},
+    {"enable", "events", false, "Objects come back.", objects_only, "events"},
+    {"move", "events", false, "Objects are put somewhere else, at rest, with their joints as they are.", move,
+     "events"},
+    {"set_velocity", "events", false, "Objects get a velocity.", set_velocity, "events"},
+    {"apply_force", "events", false, "A force and a torque act for some time.", apply_force, "events"},
+    {"inside", "stop", false, "All of the objects are within a rectangle.", inside, "stop"},
+    {"beyond", "stop", false, "One of the objects is beyond a line.", beyond, "stop"},
+    {"at_rest", "stop", false, "None of the objects moves.", at_rest, "stop"},
+    {"quarantined", "stop", false, "One of the objects broke or left the world.", quarantined, "stop"},
+    {"print", "experiment", false, "A quantity of some objects, printed at times.", print, "print"},
+    {"history", "experiment", false, "Poses of some objects that are kept.", history, "history"},
 };
 
 }  // namespace

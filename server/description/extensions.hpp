@@ -21,7 +21,7 @@ enum class ExtensionValue {
   point,         ///< "x y"
   vector,        ///< "x y z"
   place,         ///< "x y heading"
-  pose,          ///< "x y z roll pitch yaw", rotated about the fixed axes x, then y, then z
+  pose,          ///< "x y z roll pitch yaw", rotated about the fixed axes x, then y, then z; or "x y z qx qy qz qw"
   group          ///< an extension of its own, described by its own entry
 };
 
@@ -46,6 +46,7 @@ struct Extension {
   bool has_name = false;    ///< carries the attribute `name`
   std::string_view doc;
   std::span<const ExtensionKey> keys;
+  std::string_view topic;                        ///< under which help has it
   ExtensionValue value = ExtensionValue::group;  ///< `group`: it holds keys; otherwise, a value itself
 };
 

@@ -30,6 +30,15 @@ Pose pose_of(const std::array<double, 6>& v) {
                              about(v[3], Eigen::Vector3d::UnitX()))};
 }
 
+// Normalised only if it needs it, so that one that was normalised before is the same again.
+std::optional<Pose> pose_of_quaternion(const std::array<double, 7>& v) {
+  const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+  constexpr double no_direction = 1e-6;
+  constexpr double rounding = 1e-14;
+  if (q.norm() < no_direction) return std::nullopt;
+  return Pose{{v[0], v[1], v[2]}, std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized()};
+}
+
 bool is_in_range(double number, ExtensionValue kind) {
   switch (kind) {
     case ExtensionValue::non_negative: return number >= 0.0;
@@ -83,9 +92,12 @@ std::optional<KeyValues::Value> parse_value(std::string_view text, const Extensi
       return Value(Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]));
     }
     case ExtensionValue::pose: {
-      const auto numbers = finite_numbers<6>(text);
+      if (const auto numbers = finite_numbers<6>(text)) return Value(pose_of(*numbers));
+      const auto numbers = finite_numbers<7>(text);
       if (!numbers) return std::nullopt;
-      return Value(pose_of(*numbers));
+      const std::optional<Pose> pose = pose_of_quaternion(*numbers);
+      if (!pose) return std::nullopt;
+      return Value(*pose);
     }
     case ExtensionValue::group: break;
   }
@@ -111,7 +123,7 @@ std::string expected(const ExtensionKey& key) {
     case ExtensionValue::point: return "two numbers 'x y'";
     case ExtensionValue::vector: return "three numbers 'x y z'";
     case ExtensionValue::place: return "three numbers 'x y heading'";
-    case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw'";
+    case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw', or seven 'x y z qx qy qz qw'";
     case ExtensionValue::group: return "elements";
   }
   return {};

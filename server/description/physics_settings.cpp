@@ -23,7 +23,17 @@ auto named(const Named& choices, std::string_view name) {
   return found->second;
 }
 
+template <class Named, class Choice>
+std::string name_in(const Named& choices, Choice wanted) {
+  for (const auto& [name, choice] : choices)
+    if (choice == wanted) return std::string(name);
+  throw std::logic_error("a choice without a name");
+}
+
 }  // namespace
+
+std::string name_of(Fidelity fidelity) { return name_in(fidelities, fidelity); }
+std::string name_of(Solver solver) { return name_in(solvers, solver); }
 
 PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values) {
   if (values.has("fidelity")) settings.fidelity = named(fidelities, values.text("fidelity"));

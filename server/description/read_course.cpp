@@ -46,6 +46,12 @@ struct CourseReader::Written {
   std::chrono::nanoseconds time{0};
 };
 
+struct CourseReader::ReadEvent {
+  Event event;
+  YAML::Node node;
+  std::string path;
+};
+
 namespace {
 
 /// The values of one entry and where they stand.
@@ -263,14 +269,15 @@ void CourseReader::read(Experiment& experiment) const {
 }
 
 void CourseReader::read_events(Experiment& experiment) const {
-  for (const Written& written : entries("events", true)) read_event(written, experiment);
-  std::stable_sort(experiment.events.begin(), experiment.events.end(),
-                   [](const Event& a, const Event& b) { return a.time < b.time; });
-  check_order(experiment);
+  std::vector<ReadEvent> events;
+  for (const Written& written : entries("events", true)) read_event(written, experiment.world, events);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const ReadEvent& a, const ReadEvent& b) { return a.event.time < b.event.time; });
+  check_order(experiment.world, events);
+  for (ReadEvent& each : events) experiment.events.push_back(std::move(each.event));
 }
 
-void CourseReader::read_event(const Written& written, Experiment& experiment) const {
-  const World& world = experiment.world;
+void CourseReader::read_event(const Written& written, const World& world, std::vector<ReadEvent>& events) const {
   const Entry entry(written.map, written.path, experiment_part(written.kind, "events"), report_);
   std::vector<std::size_t> objects;
   if (written.kind == "add") {
@@ -284,22 +291,21 @@ void CourseReader::read_event(const Written& written, Experiment& experiment) co
   }
   for (const std::size_t object : objects)
     if (const std::optional<Action> action = named(actions, written.kind)(entry, world, object))
-      experiment.events.push_back({written.time, object, *action, written.kind});
+      events.push_back({{written.time, object, *action, written.kind}, written.map, written.path});
 }
 
 // What has been removed does not come back, and what has not come yet cannot be acted on.
-void CourseReader::check_order(const Experiment& experiment) const {
-  const std::vector<Instance>& instances = experiment.world.instances;
-  std::vector<char> is_there(instances.size());
-  std::vector<char> is_gone(instances.size(), 0);
-  for (std::size_t i = 0; i < instances.size(); ++i) is_there[i] = instances[i].is_present ? 1 : 0;
-  for (const Event& event : experiment.events) {
-    const std::string what = event.kind + " of '" + instances[event.object].name + "' at " +
-                             std::to_string(std::chrono::duration<double>(event.time).count()) + " s: ";
+void CourseReader::check_order(const World& world, const std::vector<ReadEvent>& events) const {
+  std::vector<char> is_there(world.instances.size());
+  std::vector<char> is_gone(world.instances.size(), 0);
+  for (std::size_t i = 0; i < world.instances.size(); ++i) is_there[i] = world.instances[i].is_present ? 1 : 0;
+  for (const ReadEvent& each : events) {
+    const Event& event = each.event;
+    const std::string name = "'" + world.instances[event.object].name + "'";
     if (is_gone[event.object])
-      top_.problem("events", what + "it has been removed");
+      report_.problem(each.node, each.path, name + " has been removed by then");
     else if (event.kind != "add" && !is_there[event.object])
-      top_.problem("events", what + "it has not been added yet");
+      report_.problem(each.node, each.path, name + " has not been added by then");
     if (event.kind == "add") is_there[event.object] = 1;
     if (event.kind == "remove") is_gone[event.object] = 1;
   }

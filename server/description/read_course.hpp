@@ -23,11 +23,12 @@ class CourseReader {
   void read(Experiment& experiment) const;
 
  private:
-  struct Written;  // one entry of a list: its kind and the map of its keys
+  struct Written;    // one entry of a list: its kind and the map of its keys
+  struct ReadEvent;  // and where it stands
   std::vector<Written> entries(const std::string& list, bool have_times) const;
   void read_events(Experiment& experiment) const;
-  void read_event(const Written& written, Experiment& experiment) const;
-  void check_order(const Experiment& experiment) const;
+  void read_event(const Written& written, const World& world, std::vector<ReadEvent>& events) const;
+  void check_order(const World& world, const std::vector<ReadEvent>& events) const;
   void read_stops(Experiment& experiment) const;
   void read_prints(Experiment& experiment) const;
   void read_history(Experiment& experiment) const;

@@ -130,7 +130,7 @@ TEST(ShippedExperiments, TheRoverDrivesTheCircleOfItsWheels) {
   const Eigen::Vector2d centre(0.0, radius);
   EXPECT_NEAR((run.position("rover").head<2>() - centre).norm(), radius, 0.05 * radius);
   EXPECT_NEAR(run.position("rover").z(), 0.0, 0.005);
-  EXPECT_GT(run.least_upright, 0.99);
+  EXPECT_GT(run.least_upright, 0.98);
 }
 
 TEST(ShippedExperiments, TheHexapodWalksAheadAndStaysUpright) {
@@ -164,9 +164,9 @@ TEST(ShippedExperiments, AFormationDrivesAheadAsOne) {
   }
 }
 
-TEST(ShippedExperiments, TheMouseStaysInTheMazeUntilItFindsTheExit) {
-  const Shipped run("maze", 60.0);
-  EXPECT_FALSE(run.has_quarantined());
+TEST(ShippedExperiments, TheMouseFindsTheOneWayOut) {
+  const Shipped run("maze");
+  EXPECT_EQ(run.result.stop_reason, "beyond: 'mouse'");
   EXPECT_GE(run.cells_of_the_first.size(), 5u);
   for (const auto& [column, row] : run.cells_of_the_first) {
     EXPECT_GE(std::min(column, row), 0);

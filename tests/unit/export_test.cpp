@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -41,7 +42,10 @@ class ExportedWorlds : public Description {
     const World again = read_world(write_back(world), seed);
     EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);
     EXPECT_EQ(text_of(again), text_of(world));
-    EXPECT_EQ(hash_after(again, seed, 100), hash_after(world, seed, 100));
+    // What an event brings is not in the world.
+    if (std::ranges::all_of(world.instances, &Instance::is_present)) {
+      EXPECT_EQ(hash_after(again, seed, 100), hash_after(world, seed, 100));
+    }
   }
 };
 

@@ -57,7 +57,8 @@ std::string plain(std::string_view doc) {
 std::string title_of(const Extension& entry) {
   if (is_of_experiments(entry)) {
     if (entry.parent.empty()) return "an experiment (YAML)";
-    return fmt::format("{}: in {}", entry.name, entry.parent == "experiment" ? "an experiment" : entry.parent);
+    if (entry.parent == "experiment") return fmt::format("{}: of an experiment (YAML)", entry.name);
+    return fmt::format("{}: in {} of an experiment (YAML)", entry.name, entry.parent);
   }
   const std::string parent =
       is_extension(entry.parent) ? fmt::format("cohort:{}", entry.parent) : std::string(entry.parent);

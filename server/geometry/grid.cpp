@@ -3,6 +3,11 @@
 #include <bit>
 
 namespace cohort::geometry {
+namespace {
+
+constexpr std::size_t cells_a_tile = 64;
+
+}  // namespace
 
 double Grid::cells_covered(const Bounds& bounds) const {
   const double width = std::floor((bounds.upper.x() - bounds.lower.x()) * inverse_) + 2.0;
@@ -19,8 +24,8 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
   };
 
   // Counting sort into buckets: sizes, then ends, then items from the last to the first, which leaves the beginnings.
-  const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(16, 4 * items.size()));
-  mask_ = buckets - 1;
+  const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(cells_a_tile, 4 * items.size()));
+  mask_ = buckets / cells_a_tile - 1;
   begin_.assign(buckets + 1, 0);
   for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];

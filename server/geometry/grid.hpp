@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "server/core/floor.hpp"
 #include "server/geometry/shapes.hpp"
 
 namespace cohort::geometry {
@@ -92,12 +93,14 @@ class Grid {
 
  private:
   Cell cell_at(double x, double y) const {
-    return {static_cast<std::int64_t>(std::floor(x * inverse_)), static_cast<std::int64_t>(std::floor(y * inverse_))};
+    return {integer_below(x * inverse_), integer_below(y * inverse_)};
   }
+  // Tiles of 8 x 8 cells are hashed, so that cells side by side are so in memory.
   std::size_t bucket_of(Cell cell) const {
-    const auto hash = static_cast<std::uint64_t>(cell.x) * 0x9e3779b97f4a7c15u ^
-                      static_cast<std::uint64_t>(cell.y) * 0xc2b2ae3d27d4eb4fu;
-    return static_cast<std::size_t>((hash ^ hash >> 29) & mask_);
+    const auto x = static_cast<std::uint64_t>(cell.x);
+    const auto y = static_cast<std::uint64_t>(cell.y);
+    const std::uint64_t hash = (x >> 3) * 0x9e3779b97f4a7c15u ^ (y >> 3) * 0xc2b2ae3d27d4eb4fu;
+    return static_cast<std::size_t>(((hash ^ hash >> 29) & mask_) << 6 | (y & 7) << 3 | (x & 7));
   }
   std::span<const std::uint32_t> bucket(Cell cell) const {
     const std::size_t index = bucket_of(cell);
@@ -106,7 +109,7 @@ class Grid {
 
   double edge_ = 1.0;
   double inverse_ = 1.0;
-  std::uint64_t mask_ = 0;
+  std::uint64_t mask_ = 0;              // of the tiles
   std::vector<std::uint32_t> begin_;    // of each bucket in entries_, and one past the last
   std::vector<std::uint32_t> entries_;  // items, ascending within a bucket
 };

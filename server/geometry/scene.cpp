@@ -88,7 +88,7 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eig
   std::optional<RayHit> best;
   const auto test = [&](std::uint32_t index) {
     const double reach = best ? best->distance : range;
-    if (solids_[index].body == ignored_body || misses(index, origin_W, direction_W, reach)) return reach;
+    if (solids_[index].body == ignored_body || balls_[index].is_missed(origin_W, direction_W, reach)) return reach;
     return improve(best, index, origin_W, direction_W, range);
   };
   for (const std::uint32_t index : large_) test(index);
@@ -97,19 +97,11 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eig
   return best;
 }
 
-std::vector<std::uint32_t> Scene::solids_in(const Bounds& region, std::uint32_t ignored_body) const {
-  std::vector<std::uint32_t> found;
-  for_each_overlap(region, [&](std::uint32_t index) {
-    if (solids_[index].body != ignored_body) found.push_back(index);
-  });
-  return found;
-}
-
 std::optional<RayHit> Scene::cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
                                             const Eigen::Vector3d& direction_W, double range) const {
   std::optional<RayHit> best;
   for (const std::uint32_t index : candidates)
-    if (!misses(index, origin_W, direction_W, best ? best->distance : range))
+    if (!balls_[index].is_missed(origin_W, direction_W, best ? best->distance : range))
       improve(best, index, origin_W, direction_W, range);
   return best;
 }

@@ -58,11 +58,28 @@ class Scene {
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
                                  std::uint32_t ignored_body = no_body) const;
 
-  /// The solids that a ray inside `region` can hit, for `cast_ray_among`: several rays from one place find them once.
-  std::vector<std::uint32_t> solids_in(const Bounds& region, std::uint32_t ignored_body = no_body) const;
-  /// As `cast_ray`, among `candidates` only. The same answer, bit for bit, if the ray stays inside their region.
+  /// As `cast_ray`, among `candidates` only.
   std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
                                        const Eigen::Vector3d& direction_W, double range) const;
+
+  /// A ball that holds a solid, around its origin: a ray that misses the ball misses the solid.
+  struct Ball {
+    Eigen::Vector3d centre_W;
+    double radius = 0.0;  ///< [m], infinite for planes and height maps
+
+    /// Whether a ray surely passes beside it on its first `reach`.
+    bool is_missed(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double reach) const {
+      const Eigen::Vector3d offset = centre_W - origin_W;
+      const double along = offset.dot(direction_W);
+      return along < -radius || along > reach + radius || offset.squaredNorm() - along * along > radius * radius;
+    }
+  };
+  const Ball& ball(std::uint32_t index) const { return balls_[index]; }
+
+  /// Makes `best` the solid's hit if that is nearer along the ray, or as near and of a lower index. Returns how far a
+  /// nearer hit may be.
+  double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
+                 const Eigen::Vector3d& direction_W, double range) const;
 
   /// Whether a solid's bounds overlap `query`, or, of a plane, it reaches into it.
   bool reaches_into(std::uint32_t index, const Bounds& query) const {
@@ -87,27 +104,10 @@ class Scene {
  private:
   std::shared_ptr<const MeshSurface> surface_of(const description::Mesh& mesh);
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
-  /// Whether a ray surely misses a solid on its first `reach`.
-  bool misses(std::uint32_t index, const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
-              double reach) const {
-    const Ball& ball = balls_[index];
-    const Eigen::Vector3d offset = ball.centre_W - origin_W;
-    const double along = offset.dot(direction_W);
-    return along < -ball.radius || along > reach + ball.radius ||
-           offset.squaredNorm() - along * along > ball.radius * ball.radius;
-  }
-  /// Makes `best` the solid's hit if that is nearer. Returns how far a nearer hit may be.
-  double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
-                 const Eigen::Vector3d& direction_W, double range) const;
-
   std::vector<Solid> solids_;
   std::vector<Pose> X_CW_;  // inverse of each solid's pose
   std::vector<Bounds> bounds_;
-  struct Ball {
-    Eigen::Vector3d centre_W;
-    double radius;
-  };
-  std::vector<Ball> balls_;  // around each solid; a ray that misses it misses the solid
+  std::vector<Ball> balls_;  // around each solid
   std::vector<std::shared_ptr<const MeshSurface>> surfaces_;  // of each solid that is a mesh
   std::map<std::pair<const description::TriangleMesh*, bool>, std::shared_ptr<const MeshSurface>> shared_;
   std::vector<char> is_out_;

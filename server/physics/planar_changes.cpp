@@ -1,18 +1,11 @@
 // What changes in a planar world between steps, from outside.
 
-#include <algorithm>
-
 #include "server/physics/planar_engine.hpp"
 
 namespace cohort::physics {
 
-void PlanarEngine::release_connections_of(std::uint32_t member) {
-  for (Connection& connection : connections_)
-    if (connection.a().member == member || connection.b().member == member) connection.release();
-}
-
 void PlanarEngine::remove_body(std::uint32_t index) {
-  Body& body = bodies_[index];
+  PlacedBody& body = bodies_[index];
   if (!is_active(index)) return;
   if (body.member != Anchors::nobody) return take_out(body.member);
   body.is_out = true;
@@ -20,7 +13,7 @@ void PlanarEngine::remove_body(std::uint32_t index) {
 }
 
 void PlanarEngine::put_back_body(std::uint32_t index) {
-  Body& body = bodies_[index];
+  PlacedBody& body = bodies_[index];
   if (is_active(index)) return;
   if (body.member == Anchors::nobody) {
     body.is_out = false;
@@ -36,7 +29,7 @@ void PlanarEngine::put_back_body(std::uint32_t index) {
 }
 
 void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
-  Body& body = bodies_[index];
+  PlacedBody& body = bodies_[index];
   body.X_WM = X_WM;
   body.is_placed_again = true;
   if (body.member == Anchors::nobody) {
@@ -48,7 +41,7 @@ void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
       }
     return scene_.build();
   }
-  release_connections_of(body.member);
+  connections_.release_of(body.member);
   planar_.place(body.member, X_WM);
   collision_.forget(body.member);
   find_parts_in_body(members_[body.member], body.member);
@@ -59,18 +52,9 @@ void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
 
 void PlanarEngine::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {
   const std::uint32_t member = bodies_[body].member;
-  const Mechanism::LinkPlace& place = planar_.model(member).mechanism().link(link);
   const description::Inertial& inertial = description_.models[bodies_[body].model].links[link].inertial;
-  const Push push{member, place.segment, link_pose(body, link) * inertial.X_LI.position, wrench};
-  const auto is_before = [](const Push& one, const Push& two) { return one.member < two.member; };
-  pushes_.insert(std::upper_bound(pushes_.begin(), pushes_.end(), push, is_before), push);
-}
-
-void PlanarEngine::add_pushes_of(std::uint32_t member) {
-  const auto is_of = [](const Push& push, std::uint32_t which) { return push.member < which; };
-  for (auto push = std::lower_bound(pushes_.begin(), pushes_.end(), member, is_of);
-       push != pushes_.end() && push->member == member; ++push)
-    planar_.push(member, push->point_W, step_ * push->wrench.force_W, step_ * push->wrench.torque_W);
+  pushes_.add({member, planar_.model(member).mechanism().link(link).segment,
+               link_pose(body, link) * inertial.X_LI.position, wrench});
 }
 
 }  // namespace cohort::physics

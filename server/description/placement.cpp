@@ -79,6 +79,7 @@ class Ground {
 
   /// Where the ground is under an instance at a point; nothing if it has no room there.
   std::optional<double> find(const Vector2d& point) const {
+    if (!point.allFinite()) return std::nullopt;
     const double ground = highest_under(point);
     return is_free(point, ground) ? std::optional(ground) : std::nullopt;
   }

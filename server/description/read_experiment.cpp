@@ -9,6 +9,7 @@
 
 #include "server/description/experiment.hpp"
 #include "server/description/experiment_keys.hpp"
+#include "server/description/file_kind.hpp"
 #include "server/description/input_error.hpp"
 #include "server/description/input_file.hpp"
 #include "server/description/physics_settings.hpp"
@@ -132,7 +133,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   experiment_.seed = seed.value_or(written_seed);
   if (!duration) top.require("duration", "simulated time in seconds");
   experiment_.duration = duration.value_or(read_seconds(top, "duration").value_or(experiment_.duration));
-  top.require("world", "the SDF file of the world, relative to this file");
+  top.require("world", "the file of the world, relative to this file");
   top.require("teams", "which robots have which controller");
   const CourseReader course(top, experiment_.file, report_);
   read_world_of(top, course.later_objects());
@@ -152,7 +153,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
 YAML::Node ExperimentReader::load() const {
   const fs::path& file = experiment_.file;
   if (auto reason = why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
-  if (file.extension() == ".sdf" || file.extension() == ".world")
+  if (kind_of_file(file) == FileKind::sdf)
     throw InputError(
         {{file, 0, "",
           "this is a world; expected an experiment (YAML), which names a world and who controls its robots"}});

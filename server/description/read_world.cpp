@@ -22,6 +22,8 @@
 namespace cohort::description {
 namespace {
 
+const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
+
 class WorldReader {
  public:
   WorldReader(const std::filesystem::path& file, std::uint64_t seed,
@@ -33,9 +35,11 @@ class WorldReader {
     world_.file = file;
   }
 
-  World read(const std::vector<LaterObject>& later);
+  World read(bool may_be_a_model, const std::vector<LaterObject>& later);
 
  private:
+  World finished();
+  void read_model_alone(const SdfFile& file);
   void read_settings(const sdf::World& sdf_world);
   void read_models(const sdf::World& sdf_world, const SdfFile& file);
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
@@ -69,14 +73,18 @@ class WorldReader {
   std::size_t in_site_ = 0;
 };
 
-World WorldReader::read(const std::vector<LaterObject>& later) {
+World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& later) {
   const SdfFile& file = files_.world();
   if (!file.loaded) throw InputError(std::move(problems_));
+  if (may_be_a_model && file.root.Model() != nullptr) {
+    read_model_alone(file);
+    return finished();
+  }
   if (file.root.WorldCount() != 1) {
     // A misspelt <world> has been reported.
     if (problems_.empty())
-      problems_.push_back(
-          {file.shown, file.xml.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+      problems_.push_back({file.shown, file.source_line(file.xml.line), "",
+                           "expected one <world>, not " + std::to_string(file.root.WorldCount())});
     throw InputError(std::move(problems_));
   }
   const sdf::World& sdf_world = *file.root.WorldByIndex(0);
@@ -84,11 +92,21 @@ World WorldReader::read(const std::vector<LaterObject>& later) {
   read_models(sdf_world, file);
   read_extensions(sdf_world);
   for (const LaterObject& object : later) add_later(object);
+  return finished();
+}
+
+World WorldReader::finished() {
   if (!problems_.empty()) throw InputError(std::move(problems_));
 
   for (std::size_t i = 0; i < world_.instances.size(); ++i)
     if (world_.models[world_.instances[i].model].is_robot()) world_.robots.push_back(i);
   return std::move(world_);
+}
+
+void WorldReader::read_model_alone(const SdfFile& file) {
+  world_.name = file.root.Model()->Name();
+  world_.gravity = sdf_gravity;
+  add_instance(world_.name, shared_model(file, file.root.Model()->Static()), {});
 }
 
 void WorldReader::read_settings(const sdf::World& sdf_world) {
@@ -276,7 +294,12 @@ bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& 
 
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
-  return WorldReader(file, seed, last_model_folders).read(later);
+  return WorldReader(file, seed, last_model_folders).read(false, later);
+}
+
+World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
+                          const std::vector<std::filesystem::path>& last_model_folders) {
+  return WorldReader(file, seed, last_model_folders).read(true, {});
 }
 
 }  // namespace cohort::description

@@ -1,17 +1,15 @@
 #include "server/description/sdf_errors.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <sdf/Element.hh>
 #include <sdf/Error.hh>
-#include <sdf/SDFImpl.hh>
-#include <sdf/parser.hh>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "server/description/sdf_schema.hpp"
 #include "server/description/text.hpp"
 
 namespace cohort::description {
@@ -132,9 +130,7 @@ void find_on_line(const XmlNode& node, std::string_view name, int line, std::vec
 
 // What SDFormat knows of the element at a readable path, from the root's child on; nullptr if it knows none.
 sdf::ElementPtr definition_of(std::string_view path) {
-  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-  sdf::init(sdf);
-  sdf::ElementPtr element = sdf->Root();
+  sdf::ElementPtr element = sdf_definition();
   while (element && !path.empty()) {
     const std::string_view step = path.substr(0, path.find('/'));
     const std::string name(step.substr(0, step.find('[')));
@@ -228,6 +224,7 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
     } else if (is_cannot_read_element(error)) {
       problem.message = message_with_value(error, problem.line, file.xml);
     }
+    problem.line = file.source_line(problem.line);
     problems.push_back(std::move(problem));
   }
   return problems;

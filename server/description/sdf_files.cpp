@@ -12,9 +12,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/description/file_kind.hpp"
 #include "server/description/input_file.hpp"
 #include "server/description/sdf_errors.hpp"
 #include "server/description/text.hpp"
+#include "server/description/yaml_sdf.hpp"
 
 namespace cohort::description {
 namespace {
@@ -144,8 +146,10 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
   file->path = absolute;
   file->shown = shown;
   opening_.push_back(absolute);
-  if (const auto text = read_text(*file); text && read_outline(*text, *file) && follow_includes(file->xml, "", *file))
-    load(*text, *file);
+  if (auto text = read_text(*file)) {
+    const auto sdf = is_yaml(absolute) ? read_yaml(*text, *file) : read_outline(*std::move(text), *file);
+    if (sdf && follow_includes(file->xml, "", *file)) load(*sdf, *file);
+  }
   opening_.pop_back();
   return *file;
 }
@@ -162,10 +166,10 @@ std::optional<std::string> SdfFiles::read_text(const SdfFile& file) {
   return std::nullopt;
 }
 
-bool SdfFiles::read_outline(const std::string& text, SdfFile& file) {
+std::optional<std::string> SdfFiles::read_outline(std::string text, SdfFile& file) {
   const auto fail = [&](int line, std::string message) {
     problems_.push_back({file.shown, line, "", std::move(message)});
-    return false;
+    return std::nullopt;
   };
   XmlOutline outline = outline_xml(text);
   if (outline.error) return fail(outline.error->line, outline.error->message);
@@ -179,7 +183,19 @@ bool SdfFiles::read_outline(const std::string& text, SdfFile& file) {
   if (version_of(*version) > version_of(sdf::SDF::Version()) || version_of(*version) == std::pair{0, 0})
     return fail(file.xml.line,
                 "SDF version '" + *version + "' cannot be read, only versions up to " + sdf::SDF::Version());
-  return true;
+  return text;
+}
+
+std::optional<std::string> SdfFiles::read_yaml(const std::string& text, SdfFile& file) {
+  const YamlDocument document = parse_yaml(text);
+  if (document.error) {
+    problems_.push_back({file.shown, document.error->line, "", document.error->message});
+    return std::nullopt;
+  }
+  file.xml = sdf_of_yaml(*document.root, file.shown, problems_);
+  auto [sdf, lines] = xml_text_of(file.xml);
+  file.source_lines = std::move(lines);
+  return std::move(sdf);
 }
 
 bool SdfFiles::follow_includes(const XmlNode& node, const std::string& path, SdfFile& file) {
@@ -196,8 +212,8 @@ bool SdfFiles::follow_includes(const XmlNode& node, const std::string& path, Sdf
 
 bool SdfFiles::follow_include(const XmlNode& include, const std::string& path, bool in_world, SdfFile& file) {
   const auto problem = [&](const XmlNode& where, std::string message) {
-    problems_.push_back(
-        {file.shown, where.line, &where == &include ? path : path + "/" + where.name, std::move(message)});
+    problems_.push_back({file.shown, file.source_line(where.line), &where == &include ? path : path + "/" + where.name,
+                         std::move(message)});
   };
   const auto flaw = flaw_of_include(include);
   if (flaw) {
@@ -225,7 +241,7 @@ bool SdfFiles::follow_include(const XmlNode& include, const std::string& path, b
   // libsdformat asks this map first. It would ask the working directory before its find callback, and the result would
   // depend on where the program was started.
   libsdformat_.config().AddURIPath(found.folder_uri, found.folder.string());
-  if (in_world) file.includes.push_back({include.line, uri->text, &included});
+  if (in_world) file.includes.push_back({file.source_line(include.line), uri->text, &included});
   return true;
 }
 
@@ -271,6 +287,7 @@ Location SdfFiles::locate(const sdf::ElementPtr& element) const {
   const SdfFile* const file = find(element->FilePath());
   location.file = file != nullptr ? file->shown : fs::path(element->FilePath());
   location.line = line_of(element);
+  if (file != nullptr) location.line = file->source_line(location.line);
   for (sdf::ElementPtr step = element; step && step->GetName() != "sdf"; step = step->GetParent())
     location.element = step_of(step) + (location.element.empty() ? "" : "/") + location.element;
   return location;

@@ -38,10 +38,17 @@ struct SdfFile {
   std::filesystem::path path;   ///< absolute
   std::filesystem::path shown;  ///< as the user calls it
   XmlNode xml;
+  std::vector<int> source_lines;  ///< by line of `xml`, of a file that is not XML itself; empty if they are the same
   std::vector<Include> includes;  ///< directly in <world>, those that libsdformat has followed, in document order
   sdf::Root root;
   bool loaded = false;  ///< `root` has the elements of the file
   bool sound = false;   ///< libsdformat has nothing to say against them, so that frames resolve
+
+  /// The line of the file as it is written.
+  int source_line(int line) const {
+    const auto place = static_cast<std::size_t>(line);
+    return place < source_lines.size() ? source_lines[place] : line;
+  }
 };
 
 /// Makes libsdformat read by our rules and print nothing. Its settings are global to the process (an included file is
@@ -92,7 +99,9 @@ class SdfFiles {
  private:
   SdfFile& open(const std::filesystem::path& path, const std::filesystem::path& shown);
   std::optional<std::string> read_text(const SdfFile& file);
-  bool read_outline(const std::string& text, SdfFile& file);
+  /// The text as SDF; nothing after a problem.
+  std::optional<std::string> read_outline(std::string text, SdfFile& file);
+  std::optional<std::string> read_yaml(const std::string& text, SdfFile& file);
   /// False if libsdformat would stumble over it.
   bool follow_includes(const XmlNode& node, const std::string& path, SdfFile& file);
   bool follow_include(const XmlNode& include, const std::string& path, bool in_world, SdfFile& file);

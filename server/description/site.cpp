@@ -203,8 +203,12 @@ SiteCells::SiteCells(const Vector2d& lower, const Vector2d& upper, double reach,
   const Vector2d size = upper_ - lower_;
   cell_ = std::max({reach, std::sqrt(size.prod() / static_cast<double>(expected + 1)),
                     size.maxCoeff() / static_cast<double>(expected + 1), negligible_cell});
-  columns_ = 1 + static_cast<std::size_t>(size.x() / cell_);
-  rows_ = 1 + static_cast<std::size_t>(size.y() / cell_);
+  // An area may be larger than any number: then there is one cell.
+  const auto cells_along = [&](double length) {
+    return std::isfinite(length) ? 1 + static_cast<std::size_t>(length / cell_) : 1;
+  };
+  columns_ = cells_along(size.x());
+  rows_ = cells_along(size.y());
   cells_.resize(columns_ * rows_);
 }
 
@@ -221,7 +225,9 @@ void SiteCells::add(const Site::Thing& thing) {
 }
 
 std::size_t SiteCells::index(double offset, std::size_t count) const {
-  return static_cast<std::size_t>(std::clamp(offset / cell_, 0.0, static_cast<double>(count - 1)));
+  const double place = offset / cell_;
+  if (!(place > 0.0)) return 0;
+  return static_cast<std::size_t>(std::min(place, static_cast<double>(count - 1)));
 }
 
 }  // namespace cohort::description

@@ -13,16 +13,6 @@ constexpr std::string_view white_space = " \t\r\n";
 
 bool ends_name(char c) { return white_space.find(c) != std::string_view::npos || c == '/' || c == '>' || c == '='; }
 
-bool is_name(std::string_view name) {
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
-           static_cast<unsigned char>(c) > 127;
-  };
-  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
-    return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.';
-  });
-}
-
 void append_utf8(std::string& text, std::uint32_t code) {
   const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
   const auto put_tail = [&](int shift) { put(0x80 | (code >> shift & 0x3f)); };
@@ -69,6 +59,35 @@ std::string without_entities(std::string_view raw) {
     raw.remove_prefix(end + 1);
   }
   return text;
+}
+
+std::string with_entities(std::string_view raw) {
+  std::string text;
+  for (const char c : raw) {
+    switch (c) {
+      case '&': text += "&amp;"; break;
+      case '<': text += "&lt;"; break;
+      case '>': text += "&gt;"; break;
+      case '"': text += "&quot;"; break;
+      case '\n': text += "&#10;"; break;  // a line is an element
+      case '\r': text += "&#13;"; break;
+      default: text += c;
+    }
+  }
+  return text;
+}
+
+void write(XmlNode& node, std::string& text, std::vector<int>& lines) {
+  const int line = static_cast<int>(lines.size());
+  lines.push_back(std::exchange(node.line, line));
+  text += '<' + node.name;
+  for (const auto& [name, value] : node.attributes) text += ' ' + name + "=\"" + with_entities(value) + '"';
+  text += '>' + with_entities(node.text);
+  for (XmlNode& child : node.children) {
+    text += '\n';
+    write(child, text, lines);
+  }
+  text += "</" + node.name + '>';
 }
 
 class Scanner {
@@ -176,7 +195,7 @@ bool Scanner::opening_tag() {
   node.line = line_;
   take(1);
   node.name = take_name();
-  if (!is_name(node.name)) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
+  if (!is_xml_name(node.name)) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
   if (open_.empty() && has_root_)
     return fail(node.line, "<" + node.name + "> is a second root element; a file has one");
   has_root_ = true;
@@ -201,7 +220,7 @@ bool Scanner::attribute(XmlNode& node) {
   const int line = line_;
   const std::string name(take_name());
   skip_space();
-  if (!is_name(name) || !at("=")) return fail(line, "in the tag <" + node.name + ", expected ATTRIBUTE=\"VALUE\"");
+  if (!is_xml_name(name) || !at("=")) return fail(line, "in the tag <" + node.name + ", expected ATTRIBUTE=\"VALUE\"");
   take(1);
   skip_space();
   if (!at("\"") && !at("'"))
@@ -252,6 +271,22 @@ const std::string* XmlNode::attribute(std::string_view attribute_name) const {
   return found == attributes.end() ? nullptr : &found->second;
 }
 
+bool is_xml_name(std::string_view name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
+           static_cast<unsigned char>(c) > 127;
+  };
+  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.';
+  });
+}
+
 XmlOutline outline_xml(std::string_view text) { return Scanner(text).scan(); }
+
+std::pair<std::string, std::vector<int>> xml_text_of(XmlNode& node) {
+  std::pair<std::string, std::vector<int>> written{"", {0}};
+  write(node, written.first, written.second);
+  return written;
+}
 
 }  // namespace cohort::description

@@ -36,4 +36,11 @@ struct XmlOutline {
 
 XmlOutline outline_xml(std::string_view text);
 
+/// Whether it can be the name of an element or an attribute.
+bool is_xml_name(std::string_view name);
+
+/// An element as XML text, each element starting on a line of its own. Every line in `node` becomes that of the text;
+/// what they were comes back: of line n in place n, with 0 in place 0.
+std::pair<std::string, std::vector<int>> xml_text_of(XmlNode& node);
+
 }  // namespace cohort::description

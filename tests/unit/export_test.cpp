@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "server/description/write_world.hpp"
+#include "server/description/yaml_sdf.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/written_worlds.hpp"
 
@@ -42,6 +43,8 @@ class ExportedWorlds : public Description {
     const World again = read_world(write_back(world), seed);
     EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);
     EXPECT_EQ(text_of(again), text_of(world));
+    const World from_yaml = read_world(write("exported.yaml", yaml_of_sdf(sdf_of(world, folder_))), seed);
+    EXPECT_EQ(text_of(from_yaml), text_of(world));
     // What an event brings is not in the world.
     if (std::ranges::all_of(world.instances, &Instance::is_present)) {
       EXPECT_EQ(hash_after(again, seed, 100), hash_after(world, seed, 100));

@@ -64,9 +64,8 @@ int check(const std::filesystem::path& file, Log& log);
 
 struct ExportCommand {
   std::filesystem::path file;
-  std::filesystem::path output;  ///< .sdf
-  std::uint64_t seed = 1;        ///< of the populations of a world; an experiment has its own
-  bool has_seed = false;
+  std::filesystem::path output;       ///< .sdf or .yaml
+  std::optional<std::uint64_t> seed;  ///< of the populations; none: the experiment's, or 1
 };
 int export_world(const ExportCommand& command, Log& log);
 

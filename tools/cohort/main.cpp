@@ -250,13 +250,14 @@ int main(int argc, char** argv) {
   check_app->footer("Example: cohort check worlds/arenas/obstacles.sdf");
 
   ExportCommand export_options;
-  CLI::App* export_app = app.add_subcommand("export", "Write a world, or that of an experiment, as SDF");
-  export_app->add_option("FILE", export_options.file, "Experiment or world")->required()->type_name("");
-  export_app->add_option("-o,--output", export_options.output, "File to write")->required()->type_name("FILE");
-  CLI::Option* const export_seed =
-      export_app->add_option("--seed", export_options.seed, "Seed of the populations, instead of the experiment's")
-          ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-          ->type_name("N");
+  CLI::App* export_app = app.add_subcommand("export", "Write a world, or that of an experiment, as SDF or YAML");
+  export_app->add_option("FILE", export_options.file, "World, model or experiment")->required()->type_name("");
+  export_app->add_option("-o,--output", export_options.output, "File to write, .sdf or .yaml")
+      ->required()
+      ->type_name("FILE");
+  export_app->add_option("--seed", export_options.seed, "Seed of the populations, instead of the experiment's")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->type_name("N");
   add_log_options(*export_app, log_flags);
   export_app->footer("Example: cohort export worlds/arenas/obstacles.sdf -o placed.sdf");
 
@@ -299,7 +300,6 @@ int main(int argc, char** argv) {
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
-  export_options.has_seed = !export_seed->empty();
   if (export_app->parsed()) return export_world(export_options, log);
   if (help_app->parsed()) return help(help_topic, log);
   if (bench_app->parsed()) return bench(bench_command, log, stop_requested);

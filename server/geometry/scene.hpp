@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/description/model.hpp"
+#include "server/geometry/corner_grid.hpp"
 #include "server/geometry/grid.hpp"
 #include "server/geometry/mesh_surface.hpp"
 #include "server/geometry/shapes.hpp"
@@ -51,7 +52,7 @@ class Scene {
   /// Moves a solid. Different ones that move may be moved from different threads; after one that does not, `build`.
   void set_pose(std::uint32_t index, const Pose& X_WC);
   /// Takes the new poses into the grid.
-  void update() { moving_grid_.build(moving_, bounds_); }
+  void update();
 
   /// The first solid along a ray of unit direction and length `range`, those of `ignored_body` left out. Of two at the
   /// very same distance the one with the lower index, so the answer depends on the scene alone.
@@ -91,7 +92,10 @@ class Scene {
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
     for_each_static_overlap(query, visit);
-    moving_grid_.for_each_overlap(query, bounds_, visit);
+    moving_grid_.for_each_overlap(query, visit);
+    for (const std::uint32_t index : large_moving_)
+      if (bounds_[index].overlaps(query)) visit(index);
+    wide_grid_.for_each_overlap(query, bounds_, visit);
   }
   /// The same, of those that do not move.
   template <class Visit>
@@ -102,19 +106,25 @@ class Scene {
   }
 
  private:
+  double choose_cell_size() const;
   std::shared_ptr<const MeshSurface> surface_of(const description::Mesh& mesh);
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
   std::vector<Solid> solids_;
   std::vector<Pose> X_CW_;  // inverse of each solid's pose
   std::vector<Bounds> bounds_;
-  std::vector<Ball> balls_;  // around each solid
+  std::vector<Ball> balls_;                                   // around each solid
   std::vector<std::shared_ptr<const MeshSurface>> surfaces_;  // of each solid that is a mesh
   std::map<std::pair<const description::TriangleMesh*, bool>, std::shared_ptr<const MeshSurface>> shared_;
-  std::vector<char> is_out_;
-  std::vector<std::uint32_t> moving_;
+  std::vector<char> is_removed_;
+  // What does not move.
   std::vector<std::uint32_t> large_;  // planes, and what would fill many cells
   Grid static_grid_;
-  Grid moving_grid_;
+  // What moves.
+  std::vector<std::uint32_t> moving_;        // no wider than a cell, in any orientation
+  std::vector<std::uint32_t> wide_;          // the others, but for
+  std::vector<std::uint32_t> large_moving_;  // those that would fill many cells
+  CornerGrid moving_grid_;
+  Grid wide_grid_;
 };
 
 }  // namespace cohort::geometry

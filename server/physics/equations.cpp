@@ -99,8 +99,9 @@ void Equations::move_outwards(const Eigen::Vector3d& gravity) {
     const Spatial& a = work.acceleration;
     const Eigen::Vector3d angular_momentum = work.inertia * v.angular + work.moment.cross(v.linear);
     const Eigen::Vector3d linear_momentum = work.mass * v.linear - work.moment.cross(v.angular);
-    work.force.angular = work.inertia * a.angular + work.moment.cross(a.linear) + v.angular.cross(angular_momentum) +
-                         v.linear.cross(linear_momentum);
+    work.force.angular = work.inertia * a.angular + work.moment.cross(a.linear) + v.linear.cross(linear_momentum);
+    // That of a body on its own is left to how it moves on: Multibody::integrate.
+    if (!mechanism_->is_free_body()) work.force.angular += v.angular.cross(angular_momentum);
     work.force.linear = work.mass * a.linear - work.moment.cross(a.angular) + v.angular.cross(linear_momentum);
   }
 }

@@ -87,6 +87,7 @@ class Multibody {
     int wheels = -1;
   };
 
+  void turn_freely(double step);
   void build_devices();
   void add_drive(std::size_t device, const description::TreelDrive& drive);
   void add_motor(int dof, double max_effort, const std::string& device);

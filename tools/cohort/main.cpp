@@ -177,9 +177,10 @@ void add_bench_options(CLI::App& app, BenchCommand& command) {
       ->type_name("N");
   app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
   app.footer(
-      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies), chain\n"
-      "(connected robots), rays, build (time and memory). Engines: cohort, and as Debian ships them ode-worldstep,\n"
-      "ode-quickstep, mujoco and enki.\n"
+      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies),\n"
+      "crowd_planar (Cohort in the plane only), chain (connected robots), rays, build (time and memory),\n"
+      "accuracy (against closed forms).\n"
+      "Engines: cohort, and as Debian ships them ode-worldstep, ode-quickstep, mujoco and enki.\n"
       "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
       "they can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with\n"
       "speed; Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"

@@ -16,7 +16,7 @@ Pose to_pose(const ignition::math::Pose3d& X);
 /// The descendant at this path, nullptr if it is not there. (Element::GetElement would add it.)
 sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*> path);
 
-/// Checks that every number below `element`, except in what is not simulated and in included files, is a number and
+/// Checks that every number below `element`, except in what is not simulated, is a number and
 /// nothing else: libsdformat reads "1,5" as 1, "3 m" as 3 and an empty element as its default.
 void check_numbers(const sdf::ElementPtr& element, const SdfReport& report);
 

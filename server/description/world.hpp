@@ -70,12 +70,12 @@ struct World {
   const Model& robot_model(std::uint32_t id) const { return models[robot(id).model]; }
 };
 
-/// Reads a world, in SDF or YAML, with libsdformat and expands its includes and, by `seed`, its `cohort:population` elements. The
-/// instances are the models and includes in document order, then the populations in theirs. `model://NAME` is looked
-/// for in the folders of the environment variable COHORT_MODEL_PATH, in `robots` and `objects` in the folder of the
-/// file and in its parents, four levels up, and in `last_model_folders`; other URIs are paths relative to the file.
-/// docs/worlds.md has the details. Throws InputError with every problem found. Callable from any thread; calls wait for
-/// each other.
+/// Reads a world, in SDF or YAML, with libsdformat and expands its includes and, by `seed`, its `cohort:population`
+/// elements. The instances are the models and includes in document order, then the populations in theirs.
+/// `model://NAME` is looked for in the folders of the environment variable COHORT_MODEL_PATH, in `robots` and `objects`
+/// in the folder of the file and in its parents, four levels up, and in `last_model_folders`; other URIs are paths
+/// relative to the file. docs/worlds.md has the details. Throws InputError with every problem found. Callable from any
+/// thread; calls wait for each other.
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders = {});
 

@@ -131,13 +131,21 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
 void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {
   std::map<std::string, const Include*> includes;
   for (const Include& include : file.includes) includes.emplace(include.name, &include);
+  auto next = file.includes.begin();
+  const auto add_placed_before = [&](std::size_t place) {
+    for (; next != file.includes.end() && next->place <= place; ++next)
+      if (next->X_WM) add_included_model(*next, to_pose(*next->X_WM));
+  };
   std::map<std::string, const sdf::Frame*> frames;  // FrameByName would search all of them for each
   for (std::uint64_t i = 0; i < sdf_world.FrameCount(); ++i)
     frames.emplace(sdf_world.FrameByIndex(i)->Name(), sdf_world.FrameByIndex(i));
 
+  std::size_t place = 0;
   for (sdf::ElementPtr child = sdf_world.Element()->GetFirstElement(); child; child = child->GetNextElement()) {
     const bool is_frame = child->GetName() == "frame";
-    if ((!is_frame && child->GetName() != "model") || !child->GetAttributeSet("name")) continue;
+    if (!is_frame && child->GetName() != "model") continue;
+    add_placed_before(place++);
+    if (!child->GetAttributeSet("name")) continue;
     const auto name = child->Get<std::string>("name");
     const auto include = includes.find(name);
     const auto frame = frames.find(name);
@@ -155,6 +163,7 @@ void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) 
         read_inline_model(*sdf_model, file);
     }
   }
+  add_placed_before(place);
 }
 
 void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <ignition/math/Pose3.hh>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -8,7 +9,6 @@
 #include <sdf/Element.hh>
 #include <sdf/ParserConfig.hh>
 #include <sdf/Root.hh>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,12 +25,14 @@ std::string name_of(const XmlNode& node);
 /// The element as a step of a path, such as `model[NAME]`.
 std::string step_of(const XmlNode& node);
 
-/// An <include> of a world. In SdfFile::tree a <frame> of the same name stands for it, or, where frames inside of the
-/// model are named, a <model> with nothing but its frames.
+/// An <include> of a world. Where others refer to it, or it to them, a <frame> of the same name stands for it in
+/// SdfFile::tree, or, where frames inside of the model are named, a <model> with nothing but its frames.
 struct Include {
   std::string name;
   const SdfFile* file = nullptr;
   bool is_static = false;
+  std::size_t place = 0;                       ///< models and frames before it in the <world> of the tree
+  std::optional<ignition::math::Pose3d> X_WM;  ///< if nothing stands for it
 };
 
 /// A file, in SDF, URDF or YAML, as SDF that libsdformat has read.
@@ -114,12 +116,13 @@ class SdfFiles {
 
   // In sdf_includes.cpp.
   struct Found;
+  struct Named;
   /// Puts into the place of each include what stands for it. False if libsdformat would stumble over the rest.
   bool replace_includes(XmlNode& node, const std::string& path, SdfFile& file);
   /// Nothing if there is nothing to be put into its place.
   std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
-  void replace_in_world(const XmlNode& include, const Found& found, const std::set<std::string>& scopes,
-                        std::vector<XmlNode>& children, SdfFile& file);
+  void replace_in_world(const XmlNode& include, const Found& found, const Named& named, std::vector<XmlNode>& children,
+                        SdfFile& file);
   bool fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file);
 
   LibsdformatScope libsdformat_;

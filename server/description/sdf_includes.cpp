@@ -1,14 +1,17 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <sdf/Frame.hh>
 #include <sdf/Joint.hh>
 #include <sdf/Link.hh>
 #include <sdf/Model.hh>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "server/description/sdf_files.hpp"
+#include "server/description/sdf_schema.hpp"
 #include "server/description/text.hpp"
 
 namespace cohort::description {
@@ -93,14 +96,26 @@ XmlNode frames_of(const XmlNode& model) {
   return frames;
 }
 
-// Models that `node` names frames of: of `relative_to="robot::link"`, `robot`.
-void collect_scopes(const XmlNode& node, std::set<std::string>& scopes) {
-  const auto look_at = [&](const std::string& text) {
-    if (const std::size_t end = text.find("::"); end != std::string::npos) scopes.insert(text.substr(0, end));
-  };
-  for (const auto& [name, value] : node.attributes) look_at(value);
-  look_at(node.text);
-  for (const XmlNode& child : node.children) collect_scopes(child, scopes);
+bool refers_to_frame(const std::string& attribute) {
+  return attribute == "relative_to" || attribute == "attached_to" || attribute == "expressed_in";
+}
+
+// The pose of what is placed in the world's own frame; nothing if another frame is named, or if anything is wrong with
+// it, which libsdformat is to say.
+std::optional<ignition::math::Pose3d> pose_in_world(const XmlNode* pose) {
+  if (pose == nullptr) return ignition::math::Pose3d::Zero;
+  const sdf::ElementPtr element =
+      sdf_definition()->GetElementDescription("model")->GetElementDescription("pose")->Clone();
+  for (const auto& [name, value] : pose->attributes) {
+    const sdf::ParamPtr attribute = element->GetAttribute(name);
+    if (!attribute || refers_to_frame(name) || !attribute->SetFromString(value)) return std::nullopt;
+  }
+  if (pose->text.empty()) return ignition::math::Pose3d::Zero;
+  for (const std::string_view part : words(pose->text))
+    if (const auto number = parse_real(part); !number || !std::isfinite(*number)) return std::nullopt;
+  ignition::math::Pose3d X;
+  if (!element->GetValue()->SetFromString(pose->text) || !element->GetValue()->Get(X)) return std::nullopt;
+  return X;
 }
 
 // The model of a file as an <include> has it.
@@ -206,6 +221,24 @@ std::vector<XmlNode> merged(const XmlNode& model, const sdf::Model& sdf_model, c
 
 }  // namespace
 
+/// What of a world is named by something else in it.
+struct SdfFiles::Named {
+  std::set<std::string> frames;
+  std::set<std::string> scopes;  ///< of `robot::link`, `robot`
+
+  void add(const std::string& text, bool is_frame) {
+    if (const std::size_t end = text.find("::"); end != std::string::npos)
+      scopes.insert(text.substr(0, end));
+    else if (is_frame)
+      frames.insert(text);
+  }
+  void collect(const XmlNode& node) {
+    for (const auto& [name, value] : node.attributes) add(value, refers_to_frame(name));
+    add(node.text, node.name == "parent" || node.name == "child");
+    for (const XmlNode& child : node.children) collect(child);
+  }
+};
+
 /// What an <include> leads to.
 struct SdfFiles::Found {
   const SdfFile& file;
@@ -215,10 +248,10 @@ struct SdfFiles::Found {
 
 bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile& file) {
   const bool is_world = node.name == "world";
-  std::set<std::string> scopes;
+  Named named;
   std::set<std::string> names;  // of models and frames, those of includes too
   if (is_world) {
-    collect_scopes(node, scopes);
+    named.collect(node);
     for (const XmlNode& child : node.children)
       if (child.name == "model" || child.name == "frame") names.insert(name_of(child));
   }
@@ -242,7 +275,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
       problems_.push_back({file.shown, child.line, "world/include[" + found->name + "]",
                            "another model has the name '" + found->name + "'"});
     } else if (is_world) {
-      replace_in_world(child, *found, scopes, children, file);
+      replace_in_world(child, *found, named, children, file);
     } else if (!fits(child, child_path, found->file, file)) {
       return false;
     } else if (merges) {
@@ -295,19 +328,23 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
   return Found{included, *model, name != nullptr ? name->text : name_of(*model)};
 }
 
-void SdfFiles::replace_in_world(const XmlNode& include, const Found& found, const std::set<std::string>& scopes,
+void SdfFiles::replace_in_world(const XmlNode& include, const Found& found, const Named& named,
                                 std::vector<XmlNode>& children, SdfFile& file) {
   const XmlNode model = as_included({"model", include.line, include.file, found.model.attributes, "", {}}, include);
   const XmlNode* const own_pose = found.model.child("pose");
   const XmlNode* const pose = include.child("pose") != nullptr ? include.child("pose") : own_pose;
   const XmlNode* const is_static =
       include.child("static") != nullptr ? include.child("static") : found.model.child("static");
-  file.includes.push_back({found.name, &found.file, is_true(is_static)});
+  const auto place = std::count_if(children.begin(), children.end(),
+                                   [](const XmlNode& child) { return child.name == "model" || child.name == "frame"; });
+  file.includes.push_back({found.name, &found.file, is_true(is_static), static_cast<std::size_t>(place), {}});
   const std::string* const placement = model.attribute("placement_frame");
-  if (scopes.contains(found.name) || (placement != nullptr && !placement->empty())) {
+  if (named.scopes.contains(found.name) || (placement != nullptr && !placement->empty())) {
     children.push_back(as_included(frames_of(found.model), include));
     return;
   }
+  if (!named.frames.contains(found.name)) file.includes.back().X_WM = pose_in_world(pose);
+  if (file.includes.back().X_WM) return;
   // A frame costs libsdformat a hundredth of what a model does.
   XmlNode frame{"frame", include.line, include.file, {{"name", found.name}}, "", {}};
   if (pose != nullptr) frame.children.push_back(*pose);

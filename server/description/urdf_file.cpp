@@ -92,6 +92,22 @@ class LineFinder {
   std::map<std::string, const XmlNode*> named_;
 };
 
+// The joint above a link; nullptr for the root.
+const XmlNode* joint_above(const XmlNode& robot, const std::string& link) {
+  for (const XmlNode& joint : robot.children)
+    if (joint.name == "joint" && *joint.child("child")->attribute("link") == link) return &joint;
+  return nullptr;
+}
+
+// The converter makes one of links that a fixed joint connects. It leaves out a link without mass that moves against
+// its parent, and all below it.
+bool is_kept(const XmlNode& robot, const std::string& link, const std::set<std::string>& names) {
+  if (names.contains(link)) return true;
+  const XmlNode* const joint = joint_above(robot, link);
+  return joint != nullptr && *joint->attribute("type") == "fixed" &&
+         is_kept(robot, *joint->child("parent")->attribute("link"), names);
+}
+
 void collect_names(const XmlNode& node, std::set<std::string>& names) {
   if (const std::string* const name = node.attribute("name")) names.insert(*name);
   for (const XmlNode& child : node.children) collect_names(child, names);
@@ -123,9 +139,9 @@ std::optional<XmlNode> sdf_of_urdf(const XmlNode& robot, const std::filesystem::
   std::set<std::string> names;
   collect_names(tree, names);
   for (const XmlNode& link : robot.children)
-    if (link.name == "link" && !names.contains(*link.attribute("name")))
+    if (link.name == "link" && !is_kept(robot, *link.attribute("name"), names))
       warnings.push_back({file, link.line, "robot/link[" + *link.attribute("name") + "]",
-                          "is left out, with the links below it: it has no mass"});
+                          "is left out, with its joint: it has no mass, or the link above it is left out"});
   return tree;
 }
 

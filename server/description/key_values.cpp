@@ -50,6 +50,11 @@ bool is_in_range(double number, ExtensionValue kind) {
 
 }  // namespace
 
+void KeyValues::prefix_texts(std::string_view key, const std::string& prefix) {
+  if (const auto values = values_.find(key); values != values_.end())
+    for (Value& value : values->second) std::get<std::string>(value).insert(0, prefix);
+}
+
 std::optional<KeyValues::Value> parse_value(std::string_view text, const ExtensionKey& key) {
   using Value = KeyValues::Value;
   switch (key.value) {

@@ -30,6 +30,9 @@ class KeyValues {
   const Eigen::Vector3d& vector(std::string_view key) const { return std::get<Eigen::Vector3d>(first(key)); }
   const Pose& pose(std::string_view key) const { return std::get<Pose>(first(key)); }
 
+  /// Puts `prefix` before each text of the key.
+  void prefix_texts(std::string_view key, const std::string& prefix);
+
   /// Of a key that repeats; none if it is absent.
   std::vector<std::string> texts(std::string_view key) const { return all<std::string>(key); }
   std::vector<Eigen::Vector3d> vectors(std::string_view key) const { return all<Eigen::Vector3d>(key); }

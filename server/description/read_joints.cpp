@@ -126,7 +126,7 @@ void read_axes(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
 
 }  // namespace
 
-std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links,
+std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,
                                const ModelReading& reading) {
   std::vector<Joint> joints;
   for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) {
@@ -142,8 +142,8 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
     const sdf::Errors more = sdf_joint.ResolveChildLink(child_name);
     errors.insert(errors.end(), more.begin(), more.end());
     const bool to_world = parent_name == "world";
-    const std::optional<std::size_t> parent = to_world ? Joint::world : index_of(links, parent_name);
-    const std::optional<std::size_t> child = index_of(links, child_name);
+    const std::optional<std::size_t> parent = to_world ? Joint::world : index_of(links, scope + parent_name);
+    const std::optional<std::size_t> child = index_of(links, scope + child_name);
     if (!errors.empty() || !parent || !child || parent == child) {
       reading.report.problem(
           element, errors.empty()
@@ -153,7 +153,7 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
     }
 
     Joint joint;
-    joint.name = sdf_joint.Name();
+    joint.name = scope + sdf_joint.Name();
     joint.type = *type;
     joint.parent = *parent;
     joint.child = *child;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <sdf/Error.hh>
+#include <sdf/Frame.hh>
 #include <sdf/Light.hh>
 #include <sdf/Physics.hh>
 #include <sdf/World.hh>
@@ -29,7 +30,7 @@ class WorldReader {
   WorldReader(const std::filesystem::path& file, std::uint64_t seed,
               const std::vector<std::filesystem::path>& last_model_folders)
       : seed_(seed),
-        files_(file, last_model_folders, problems_),
+        files_(file, last_model_folders, problems_, world_.warnings),
         shape_files_(files_),
         report_(files_, problems_, world_.warnings) {
     world_.file = file;
@@ -43,7 +44,7 @@ class WorldReader {
   void read_settings(const sdf::World& sdf_world);
   void read_models(const sdf::World& sdf_world, const SdfFile& file);
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
-  void read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file);
+  void add_included_model(const Include& include, const Pose& X_WM);
   void read_extensions(const sdf::World& sdf_world);
   void add_material_pair(const ExtensionValues& values);
   /// The index of the material that `key` names; reported if nothing is made of it.
@@ -83,8 +84,8 @@ World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& lat
   if (file.root.WorldCount() != 1) {
     // A misspelt <world> has been reported.
     if (problems_.empty())
-      problems_.push_back({file.shown, file.source_line(file.xml.line), "",
-                           "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+      problems_.push_back(
+          {file.shown, file.tree.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
     throw InputError(std::move(problems_));
   }
   const sdf::World& sdf_world = *file.root.WorldByIndex(0);
@@ -135,31 +136,41 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
 }
 
 void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {
-  std::size_t included = 0;
+  std::map<std::string, const Include*> includes;
+  for (const Include& include : file.includes) includes.emplace(include.name, &include);
+  auto next = file.includes.begin();
+  const auto add_placed_before = [&](std::size_t place) {
+    for (; next != file.includes.end() && next->place <= place; ++next)
+      if (next->X_WM) add_included_model(*next, to_pose(*next->X_WM));
+  };
+  std::map<std::string, const sdf::Frame*> frames;  // FrameByName would search all of them for each
+  for (std::uint64_t i = 0; i < sdf_world.FrameCount(); ++i)
+    frames.emplace(sdf_world.FrameByIndex(i)->Name(), sdf_world.FrameByIndex(i));
+
+  std::size_t place = 0;
   for (sdf::ElementPtr child = sdf_world.Element()->GetFirstElement(); child; child = child->GetNextElement()) {
-    const Include* include = nullptr;
-    if (child->GetIncludeElement()) {
-      // There are more only if libsdformat found in the working directory what the search did not find.
-      if (included == file.includes.size()) break;
-      include = &file.includes[included++];
-    }
-    if (child->GetName() != "model") continue;
+    const bool is_frame = child->GetName() == "frame";
+    if (!is_frame && child->GetName() != "model") continue;
+    add_placed_before(place++);
+    if (!child->GetAttributeSet("name")) continue;
     const auto name = child->Get<std::string>("name");
-    // libsdformat drops the second of two with the same name, and the first one is found here again.
-    const sdf::Model* const sdf_model = sdf_world.ModelByName(name);
-    if (sdf_model == nullptr) continue;
-    if (names_.contains(name)) {
-      const std::string message = "another model has the name '" + name + "'";
-      if (include != nullptr)
-        problems_.push_back({file.shown, include->line, "world/include[" + name + "]", message});
+    const auto include = includes.find(name);
+    const auto frame = frames.find(name);
+    const sdf::Model* const sdf_model = is_frame ? nullptr : sdf_world.ModelByName(name);
+    const ModelReading how = reading(false, file);
+    if (is_frame && include != includes.end() && frame != frames.end()) {
+      add_included_model(*include->second, resolved_pose(*frame->second, how));
+    } else if (sdf_model != nullptr && include != includes.end()) {
+      add_included_model(*include->second, resolved_pose(*sdf_model, how));
+    } else if (sdf_model != nullptr) {
+      // libsdformat drops the second of two with the same name, and the first one is found here again.
+      if (names_.contains(name))
+        report_.problem(child, "another model has the name '" + name + "'");
       else
-        report_.problem(child, message);
-    } else if (include != nullptr) {
-      read_included_model(*sdf_model, *include, file);
-    } else {
-      read_inline_model(*sdf_model, file);
+        read_inline_model(*sdf_model, file);
     }
   }
+  add_placed_before(place);
 }
 
 void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
@@ -168,9 +179,8 @@ void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& 
   add_instance(sdf_model.Name(), world_.models.size() - 1, resolved_pose(sdf_model, how));
 }
 
-void WorldReader::read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file) {
-  add_instance(sdf_model.Name(), shared_model(*include.file, sdf_model.Static()),
-               resolved_pose(sdf_model, reading(sdf_model.Static(), file)));
+void WorldReader::add_included_model(const Include& include, const Pose& X_WM) {
+  add_instance(include.name, shared_model(*include.file, include.is_static), X_WM);
 }
 
 std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {

@@ -91,7 +91,7 @@ sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*>
 void check_numbers(const sdf::ElementPtr& element, const SdfReport& report) {
   if (element->GetExplicitlySetInFile() && element->GetValue()) check_value(element, report);
   for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
-    if (is_simulated(child->GetName()) && child->FilePath() == element->FilePath()) check_numbers(child, report);
+    if (is_simulated(child->GetName())) check_numbers(child, report);
 }
 
 }  // namespace cohort::description

@@ -49,6 +49,12 @@ void add_key(XmlNode& extension, std::string_view key, const Value& value) {
   add_value(extension, prefixed(key), value);
 }
 
+// SDF keeps "::" for itself: it stands in the names of what was in a model inside of the model.
+std::string without_scope_marks(std::string name) {
+  for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at)) name.replace(at, 2, ".");
+  return name;
+}
+
 void add_pose(XmlNode& parent, const Pose& X) {
   add_value(parent, "pose", X).attributes.emplace_back("rotation_format", "quat_xyzw");
 }
@@ -92,7 +98,7 @@ struct DeviceWriter {
 
   void operator()(const TreelDrive& drive) const {
     XmlNode& element = add_named(parent, prefixed("treel_drive"), drive.name);
-    add_key(element, "link", model.links[drive.link].name);
+    add_key(element, "link", link_name(drive.link));
     add_key(element, "half_gauge", drive.half_gauge);
     add_key(element, "half_contact_length", drive.half_contact_length);
     add_key(element, "ground_height", drive.ground_height);
@@ -100,18 +106,18 @@ struct DeviceWriter {
     add_key(element, "max_torque", drive.max_torque);
     add_key(element, "max_velocity", drive.max_velocity);
     add_key(element, "friction", drive.friction);
-    for (const std::size_t joint : drive.left_wheels) add_key(element, "left_wheel", model.joints[joint].name);
-    for (const std::size_t joint : drive.right_wheels) add_key(element, "right_wheel", model.joints[joint].name);
+    for (const std::size_t joint : drive.left_wheels) add_key(element, "left_wheel", joint_name(joint));
+    for (const std::size_t joint : drive.right_wheels) add_key(element, "right_wheel", joint_name(joint));
   }
   void operator()(const VelocityMotor& motor) const {
     XmlNode& element = add_named(parent, prefixed("velocity_motor"), motor.name);
-    add_key(element, "joint", model.joints[motor.joint].name);
+    add_key(element, "joint", joint_name(motor.joint));
     add_key(element, "max_velocity", motor.max_velocity);
     add_key(element, "max_effort", motor.max_effort);
   }
   void operator()(const JointEncoder& encoder) const {
     XmlNode& element = add_named(parent, prefixed("joint_encoder"), encoder.name);
-    add_key(element, "joint", model.joints[encoder.joint].name);
+    add_key(element, "joint", joint_name(encoder.joint));
   }
   void operator()(const TreelEncoder& encoder) const {
     XmlNode& element = add_named(parent, prefixed("treel_encoder"), encoder.name);
@@ -119,7 +125,7 @@ struct DeviceWriter {
   }
   void operator()(const ProximityRing& ring) const {
     XmlNode& element = add_named(parent, prefixed("proximity_ring"), ring.name);
-    add_key(element, "link", model.links[ring.link].name);
+    add_key(element, "link", link_name(ring.link));
     add_key(element, "pose", ring.X_LS);
     add_key(element, "count", static_cast<std::uint64_t>(ring.count));
     add_key(element, "first_bearing", ring.first_bearing);
@@ -128,6 +134,10 @@ struct DeviceWriter {
     add_key(element, "range", ring.range);
     add_key(element, "noise", ring.noise);
   }
+
+ private:
+  std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
+  std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
 };
 
 class WorldWriter {
@@ -182,7 +192,7 @@ class WorldWriter {
   }
 
   void write_link(XmlNode& parent, const Link& link, bool is_static) const {
-    XmlNode& element = add_named(parent, "link", link.name);
+    XmlNode& element = add_named(parent, "link", without_scope_marks(link.name));
     add_pose(element, link.X_ML);
     if (!is_static) {
       XmlNode& inertial = add(element, "inertial");
@@ -213,12 +223,14 @@ class WorldWriter {
                                                            {JointType::prismatic, "prismatic"},
                                                            {JointType::ball, "ball"},
                                                            {JointType::universal, "universal"}};
-    XmlNode& element = add_named(parent, "joint", joint.name);
+    XmlNode& element = add_named(parent, "joint", without_scope_marks(joint.name));
     for (const auto& [type, name] : names)
       if (type == joint.type) element.attributes.emplace_back("type", name);
     add_pose(element, joint.X_LJ);
-    add_value(element, "parent", joint.parent == Joint::world ? std::string("world") : model.links[joint.parent].name);
-    add_value(element, "child", model.links[joint.child].name);
+    add_value(
+        element, "parent",
+        joint.parent == Joint::world ? std::string("world") : without_scope_marks(model.links[joint.parent].name));
+    add_value(element, "child", without_scope_marks(model.links[joint.child].name));
     if (joint.type != JointType::fixed) write_axis(add(element, "axis"), joint.axis);
     if (joint.type == JointType::universal) write_axis(add(element, "axis2"), joint.second_axis);
   }

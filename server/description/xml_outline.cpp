@@ -77,18 +77,20 @@ std::string with_entities(std::string_view raw) {
   return text;
 }
 
-void write(XmlNode& node, std::string& text, std::vector<int>& lines) {
-  const int line = static_cast<int>(lines.size());
-  lines.push_back(std::exchange(node.line, line));
+void write(const XmlNode& node, XmlText& written) {
+  std::string& text = written.text;
+  written.nodes.push_back(&node);
   text += '<' + node.name;
   for (const auto& [name, value] : node.attributes) text += ' ' + name + "=\"" + with_entities(value) + '"';
   text += '>' + with_entities(node.text);
-  for (XmlNode& child : node.children) {
+  for (const XmlNode& child : node.children) {
     text += '\n';
-    write(child, text, lines);
+    write(child, written);
   }
   text += "</" + node.name + '>';
 }
+
+constexpr std::size_t deepest = 64;  // of XML elements; SDF itself needs a dozen
 
 class Scanner {
  public:
@@ -196,6 +198,8 @@ bool Scanner::opening_tag() {
   take(1);
   node.name = take_name();
   if (!is_xml_name(node.name)) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
+  if (open_.size() >= deepest)
+    return fail(node.line, "<" + node.name + "> is nested more than " + std::to_string(deepest) + " levels deep");
   if (open_.empty() && has_root_)
     return fail(node.line, "<" + node.name + "> is a second root element; a file has one");
   has_root_ = true;
@@ -283,9 +287,9 @@ bool is_xml_name(std::string_view name) {
 
 XmlOutline outline_xml(std::string_view text) { return Scanner(text).scan(); }
 
-std::pair<std::string, std::vector<int>> xml_text_of(XmlNode& node) {
-  std::pair<std::string, std::vector<int>> written{"", {0}};
-  write(node, written.first, written.second);
+XmlText xml_text_of(const XmlNode& node) {
+  XmlText written{"", {nullptr}};
+  write(node, written);
   return written;
 }
 

@@ -13,8 +13,8 @@
 namespace cohort::description {
 namespace {
 
-constexpr std::size_t deepest = 100;
-constexpr std::size_t most_from_aliases = 100'000;
+constexpr std::size_t deepest = 64;
+constexpr std::size_t most_from_aliases = 10'000;
 
 struct Refused {
   int line;

@@ -42,7 +42,7 @@ struct YamlDocument {
 };
 
 /// The one document of a YAML text. Refused are, besides what is no YAML, more documents than one, control characters,
-/// nodes nested deeper than 100, and aliases that stand for more than 100 000 nodes in all or for themselves.
+/// nodes nested deeper than 64, and aliases that stand for more than 10 000 nodes in all or for themselves.
 YamlDocument parse_yaml(std::string_view text);
 
 /// What a node is, for messages: its text in quotes, or `a list`, `a map`, `nothing`.

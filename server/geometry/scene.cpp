@@ -79,13 +79,6 @@ void Scene::put_back(std::uint32_t index) {
   build();
 }
 
-void Scene::put_back(std::uint32_t index) {
-  if (!solids_[index].moves) return build();
-  const auto place = std::lower_bound(moving_.begin(), moving_.end(), index);
-  if (place == moving_.end() || *place != index) moving_.insert(place, index);
-  update();
-}
-
 void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
   solids_[index].X_WC = X_WC;
   X_CW_[index] = X_WC.inverse();

@@ -284,7 +284,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"world:\n  name: \"a\\0b\"\n", 2, "", "a control character"},
         Flaw{"world:\n  gravity: &g [0, *g]\n", 2, "", "something that it is a part of"},
         Flaw{"sdf: {version: 1.6, world: {}}\n", 1, "sdf", "expected the version 1.9"},
-        Flaw{bomb(), 5, "", "stand for more than"}, Flaw{std::string(2000, '['), 1, "", "levels deep"},
+        Flaw{bomb(), 4, "", "stand for more than"}, Flaw{std::string(2000, '['), 1, "", "levels deep"},
         Flaw{"world:\n  include:\n    uri: model://sbt\n", 3, "world/include/uri", "there is no model 'sbt'"},
         Flaw{"world:\n  model: {name: m, static: true, link: {}, cohort:population: {name: p}}\n", 2,
              "world/model[m]/cohort:population", "belongs in <world>"},

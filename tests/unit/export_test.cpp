@@ -133,6 +133,18 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
   expect_the_same_again(read(content));
 }
 
+TEST_F(ExportedWorlds, HaveTheModelsInsideOfModelsAsOne) {
+  const World world =
+      read("<model name=\"outer\">" + links("a") + "<model name=\"inner\"><pose>0.3 0.2 0.1 0.1 0.2 0.3</pose>" +
+           links("b") + "<cohort:joint_encoder name=\"e\"><cohort:joint>k</cohort:joint></cohort:joint_encoder>" +
+           links("c") + joint("k", "b", "c") + "</model>" + joint("j", "a", "inner::b") + "</model>");
+  EXPECT_EQ(world.models[0].links[1].name, "inner::b");
+  const World again = read_world(write_back(world), 1);
+  EXPECT_EQ(again.models[0].links[1].name, "inner.b");
+  EXPECT_EQ(text_of(again), text_of(world));
+  EXPECT_EQ(hash_after(again, 1, 100), hash_after(world, 1, 100));
+}
+
 TEST_F(ExportedWorlds, WithAHeightMapNameItsFileFromWhereTheyAre) {
   const World world = read_world(source / "worlds/arenas/rough_terrain.sdf", 1);
   const std::string text = text_of(world);

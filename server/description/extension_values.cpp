@@ -76,6 +76,13 @@ std::optional<ExtensionValues> ExtensionValues::read(const sdf::ElementPtr& elem
   return values;
 }
 
+void ExtensionValues::put_in_scope(const std::string& prefix, const Extension& extension) {
+  if (prefix.empty()) return;
+  name_ = prefix + name_;
+  for (const ExtensionKey& key : extension.keys)
+    if (key.value == ExtensionValue::name) prefix_texts(key.name, prefix);
+}
+
 sdf::ElementPtr ExtensionValues::where(std::string_view key, std::size_t place) const {
   sdf::ElementPtr child = element_->FindElement(prefixed(key));
   while (child && place-- > 0) child = child->GetNextElement(prefixed(key));

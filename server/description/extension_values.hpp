@@ -26,6 +26,9 @@ class ExtensionValues : public KeyValues {
   /// The attribute `name`.
   const std::string& name() const { return name_; }
 
+  /// Puts `prefix` before its name and before every name that it refers to.
+  void put_in_scope(const std::string& prefix, const Extension& extension);
+
   /// The child element of this key, the `place`-th of them if it repeats, or the element itself if it is left to its
   /// fallback: where a problem with the value is.
   sdf::ElementPtr where(std::string_view key, std::size_t place = 0) const;

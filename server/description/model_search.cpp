@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view model_scheme = "model://";
+constexpr std::string_view package_scheme = "package://";
 constexpr std::string_view file_scheme = "file://";
 constexpr int parent_levels = 4;
 
@@ -77,8 +78,8 @@ fs::path ModelSearch::find_folder(const std::string& name) const {
 
 fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder) const {
   fs::path path;
-  if (uri.starts_with(model_scheme)) {
-    const std::string inside = uri.substr(model_scheme.size());
+  if (uri.starts_with(model_scheme) || uri.starts_with(package_scheme)) {
+    const std::string inside = uri.substr(uri.find("://") + 3);
     const std::size_t slash = std::min(inside.find('/'), inside.size());
     path = find_folder(inside.substr(0, slash)) / fs::path(inside.substr(slash)).relative_path();
   } else if (uri.starts_with(file_scheme)) {
@@ -92,10 +93,10 @@ fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder) co
   return path.has_filename() ? path : path.parent_path();  // it ended in a slash
 }
 
-FoundModel ModelSearch::find(const std::string& uri) const {
-  const fs::path path = path_of(uri, world_folder_);
-  if (fs::is_directory(path)) return {sdf_file_of(path), path, uri};
-  if (fs::is_regular_file(path)) return {path, path.parent_path(), uri.substr(0, uri.rfind('/') + 1)};
+FoundModel ModelSearch::find(const std::string& uri, const fs::path& folder) const {
+  const fs::path path = path_of(uri, folder);
+  if (fs::is_directory(path)) return {sdf_file_of(path)};
+  if (fs::is_regular_file(path)) return {path};
   throw std::runtime_error("there is no '" + path.string() + "'");
 }
 

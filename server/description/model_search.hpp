@@ -8,21 +8,20 @@ namespace cohort::description {
 
 /// A model that a URI leads to.
 struct FoundModel {
-  std::filesystem::path file;    ///< the SDF file
-  std::filesystem::path folder;  ///< the model's folder, or the file's if the URI names a file
-  std::string folder_uri;        ///< what of the URI stands for `folder`
+  std::filesystem::path file;  ///< in SDF, URDF or YAML
 };
 
 /// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these
-/// that has one: the folders of the environment variable COHORT_MODEL_PATH (separated by colons), `robots` and
-/// `objects` in the folder of the world file and in its parents, four levels up, and the `last_folders`. Any other URI
-/// is a path relative to the world file, to a model's folder or to an SDF file.
+/// that has one (`package://` means the same): the folders of the environment variable COHORT_MODEL_PATH (separated by
+/// colons), `robots` and `objects` in the folder of the world file and in its parents, four levels up, and the
+/// `last_folders`. Any other URI is a path, to a model's folder or to an SDF file.
 class ModelSearch {
  public:
   ModelSearch(const std::filesystem::path& world_file, const std::vector<std::filesystem::path>& last_folders);
 
   /// Throws std::runtime_error that says what is missing and where it was looked for.
-  FoundModel find(const std::string& uri) const;
+  /// A path is relative to `folder`.
+  FoundModel find(const std::string& uri, const std::filesystem::path& folder) const;
   /// A file that is no model, such as a mesh: `model://NAME/...` is in a model's folder, and a path is relative to
   /// `folder`. Throws std::runtime_error as well.
   std::filesystem::path find_file(const std::string& uri, const std::filesystem::path& folder) const;

@@ -179,20 +179,29 @@ bool commands(std::string_view kind) { return kind == "treel_drive" || kind == "
 
 }  // namespace
 
-std::vector<Device> read_devices(const sdf::ElementPtr& model_element, const Model& model, const SdfReport& report) {
-  const auto elements = extensions_in(model_element, report);
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report) {
+  struct Found {
+    sdf::ElementPtr element;
+    const Extension* extension;
+    const std::string& prefix;
+  };
+  std::vector<Found> found;
+  for (const DeviceScope& scope : scopes)
+    for (const auto& [element, extension] : extensions_in(scope.model_element, report))
+      found.push_back({element, extension, scope.prefix});
   // An encoder may stand before the drive that it measures.
   std::map<std::string, std::size_t> drives;
-  for (std::size_t i = 0; i < elements.size(); ++i)
-    if (elements[i].second->name == "treel_drive" && elements[i].first->HasAttribute("name"))
-      drives.emplace(elements[i].first->GetAttribute("name")->GetAsString(), i);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (found[i].extension->name == "treel_drive" && found[i].element->HasAttribute("name"))
+      drives.emplace(found[i].prefix + found[i].element->GetAttribute("name")->GetAsString(), i);
 
   DeviceReader reader(model, std::move(drives), report);
   std::vector<Device> devices;
   std::set<std::pair<bool, std::string>> names;
-  for (const auto& [element, extension] : elements) {
-    const std::optional<ExtensionValues> values = ExtensionValues::read(element, *extension, report);
+  for (const auto& [element, extension, prefix] : found) {
+    std::optional<ExtensionValues> values = ExtensionValues::read(element, *extension, report);
     if (!values) continue;
+    values->put_in_scope(prefix, *extension);
     if (!names.emplace(commands(extension->name), values->name()).second)
       report.problem(element, "another device of the model has the name '" + values->name() + "'");
     if (std::optional<Device> device = reader.read(*values, extension->name)) devices.push_back(*std::move(device));

@@ -80,6 +80,8 @@ std::optional<JointAxis> read_axis(const sdf::Joint& sdf_joint, unsigned place, 
   }
   JointAxis axis;
   axis.direction = to_eigen(direction).normalized();
+  if (sdf_axis->XyzExpressedIn().empty())
+    if (const auto written = written_unit_vector(element->FindElement("xyz"))) axis.direction = *written;
   read_dynamics(*sdf_axis, report, axis);
   if (sdf_joint.Type() != sdf::JointType::CONTINUOUS) read_limits(*sdf_axis, report, axis);
   return axis;
@@ -124,7 +126,7 @@ void read_axes(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
 
 }  // namespace
 
-std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links,
+std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,
                                const ModelReading& reading) {
   std::vector<Joint> joints;
   for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) {
@@ -140,8 +142,8 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
     const sdf::Errors more = sdf_joint.ResolveChildLink(child_name);
     errors.insert(errors.end(), more.begin(), more.end());
     const bool to_world = parent_name == "world";
-    const std::optional<std::size_t> parent = to_world ? Joint::world : index_of(links, parent_name);
-    const std::optional<std::size_t> child = index_of(links, child_name);
+    const std::optional<std::size_t> parent = to_world ? Joint::world : index_of(links, scope + parent_name);
+    const std::optional<std::size_t> child = index_of(links, scope + child_name);
     if (!errors.empty() || !parent || !child || parent == child) {
       reading.report.problem(
           element, errors.empty()
@@ -151,11 +153,13 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
     }
 
     Joint joint;
-    joint.name = sdf_joint.Name();
+    joint.name = scope + sdf_joint.Name();
     joint.type = *type;
     joint.parent = *parent;
     joint.child = *child;
-    joint.X_LJ = resolved_pose(sdf_joint, reading, child_name);
+    const bool is_in_child = sdf_joint.PoseRelativeTo().empty() && sdf_joint.ChildLinkName() == child_name;
+    joint.X_LJ = is_in_child ? written_pose(sdf_joint.RawPose(), sdf_joint.Element())
+                             : resolved_pose(sdf_joint, reading, child_name);
     read_axes(sdf_joint, reading.report, joint);
     joints.push_back(joint);
   }

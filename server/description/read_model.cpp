@@ -75,6 +75,48 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   return true;
 }
 
+// The parts of a model that stand in it and in the models inside of it, with scoped names.
+class ModelFlattener {
+ public:
+  ModelFlattener(Model& model, const ModelReading& reading) : model_(model), reading_(reading) {}
+
+  /// The links come first, since joints of an outer model may name links of an inner one.
+  void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN);
+  void add_joints(const sdf::Model& sdf_model, const std::string& scope);
+
+  std::vector<DeviceScope> scopes;
+  std::size_t joint_count = 0;  ///< also of those that could not be read
+
+ private:
+  Model& model_;
+  const ModelReading& reading_;
+};
+
+void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN) {
+  scopes.push_back({sdf_model.Element(), scope});
+  for (std::uint64_t i = 0; i < sdf_model.LinkCount(); ++i) {
+    Link link = read_link(*sdf_model.LinkByIndex(i), reading_);
+    link.name = scope + link.name;
+    link.X_ML = X_MN * link.X_ML;
+    model_.links.push_back(std::move(link));
+  }
+  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
+    const sdf::Model& inner = *sdf_model.ModelByIndex(i);
+    warn_of_unsupported(inner.Element(), reading_.report);
+    if (inner.Static() && !reading_.is_static)
+      reading_.report.problem(inner.Element(),
+                              "a static model inside of one that moves is not supported; a fixed joint can hold it");
+    add_links(inner, scope + inner.Name() + "::", X_MN * resolved_pose(inner, reading_));
+  }
+}
+
+void ModelFlattener::add_joints(const sdf::Model& sdf_model, const std::string& scope) {
+  joint_count += sdf_model.JointCount();
+  for (Joint& joint : read_joints(sdf_model, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
+  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i)
+    add_joints(*sdf_model.ModelByIndex(i), scope + sdf_model.ModelByIndex(i)->Name() + "::");
+}
+
 }  // namespace
 
 Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
@@ -85,24 +127,22 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   model.self_collide = sdf_model.SelfCollide();
   warn_of_unsupported(element, reading.report);
 
-  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i)
-    reading.report.problem(sdf_model.ModelByIndex(i)->Element(),
-                           "a model inside of a model is not supported, except by <include merge=\"true\">");
-  for (std::uint64_t i = 0; i < sdf_model.LinkCount(); ++i)
-    model.links.push_back(read_link(*sdf_model.LinkByIndex(i), reading));
-  if (sdf_model.LinkCount() == 0 && model.is_static) reading.report.problem(element, "expected at least one <link>");
+  ModelFlattener parts(model, reading);
+  parts.add_links(sdf_model, "", {});
+  if (model.links.empty() && model.is_static) reading.report.problem(element, "expected at least one <link>");
 
   if (model.is_static) {
-    if (!extensions_in(element, reading.report).empty())
-      reading.report.warning(element, "is static: its devices are ignored, and it is not a robot");
+    for (const DeviceScope& scope : parts.scopes)
+      if (!extensions_in(scope.model_element, reading.report).empty())
+        reading.report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
     return model;
   }
-  model.joints = read_joints(sdf_model, model.links, reading);
-  const bool is_tree =
-      reading.frames_resolve && sdf_model.ModelCount() == 0 && model.joints.size() == sdf_model.JointCount() &&
-      every_link_has_one_parent(sdf_model, model, reading.report) && order_links(sdf_model, model, reading.report);
+  parts.add_joints(sdf_model, "");
+  const bool is_tree = reading.frames_resolve && model.joints.size() == parts.joint_count &&
+                       every_link_has_one_parent(sdf_model, model, reading.report) &&
+                       order_links(sdf_model, model, reading.report);
   // Devices name links and joints: with some of those missing, each device would be reported for it.
-  if (is_tree) model.devices = read_devices(element, model, reading.report);
+  if (is_tree) model.devices = read_devices(parts.scopes, model, reading.report);
   return model;
 }
 

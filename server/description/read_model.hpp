@@ -35,17 +35,34 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
 /// A link with its inertial and its collisions.
 Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
 
-/// The joints between `links`, in document order.
-std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links,
+/// The joints of a model between `links`, in document order. Of a model inside of the one that is read, `scope` is the
+/// prefix of all names in it, such as `arm::`.
+std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,
                                const ModelReading& reading);
 
-/// The `cohort:` devices of a model whose links and joints are read. `model_element` is where they stand.
-std::vector<Device> read_devices(const sdf::ElementPtr& model_element, const Model& model, const SdfReport& report);
+/// Where `cohort:` devices stand: a model, or one inside of it.
+struct DeviceScope {
+  sdf::ElementPtr model_element;
+  std::string prefix;  ///< of all names in it, such as `arm::`
+};
+
+/// The devices of a model whose links and joints are read.
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report);
+
+/// Whether the pose is given in the frame that it is to be in, and needs no resolving.
+inline bool is_in_frame_of_parent(const sdf::Model& model) {
+  return model.PoseRelativeTo().empty() && model.PlacementFrameName().empty();
+}
+template <class Posed>
+bool is_in_frame_of_parent(const Posed& posed) {
+  return posed.PoseRelativeTo().empty();
+}
 
 /// The pose of anything that has one, in the frame `in`; by default, in that of the element that it stands in.
 template <class Posed>
 Pose resolved_pose(const Posed& posed, const ModelReading& reading, const std::string& in = "") {
   if (!reading.frames_resolve) return {};
+  if (in.empty() && is_in_frame_of_parent(posed)) return written_pose(posed.RawPose(), posed.Element());
   ignition::math::Pose3d X;
   for (const sdf::Error& error : posed.SemanticPose().Resolve(X, in))
     reading.report.problem(posed.Element(), error.Message());

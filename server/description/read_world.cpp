@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <sdf/Error.hh>
+#include <sdf/Frame.hh>
 #include <sdf/Light.hh>
 #include <sdf/Physics.hh>
 #include <sdf/World.hh>
@@ -22,24 +23,28 @@
 namespace cohort::description {
 namespace {
 
+const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
+
 class WorldReader {
  public:
   WorldReader(const std::filesystem::path& file, std::uint64_t seed,
               const std::vector<std::filesystem::path>& last_model_folders)
       : seed_(seed),
-        files_(file, last_model_folders, problems_),
+        files_(file, last_model_folders, problems_, world_.warnings),
         shape_files_(files_),
         report_(files_, problems_, world_.warnings) {
     world_.file = file;
   }
 
-  World read();
+  World read(bool may_be_a_model, const std::vector<LaterObject>& later);
 
  private:
+  World finished();
+  void read_model_alone(const SdfFile& file);
   void read_settings(const sdf::World& sdf_world);
   void read_models(const sdf::World& sdf_world, const SdfFile& file);
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
-  void read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file);
+  void add_included_model(const Include& include, const Pose& X_WM);
   void read_extensions(const sdf::World& sdf_world);
   void add_material_pair(const ExtensionValues& values);
   /// The index of the material that `key` names; reported if nothing is made of it.
@@ -48,8 +53,12 @@ class WorldReader {
     return {is_static, file.sound, report_, shape_files_, world_.materials};
   }
   void expand(const Population& population);
+  /// The file of a model. Null if there is none, or it is not sound; `problem` is called with what is wrong.
+  template <class Report>
+  const SdfFile* find_model(const std::string& uri, const Report& problem);
   /// The place in World::models of the model in a file: one for all that include it.
   std::size_t shared_model(const SdfFile& file, bool is_static);
+  void add_later(const LaterObject& object);
   /// False if the name is taken.
   bool add_instance(std::string name, std::size_t model, const Pose& X_WM);
 
@@ -61,27 +70,44 @@ class WorldReader {
   SdfReport report_;
   std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
   std::set<std::string> names_;
+  Site site_;  // with the first `in_site_` instances
+  std::size_t in_site_ = 0;
 };
 
-World WorldReader::read() {
+World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& later) {
   const SdfFile& file = files_.world();
   if (!file.loaded) throw InputError(std::move(problems_));
+  if (may_be_a_model && file.root.Model() != nullptr) {
+    read_model_alone(file);
+    return finished();
+  }
   if (file.root.WorldCount() != 1) {
     // A misspelt <world> has been reported.
     if (problems_.empty())
       problems_.push_back(
-          {file.shown, file.xml.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+          {file.shown, file.tree.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
     throw InputError(std::move(problems_));
   }
   const sdf::World& sdf_world = *file.root.WorldByIndex(0);
   read_settings(sdf_world);
   read_models(sdf_world, file);
   read_extensions(sdf_world);
+  for (const LaterObject& object : later) add_later(object);
+  return finished();
+}
+
+World WorldReader::finished() {
   if (!problems_.empty()) throw InputError(std::move(problems_));
 
   for (std::size_t i = 0; i < world_.instances.size(); ++i)
     if (world_.models[world_.instances[i].model].is_robot()) world_.robots.push_back(i);
   return std::move(world_);
+}
+
+void WorldReader::read_model_alone(const SdfFile& file) {
+  world_.name = file.root.Model()->Name();
+  world_.gravity = sdf_gravity;
+  add_instance(world_.name, shared_model(file, file.root.Model()->Static()), {});
 }
 
 void WorldReader::read_settings(const sdf::World& sdf_world) {
@@ -110,31 +136,41 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
 }
 
 void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {
-  std::size_t included = 0;
+  std::map<std::string, const Include*> includes;
+  for (const Include& include : file.includes) includes.emplace(include.name, &include);
+  auto next = file.includes.begin();
+  const auto add_placed_before = [&](std::size_t place) {
+    for (; next != file.includes.end() && next->place <= place; ++next)
+      if (next->X_WM) add_included_model(*next, to_pose(*next->X_WM));
+  };
+  std::map<std::string, const sdf::Frame*> frames;  // FrameByName would search all of them for each
+  for (std::uint64_t i = 0; i < sdf_world.FrameCount(); ++i)
+    frames.emplace(sdf_world.FrameByIndex(i)->Name(), sdf_world.FrameByIndex(i));
+
+  std::size_t place = 0;
   for (sdf::ElementPtr child = sdf_world.Element()->GetFirstElement(); child; child = child->GetNextElement()) {
-    const Include* include = nullptr;
-    if (child->GetIncludeElement()) {
-      // There are more only if libsdformat found in the working directory what the search did not find.
-      if (included == file.includes.size()) break;
-      include = &file.includes[included++];
-    }
-    if (child->GetName() != "model") continue;
+    const bool is_frame = child->GetName() == "frame";
+    if (!is_frame && child->GetName() != "model") continue;
+    add_placed_before(place++);
+    if (!child->GetAttributeSet("name")) continue;
     const auto name = child->Get<std::string>("name");
-    // libsdformat drops the second of two with the same name, and the first one is found here again.
-    const sdf::Model* const sdf_model = sdf_world.ModelByName(name);
-    if (sdf_model == nullptr) continue;
-    if (names_.contains(name)) {
-      const std::string message = "another model has the name '" + name + "'";
-      if (include != nullptr)
-        problems_.push_back({file.shown, include->line, "world/include[" + name + "]", message});
+    const auto include = includes.find(name);
+    const auto frame = frames.find(name);
+    const sdf::Model* const sdf_model = is_frame ? nullptr : sdf_world.ModelByName(name);
+    const ModelReading how = reading(false, file);
+    if (is_frame && include != includes.end() && frame != frames.end()) {
+      add_included_model(*include->second, resolved_pose(*frame->second, how));
+    } else if (sdf_model != nullptr && include != includes.end()) {
+      add_included_model(*include->second, resolved_pose(*sdf_model, how));
+    } else if (sdf_model != nullptr) {
+      // libsdformat drops the second of two with the same name, and the first one is found here again.
+      if (names_.contains(name))
+        report_.problem(child, "another model has the name '" + name + "'");
       else
-        report_.problem(child, message);
-    } else if (include != nullptr) {
-      read_included_model(*sdf_model, *include, file);
-    } else {
-      read_inline_model(*sdf_model, file);
+        read_inline_model(*sdf_model, file);
     }
   }
+  add_placed_before(place);
 }
 
 void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
@@ -143,9 +179,8 @@ void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& 
   add_instance(sdf_model.Name(), world_.models.size() - 1, resolved_pose(sdf_model, how));
 }
 
-void WorldReader::read_included_model(const sdf::Model& sdf_model, const Include& include, const SdfFile& file) {
-  add_instance(sdf_model.Name(), shared_model(*include.file, sdf_model.Static()),
-               resolved_pose(sdf_model, reading(sdf_model.Static(), file)));
+void WorldReader::add_included_model(const Include& include, const Pose& X_WM) {
+  add_instance(include.name, shared_model(*include.file, include.is_static), X_WM);
 }
 
 std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
@@ -200,34 +235,60 @@ void WorldReader::add_material_pair(const ExtensionValues& values) {
       {*first, *second, values.real("friction"), values.real("restitution"), values.real("rolling_resistance")});
 }
 
-void WorldReader::expand(const Population& population) {
+template <class Report>
+const SdfFile* WorldReader::find_model(const std::string& uri, const Report& problem) {
   const SdfFile* file = nullptr;
   try {
-    file = &files_.model(population.uri);
+    file = &files_.model(uri);
   } catch (const std::runtime_error& error) {
-    report_.problem(population.uri_element, error.what());
-    return;
+    problem(error.what());
+    return nullptr;
   }
-  if (!file->loaded) return;
+  if (!file->loaded) return nullptr;
   if (file->root.Model() == nullptr) {
-    report_.problem(population.uri_element, "'" + file->shown.string() + "' has no <model>");
-    return;
+    problem("'" + file->shown.string() + "' has no <model>");
+    return nullptr;
   }
+  return file;
+}
+
+void WorldReader::add_later(const LaterObject& object) {
+  const auto problem = [&](std::string message) {
+    problems_.push_back({object.where.file, object.where.line, object.where.element, std::move(message)});
+  };
+  const SdfFile* const file = find_model(object.uri, problem);
+  if (file == nullptr) return;
+  if (!add_instance(object.name, shared_model(*file, file->root.Model()->Static()), object.X_WM))
+    return problem("another object has the name '" + object.name + "'");
+  world_.instances.back().is_present = false;
+}
+
+void WorldReader::expand(const Population& population) {
+  const auto problem = [&](std::string message) { report_.problem(population.uri_element, std::move(message)); };
+  const SdfFile* const file = find_model(population.uri, problem);
+  if (file == nullptr) return;
   const std::size_t model = shared_model(*file, file->root.Model()->Static());
   // Where a shape is wrong, so is the room that it takes.
   if (!problems_.empty()) return;
 
-  std::vector<Footprint> obstacles;
-  for (const Instance& instance : world_.instances)
-    for (const Footprint& part : footprints_of(world_.models[instance.model], instance.X_WM)) obstacles.push_back(part);
-  const std::vector<Pose> poses = place_uniformly(population.placement, world_.models[model], obstacles);
-  if (poses.size() < population.placement.count)
-    report_.problem(population.placement_element, "only " + std::to_string(poses.size()) + " of " +
-                                                      std::to_string(population.placement.count) +
-                                                      " fit; enlarge the rectangle, or lower the count or the gap");
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::string name = population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(i);
-    if (add_instance(name, model, poses[i])) continue;
+  for (; in_site_ < world_.instances.size(); ++in_site_) {
+    const Instance& instance = world_.instances[in_site_];
+    site_.add(world_.models[instance.model], instance.X_WM);
+  }
+  const std::vector<Placed> placed = place_instances(population.placement, world_.models[model], site_);
+  if (placed.size() < population.placement.count) {
+    const std::string how_many =
+        "only " + std::to_string(placed.size()) + " of " + std::to_string(population.placement.count) + " fit";
+    if (population.may_be_fewer)
+      report_.warning(population.placement_element, how_many);
+    else
+      report_.problem(population.placement_element,
+                      how_many + "; enlarge the area, or lower the count or the gap, or set <cohort:may_be_fewer>");
+  }
+  for (const Placed& each : placed) {
+    const std::string name =
+        population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(each.number);
+    if (add_instance(name, model, each.X_WM)) continue;
     report_.problem(population.uri_element->GetParent(), "another instance has the name '" + name + "'");
     return;
   }
@@ -242,8 +303,13 @@ bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& 
 }  // namespace
 
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
-                 const std::vector<std::filesystem::path>& last_model_folders) {
-  return WorldReader(file, seed, last_model_folders).read();
+                 const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
+  return WorldReader(file, seed, last_model_folders).read(false, later);
+}
+
+World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
+                          const std::vector<std::filesystem::path>& last_model_folders) {
+  return WorldReader(file, seed, last_model_folders).read(true, {});
 }
 
 }  // namespace cohort::description

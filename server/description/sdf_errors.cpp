@@ -1,17 +1,15 @@
 #include "server/description/sdf_errors.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <sdf/Element.hh>
 #include <sdf/Error.hh>
-#include <sdf/SDFImpl.hh>
-#include <sdf/parser.hh>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "server/description/sdf_schema.hpp"
 #include "server/description/text.hpp"
 
 namespace cohort::description {
@@ -125,16 +123,9 @@ std::optional<Place> place_named_in(std::string message, const XmlNode& xml) {
   return scope;
 }
 
-void find_on_line(const XmlNode& node, std::string_view name, int line, std::vector<const XmlNode*>& found) {
-  if (node.line == line && node.name == name) found.push_back(&node);
-  for (const XmlNode& child : node.children) find_on_line(child, name, line, found);
-}
-
 // What SDFormat knows of the element at a readable path, from the root's child on; nullptr if it knows none.
 sdf::ElementPtr definition_of(std::string_view path) {
-  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-  sdf::init(sdf);
-  sdf::ElementPtr element = sdf->Root();
+  sdf::ElementPtr element = sdf_definition();
   while (element && !path.empty()) {
     const std::string_view step = path.substr(0, path.find('/'));
     const std::string name(step.substr(0, step.find('[')));
@@ -174,13 +165,19 @@ std::vector<std::string> known_names(const sdf::Error& error, std::string_view p
 }
 
 // For `Error reading element <NAME>`: what the value is that libsdformat says nothing about.
-std::string message_with_value(const sdf::Error& error, int line, const XmlNode& xml) {
+std::string message_with_value(const sdf::Error& error, const XmlNode* node) {
   std::string name = error.Message().substr(error.Message().find('<') + 1);
   name.resize(std::min(name.find('>'), name.size()));
-  std::vector<const XmlNode*> found;
-  find_on_line(xml, name, line, found);
-  if (found.size() != 1 || !found[0]->children.empty()) return "<" + name + "> cannot be read";
-  return "<" + name + "> cannot have the value '" + found[0]->text + "'";
+  if (node == nullptr || node->name != name || !node->children.empty()) return "<" + name + "> cannot be read";
+  return "<" + name + "> cannot have the value '" + node->text + "'";
+}
+
+// A <frame> stands for an <include>.
+void name_include(std::string& path, const SdfFile& file) {
+  constexpr std::string_view frame = "world/frame[";
+  if (!path.starts_with(frame)) return;
+  const std::size_t end = path.find(']');
+  if (file.is_include(path.substr(frame.size(), end - frame.size()))) path.replace(0, frame.size(), "world/include[");
 }
 
 // Names, each after the readable path of the element that it stands in.
@@ -198,7 +195,7 @@ void explain_unknown(const sdf::Error& error, Problem& problem, PlacedNames& mis
 
 }  // namespace
 
-std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file) {
+std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file, const XmlNode& tree) {
   std::vector<Problem> problems;
   PlacedNames named;     // those that are wrong
   PlacedNames misspelt;  // attributes that others were taken for
@@ -210,24 +207,30 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file)
     last_path = path;
     if (follows) continue;
 
-    Problem problem{file.shown, error.LineNumber().value_or(0), readable_path(path), readable_message(error)};
+    const XmlNode* node = file.node_at(error.LineNumber().value_or(0));
+    Problem problem{file.shown, 0, readable_path(path), readable_message(error)};
     if (is_unknown(error)) {
       explain_unknown(error, problem, misspelt);
     } else if (is_missing_attribute(error)) {
       const std::string name = in_brackets(error.Message());
       if (misspelt.contains({problem.element, name})) continue;
       problem.message = "missing: the attribute '" + name + "'";
-    } else if (problem.line == 0 && path.empty()) {
-      if (const auto place = place_named_in(error.Message(), file.xml)) {
-        problem.line = place->node->line;
+    } else if (node == nullptr && path.empty()) {
+      if (const auto place = place_named_in(error.Message(), tree)) {
+        node = place->node;
         problem.element = place->path;
       }
       // One unknown name is reported as a frame, as a link and as what a pose is relative to.
       const std::string name = name_in(problem.message, "").value_or(problem.message);
       if (!named.emplace(problem.element, name).second) continue;
     } else if (is_cannot_read_element(error)) {
-      problem.message = message_with_value(error, problem.line, file.xml);
+      problem.message = message_with_value(error, node);
     }
+    if (node != nullptr) {
+      problem.file = node->file->shown;
+      problem.line = node->line;
+    }
+    name_include(problem.element, file);
     problems.push_back(std::move(problem));
   }
   return problems;

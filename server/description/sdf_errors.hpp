@@ -10,6 +10,7 @@ namespace cohort::description {
 
 /// What libsdformat found wrong in a file, as problems of ours: without the trail of consequences that it reports after
 /// a cause, without what our own checks say better, and with a place wherever one can be found.
-std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file);
+/// `tree` is what SdfFile::nodes are of.
+std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file, const XmlNode& tree);
 
 }  // namespace cohort::description

@@ -12,9 +12,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/description/file_kind.hpp"
 #include "server/description/input_file.hpp"
 #include "server/description/sdf_errors.hpp"
 #include "server/description/text.hpp"
+#include "server/description/urdf_file.hpp"
+#include "server/description/yaml_sdf.hpp"
 
 namespace cohort::description {
 namespace {
@@ -46,14 +49,6 @@ std::pair<int, int> version_of(std::string_view text) {
   return version;
 }
 
-// The first element of this name on this line.
-const XmlNode* find_on_line(const XmlNode& node, std::string_view name, int line) {
-  if (node.line == line && node.name == name) return &node;
-  for (const XmlNode& child : node.children)
-    if (const XmlNode* const found = find_on_line(child, name, line)) return found;
-  return nullptr;
-}
-
 // There is one world, whose name does not matter.
 std::string step_of(const std::string& element, const std::string& name) {
   return name.empty() || element == "world" ? element : element + "[" + name + "]";
@@ -73,39 +68,60 @@ std::size_t place_among_siblings(const sdf::ElementPtr& element) {
   return place;
 }
 
+void set_file(XmlNode& node, const SdfFile* file) {
+  node.file = file;
+  for (XmlNode& child : node.children) set_file(child, file);
+}
+
+std::size_t size_of(const XmlNode& node) {
+  std::size_t size = 1;
+  for (const XmlNode& child : node.children) size += size_of(child);
+  return size;
+}
+
+// An <include> of an older version is put aside, since libsdformat would follow it. A <frame> keeps its place.
+constexpr std::string_view aside = "cohort:include:";
+
+void take_includes(XmlNode& node, std::vector<XmlNode>& taken) {
+  for (XmlNode& child : node.children) {
+    if (child.name == "world" || child.name == "model") take_includes(child, taken);
+    if (child.name != "include") continue;
+    XmlNode mark{"frame", child.line, child.file, {{"name", std::string(aside) + std::to_string(taken.size())}},
+                 "",      {}};
+    taken.push_back(std::exchange(child, std::move(mark)));
+    for (XmlNode& part : taken.back().children)
+      for (auto& [name, value] : part.attributes)
+        if (part.name == "pose" && name == "frame") name = "relative_to";  // its name up to SDF 1.6
+  }
+}
+
+void put_includes_back(XmlNode& node, const std::vector<XmlNode>& taken) {
+  for (XmlNode& child : node.children) {
+    const std::string name = name_of(child);
+    if (child.name == "frame" && name.starts_with(aside))
+      child = taken[std::stoul(name.substr(aside.size()))];
+    else
+      put_includes_back(child, taken);
+  }
+}
+
+// What libsdformat has made of a text, with the lines of the nodes that it was written from.
+XmlNode tree_of(const sdf::ElementPtr& element, const XmlNode& parent, const std::vector<const XmlNode*>& nodes) {
+  const auto line = static_cast<std::size_t>(element->LineNumber().value_or(0));
+  const XmlNode& source = line > 0 && line < nodes.size() ? *nodes[line] : parent;
+  XmlNode node{element->GetName(), source.line, source.file, {}, "", {}};
+  for (const sdf::ParamPtr& attribute : element->GetAttributes())
+    if (attribute->GetSet()) node.attributes.emplace_back(attribute->GetKey(), attribute->GetAsString());
+  if (element->GetValue() && element->GetValue()->GetSet()) node.text = element->GetValue()->GetAsString();
+  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
+    if (child->GetExplicitlySetInFile()) node.children.push_back(tree_of(child, source, nodes));
+  return node;
+}
+
 const XmlNode* nth_child(const XmlNode& node, std::string_view name, std::size_t n) {
   for (const XmlNode& child : node.children)
     if (child.name == name && n-- == 0) return &child;
   return nullptr;
-}
-
-// What libsdformat would stumble over in an <include>: it copies the children without a look at what it is given, and
-// an attribute that it does not know, or a value that is not there, ends the process. The child and what is wrong with
-// it.
-std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlNode& include) {
-  const std::map<std::string, std::vector<std::string>> attributes_of = {
-      {"uri", {}},
-      {"name", {}},
-      {"static", {}},
-      {"placement_frame", {}},
-      {"pose", {"relative_to", "degrees", "rotation_format"}},
-      {"plugin", {"name", "filename"}}};
-  std::vector<std::string> names;
-  names.reserve(attributes_of.size());
-  for (const auto& [name, attributes] : attributes_of) names.push_back(name);
-  for (const XmlNode& child : include.children) {
-    if (child.name == "experimental:params") return std::pair{&child, "parameters of an include are not supported"};
-    if (child.name.find(':') != std::string::npos) continue;
-    const auto known = attributes_of.find(child.name);
-    if (known == attributes_of.end()) return std::pair{&child, "unknown element" + suggestion(child.name, names)};
-    for (const auto& [attribute, value] : child.attributes)
-      if (std::find(known->second.begin(), known->second.end(), attribute) == known->second.end())
-        return std::pair{&child, "unknown attribute '" + attribute + "'" + suggestion(attribute, known->second)};
-    if (child.name == "plugin" && !child.text.empty()) return std::pair{&child, "unexpected text"};
-    if (child.name != "plugin" && child.name != "pose" && child.text.empty())
-      return std::pair{&child, "expected a value"};
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -117,6 +133,10 @@ std::string name_of(const XmlNode& node) {
 }
 
 std::string step_of(const XmlNode& node) { return step_of(node.name, name_of(node)); }
+
+bool SdfFile::is_include(const std::string& name) const {
+  return std::any_of(includes.begin(), includes.end(), [&](const Include& include) { return include.name == name; });
+}
 
 LibsdformatScope::LibsdformatScope() : lock_(libsdformat_mutex()), saved_(sdf::ParserConfig::GlobalConfig()) {
   config() = sdf::ParserConfig();
@@ -133,21 +153,31 @@ LibsdformatScope::~LibsdformatScope() {
 }
 
 SdfFiles::SdfFiles(const fs::path& world_file, const std::vector<fs::path>& last_model_folders,
-                   std::vector<Problem>& problems)
-    : world_file_(world_file), search_(world_file, last_model_folders), problems_(problems) {}
+                   std::vector<Problem>& problems, std::vector<Problem>& warnings)
+    : world_file_(world_file),
+      world_folder_(fs::absolute(world_file).lexically_normal().parent_path()),
+      search_(world_file, last_model_folders),
+      problems_(problems),
+      warnings_(warnings) {}
 
 SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
   const fs::path absolute = fs::absolute(path).lexically_normal();
   std::unique_ptr<SdfFile>& file = files_[absolute];
   if (file) return *file;
   file = std::make_unique<SdfFile>();
-  file->path = absolute;
-  file->shown = shown;
+  SdfFile& opened = *file;
+  opened.path = absolute;
+  opened.shown = shown;
   opening_.push_back(absolute);
-  if (const auto text = read_text(*file); text && read_outline(*text, *file) && follow_includes(file->xml, "", *file))
-    load(*text, *file);
+  if (const auto text = read_text(opened))
+    if (auto source = read_source(*text, opened))
+      if (auto tree = converted(*std::move(source), opened)) {
+        opened.tree = *std::move(tree);
+        opened.size = size_of(opened.tree);
+        if (replace_includes(opened.tree, "", opened)) load(opened);
+      }
   opening_.pop_back();
-  return *file;
+  return opened;
 }
 
 std::optional<std::string> SdfFiles::read_text(const SdfFile& file) {
@@ -162,74 +192,67 @@ std::optional<std::string> SdfFiles::read_text(const SdfFile& file) {
   return std::nullopt;
 }
 
-bool SdfFiles::read_outline(const std::string& text, SdfFile& file) {
+std::optional<XmlNode> SdfFiles::read_source(const std::string& text, const SdfFile& file) {
+  std::optional<XmlNode> source = is_yaml(file.path) ? read_yaml(text, file) : read_xml(text, file);
+  if (source) set_file(*source, &file);
+  return source;
+}
+
+std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, const SdfFile& file) {
   const auto fail = [&](int line, std::string message) {
     problems_.push_back({file.shown, line, "", std::move(message)});
-    return false;
+    return std::nullopt;
   };
   XmlOutline outline = outline_xml(text);
   if (outline.error) return fail(outline.error->line, outline.error->message);
-  file.xml = std::move(outline.root);
+  const XmlNode& root = outline.root;
+  if (root.name == "robot") return sdf_of_urdf(root, file.shown, libsdformat_.config(), problems_, warnings_);
 
-  const std::string* const version = file.xml.attribute("version");
-  if (file.xml.name != "sdf" || version == nullptr)
-    return fail(file.xml.line, "expected <sdf version=\"" + sdf::SDF::Version() + "\"> as the root element, not <" +
-                                   file.xml.name + ">");
+  const std::string* const version = root.attribute("version");
+  if (root.name != "sdf" || version == nullptr)
+    return fail(root.line,
+                "expected <sdf version=\"" + sdf::SDF::Version() + "\"> as the root element, not <" + root.name + ">");
   // libsdformat would read a newer file as if it were of its own version.
   if (version_of(*version) > version_of(sdf::SDF::Version()) || version_of(*version) == std::pair{0, 0})
-    return fail(file.xml.line,
-                "SDF version '" + *version + "' cannot be read, only versions up to " + sdf::SDF::Version());
-  return true;
+    return fail(root.line, "SDF version '" + *version + "' cannot be read, only versions up to " + sdf::SDF::Version());
+  return std::move(outline.root);
 }
 
-bool SdfFiles::follow_includes(const XmlNode& node, const std::string& path, SdfFile& file) {
-  bool usable = true;
-  for (const XmlNode& child : node.children) {
-    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
-    if (child.name == "include")
-      usable = follow_include(child, child_path, node.name == "world", file) && usable;
-    else if (child.name == "world" || child.name == "model")
-      usable = follow_includes(child, child_path, file) && usable;
+std::optional<XmlNode> SdfFiles::read_yaml(const std::string& text, const SdfFile& file) {
+  const YamlDocument document = parse_yaml(text);
+  if (document.error) {
+    problems_.push_back({file.shown, document.error->line, "", document.error->message});
+    return std::nullopt;
   }
-  return usable;
+  return sdf_of_yaml(*document.root, file.shown, problems_);
 }
 
-bool SdfFiles::follow_include(const XmlNode& include, const std::string& path, bool in_world, SdfFile& file) {
-  const auto problem = [&](const XmlNode& where, std::string message) {
-    problems_.push_back(
-        {file.shown, where.line, &where == &include ? path : path + "/" + where.name, std::move(message)});
-  };
-  const auto flaw = flaw_of_include(include);
-  if (flaw) {
-    problem(*flaw->first, flaw->second);
-    return false;
-  }
-  const XmlNode* const uri = include.child("uri");
-  if (uri == nullptr) {
-    problem(include, "expected <uri>model://NAME</uri>");
-    return false;
-  }
-  FoundModel found;
-  try {
-    found = search_.find(uri->text);
-  } catch (const std::runtime_error& error) {
-    problem(*uri, error.what());
-    return true;  // libsdformat leaves it out
-  }
-  if (std::find(opening_.begin(), opening_.end(), found.file) != opening_.end()) {
-    problem(*uri, "'" + found.file.string() + "' includes itself");
-    return false;
-  }
-  const SdfFile& included = open(found.file, found.file);
-  if (!included.sound) return true;
-  // libsdformat asks this map first. It would ask the working directory before its find callback, and the result would
-  // depend on where the program was started.
-  libsdformat_.config().AddURIPath(found.folder_uri, found.folder.string());
-  if (in_world) file.includes.push_back({include.line, uri->text, &included});
-  return true;
+std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
+  if (*tree.attribute("version") == sdf::SDF::Version()) return tree;
+  std::vector<XmlNode> includes;
+  take_includes(tree, includes);
+  XmlText written = xml_text_of(tree);
+  file.nodes = std::move(written.nodes);
+  sdf::Errors errors;
+  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+  sdf::init(sdf);
+  sdf->SetFilePath(file.path.string());
+  const bool is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
+  std::vector<Problem> found = problems_of(errors, file, tree);
+  if (!is_read && found.empty()) found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
+  problems_.insert(problems_.end(), found.begin(), found.end());
+  if (!is_read) return std::nullopt;
+  XmlNode newest = tree_of(sdf->Root(), tree, file.nodes);
+  for (const auto& [name, value] : tree.attributes)
+    if (name.starts_with("xmlns:")) newest.attributes.emplace_back(name, value);
+  put_includes_back(newest, includes);
+  file.nodes.clear();
+  return newest;
 }
 
-void SdfFiles::load(const std::string& text, SdfFile& file) {
+void SdfFiles::load(SdfFile& file) {
+  XmlText written = xml_text_of(file.tree);
+  file.nodes = std::move(written.nodes);
   sdf::Errors errors;
   try {
     const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
@@ -237,7 +260,7 @@ void SdfFiles::load(const std::string& text, SdfFile& file) {
     sdf->SetFilePath(file.path.string());
     // Into an element: what reads into an SDFPtr tries anything that is not SDF as URDF, whose parser prints on its
     // own.
-    file.loaded = sdf::readString(text, libsdformat_.config(), sdf->Root(), errors);
+    file.loaded = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
     if (file.loaded) {
       const sdf::Errors more = file.root.Load(sdf, libsdformat_.config());
       errors.insert(errors.end(), more.begin(), more.end());
@@ -247,13 +270,10 @@ void SdfFiles::load(const std::string& text, SdfFile& file) {
     problems_.push_back({file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()});
     return;
   }
-  std::vector<Problem> found = problems_of(errors, file);
+  std::vector<Problem> found = problems_of(errors, file, file.tree);
   if (!file.loaded && found.empty() && problems_.empty())
     found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
-  // Left out by libsdformat, because we have reported it already.
-  const bool includes_missing = std::any_of(
-      errors.begin(), errors.end(), [](const sdf::Error& error) { return error.Code() == sdf::ErrorCode::URI_LOOKUP; });
-  file.sound = file.loaded && found.empty() && !includes_missing;
+  file.sound = file.loaded && found.empty() && file.complete;
   problems_.insert(problems_.end(), found.begin(), found.end());
 }
 
@@ -263,40 +283,34 @@ const SdfFile* SdfFiles::find(const std::string& path) const {
 }
 
 fs::path SdfFiles::find_file(const sdf::ElementPtr& element) const {
-  return search_.find_file(element->Get<std::string>(), fs::path(element->FilePath()).parent_path());
+  const XmlNode* const node = node_of(element);
+  return search_.find_file(element->Get<std::string>(),
+                           node != nullptr ? node->file->path.parent_path() : world_folder_);
 }
 
 Location SdfFiles::locate(const sdf::ElementPtr& element) const {
   Location location;
-  const SdfFile* const file = find(element->FilePath());
-  location.file = file != nullptr ? file->shown : fs::path(element->FilePath());
-  location.line = line_of(element);
+  const XmlNode* const node = node_of(element);
+  location.file = node != nullptr ? node->file->shown : world_file_;
+  location.line = node != nullptr ? node->line : 0;
   for (sdf::ElementPtr step = element; step && step->GetName() != "sdf"; step = step->GetParent())
     location.element = step_of(step) + (location.element.empty() ? "" : "/") + location.element;
   return location;
 }
 
-int SdfFiles::line_of(const sdf::ElementPtr& element) const {
-  // libsdformat knows the lines of its own elements only. From the innermost of those, the way down is walked again in
-  // the outline of the file.
+const XmlNode* SdfFiles::node_of(const sdf::ElementPtr& element) const {
+  // libsdformat knows the lines of its own elements only. From the innermost of those, the way down is walked again.
   std::vector<sdf::ElementPtr> way{element};
   while (!way.back()->LineNumber() && way.back()->GetParent()) way.push_back(way.back()->GetParent());
-  const sdf::ElementPtr known = way.back();
-  const int known_line = known->LineNumber().value_or(0);
   const SdfFile* const file = find(element->FilePath());
-  if (known == element || file == nullptr) return known_line;
-
-  const XmlNode* node = nullptr;
-  if (known->FilePath() == element->FilePath())
-    node = find_on_line(file->xml, known->GetName(), known_line);
-  else  // merged from a model of another file
-    node = file->xml.child("model");
-  int line = node != nullptr ? node->line : known_line;
-  for (auto step = std::next(way.rbegin()); step != way.rend() && node != nullptr; ++step) {
-    node = nth_child(*node, (*step)->GetName(), place_among_siblings(*step));
-    if (node != nullptr) line = node->line;
-  }
-  return line;
+  if (file == nullptr) return nullptr;
+  const XmlNode* node = file->node_at(way.back()->LineNumber().value_or(0));
+  for (auto step = std::next(way.rbegin()); step != way.rend() && node != nullptr; ++step)
+    if (const XmlNode* const child = nth_child(*node, (*step)->GetName(), place_among_siblings(*step)))
+      node = child;
+    else
+      break;
+  return node;
 }
 
 }  // namespace cohort::description

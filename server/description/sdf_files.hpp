@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <ignition/math/Pose3.hh>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,28 +25,39 @@ std::string name_of(const XmlNode& node);
 /// The element as a step of a path, such as `model[NAME]`.
 std::string step_of(const XmlNode& node);
 
-struct SdfFile;
-
-/// An <include> of a world.
+/// An <include> of a world. Where others refer to it, or it to them, a <frame> of the same name stands for it in
+/// SdfFile::tree, or, where frames inside of the model are named, a <model> with nothing but its frames.
 struct Include {
-  int line = 0;
-  std::string uri;
+  std::string name;
   const SdfFile* file = nullptr;
+  bool is_static = false;
+  std::size_t place = 0;                       ///< models and frames before it in the <world> of the tree
+  std::optional<ignition::math::Pose3d> X_WM;  ///< if nothing stands for it
 };
 
-/// An SDF file as libsdformat has read it.
+/// A file, in SDF, URDF or YAML, as SDF that libsdformat has read.
 struct SdfFile {
-  std::filesystem::path path;   ///< absolute
-  std::filesystem::path shown;  ///< as the user calls it
-  XmlNode xml;
-  std::vector<Include> includes;  ///< directly in <world>, those that libsdformat has followed, in document order
+  std::filesystem::path path;         ///< absolute
+  std::filesystem::path shown;        ///< as the user calls it
+  XmlNode tree;                       ///< as SDF of libsdformat's own version, with what stands for includes
+  std::size_t size = 0;               ///< elements of `tree`
+  std::vector<const XmlNode*> nodes;  ///< of `tree`, by the line that libsdformat knows them by
+  std::vector<Include> includes;      ///< directly in <world>, in document order
   sdf::Root root;
-  bool loaded = false;  ///< `root` has the elements of the file
-  bool sound = false;   ///< libsdformat has nothing to say against them, so that frames resolve
+  bool loaded = false;   ///< `root` has the elements of the file
+  bool sound = false;    ///< libsdformat has nothing to say against them, so that frames resolve
+  bool complete = true;  ///< every include was found
+
+  /// nullptr if there is none.
+  const XmlNode* node_at(int line) const {
+    const auto place = static_cast<std::size_t>(line);
+    return place < nodes.size() ? nodes[place] : nullptr;
+  }
+  bool is_include(const std::string& name) const;
 };
 
-/// Makes libsdformat read by our rules and print nothing. Its settings are global to the process (an included file is
-/// read with the global ParserConfig, whatever the including one was read with), so only one world is read at a time.
+/// Makes libsdformat read by our rules and print nothing. Its settings are global to the process, so only one world is
+/// read at a time.
 class LibsdformatScope {
  public:
   LibsdformatScope();
@@ -67,19 +79,19 @@ struct Location {
   std::string element;
 };
 
-/// The files that one world is made of. Every file is also read by itself, because what libsdformat finds wrong in an
-/// included file it only prints.
+/// The files that one world is made of. Each is read once, by itself: libsdformat would read an included file again for
+/// each <include>, and only print what is wrong with it.
 class SdfFiles {
  public:
-  /// What is wrong with a file goes to `problems`, which must outlive this.
+  /// What is wrong with a file goes to `problems`, what is ignored in it to `warnings`; both must outlive this.
   SdfFiles(const std::filesystem::path& world_file, const std::vector<std::filesystem::path>& last_model_folders,
-           std::vector<Problem>& problems);
+           std::vector<Problem>& problems, std::vector<Problem>& warnings);
 
   const SdfFile& world() { return open(world_file_, world_file_); }
 
-  /// The file of a model. Throws std::runtime_error if there is none.
+  /// The file of a model that the world file names. Throws std::runtime_error if there is none.
   const SdfFile& model(const std::string& uri) {
-    const FoundModel found = search_.find(uri);
+    const FoundModel found = search_.find(uri, world_folder_);
     return open(found.file, found.file);
   }
 
@@ -92,18 +104,33 @@ class SdfFiles {
  private:
   SdfFile& open(const std::filesystem::path& path, const std::filesystem::path& shown);
   std::optional<std::string> read_text(const SdfFile& file);
-  bool read_outline(const std::string& text, SdfFile& file);
-  /// False if libsdformat would stumble over it.
-  bool follow_includes(const XmlNode& node, const std::string& path, SdfFile& file);
-  bool follow_include(const XmlNode& include, const std::string& path, bool in_world, SdfFile& file);
-  void load(const std::string& text, SdfFile& file);
+  /// The <sdf> element of a file, in whatever format it is written; nothing after a problem.
+  std::optional<XmlNode> read_source(const std::string& text, const SdfFile& file);
+  std::optional<XmlNode> read_xml(const std::string& text, const SdfFile& file);
+  std::optional<XmlNode> read_yaml(const std::string& text, const SdfFile& file);
+  /// An older version of SDF as the newest, with its includes as they are.
+  std::optional<XmlNode> converted(XmlNode tree, SdfFile& file);
+  void load(SdfFile& file);
   const SdfFile* find(const std::string& path) const;
-  int line_of(const sdf::ElementPtr& element) const;
+  const XmlNode* node_of(const sdf::ElementPtr& element) const;
+
+  // In sdf_includes.cpp.
+  struct Found;
+  struct Named;
+  /// Puts into the place of each include what stands for it. False if libsdformat would stumble over the rest.
+  bool replace_includes(XmlNode& node, const std::string& path, SdfFile& file);
+  /// Nothing if there is nothing to be put into its place.
+  std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
+  void replace_in_world(const XmlNode& include, const Found& found, const Named& named, std::vector<XmlNode>& children,
+                        SdfFile& file);
+  bool fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file);
 
   LibsdformatScope libsdformat_;
   std::filesystem::path world_file_;
+  std::filesystem::path world_folder_;
   ModelSearch search_;
   std::vector<Problem>& problems_;
+  std::vector<Problem>& warnings_;
   std::map<std::filesystem::path, std::unique_ptr<SdfFile>> files_;  // by absolute path
   std::vector<std::filesystem::path> opening_;                       // from the world inwards
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +21,9 @@ std::optional<double> parse_real(std::string_view text);
 
 /// A non-negative whole number of at most 64 bits.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
+
+/// How many letters are to be added, removed or replaced to get from one to the other (Levenshtein).
+std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The known name that an unknown one is a slip away from, or nothing.
 std::optional<std::string> nearest(std::string_view unknown, const std::vector<std::string>& known);

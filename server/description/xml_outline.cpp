@@ -13,16 +13,6 @@ constexpr std::string_view white_space = " \t\r\n";
 
 bool ends_name(char c) { return white_space.find(c) != std::string_view::npos || c == '/' || c == '>' || c == '='; }
 
-bool is_name(std::string_view name) {
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
-           static_cast<unsigned char>(c) > 127;
-  };
-  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
-    return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.';
-  });
-}
-
 void append_utf8(std::string& text, std::uint32_t code) {
   const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
   const auto put_tail = [&](int shift) { put(0x80 | (code >> shift & 0x3f)); };
@@ -70,6 +60,37 @@ std::string without_entities(std::string_view raw) {
   }
   return text;
 }
+
+std::string with_entities(std::string_view raw) {
+  std::string text;
+  for (const char c : raw) {
+    switch (c) {
+      case '&': text += "&amp;"; break;
+      case '<': text += "&lt;"; break;
+      case '>': text += "&gt;"; break;
+      case '"': text += "&quot;"; break;
+      case '\n': text += "&#10;"; break;  // a line is an element
+      case '\r': text += "&#13;"; break;
+      default: text += c;
+    }
+  }
+  return text;
+}
+
+void write(const XmlNode& node, XmlText& written) {
+  std::string& text = written.text;
+  written.nodes.push_back(&node);
+  text += '<' + node.name;
+  for (const auto& [name, value] : node.attributes) text += ' ' + name + "=\"" + with_entities(value) + '"';
+  text += '>' + with_entities(node.text);
+  for (const XmlNode& child : node.children) {
+    text += '\n';
+    write(child, written);
+  }
+  text += "</" + node.name + '>';
+}
+
+constexpr std::size_t deepest = 64;  // of XML elements; SDF itself needs a dozen
 
 class Scanner {
  public:
@@ -176,7 +197,9 @@ bool Scanner::opening_tag() {
   node.line = line_;
   take(1);
   node.name = take_name();
-  if (!is_name(node.name)) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
+  if (!is_xml_name(node.name)) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
+  if (open_.size() >= deepest)
+    return fail(node.line, "<" + node.name + "> is nested more than " + std::to_string(deepest) + " levels deep");
   if (open_.empty() && has_root_)
     return fail(node.line, "<" + node.name + "> is a second root element; a file has one");
   has_root_ = true;
@@ -201,7 +224,7 @@ bool Scanner::attribute(XmlNode& node) {
   const int line = line_;
   const std::string name(take_name());
   skip_space();
-  if (!is_name(name) || !at("=")) return fail(line, "in the tag <" + node.name + ", expected ATTRIBUTE=\"VALUE\"");
+  if (!is_xml_name(name) || !at("=")) return fail(line, "in the tag <" + node.name + ", expected ATTRIBUTE=\"VALUE\"");
   take(1);
   skip_space();
   if (!at("\"") && !at("'"))
@@ -252,6 +275,22 @@ const std::string* XmlNode::attribute(std::string_view attribute_name) const {
   return found == attributes.end() ? nullptr : &found->second;
 }
 
+bool is_xml_name(std::string_view name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
+           static_cast<unsigned char>(c) > 127;
+  };
+  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '-' || c == '.';
+  });
+}
+
 XmlOutline outline_xml(std::string_view text) { return Scanner(text).scan(); }
+
+XmlText xml_text_of(const XmlNode& node) {
+  XmlText written{"", {nullptr}};
+  write(node, written);
+  return written;
+}
 
 }  // namespace cohort::description

@@ -8,10 +8,13 @@
 
 namespace cohort::description {
 
+struct SdfFile;
+
 /// An element of an XML file and the line where it starts.
 struct XmlNode {
   std::string name;
   int line = 0;
+  const SdfFile* file = nullptr;  ///< where it was written, in a tree that is put together from several
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string text;  ///< all text directly inside, without white space at the ends
   std::vector<XmlNode> children;
@@ -35,5 +38,16 @@ struct XmlOutline {
 };
 
 XmlOutline outline_xml(std::string_view text);
+
+/// Whether it can be the name of an element or an attribute.
+bool is_xml_name(std::string_view name);
+
+struct XmlText {
+  std::string text;
+  std::vector<const XmlNode*> nodes;  ///< by line, from 1; in place 0 is nothing
+};
+
+/// An element as XML text, each element starting on a line of its own. `node` must outlive the result.
+XmlText xml_text_of(const XmlNode& node);
 
 }  // namespace cohort::description

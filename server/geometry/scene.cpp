@@ -50,10 +50,11 @@ void Scene::build() {
   for (std::vector<std::uint32_t>* list : {&large_, &moving_, &wide_, &large_moving_}) list->clear();
   std::vector<std::uint32_t> small;
   for (std::uint32_t index = 0; index < solids_.size(); ++index) {
+    if (is_removed_[index]) continue;
     const double width = 2.0 * balls_[index].radius;
     if (!solids_[index].moves) {
       (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
-    } else if (!is_removed_[index]) {
+    } else {
       (width <= edge ? moving_ : width * width > most_cells * edge * edge ? large_moving_ : wide_).push_back(index);
     }
   }
@@ -68,8 +69,14 @@ void Scene::update() {
 
 void Scene::remove(std::uint32_t index) {
   is_removed_[index] = 1;
+  if (!solids_[index].moves) return build();
   for (std::vector<std::uint32_t>* list : {&moving_, &wide_, &large_moving_}) std::erase(*list, index);
   update();
+}
+
+void Scene::put_back(std::uint32_t index) {
+  is_removed_[index] = 0;
+  build();
 }
 
 void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {

@@ -41,14 +41,15 @@ class Scene {
   std::uint32_t add(Solid solid);
   /// Chooses the cell size and sorts what does not move. After the last `add`; again if more are added later.
   void build();
-  /// Takes a solid that moves out of all further queries. Its index is never used again.
+  /// Takes a solid out of all further queries, until `put_back`. Its index is never another one's.
   void remove(std::uint32_t index);
+  void put_back(std::uint32_t index);
 
   std::size_t size() const { return solids_.size(); }
   const Solid& solid(std::uint32_t index) const { return solids_[index]; }
   const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
 
-  /// Moves a solid that moves. Different solids may be moved from different threads.
+  /// Moves a solid. Different ones that move may be moved from different threads; after one that does not, `build`.
   void set_pose(std::uint32_t index, const Pose& X_WC);
   /// Takes the new poses into the grid.
   void update();

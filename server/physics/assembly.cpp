@@ -34,12 +34,16 @@ void Assembly::add_solid(std::uint32_t body, const description::Collision& part_
   anchors.part_of_solid.push_back(part);
 }
 
-void Assembly::add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
-                          std::span<const std::shared_ptr<const BulletShape>> shapes) {
-  std::size_t index = 0;
+std::vector<std::uint32_t> Assembly::add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
+                                                std::span<const std::shared_ptr<const BulletShape>> shapes) {
+  std::vector<std::uint32_t> solids;
   for (const description::Link& link : model.links)
-    for (const description::Collision& part : link.collisions)
-      add_solid(body, part, X_WM * link.X_ML * part.X_LC, {}, shapes[index++]);
+    for (const description::Collision& part : link.collisions) {
+      const std::shared_ptr<const BulletShape>& shape = shapes[solids.size()];
+      solids.push_back(static_cast<std::uint32_t>(scene.size()));
+      add_solid(body, part, X_WM * link.X_ML * part.X_LC, {}, shape);
+    }
+  return solids;
 }
 
 std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
@@ -70,6 +74,23 @@ void Assembly::take_out(std::uint32_t member) {
     scene.remove(part.solid);
     collision.remove(part.solid);
   }
+}
+
+void Assembly::put_back(std::uint32_t index) {
+  Member& member = members[index];
+  if (!member.is_finite || !member.is_inside) member.multibody->stop();
+  member.is_active = member.is_finite = member.is_inside = true;
+  place_solids_of(member);
+  for (const Part& part : member.parts) scene.put_back(part.solid);
+}
+
+void Assembly::place(std::uint32_t index, const Pose& X_WM) {
+  const Member& member = members[index];
+  connections.release_of(index);
+  member.multibody->place(X_WM);
+  for (const Part& part : member.parts) collision.remove(part.solid);
+  place_solids_of(member);
+  scene.update();
 }
 
 void Assembly::place_solids_of(const Member& member) {
@@ -120,7 +141,11 @@ void Assembly::look_around(const Member& member, std::vector<std::uint32_t>& nea
 }
 
 void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) const {
-  bodies[anchors.index_of_member[member]].set_up(*members[member].multibody, gravity, step);
+  Equations& equations = bodies[anchors.index_of_member[member]];
+  equations.set_up(*members[member].multibody, gravity, step);
+  pushes.for_each_of(member, [&](const Pushes::Push& push) {
+    equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
+  });
 }
 
 void Assembly::add_own_rows(std::uint32_t member, Problem& problem) {

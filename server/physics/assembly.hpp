@@ -9,6 +9,7 @@
 #include "server/physics/connections.hpp"
 #include "server/physics/contact_rows.hpp"
 #include "server/physics/multibody.hpp"
+#include "server/physics/pushes.hpp"
 #include "server/physics/rows.hpp"
 
 namespace cohort::physics {
@@ -46,15 +47,20 @@ struct Assembly {
   Collision collision;
   std::vector<Member> members;
   Connections connections;
+  Pushes pushes;
 
-  /// One thread alone. `shapes`: of the model's collisions, in their order.
-  void add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
-                  std::span<const std::shared_ptr<const BulletShape>> shapes);
+  /// One thread alone. `shapes`: of the model's collisions, in their order. Returns the solids.
+  std::vector<std::uint32_t> add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
+                                        std::span<const std::shared_ptr<const BulletShape>> shapes);
   /// One thread alone. Returns the index of the member.
   std::uint32_t add_member(std::unique_ptr<Multibody> multibody,
                            std::span<const std::shared_ptr<const BulletShape>> shapes);
   /// From then on nothing touches it. One thread alone.
   void take_out(std::uint32_t member);
+  /// In the world again, as it was, but at rest if it broke or had left the world. One thread alone.
+  void put_back(std::uint32_t member);
+  /// At rest at X_WM, with its joints as they are. One thread alone.
+  void place(std::uint32_t member, const Pose& X_WM);
   void place_solids_of(const Member& member);
 
   /// Finds what the member touches and stands on. The vectors are scratch memory.

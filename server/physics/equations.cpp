@@ -248,4 +248,14 @@ void Equations::respond(const double* jacobian, double* response) const {
     if (jacobian[i] != 0.0) add_scaled(jacobian[i], inverse_.data() + i * stride_, response, stride_);
 }
 
+void Equations::push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
+                     const Eigen::Vector3d& angular_impulse_W) {
+  std::vector<double> generalised(at(stride_), 0.0);
+  std::vector<double> response(at(stride_), 0.0);
+  add_force(segment, point_W, impulse_W, generalised.data());
+  add_torque(segment, angular_impulse_W, generalised.data());
+  respond(generalised.data(), response.data());
+  for (int i = 0; i < size_; ++i) velocity_[at(i)] += response[at(i)];
+}
+
 }  // namespace cohort::physics

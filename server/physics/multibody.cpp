@@ -135,6 +135,16 @@ double Multibody::joint_velocity(std::size_t joint) const {
   return place.dofs == 0 ? 0.0 : velocities_[static_cast<std::size_t>(place.first_dof)];
 }
 
+void Multibody::place(const Pose& X_WM) {
+  const Segment& root = mechanism_->segments()[0];
+  const Pose X_WS = X_WM * root.X_PS;
+  X_WM_ = X_WM;
+  root_rotation_ = X_WS.orientation;
+  reference_W_ = mechanism_->has_free_root() ? X_WS * root.centre_S : X_WS.position;
+  stop();
+  update_poses();
+}
+
 void Multibody::set_root_twist(const Twist& twist) {
   const Eigen::Vector3d to_reference_W = reference_W_ - link_pose(0).position;
   const Eigen::Vector3d linear_W = twist.linear_W + twist.angular_W.cross(to_reference_W);

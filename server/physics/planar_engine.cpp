@@ -16,7 +16,7 @@ constexpr double furthest = 1e6;
 }  // namespace
 
 bool PlanarEngine::is_active(std::uint32_t body) const {
-  return bodies_[body].member == Anchors::nobody || members_[bodies_[body].member].is_active;
+  return bodies_[body].member == Anchors::nobody ? !bodies_[body].is_out : members_[bodies_[body].member].is_active;
 }
 
 Pose PlanarEngine::link_pose(std::uint32_t body, std::size_t link) const {
@@ -51,6 +51,7 @@ void PlanarEngine::step() {
   report_contacts();
   connections_.break_overloaded(step_);
   quarantine();
+  pushes_.clear();
   scene_.update();
 }
 
@@ -89,6 +90,9 @@ bool PlanarEngine::try_island(const std::vector<std::uint32_t>& members, Memory&
   memory.before.clear();
   for (const std::uint32_t member : members) {
     memory.before.push_back({planar_.velocity(member), grounds_[member].impulse()});
+    pushes_.for_each_of(member, [&](const Pushes::Push& push) {
+      planar_.push(member, push.point_W, step_ * push.wrench.force_W, step_ * push.wrench.torque_W);
+    });
     solver.add_member(member);
     add_rows_of(member, solver);
   }

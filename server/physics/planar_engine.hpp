@@ -8,9 +8,11 @@
 #include "server/physics/contact_rows.hpp"
 #include "server/physics/engine.hpp"
 #include "server/physics/islands.hpp"
+#include "server/physics/placed_body.hpp"
 #include "server/physics/planar_collision.hpp"
 #include "server/physics/planar_ground.hpp"
 #include "server/physics/planar_solver.hpp"
+#include "server/physics/pushes.hpp"
 
 namespace cohort::physics {
 
@@ -38,7 +40,10 @@ class PlanarEngine final : public Engine {
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   bool is_active(std::uint32_t body) const override;
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
-  void remove_body(std::uint32_t body) override { take_out(bodies_[body].member); }
+  void remove_body(std::uint32_t body) override;
+  void put_back_body(std::uint32_t body) override;
+  void place_body(std::uint32_t body, const Pose& X_WM) override;
+  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
 
   const geometry::Scene& scene() const override { return scene_; }
   std::size_t body_count() const override { return bodies_.size(); }
@@ -80,16 +85,12 @@ class PlanarEngine final : public Engine {
   void restore(SnapshotReader& reader) override;
 
  private:
-  struct Body {
-    std::size_t model = 0;
-    Pose X_WM;  // at first; of a static body for ever
-    std::uint32_t member = Anchors::nobody;
-  };
   struct Member {  // a body that moves
     std::uint32_t body = 0;
     std::uint32_t first_part = 0;
     std::uint32_t part_count = 0;
     bool is_active = true;
+    bool has_ground = false;  // or needs none
     // Of this step:
     bool is_finite = true;
     bool is_inside = true;
@@ -139,7 +140,7 @@ class PlanarEngine final : public Engine {
   SurfacePairs surfaces_;
   geometry::Scene scene_;
   std::vector<std::unique_ptr<PlanarModel>> models_;  // null for what is static
-  std::vector<Body> bodies_;
+  std::vector<PlacedBody> bodies_;
   std::vector<Member> members_;
   std::vector<Part> parts_;
   std::vector<PartInBody> parts_in_body_;  // of parts_
@@ -151,6 +152,7 @@ class PlanarEngine final : public Engine {
   Connections connections_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
+  Pushes pushes_;
   std::vector<Memory> memory_;  // by worker
 };
 

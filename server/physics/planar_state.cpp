@@ -7,6 +7,7 @@ namespace cohort::physics {
 
 void PlanarEngine::hash_body(std::uint32_t body, StateHash& hash) const {
   const std::uint32_t member = bodies_[body].member;
+  hash_changes(bodies_[body], hash);
   if (member == Anchors::nobody) return;
   StateHasher{hash}(members_[member].is_active);
   PlanarBodies::visit_state(planar_, member, StateHasher{hash});
@@ -26,8 +27,12 @@ void PlanarEngine::hash_contacts(StateHash& hash) const {
 void PlanarEngine::save(SnapshotWriter& writer) const {
   const StateSaver save{writer};
   save_added_bodies(bodies_, description_.instances.size(), writer);
+  save_changes(bodies_, writer);
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     save(members_[member].is_active);
+    save(members_[member].is_finite);
+    save(members_[member].is_inside);
+    save(members_[member].has_ground);
     PlanarBodies::visit_state(planar_, member, save);
     PlanarGround::visit_state(grounds_[member], save);
   }
@@ -40,10 +45,15 @@ void PlanarEngine::restore(SnapshotReader& reader) {
   restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
                        [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
   scene_.build();
+  restore_changes(reader, *this);
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     bool is_active = true;
     restore(is_active);
-    if (is_active && members_[member].body >= description_.instances.size()) put_on_ground(member);
+    restore(members_[member].is_finite);
+    restore(members_[member].is_inside);
+    bool has_ground = true;
+    restore(has_ground);
+    if (has_ground && !members_[member].has_ground) put_on_ground(member);
     PlanarBodies::visit_state(planar_, member, restore);
     PlanarGround::visit_state(grounds_[member], restore);
     planar_.update_poses(member);

@@ -26,6 +26,8 @@ Stepper::Stepper(const description::World& description, WorkerPool& workers)
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
   assembly_.scene.build();
   find_lowest();
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(body);
 }
 
 std::uint32_t Stepper::add_body(std::size_t model, const Pose& X_WM) {
@@ -43,15 +45,20 @@ std::uint32_t Stepper::create_body(std::size_t model_index, const Pose& X_WM) {
       for (const description::Collision& collision : link.collisions)
         shapes.push_back(std::make_shared<BulletShape>(collision.shape));
   if (model.is_static) {
-    bodies_.push_back({model_index, X_WM});
-    assembly_.add_static(body, model, X_WM, shapes);
+    PlacedBody& placed = bodies_.emplace_back();
+    placed.model = model_index;
+    placed.X_WM = X_WM;
+    placed.solids = assembly_.add_static(body, model, X_WM, shapes);
     return body;
   }
   try {
     std::unique_ptr<Mechanism>& mechanism = mechanisms_[model_index];
     if (!mechanism) mechanism = std::make_unique<Mechanism>(model, description_.physics.fidelity);
     const std::uint32_t member = assembly_.add_member(std::make_unique<Multibody>(*mechanism, X_WM, body), shapes);
-    bodies_.push_back({model_index, X_WM, member});
+    PlacedBody& placed = bodies_.emplace_back();
+    placed.model = model_index;
+    placed.X_WM = X_WM;
+    placed.member = member;
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("model '" + model.name + "': " + error.what());
   }
@@ -75,10 +82,8 @@ void Stepper::find_lowest() {
 }
 
 bool Stepper::is_active(std::uint32_t body) const {
-  return is_static(body) || assembly_.members[bodies_[body].member].is_active;
+  return is_static(body) ? !bodies_[body].is_out : assembly_.members[bodies_[body].member].is_active;
 }
-
-void Stepper::remove_body(std::uint32_t body) { assembly_.take_out(bodies_[body].member); }
 
 Pose Stepper::link_pose(std::uint32_t body, std::size_t link) const {
   if (!is_static(body)) return multibody(body).link_pose(link);
@@ -104,6 +109,7 @@ void Stepper::step() {
   report_contacts();
   assembly_.connections.break_overloaded(assembly_.step);
   quarantine();
+  assembly_.pushes.clear();
   assembly_.scene.update();
 }
 

@@ -9,6 +9,7 @@
 #include "server/physics/island_solver.hpp"
 #include "server/physics/islands.hpp"
 #include "server/physics/large_island_solver.hpp"
+#include "server/physics/placed_body.hpp"
 #include "server/physics/world.hpp"
 
 namespace cohort::physics {
@@ -25,6 +26,9 @@ class Stepper final : public Engine {
   bool is_active(std::uint32_t body) const override;
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
   void remove_body(std::uint32_t body) override;
+  void put_back_body(std::uint32_t body) override;
+  void place_body(std::uint32_t body, const Pose& X_WM) override;
+  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
 
   const geometry::Scene& scene() const override { return assembly_.scene; }
   std::size_t body_count() const override { return bodies_.size(); }
@@ -66,11 +70,6 @@ class Stepper final : public Engine {
   void restore(SnapshotReader& reader) override;
 
  private:
-  struct Body {
-    std::size_t model = 0;
-    Pose X_WM;  // at first; of a static body for ever
-    std::uint32_t member = Anchors::nobody;
-  };
   struct Memory {  // of one worker
     IslandSolver solver;
     std::vector<std::uint32_t> near;
@@ -93,7 +92,7 @@ class Stepper final : public Engine {
   WorkerPool& workers_;
   std::vector<std::unique_ptr<Mechanism>> mechanisms_;                   // by model, null for what is static
   std::vector<std::vector<std::shared_ptr<const BulletShape>>> shapes_;  // by model, of its collisions in their order
-  std::vector<Body> bodies_;
+  std::vector<PlacedBody> bodies_;
   Assembly assembly_;
   Islands islands_;
   LargeIslandSolver large_island_solver_;

@@ -6,6 +6,7 @@
 namespace cohort::physics {
 
 void Stepper::hash_body(std::uint32_t body, StateHash& hash) const {
+  hash_changes(bodies_[body], hash);
   if (is_static(body)) return;
   StateHasher{hash}(is_active(body));
   Multibody::visit_state(multibody(body), StateHasher{hash});
@@ -24,8 +25,11 @@ void Stepper::hash_contacts(StateHash& hash) const {
 void Stepper::save(SnapshotWriter& writer) const {
   const StateSaver save{writer};
   save_added_bodies(bodies_, description_.instances.size(), writer);
+  save_changes(bodies_, writer);
   for (const Member& member : assembly_.members) {
     save(member.is_active);
+    save(member.is_finite);
+    save(member.is_inside);
     Multibody::visit_state(*member.multibody, save);
   }
   assembly_.connections.save(writer);
@@ -37,10 +41,13 @@ void Stepper::restore(SnapshotReader& reader) {
   restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
                        [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
   assembly_.scene.build();
+  restore_changes(reader, *this);
   for (std::uint32_t index = 0; index < assembly_.members.size(); ++index) {
     bool is_active = true;
     restore(is_active);
-    const Member& member = assembly_.members[index];
+    Member& member = assembly_.members[index];
+    restore(member.is_finite);
+    restore(member.is_inside);
     Multibody::visit_state(*member.multibody, restore);
     member.multibody->update_poses();
     assembly_.place_solids_of(member);

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "server/description/experiment.hpp"
+#include "server/description/file_kind.hpp"
 #include "server/description/input_error.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tools/cohort/commands.hpp"
@@ -25,10 +26,10 @@ void warn(const description::World& world, Log& log) {
 
 int check(const std::filesystem::path& file, Log& log) {
   try {
-    if (file.extension() == ".sdf" || file.extension() == ".world") {
+    if (description::kind_of_file(file) == description::FileKind::sdf) {
       description::Experiment experiment;
       experiment.file = file;
-      experiment.world = description::read_world(file, experiment.seed, installed_model_folders());
+      experiment.world = description::read_world_or_model(file, experiment.seed, installed_model_folders());
       warn(experiment.world, log);
       const Simulation built(experiment, 1);  // some mistakes only show when physics takes the world
       print_world(experiment.world);

@@ -15,6 +15,7 @@
 #include "server/description/file_kind.hpp"
 #include "server/description/input_file.hpp"
 #include "server/description/sdf_errors.hpp"
+#include "server/description/sdf_schema.hpp"
 #include "server/description/text.hpp"
 #include "server/description/urdf_file.hpp"
 #include "server/description/yaml_sdf.hpp"
@@ -228,14 +229,15 @@ std::optional<XmlNode> SdfFiles::read_yaml(const std::string& text, const SdfFil
 }
 
 std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
-  if (*tree.attribute("version") == sdf::SDF::Version()) return tree;
+  file.version = *tree.attribute("version");
+  if (version_of(file.version) >= std::pair{1, 8} && !names_are_simple(tree, "")) return std::nullopt;
+  if (file.version == sdf::SDF::Version()) return tree;
   std::vector<XmlNode> includes;
   take_includes(tree, includes);
   XmlText written = xml_text_of(tree);
   file.nodes = std::move(written.nodes);
   sdf::Errors errors;
-  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-  sdf::init(sdf);
+  const sdf::SDFPtr sdf = empty_sdf();
   sdf->SetFilePath(file.path.string());
   const bool is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
   std::vector<Problem> found = problems_of(errors, file, tree);
@@ -244,10 +246,25 @@ std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
   if (!is_read) return std::nullopt;
   XmlNode newest = tree_of(sdf->Root(), tree, file.nodes);
   for (const auto& [name, value] : tree.attributes)
-    if (name.starts_with("xmlns:")) newest.attributes.emplace_back(name, value);
+    if (name.starts_with("xmlns:") && newest.attribute(name) == nullptr) newest.attributes.emplace_back(name, value);
   put_includes_back(newest, includes);
   file.nodes.clear();
   return newest;
+}
+
+bool SdfFiles::names_are_simple(const XmlNode& node, const std::string& path) {
+  bool are_simple = true;
+  for (const XmlNode& child : node.children) {
+    if (child.name == "plugin" || child.name.find(':') != std::string::npos) continue;
+    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    if (const std::string* const name = child.attribute("name"); name && name->find("::") != std::string::npos) {
+      problems_.push_back({child.file->shown, child.line, child_path,
+                           "a name cannot have '::' in it, which is between the name of a model and that of its part"});
+      are_simple = false;
+    }
+    are_simple = names_are_simple(child, child_path) && are_simple;
+  }
+  return are_simple;
 }
 
 void SdfFiles::load(SdfFile& file) {
@@ -255,9 +272,9 @@ void SdfFiles::load(SdfFile& file) {
   file.nodes = std::move(written.nodes);
   sdf::Errors errors;
   try {
-    const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-    sdf::init(sdf);
+    const sdf::SDFPtr sdf = empty_sdf();
     sdf->SetFilePath(file.path.string());
+    sdf->Root()->SetOriginalVersion(file.version);  // what an old version allowed stays allowed
     // Into an element: what reads into an SDFPtr tries anything that is not SDF as URDF, whose parser prints on its
     // own.
     file.loaded = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);

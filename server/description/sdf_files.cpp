@@ -41,12 +41,14 @@ sdf::Console& console() {
   return *made;
 }
 
-// "1.9" as {1, 9}; {0, 0} if it is nothing like that.
+// "1.9" as {1, 9}; {0, 0} if it is anything else.
 std::pair<int, int> version_of(std::string_view text) {
   std::pair<int, int> version{0, 0};
   const char* const end = text.data() + text.size();
   const auto [dot, error] = std::from_chars(text.data(), end, version.first);
-  if (error == std::errc{} && dot != end && *dot == '.') std::from_chars(dot + 1, end, version.second);
+  if (error != std::errc{} || dot == end || *dot != '.') return {0, 0};
+  const auto [stopped, second_error] = std::from_chars(dot + 1, end, version.second);
+  if (second_error != std::errc{} || stopped != end || version.second < 0) return {0, 0};
   return version;
 }
 
@@ -72,6 +74,13 @@ std::size_t place_among_siblings(const sdf::ElementPtr& element) {
 void set_file(XmlNode& node, const SdfFile* file) {
   node.file = file;
   for (XmlNode& child : node.children) set_file(child, file);
+}
+
+// SDF asks every <heightmap> for the <uri> of an image, also one that is a function.
+void name_terrains(XmlNode& node) {
+  for (XmlNode& child : node.children) name_terrains(child);
+  if (node.name == "heightmap" && node.child("cohort:terrain") != nullptr && node.child("uri") == nullptr)
+    node.children.push_back({"uri", node.line, node.file, {}, "cohort:terrain", {}});
 }
 
 std::size_t size_of(const XmlNode& node) {
@@ -175,6 +184,7 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
       if (auto tree = converted(*std::move(source), opened)) {
         opened.tree = *std::move(tree);
         opened.size = size_of(opened.tree);
+        name_terrains(opened.tree);
         if (replace_includes(opened.tree, "", opened)) load(opened);
       }
   opening_.pop_back();
@@ -239,8 +249,14 @@ std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
   sdf::Errors errors;
   const sdf::SDFPtr sdf = empty_sdf();
   sdf->SetFilePath(file.path.string());
-  const bool is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
-  std::vector<Problem> found = problems_of(errors, file, tree);
+  bool is_read = false;
+  std::vector<Problem> found;
+  try {
+    is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
+    found = problems_of(errors, file, tree);
+  } catch (const std::exception& error) {
+    found.push_back({file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()});
+  }
   if (!is_read && found.empty()) found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
   problems_.insert(problems_.end(), found.begin(), found.end());
   if (!is_read) return std::nullopt;

@@ -128,6 +128,15 @@ constexpr ExtensionKey material_pair[] = {
     {"rolling_resistance", non_negative, "m", "0", "torque against rolling for each newton of normal force"},
 };
 
+constexpr std::string_view terrains[] = {"sine", "ramp", "steps", "hills", "rough"};
+
+constexpr ExtensionKey terrain[] = {
+    {"kind", choice, "", "", "`sine`, `ramp`, `steps`, `hills` or `rough`", false, terrains},
+    {"spacing", positive, "m", "0.05", "between neighbouring heights, at the most"},
+    {"wavelength", positive, "m", "1", "of the waves; length of a step; distance between hills"},
+    {"seed", whole, "1", "0", "of `hills` and `rough`: another value, another ground"},
+};
+
 constexpr Extension table[] = {
     {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", treel_drive, "actuators"},
     {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", velocity_motor, "actuators"},
@@ -136,6 +145,21 @@ constexpr Extension table[] = {
      "sensors"},
     {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", proximity_ring,
      "sensors"},
+    {"density",
+     "collision",
+     false,
+     "The link's mass is that of its collisions; this one has this density.",
+     {},
+     "physics",
+     positive},
+    {"density",
+     "link",
+     false,
+     "The link's mass is that of its collisions, which have this density.",
+     {},
+     "physics",
+     positive},
+    {"terrain", "heightmap", false, "Ground that a function describes, in place of an image.", terrain, "physics"},
     {"material", "collision", false, "The name of what a collision is made of.", {}, "physics", name},
     {"material_pair", "world", false, "What holds where two materials touch.", material_pair, "physics"},
     {"physics", "world", false, "How the world is simulated.", physics, "physics"},

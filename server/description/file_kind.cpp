@@ -2,13 +2,31 @@
 
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
+#include <string_view>
 
 #include "server/description/input_file.hpp"
+#include "server/description/text.hpp"
 #include "server/description/yaml_document.hpp"
 #include "server/description/yaml_sdf.hpp"
 
 namespace cohort::description {
+namespace {
+
+// Of a text that is no YAML: a world stands below its key, the name of one beside it.
+bool starts_like_sdf(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("sdf:") || line.starts_with("model:")) return true;
+    if (!line.starts_with("world:")) continue;
+    const std::string_view rest = trimmed(std::string_view(line).substr(6));
+    return rest.empty() || std::string_view("{&#").find(rest[0]) != std::string_view::npos;
+  }
+  return false;
+}
+
+}  // namespace
 
 bool is_yaml(const std::filesystem::path& file) { return file.extension() == ".yaml" || file.extension() == ".yml"; }
 
@@ -17,8 +35,10 @@ FileKind kind_of_file(const std::filesystem::path& file) {
     if (file.extension() == extension) return FileKind::sdf;
   if (!is_yaml(file) || why_unreadable(file)) return FileKind::experiment;
   std::ifstream stream(file);
-  const YamlDocument document = parse_yaml(std::string(std::istreambuf_iterator<char>(stream), {}));
-  return document.root && is_sdf_in_yaml(*document.root) ? FileKind::sdf : FileKind::experiment;
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const YamlDocument document = parse_yaml(text);
+  const bool is_sdf = document.root ? is_sdf_in_yaml(*document.root) : starts_like_sdf(text);
+  return is_sdf ? FileKind::sdf : FileKind::experiment;
 }
 
 }  // namespace cohort::description

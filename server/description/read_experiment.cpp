@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -16,6 +18,7 @@
 #include "server/description/read_course.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
+#include "server/description/yaml_document.hpp"
 #include "server/description/yaml_map.hpp"
 #include "server/description/yaml_values.hpp"
 
@@ -157,10 +160,13 @@ YAML::Node ExperimentReader::load() const {
     throw InputError(
         {{file, 0, "",
           "this is a world; expected an experiment (YAML), which names a world and who controls its robots"}});
+  std::ifstream stream(file);
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  // What yaml-cpp would take, and whoever walks through it would never be done with.
+  if (const YamlDocument document = parse_yaml(text); document.error)
+    throw InputError({{file, document.error->line, "", document.error->message}});
   try {
-    return YAML::LoadFile(file.string());
-  } catch (const YAML::ParserException& error) {
-    throw InputError({{file, error.mark.line + 1, "", "not YAML: " + error.msg}});
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw InputError({{file, 0, "", error.msg}});
   }

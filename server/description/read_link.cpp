@@ -1,19 +1,21 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sdf/Collision.hh>
 #include <sdf/Geometry.hh>
 #include <sdf/Heightmap.hh>
 #include <utility>
 
 #include "server/description/extension_values.hpp"
+#include "server/description/mass_properties.hpp"
 #include "server/description/read_model.hpp"
 
 namespace cohort::description {
 namespace {
 
 // Here and below, NaN passes: check_numbers has reported it.
-Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
+Inertial read_written_inertial(const sdf::Link& link, const SdfReport& report) {
   const sdf::ElementPtr element = link.Element();
   const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
   const sdf::ElementPtr inertia = find(element, {"inertial", "inertia"});
@@ -44,6 +46,40 @@ Inertial read_inertial(const sdf::Link& link, const SdfReport& report) {
   else if (moments[2] > (moments[0] + moments[1]) * (1.0 + rounding))
     report.problem(inertia, "no body is like this: one principal moment exceeds the sum of the other two");
   return inertial;
+}
+
+// <cohort:density> of a link or a collision; nothing if it has none.
+std::optional<double> read_density(const sdf::ElementPtr& parent, const SdfReport& report) {
+  const sdf::ElementPtr element = parent->FindElement("cohort:density");
+  if (!element) return std::nullopt;
+  if (const sdf::ElementPtr again = element->GetNextElement("cohort:density"))
+    report.problem(again, "<cohort:density> is given twice");
+  const auto values = ExtensionValues::read(element, *find_extension("density", parent->GetName()), report);
+  return values ? std::optional(values->real("density")) : std::nullopt;
+}
+
+// Nothing if neither the link nor any of its collisions has a density.
+std::optional<Inertial> read_inertial_from_density(const sdf::Link& sdf_link, const Link& link,
+                                                   const SdfReport& report) {
+  const std::optional<double> of_link = read_density(sdf_link.Element(), report);
+  bool has_density = of_link.has_value();
+  std::vector<MassProperties> parts;
+  for (const Collision& collision : link.collisions) {
+    const auto own = read_density(sdf_link.CollisionByName(collision.name)->Element(), report);
+    has_density = has_density || own;
+    if (const std::optional<double> density = own ? own : of_link)
+      parts.push_back(moved(mass_properties(collision.shape, *density), collision.X_LC));
+  }
+  if (!has_density) return std::nullopt;
+  if (const sdf::ElementPtr written = sdf_link.Element()->FindElement("inertial");
+      written && written->GetExplicitlySetInFile())
+    report.problem(written, "expected either <inertial> or <cohort:density>, not both");
+  const MassProperties whole = together(parts);
+  if (!(whole.mass > 0.0) && link.collisions.size() == sdf_link.CollisionCount())
+    report.problem(sdf_link.Element(), "<cohort:density> needs a <collision> that has a volume");
+  if (!std::isfinite(whole.mass) || !whole.inertia.allFinite())
+    report.problem(sdf_link.Element(), "the collisions are too large for their density");
+  return Inertial{whole.mass, {whole.centre, Eigen::Quaterniond::Identity()}, whole.inertia};
 }
 
 double read_coefficient(const sdf::ElementPtr& element, double by_default, double greatest, const char* expected,
@@ -90,7 +126,6 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
   Link link;
   link.name = sdf_link.Name();
   link.X_ML = resolved_pose(sdf_link, reading);
-  if (!reading.is_static) link.inertial = read_inertial(sdf_link, reading.report);
   for (std::uint64_t i = 0; i < sdf_link.CollisionCount(); ++i) {
     const sdf::Collision& sdf_collision = *sdf_link.CollisionByIndex(i);
     const sdf::Geometry& geometry = *sdf_collision.Geom();
@@ -101,6 +136,9 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
     if (const sdf::Heightmap* const map = geometry.HeightmapShape()) X_LC.position = X_LC * to_eigen(map->Position());
     link.collisions.push_back({sdf_collision.Name(), X_LC, *std::move(shape), surface});
   }
+  if (reading.is_static) return link;
+  const auto computed = read_inertial_from_density(sdf_link, link, reading.report);
+  link.inertial = computed ? *computed : read_written_inertial(sdf_link, reading.report);
   return link;
 }
 

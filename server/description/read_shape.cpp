@@ -1,4 +1,5 @@
 #include <cmath>
+#include <memory>
 #include <sdf/Box.hh>
 #include <sdf/Capsule.hh>
 #include <sdf/Cylinder.hh>
@@ -9,7 +10,9 @@
 #include <sdf/Sphere.hh>
 #include <stdexcept>
 
+#include "server/description/extension_values.hpp"
 #include "server/description/read_model.hpp"
+#include "server/description/terrain.hpp"
 
 namespace cohort::description {
 namespace {
@@ -41,13 +44,28 @@ std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& 
   }
 }
 
+std::optional<Shape> read_terrain(const sdf::ElementPtr& element, const Eigen::Vector3d& size,
+                                  const SdfReport& report) {
+  const auto values = ExtensionValues::read(element, *find_extension("terrain", "heightmap"), report);
+  if (!values) return std::nullopt;
+  try {
+    return Heightmap{std::make_shared<const HeightGrid>(terrain_heights(
+        {values->text("kind"), size, values->real("spacing"), values->real("wavelength"), values->whole("seed")}))};
+  } catch (const std::runtime_error& error) {
+    report.problem(values->where("spacing"), error.what());
+    return std::nullopt;
+  }
+}
+
 std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReading& reading) {
   const sdf::ElementPtr element = map.Element();
   const Eigen::Vector3d size = to_eigen(map.Size());
   if (!reading.is_static) reading.report.problem(element, "a heightmap needs <static>true</static> in its model");
   check_size(element, {"size"}, size.minCoeff(), reading.report);
+  const sdf::ElementPtr terrain = find(element, {"cohort:terrain"});
+  if (terrain && size.minCoeff() > 0.0 && size.allFinite()) return read_terrain(terrain, size, reading.report);
   const sdf::ElementPtr uri = find(element, {"uri"});
-  if (!uri || !(size.minCoeff() > 0.0)) return std::nullopt;  // has been reported
+  if (!uri || terrain || !(size.minCoeff() > 0.0)) return std::nullopt;  // has been reported
   try {
     return Heightmap{reading.shape_files.height_grid(uri, size)};
   } catch (const std::runtime_error& error) {

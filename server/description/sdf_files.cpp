@@ -15,6 +15,7 @@
 #include "server/description/file_kind.hpp"
 #include "server/description/input_file.hpp"
 #include "server/description/sdf_errors.hpp"
+#include "server/description/sdf_schema.hpp"
 #include "server/description/text.hpp"
 #include "server/description/urdf_file.hpp"
 #include "server/description/yaml_sdf.hpp"
@@ -40,12 +41,14 @@ sdf::Console& console() {
   return *made;
 }
 
-// "1.9" as {1, 9}; {0, 0} if it is nothing like that.
+// "1.9" as {1, 9}; {0, 0} if it is anything else.
 std::pair<int, int> version_of(std::string_view text) {
   std::pair<int, int> version{0, 0};
   const char* const end = text.data() + text.size();
   const auto [dot, error] = std::from_chars(text.data(), end, version.first);
-  if (error == std::errc{} && dot != end && *dot == '.') std::from_chars(dot + 1, end, version.second);
+  if (error != std::errc{} || dot == end || *dot != '.') return {0, 0};
+  const auto [stopped, second_error] = std::from_chars(dot + 1, end, version.second);
+  if (second_error != std::errc{} || stopped != end || version.second < 0) return {0, 0};
   return version;
 }
 
@@ -71,6 +74,13 @@ std::size_t place_among_siblings(const sdf::ElementPtr& element) {
 void set_file(XmlNode& node, const SdfFile* file) {
   node.file = file;
   for (XmlNode& child : node.children) set_file(child, file);
+}
+
+// SDF asks every <heightmap> for the <uri> of an image, also one that is a function.
+void name_terrains(XmlNode& node) {
+  for (XmlNode& child : node.children) name_terrains(child);
+  if (node.name == "heightmap" && node.child("cohort:terrain") != nullptr && node.child("uri") == nullptr)
+    node.children.push_back({"uri", node.line, node.file, {}, "cohort:terrain", {}});
 }
 
 std::size_t size_of(const XmlNode& node) {
@@ -174,6 +184,7 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
       if (auto tree = converted(*std::move(source), opened)) {
         opened.tree = *std::move(tree);
         opened.size = size_of(opened.tree);
+        name_terrains(opened.tree);
         if (replace_includes(opened.tree, "", opened)) load(opened);
       }
   opening_.pop_back();
@@ -228,26 +239,48 @@ std::optional<XmlNode> SdfFiles::read_yaml(const std::string& text, const SdfFil
 }
 
 std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
-  if (*tree.attribute("version") == sdf::SDF::Version()) return tree;
+  file.version = *tree.attribute("version");
+  if (version_of(file.version) >= std::pair{1, 8} && !names_are_simple(tree, "")) return std::nullopt;
+  if (file.version == sdf::SDF::Version()) return tree;
   std::vector<XmlNode> includes;
   take_includes(tree, includes);
   XmlText written = xml_text_of(tree);
   file.nodes = std::move(written.nodes);
   sdf::Errors errors;
-  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-  sdf::init(sdf);
+  const sdf::SDFPtr sdf = empty_sdf();
   sdf->SetFilePath(file.path.string());
-  const bool is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
-  std::vector<Problem> found = problems_of(errors, file, tree);
+  bool is_read = false;
+  std::vector<Problem> found;
+  try {
+    is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
+    found = problems_of(errors, file, tree);
+  } catch (const std::exception& error) {
+    found.push_back({file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()});
+  }
   if (!is_read && found.empty()) found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
   problems_.insert(problems_.end(), found.begin(), found.end());
   if (!is_read) return std::nullopt;
   XmlNode newest = tree_of(sdf->Root(), tree, file.nodes);
   for (const auto& [name, value] : tree.attributes)
-    if (name.starts_with("xmlns:")) newest.attributes.emplace_back(name, value);
+    if (name.starts_with("xmlns:") && newest.attribute(name) == nullptr) newest.attributes.emplace_back(name, value);
   put_includes_back(newest, includes);
   file.nodes.clear();
   return newest;
+}
+
+bool SdfFiles::names_are_simple(const XmlNode& node, const std::string& path) {
+  bool are_simple = true;
+  for (const XmlNode& child : node.children) {
+    if (child.name == "plugin" || child.name.find(':') != std::string::npos) continue;
+    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    if (const std::string* const name = child.attribute("name"); name && name->find("::") != std::string::npos) {
+      problems_.push_back({child.file->shown, child.line, child_path,
+                           "a name cannot have '::' in it, which is between the name of a model and that of its part"});
+      are_simple = false;
+    }
+    are_simple = names_are_simple(child, child_path) && are_simple;
+  }
+  return are_simple;
 }
 
 void SdfFiles::load(SdfFile& file) {
@@ -255,9 +288,9 @@ void SdfFiles::load(SdfFile& file) {
   file.nodes = std::move(written.nodes);
   sdf::Errors errors;
   try {
-    const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-    sdf::init(sdf);
+    const sdf::SDFPtr sdf = empty_sdf();
     sdf->SetFilePath(file.path.string());
+    sdf->Root()->SetOriginalVersion(file.version);  // what an old version allowed stays allowed
     // Into an element: what reads into an SDFPtr tries anything that is not SDF as URDF, whose parser prints on its
     // own.
     file.loaded = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);

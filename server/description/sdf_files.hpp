@@ -39,6 +39,7 @@ struct Include {
 struct SdfFile {
   std::filesystem::path path;         ///< absolute
   std::filesystem::path shown;        ///< as the user calls it
+  std::string version;                ///< of SDF, that it is written in
   XmlNode tree;                       ///< as SDF of libsdformat's own version, with what stands for includes
   std::size_t size = 0;               ///< elements of `tree`
   std::vector<const XmlNode*> nodes;  ///< of `tree`, by the line that libsdformat knows them by
@@ -110,6 +111,8 @@ class SdfFiles {
   std::optional<XmlNode> read_yaml(const std::string& text, const SdfFile& file);
   /// An older version of SDF as the newest, with its includes as they are.
   std::optional<XmlNode> converted(XmlNode tree, SdfFile& file);
+  /// Whether no name has '::' in it, as is the rule from SDF 1.8 on.
+  bool names_are_simple(const XmlNode& node, const std::string& path);
   void load(SdfFile& file);
   const SdfFile* find(const std::string& path) const;
   const XmlNode* node_of(const sdf::ElementPtr& element) const;

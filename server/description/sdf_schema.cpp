@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <sdf/SDFImpl.hh>
 #include <sdf/parser.hh>
 
 namespace cohort::description {
@@ -34,6 +33,12 @@ const sdf::ElementPtr& sdf_definition() {
     return sdf->Root();
   }();
   return root;
+}
+
+sdf::SDFPtr empty_sdf() {
+  sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+  sdf->Root(sdf_definition()->Clone());
+  return sdf;
 }
 
 ElementSchema ElementSchema::root() {

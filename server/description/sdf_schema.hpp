@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <sdf/Element.hh>
+#include <sdf/SDFImpl.hh>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,5 +46,8 @@ class ElementSchema {
 
 /// SDFormat's description of <sdf>. It is shared, and nobody changes it.
 const sdf::ElementPtr& sdf_definition();
+
+/// An empty <sdf> to read into: as sdf::init makes it, in a tenth of the time.
+sdf::SDFPtr empty_sdf();
 
 }  // namespace cohort::description

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "server/description/sdf_schema.hpp"
+
 namespace cohort::description {
 namespace {
 
@@ -124,8 +126,7 @@ std::optional<XmlNode> sdf_of_urdf(const XmlNode& robot, const std::filesystem::
 
   const ConsoleCapture console;
   sdf::Errors errors;
-  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-  sdf::init(sdf);
+  const sdf::SDFPtr sdf = empty_sdf();
   const bool is_read = sdf::readString(xml_text_of(robot).text, config, sdf, errors);
   if (!is_read || !sdf->Root()->HasElement("model")) {
     std::string why = console.errors();

@@ -229,6 +229,7 @@ bool Scanner::attribute(XmlNode& node) {
   skip_space();
   if (!at("\"") && !at("'"))
     return fail(line, "the value of the attribute '" + name + "' is not between quotation marks");
+  if (node.attribute(name) != nullptr) return fail(line, "the attribute '" + name + "' is given twice");
   const char quote = take(1)[0];
   const std::size_t end = rest_.find(quote);
   if (end == std::string_view::npos) return fail(line, "the value of the attribute '" + name + "' never ends");

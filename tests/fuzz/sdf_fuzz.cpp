@@ -1,0 +1,12 @@
+#include "server/description/world.hpp"
+#include "tests/fuzz/fuzz_file.hpp"
+
+/// Any file named .sdf is read, or refused with InputError.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const cohort::fuzz::FuzzFile file(".sdf");
+  try {
+    cohort::description::read_world_or_model(file.holding(data, size), 1);
+  } catch (const cohort::description::InputError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,335 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+
+#include "server/description/convex_hull.hpp"
+#include "server/description/mass_properties.hpp"
+#include "server/description/terrain.hpp"
+#include "tests/support/written_worlds.hpp"
+
+// Models inside of models, URDF, older versions, mass from density, ground from functions.
+namespace cohort::description {
+namespace {
+
+constexpr double near = 1e-12;
+
+class Formats : public Description {
+ protected:
+  /// A folder robots/arm: two links, an elbow, a frame `tip` 2 m above, and a motor.
+  void write_arm() const {
+    write_model("arm",
+                links("u") +
+                    "<link name=\"l\"><pose>0 0 1 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx>"
+                    "<iyy>1</iyy><izz>1</izz></inertia></inertial></link>" +
+                    joint("elbow", "u", "l", "<xyz>0 1 0</xyz>") +
+                    "<frame name=\"tip\" attached_to=\"l\"><pose>0 0 1 0 0 0</pose></frame>"
+                    "<cohort:velocity_motor name=\"motor\"><cohort:joint>elbow</cohort:joint><cohort:max_velocity>"
+                    "1</cohort:max_velocity><cohort:max_effort>1</cohort:max_effort></cohort:velocity_motor>");
+  }
+  World read_urdf(const std::string& content) const {
+    return read_world_or_model(write("r.urdf", "<robot name=\"r\">\n" + content + "\n</robot>\n"), 1);
+  }
+};
+
+void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  EXPECT_LT((a - b).norm(), 1e-9) << a.transpose();
+}
+
+std::string include(const std::string& uri, const std::string& more = "") {
+  return "<include><uri>" + uri + "</uri>" + more + "</include>";
+}
+
+// ---- Models inside of models ----
+
+TEST_F(Formats, AModelInAModelIsPartOfItWithScopedNames) {
+  write_arm();
+  const World world = read(
+      "<model name=\"m\">" + links("b") + "<model name=\"n\"><pose>0 2 0 0 0 " + std::to_string(std::numbers::pi / 2) +
+      "</pose><link name=\"k\"><pose>1 0 0 0 0 0</pose><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1"
+      "</izz></inertia></inertial></link></model>" +
+      include("model://arm", "<name>a</name><pose relative_to=\"n::k\">0 0 1 0 0 0</pose>") + joint("i", "b", "n::k") +
+      joint("j", "n::k", "a::u") + "</model>");
+  const Model& model = world.models[0];
+  ASSERT_EQ(model.links.size(), 4u);
+  EXPECT_EQ(model.links[1].name, "n::k");
+  EXPECT_LT((model.links[1].X_ML.position - Eigen::Vector3d(0, 3, 0)).norm(), 1e-5);
+  EXPECT_EQ(model.links[3].name, "a::l");
+  EXPECT_LT((model.links[3].X_ML.position - Eigen::Vector3d(0, 3, 2)).norm(), 1e-5);
+  ASSERT_EQ(model.joints.size(), 3u);
+  EXPECT_EQ(model.joints[2].name, "a::elbow");
+  ASSERT_EQ(model.devices.size(), 1u);
+  const auto& motor = std::get<VelocityMotor>(model.devices[0]);
+  EXPECT_EQ(motor.name, "a::motor");
+  EXPECT_EQ(motor.joint, 2u);
+}
+
+TEST_F(Formats, AMergedModelKeepsItsOwnFrameAtThePlacementFrame) {
+  write_arm();
+  const World world =
+      read("<model name=\"m\">" + std::string("<include merge=\"true\"><uri>model://arm</uri><placement_frame>tip"
+                                              "</placement_frame><pose>0 0 5 0 0 0</pose></include></model>"));
+  expect_near(world.models[0].links[0].X_ML.position, {0, 0, 3});
+  expect_near(world.models[0].links[1].X_ML.position, {0, 0, 4});
+}
+
+TEST_F(Formats, IncludesArePlacedByFramesOfEachOther) {
+  write_arm();
+  const World world = read(include("model://arm", "<placement_frame>tip</placement_frame><pose>0 0 5 0 0 0</pose>") +
+                           include("model://arm", "<name>b</name><pose relative_to=\"arm::tip\">1 0 0 0 0 0</pose>") +
+                           include("model://arm", "<name>c</name><pose relative_to=\"b\">1 0 0 0 0 0</pose>") +
+                           include("model://arm", "<name>d</name><pose degrees=\"true\">1 2 3 0 0 90</pose>"));
+  ASSERT_EQ(world.instances.size(), 4u);
+  expect_near(world.instances[0].X_WM.position, {0, 0, 3});
+  expect_near(world.instances[1].X_WM.position, {1, 0, 5});
+  expect_near(world.instances[2].X_WM.position, {2, 0, 5});
+  expect_near(world.instances[3].X_WM.position, {1, 2, 3});
+  expect_near(world.instances[3].X_WM.orientation * Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
+  EXPECT_EQ(world.models.size(), 1u);
+}
+
+TEST_F(Formats, ModelsAndIncludesKeepTheirOrder) {
+  write_arm();
+  const World world = read(include("model://arm", "<name>a</name>") + static_model(links("l"), "b") +
+                           include("model://arm", "<name>c</name><pose relative_to=\"a\"/>") +
+                           include("model://arm", "<name>d</name>") + static_model(links("l"), "e"));
+  std::string names;
+  for (const Instance& instance : world.instances) names += instance.name;
+  EXPECT_EQ(names, "abcde");
+}
+
+TEST_F(Formats, APathInAnIncludedFileIsRelativeToThatFile) {
+  write_arm();
+  write("parts/inner.sdf", "<sdf version=\"1.9\"><model name=\"i\">" + links("l") + "</model></sdf>");
+  write("parts/outer.sdf", "<sdf version=\"1.9\"><model name=\"o\">" + include("inner.sdf") + "</model></sdf>");
+  EXPECT_EQ(read(include("parts/outer.sdf")).models[0].links[0].name, "i::l");
+}
+
+TEST_F(Formats, AnAxisOfAnOldFileInTheModelsFrameIsTurnedIntoTheJoint) {
+  const World world =
+      read_world(write("world.sdf",
+                       "<sdf version=\"1.5\"><world name=\"w\"><model name=\"m\">" + links("p") +
+                           "<link name=\"c\"><pose>0 0 1 0 0 1.5707963267948966</pose></link>" +
+                           joint("j", "p", "c", "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>") +
+                           "</model></world></sdf>"),
+                 1);
+  expect_near(world.models[0].joints[0].axis.direction, {0, -1, 0});
+}
+
+// ---- URDF ----
+
+std::string urdf_link(const std::string& name, const std::string& more = "") {
+  return "<link name=\"" + name +
+         "\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>"
+         "</inertial>" +
+         more + "</link>";
+}
+std::string urdf_joint(const std::string& name, const std::string& type, const std::string& parent,
+                       const std::string& child, const std::string& more = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+         "\"/><origin xyz=\"0 0 1\"/><axis xyz=\"0 1 0\"/>" + more + "</joint>";
+}
+
+TEST_F(Formats, AUrdfRobotHasItsLinksJointsAndLimits) {
+  const World world = read_urdf(
+      urdf_link("a") + urdf_link("b", "<collision><geometry><sphere radius=\"0.5\"/></geometry></collision>") +
+      urdf_joint("j", "revolute", "a", "b",
+                 "<limit lower=\"-1\" upper=\"2\" effort=\"3\" velocity=\"4\"/><dynamics damping=\"0.1\"/>"));
+  const Model& model = world.models[0];
+  ASSERT_EQ(model.links.size(), 2u);
+  expect_near(model.links[1].X_ML.position, {0, 0, 1});
+  EXPECT_EQ(model.links[1].inertial.mass, 2.0);
+  EXPECT_EQ(std::get<Sphere>(model.links[1].collisions[0].shape).radius, 0.5);
+  EXPECT_EQ(model.joints[0].axis.lower, -1.0);
+  EXPECT_EQ(model.joints[0].axis.upper, 2.0);
+  EXPECT_EQ(model.joints[0].axis.damping, 0.1);
+  expect_near(model.joints[0].axis.direction, {0, 1, 0});
+}
+
+TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
+  const World world =
+      read_urdf(urdf_link("a") + urdf_link("b") + urdf_link("c") + urdf_joint("j", "continuous", "a", "b") + "\n" +
+                urdf_joint("k", "continuous", "a", "c", "<mimic joint=\"j\"/>") +
+                "\n<transmission name=\"t\"/>\n<link name=\"ghost\"/>\n" + urdf_joint("g", "continuous", "a", "ghost"));
+  const std::string warnings = texts_of(world.warnings);
+  EXPECT_NE(warnings.find("r.urdf:3: robot/joint[k]/mimic"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("r.urdf:4: robot/transmission[t]"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("r.urdf:5: robot/link[ghost]: is left out"), std::string::npos) << warnings;
+  EXPECT_EQ(world.models[0].links.size(), 3u);
+}
+
+TEST_F(Formats, ErrorsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
+  const auto problems = problems_of([&] {
+    read_urdf(
+        urdf_link("a") + "\n" +
+        urdf_link("b", "\n<collision><geometry>\n<mesh filename=\"package://r/none.stl\"/></geometry></collision>") +
+        urdf_joint("j", "continuous", "a", "b"));
+  });
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].line, 5) << problems[0].text();
+}
+
+// ---- Mass from density ----
+
+TEST_F(Formats, DensityGivesALinkTheMassOfItsCollisions) {
+  const World world = read(
+      "<model name=\"m\"><link name=\"l\"><cohort:density>2</cohort:density>"
+      "<collision name=\"a\"><pose>1 0 0 0 0 0</pose><geometry><box><size>1 1 1</size></box></geometry></collision>"
+      "<collision name=\"b\"><pose>-1 0 0 0 0 0</pose><cohort:density>6</cohort:density><geometry><box><size>1 1 1"
+      "</size></box></geometry></collision></link></model>");
+  const Inertial& inertial = world.models[0].links[0].inertial;
+  EXPECT_NEAR(inertial.mass, 8.0, near);
+  expect_near(inertial.X_LI.position, {-0.5, 0, 0});
+  EXPECT_NEAR(inertial.inertia(0, 0), 8.0 / 6.0, near);
+  EXPECT_NEAR(inertial.inertia(1, 1), 8.0 / 6.0 + 2.0 * 1.5 * 1.5 + 6.0 * 0.5 * 0.5, near);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+}
+
+// Two halves put together are the whole, whatever the shape of the whole.
+TEST(MassProperties, TwoHalvesOfABoxAreTheBox) {
+  const MassProperties half = mass_properties(Box{{1.0, 2.0, 1.5}}, 3.0);
+  const MassProperties whole = mass_properties(Box{{1.0, 2.0, 3.0}}, 3.0);
+  const MassProperties both = together({moved(half, {{0, 0, 0.75}, Eigen::Quaterniond::Identity()}),
+                                        moved(half, {{0, 0, -0.75}, Eigen::Quaterniond(0, 1, 0, 0)})});
+  EXPECT_NEAR(both.mass, whole.mass, near);
+  EXPECT_LT((both.inertia - whole.inertia).norm(), near);
+}
+
+// Against the sum over many thin discs along z, each pi r(z)^2 dz.
+void expect_body_of_revolution(const Shape& shape, double half_length, const std::function<double(double)>& radius) {
+  constexpr int count = 20000;
+  const double dz = 2.0 * half_length / count;
+  double mass = 0.0, about_z = 0.0, across = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double z = -half_length + (i + 0.5) * dz;
+    const double r2 = radius(z) * radius(z);
+    const double disc = std::numbers::pi * r2 * dz;
+    mass += disc;
+    about_z += disc * r2 / 2.0;
+    across += disc * (r2 / 4.0 + z * z);
+  }
+  const MassProperties found = mass_properties(shape, 1.0);
+  EXPECT_NEAR(found.mass, mass, 1e-6 * mass);
+  EXPECT_NEAR(found.inertia(2, 2), about_z, 1e-6 * about_z);
+  EXPECT_NEAR(found.inertia(0, 0), across, 1e-6 * across);
+  EXPECT_NEAR(found.inertia(1, 1), across, 1e-6 * across);
+}
+
+TEST(MassProperties, ClosedFormsAreTheIntegralsOverDiscs) {
+  expect_body_of_revolution(Cylinder{0.5, 2.0}, 1.0, [](double) { return 0.5; });
+  expect_body_of_revolution(Sphere{0.7}, 0.7, [](double z) { return std::sqrt(0.49 - z * z); });
+  expect_body_of_revolution(Ellipsoid{{0.3, 0.3, 1.2}}, 1.2,
+                            [](double z) { return 0.3 * std::sqrt(1.0 - z * z / 1.44); });
+  expect_body_of_revolution(Capsule{0.4, 1.0}, 0.9, [](double z) {
+    const double beyond = std::max(0.0, std::abs(z) - 0.5);
+    return std::sqrt(0.16 - beyond * beyond);
+  });
+}
+
+TEST(MassProperties, AMeshOfABoxHasThoseOfTheBoxWhereverItIs) {
+  const Eigen::Vector3d offset(3.0, -2.0, 5.0);
+  std::vector<Eigen::Vector3d> corners;
+  for (const double x : {-0.5, 0.5})
+    for (const double y : {-1.0, 1.0})
+      for (const double z : {-1.5, 1.5}) corners.emplace_back(offset + Eigen::Vector3d(x, y, z));
+  const Mesh mesh{std::make_shared<const TriangleMesh>(convex_hull(corners)), true};
+  const MassProperties found = mass_properties(mesh, 2.0);
+  const MassProperties box = mass_properties(Box{{1.0, 2.0, 3.0}}, 2.0);
+  EXPECT_NEAR(found.mass, box.mass, near);
+  expect_near(found.centre, offset);
+  EXPECT_LT((found.inertia - box.inertia).norm(), 1e-10);
+}
+
+class FlawOfAFormat : public Formats, public ::testing::WithParamInterface<Flaw> {};
+
+TEST_P(FlawOfAFormat, IsReportedAlone) { expect_only_flaw(GetParam(), write_world(GetParam().content)); }
+
+std::string heightmap(const std::string& terrain, const std::string& size = "1 1 1") {
+  return static_model("<link name=\"l\"><collision name=\"c\"><geometry><heightmap><size>" + size +
+                      "</size><cohort:terrain>\n" + terrain +
+                      "</cohort:terrain></heightmap></geometry></collision></link>");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, FlawOfAFormat,
+    ::testing::Values(
+        Flaw{"<model name=\"m\"><link name=\"l\"><cohort:density>1</cohort:density></link></model>", 2,
+             "world/model[m]/link[l]", "needs a <collision> that has a volume"},
+        Flaw{"<model name=\"m\"><link name=\"l\">\n<cohort:density>-1</cohort:density><inertial/></link></model>", 3,
+             "world/model[m]/link[l]/cohort:density", "expected a number > 0"},
+        Flaw{"<model name=\"m\"><link name=\"l\"><cohort:density>1</cohort:density>\n<inertial/><collision name=\"c\">"
+             "<geometry><sphere><radius>1</radius></sphere></geometry></collision></link></model>",
+             3, "world/model[m]/link[l]/inertial", "not both"},
+        Flaw{heightmap("<cohort:kind>sinus</cohort:kind>"), 3,
+             "world/model[m]/link[l]/collision[c]/geometry/heightmap/cohort:terrain/cohort:kind",
+             "did you mean 'sine'?"},
+        Flaw{heightmap("<cohort:kind>sine</cohort:kind><cohort:spacing>1e-6</cohort:spacing>"), 3,
+             "world/model[m]/link[l]/collision[c]/geometry/heightmap/cohort:terrain/cohort:spacing",
+             "at most 4097 heights"}));
+
+// ---- Ground from functions ----
+
+TEST_F(Formats, ATerrainStandsInPlaceOfAnImage) {
+  const World world = read(heightmap("<cohort:kind>ramp</cohort:kind><cohort:spacing>0.5</cohort:spacing>", "2 1 0.4"));
+  const HeightGrid& grid = *std::get<Heightmap>(world.models[0].links[0].collisions[0].shape).grid;
+  EXPECT_EQ(grid.columns, 5u);
+  EXPECT_EQ(grid.rows, 3u);
+  EXPECT_DOUBLE_EQ(grid.height(0, 1), 0.0);
+  EXPECT_DOUBLE_EQ(grid.height(1, 2), 0.1);
+  EXPECT_DOUBLE_EQ(grid.height(4, 0), 0.4);
+}
+
+TEST(Terrain, StepsAreLevelAndReachTheTop) {
+  const HeightGrid grid = terrain_heights({"steps", {1.0, 0.1, 0.3}, 0.05, 0.25, 0});
+  EXPECT_DOUBLE_EQ(grid.height(0, 0), 0.0);
+  EXPECT_DOUBLE_EQ(grid.height(4, 0), 0.0);
+  EXPECT_DOUBLE_EQ(grid.height(5, 0), 0.1);
+  EXPECT_DOUBLE_EQ(grid.height(20, 0), 0.3);
+}
+
+TEST(Terrain, HeightsAreWithinTheSizeAndFollowTheSeed) {
+  for (const std::string kind : {"sine", "hills", "rough"}) {
+    const HeightGrid grid = terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 1});
+    const auto [least, greatest] = std::minmax_element(grid.heights.begin(), grid.heights.end());
+    EXPECT_GE(*least, 0.0) << kind;
+    EXPECT_LE(*greatest, 0.5) << kind;
+    EXPECT_GT(*greatest - *least, 0.3) << kind;
+    EXPECT_EQ(terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 1}).heights, grid.heights) << kind;
+    const bool has_seed = kind != "sine";
+    EXPECT_EQ(terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 2}).heights != grid.heights, has_seed) << kind;
+  }
+}
+
+// ---- Growth ----
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+TEST_F(Formats, TheTimeToReadIncludesGrowsWithTheirNumberAndNotFaster) {
+  const auto time_for = [&](int count) {
+    std::string content;
+    for (int i = 0; i < count; ++i)
+      content += include("model://sbot",
+                         "<name>r" + std::to_string(i) + "</name><pose>" + std::to_string(i) + " 0 0 0 0 0</pose>\n");
+    const std::filesystem::path file = write_world(content);
+    const double before = cpu_seconds();
+    EXPECT_EQ(read_world(file, 1).robots.size(), static_cast<std::size_t>(count));
+    return cpu_seconds() - before;
+  };
+  const double few = time_for(2500);
+  const double many = time_for(10000);
+  EXPECT_LT(many, 8.0 * few);  // linear: 4 at the most; quadratic: 16
+}
+
+}  // namespace
+}  // namespace cohort::description

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -52,6 +54,15 @@ struct Mesh {
   bool convex = true;
 };
 
+/// Ground that is described by a few numbers instead of an image. All heights are from 0 to size.z.
+struct Terrain {
+  std::string kind;                                ///< sine, ramp, steps, hills or rough
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();  ///< of the rectangle, and its greatest height [m]
+  double spacing = 0.05;                           ///< between neighbouring heights, at the most [m]
+  double wavelength = 1.0;                         ///< of waves; length of a step; distance between hills [m]
+  std::uint64_t seed = 0;                          ///< of hills and rough ground
+};
+
 /// Heights over a rectangle that is centred on the origin: columns along x, rows along y, both ascending.
 struct HeightGrid {
   std::size_t columns = 0;                            ///< >= 2
@@ -60,6 +71,7 @@ struct HeightGrid {
   std::vector<double> heights;                        ///< z, row by row [m]
   std::filesystem::path file{};                       ///< where they came from, if anywhere
   Eigen::Vector3d size = Eigen::Vector3d::Ones();     ///< that the image was given [m]
+  std::optional<Terrain> terrain{};                   ///< what they were made from, in place of an image
 
   double height(std::size_t column, std::size_t row) const { return heights[row * columns + column]; }
   /// From the origin to the edges.

@@ -57,6 +57,7 @@ HeightGrid terrain_heights(const Terrain& terrain) {
   for (std::size_t row = 0; row < grid.rows; ++row)
     for (std::size_t column = 0; column < grid.columns; ++column)
       grid.heights.push_back(terrain.size.z() * height(column, row));
+  grid.terrain = terrain;
   return grid;
 }
 

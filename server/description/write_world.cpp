@@ -76,8 +76,18 @@ struct ShapeWriter {
   }
   void operator()(const Heightmap& map) const {
     XmlNode& element = add(geometry, "heightmap");
-    add_value(element, "uri", relative(map.grid->file));
-    add_value(element, "size", map.grid->size);
+    if (!map.grid->terrain) {
+      add_value(element, "uri", relative(map.grid->file));
+      add_value(element, "size", map.grid->size);
+      return;
+    }
+    const Terrain& terrain = *map.grid->terrain;
+    add_value(element, "size", terrain.size);
+    XmlNode& extension = add(element, prefixed("terrain"));
+    add_key(extension, "kind", terrain.kind);
+    add_key(extension, "spacing", terrain.spacing);
+    add_key(extension, "wavelength", terrain.wavelength);
+    add_key(extension, "seed", terrain.seed);
   }
 
  private:

@@ -152,6 +152,13 @@ TEST_F(ExportedWorlds, WithAHeightMapNameItsFileFromWhereTheyAre) {
   EXPECT_NE(text.find("<size>4 4 0.25</size>"), std::string::npos);
 }
 
+TEST_F(ExportedWorlds, WithGroundFromAFunctionHaveTheFunction) {
+  expect_the_same_again(read(static_model(
+      "<link name=\"l\"><collision name=\"c\"><geometry><heightmap><size>3 2 0.4</size><cohort:terrain>"
+      "<cohort:kind>hills</cohort:kind><cohort:spacing>0.1</cohort:spacing><cohort:wavelength>0.7</cohort:wavelength>"
+      "<cohort:seed>3</cohort:seed></cohort:terrain></heightmap></geometry></collision></link>")));
+}
+
 TEST_F(ExportedWorlds, EscapeNamesThatXmlWouldMisread) {
   const World world = read(static_model(links("a"), "a&amp;b&lt;&quot;c"));
   EXPECT_EQ(world.instances[0].name, "a&b<\"c");

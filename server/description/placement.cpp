@@ -183,7 +183,8 @@ class Placer {
     std::vector<Vector3d> places;
     for (std::uint64_t i = 0; i < placement_.count; ++i) {
       const double column = static_cast<double>(i % columns) - half(columns);
-      const double row = static_cast<double>(i / columns) - half(rows);
+      const std::uint64_t rows_before = i / columns;
+      const double row = static_cast<double>(rows_before) - half(rows);
       const Vector2d point = layout.centre + layout.spacing * (column * x_axis + row * y_axis);
       places.emplace_back(point.x(), point.y(), heading(i, 0, point, 0.0));
     }

@@ -307,7 +307,7 @@ void CourseReader::check_order(const World& world, const std::vector<ReadEvent>&
     else if (event.kind != "add" && !is_there[event.object])
       report_.problem(each.node, each.path, name + " has not been added by then");
     if (event.kind == "add") is_there[event.object] = 1;
-    if (event.kind == "remove") is_gone[event.object] = 1;
+    if (event.kind == "remove" && is_there[event.object]) is_gone[event.object] = 1;
   }
 }
 

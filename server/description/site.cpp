@@ -121,7 +121,8 @@ void Site::add(const Model& model, const Pose& X_WM) {
         planes_.push_back({X_WC.position, X_WC.orientation * plane->normal});
       } else if (const auto* const map = std::get_if<Heightmap>(&collision.shape)) {
         add_heights(map->grid, X_WC);
-      } else if (const auto* const mesh = std::get_if<description::Mesh>(&collision.shape); mesh && !mesh->convex) {
+      } else if (const auto* const mesh = std::get_if<description::Mesh>(&collision.shape);
+                 mesh != nullptr && !mesh->convex) {
         add_mesh(*mesh->triangles, X_WC);
       } else if (const auto footprint = footprint_of(collision.shape, X_WC)) {
         Thing& thing = things_.emplace_back();

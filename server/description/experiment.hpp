@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/description/event.hpp"
 #include "server/description/world.hpp"
 
 namespace cohort::description {
@@ -49,7 +50,12 @@ struct Experiment {
   World world;
   std::uint64_t seed = 1;
   std::chrono::nanoseconds duration{0};
-  std::vector<Team> teams;  ///< every robot is in exactly one
+  std::vector<Team> teams;    ///< every robot is in exactly one
+  unsigned threads = 0;       ///< that step the world; 0: as many as there are cores
+  std::vector<Event> events;  ///< in the order of their times, and of the file
+  std::vector<StopCondition> stops;
+  std::vector<PrintedQuantity> prints;
+  History history;
 };
 
 /// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's;

@@ -50,11 +50,56 @@ constexpr ExtensionKey population[] = {
     {"count", count, "1", "", "number of instances"},
     {"seed_offset", whole, "1", "0", "added to the seed of the run: another value, another placement"},
     {"placement", group, "", "", "where they are put"},
+    {"may_be_fewer", flag, "", "false",
+     "if there is no room for all: a warning that says how many fitted, not an error"},
 };
 
+constexpr std::string_view headings[] = {"random", "fixed", "towards", "away", "along"};
+constexpr std::string_view patterns[] = {"column", "row", "wedge"};
+
 constexpr ExtensionKey placement[] = {
-    {"uniform", group, "", "", "anywhere in a rectangle with equal probability, with any heading"},
+    {"uniform", group, "", no_value, "anywhere in a rectangle with equal probability"},
+    {"gaussian", group, "", no_value, "normally distributed around a point"},
+    {"grid", group, "", no_value, "in rows and columns"},
+    {"ring", group, "", no_value, "evenly around a circle"},
+    {"line", group, "", no_value, "evenly from one point to another"},
+    {"formation", group, "", no_value, "in a pattern, or one by one"},
+    {"heading", choice, "", no_value, "`random`, `fixed`, `towards` or `away` from a point, or `along` a ring or line",
+     false, headings},
+    {"point", point, "m", no_value, "of the headings `towards` and `away`"},
+    {"yaw", real, "rad", "0", "added to the heading; of a fixed one, all of it"},
     {"gap", non_negative, "m", "0.01", "kept free between an instance's bounding circle and everything else"},
+    {"level", real, "m", "0", "static things no higher than this are ground to stand on"},
+};
+
+constexpr ExtensionKey gaussian[] = {
+    {"center", point, "m", "0 0", "the mean place"},
+    {"deviation", positive, "m", "", "standard deviation along x and along y"},
+};
+
+constexpr ExtensionKey grid[] = {
+    {"center", point, "m", "0 0", "middle of the grid"},
+    {"spacing", positive, "m", "", "from one row or column to the next"},
+    {"columns", count, "1", no_value, "places in a row; as many as there are rows if absent"},
+    {"yaw", real, "rad", "0", "direction of the rows, from the x axis"},
+};
+
+constexpr ExtensionKey ring[] = {
+    {"center", point, "m", "0 0", "middle of the circle"},
+    {"radius", positive, "m", "", "of the circle"},
+    {"first_bearing", real, "rad", "0", "where the first instance is, from the x axis; the others counter-clockwise"},
+};
+
+constexpr ExtensionKey line[] = {
+    {"from", point, "m", "", "where the first instance is"},
+    {"to", point, "m", "", "where the last one is"},
+};
+
+constexpr ExtensionKey formation[] = {
+    {"center", point, "m", "0 0", "where the frame of the formation is; its heading is that of the placement"},
+    {"pattern", choice, "", no_value, "`column`, `row` or `wedge`", false, patterns},
+    {"spacing", positive, "m", no_value, "of a pattern: from one member to the next; in a wedge, ahead and aside"},
+    {"member", place, "m, rad", no_value, "a place: x, y and heading in the frame of the formation; any number", true},
 };
 
 constexpr ExtensionKey uniform[] = {
@@ -93,25 +138,39 @@ constexpr ExtensionKey terrain[] = {
 };
 
 constexpr Extension table[] = {
-    {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", treel_drive},
-    {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", velocity_motor},
-    {"joint_encoder", "model", true, "Measures position and velocity of one joint.", joint_encoder},
-    {"treel_encoder", "model", true, "Measures way and velocity of each track relative to the hull.", treel_encoder},
-    {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", proximity_ring},
+    {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", treel_drive, "actuators"},
+    {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", velocity_motor, "actuators"},
+    {"joint_encoder", "model", true, "Measures position and velocity of one joint.", joint_encoder, "sensors"},
+    {"treel_encoder", "model", true, "Measures way and velocity of each track relative to the hull.", treel_encoder,
+     "sensors"},
+    {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", proximity_ring,
+     "sensors"},
     {"density",
      "collision",
      false,
      "The link's mass is that of its collisions; this one has this density.",
      {},
+     "physics",
      positive},
-    {"density", "link", false, "The link's mass is that of its collisions, which have this density.", {}, positive},
-    {"terrain", "heightmap", false, "Ground that a function describes, in place of an image.", terrain},
-    {"material", "collision", false, "The name of what a collision is made of.", {}, name},
-    {"material_pair", "world", false, "What holds where two materials touch.", material_pair},
-    {"physics", "world", false, "How the world is simulated.", physics},
-    {"population", "world", true, "Instances of one model, placed by the seed of the run.", population},
-    {"placement", "population", false, "Where the instances of a population are put.", placement},
-    {"uniform", "placement", false, "A rectangle of the ground.", uniform},
+    {"density",
+     "link",
+     false,
+     "The link's mass is that of its collisions, which have this density.",
+     {},
+     "physics",
+     positive},
+    {"terrain", "heightmap", false, "Ground that a function describes, in place of an image.", terrain, "physics"},
+    {"material", "collision", false, "The name of what a collision is made of.", {}, "physics", name},
+    {"material_pair", "world", false, "What holds where two materials touch.", material_pair, "physics"},
+    {"physics", "world", false, "How the world is simulated.", physics, "physics"},
+    {"population", "world", true, "Instances of one model, placed by the seed of the run.", population, "placement"},
+    {"placement", "population", false, "Where the instances of a population are put.", placement, "placement"},
+    {"uniform", "placement", false, "A rectangle of the ground.", uniform, "placement"},
+    {"gaussian", "placement", false, "Around a point.", gaussian, "placement"},
+    {"grid", "placement", false, "In rows and columns, the first row at the least y.", grid, "placement"},
+    {"ring", "placement", false, "Evenly around a circle.", ring, "placement"},
+    {"line", "placement", false, "Evenly along a line, with both ends.", line, "placement"},
+    {"formation", "placement", false, "In a pattern, or at places given one by one.", formation, "placement"},
 };
 
 }  // namespace

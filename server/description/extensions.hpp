@@ -19,7 +19,9 @@ enum class ExtensionValue {
   count,         ///< a whole number from 1 to 1 000 000
   whole,         ///< a whole number >= 0 of at most 64 bits
   point,         ///< "x y"
-  pose,          ///< "x y z roll pitch yaw", rotated about the fixed axes x, then y, then z
+  vector,        ///< "x y z"
+  place,         ///< "x y heading"
+  pose,          ///< "x y z roll pitch yaw", rotated about the fixed axes x, then y, then z; or "x y z qx qy qz qw"
   group          ///< an extension of its own, described by its own entry
 };
 
@@ -44,6 +46,7 @@ struct Extension {
   bool has_name = false;    ///< carries the attribute `name`
   std::string_view doc;
   std::span<const ExtensionKey> keys;
+  std::string_view topic;                        ///< under which help has it
   ExtensionValue value = ExtensionValue::group;  ///< `group`: it holds keys; otherwise, a value itself
 };
 

@@ -30,6 +30,15 @@ Pose pose_of(const std::array<double, 6>& v) {
                              about(v[3], Eigen::Vector3d::UnitX()))};
 }
 
+// Normalised only if it needs it, so that one that was normalised before is the same again.
+std::optional<Pose> pose_of_quaternion(const std::array<double, 7>& v) {
+  const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+  constexpr double no_direction = 1e-6;
+  constexpr double rounding = 1e-14;
+  if (q.norm() < no_direction) return std::nullopt;
+  return Pose{{v[0], v[1], v[2]}, std::abs(q.squaredNorm() - 1.0) < rounding ? q : q.normalized()};
+}
+
 bool is_in_range(double number, ExtensionValue kind) {
   switch (kind) {
     case ExtensionValue::non_negative: return number >= 0.0;
@@ -44,13 +53,6 @@ bool is_in_range(double number, ExtensionValue kind) {
 void KeyValues::prefix_texts(std::string_view key, const std::string& prefix) {
   if (const auto values = values_.find(key); values != values_.end())
     for (Value& value : values->second) std::get<std::string>(value).insert(0, prefix);
-}
-
-std::vector<std::string> KeyValues::texts(std::string_view key) const {
-  std::vector<std::string> found;
-  if (const auto values = values_.find(key); values != values_.end())
-    for (const Value& value : values->second) found.push_back(std::get<std::string>(value));
-  return found;
 }
 
 std::optional<KeyValues::Value> parse_value(std::string_view text, const ExtensionKey& key) {
@@ -88,10 +90,19 @@ std::optional<KeyValues::Value> parse_value(std::string_view text, const Extensi
       if (!numbers) return std::nullopt;
       return Value(Eigen::Vector2d((*numbers)[0], (*numbers)[1]));
     }
-    case ExtensionValue::pose: {
-      const auto numbers = finite_numbers<6>(text);
+    case ExtensionValue::vector:
+    case ExtensionValue::place: {
+      const auto numbers = finite_numbers<3>(text);
       if (!numbers) return std::nullopt;
-      return Value(pose_of(*numbers));
+      return Value(Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]));
+    }
+    case ExtensionValue::pose: {
+      if (const auto numbers = finite_numbers<6>(text)) return Value(pose_of(*numbers));
+      const auto numbers = finite_numbers<7>(text);
+      if (!numbers) return std::nullopt;
+      const std::optional<Pose> pose = pose_of_quaternion(*numbers);
+      if (!pose) return std::nullopt;
+      return Value(*pose);
     }
     case ExtensionValue::group: break;
   }
@@ -115,7 +126,9 @@ std::string expected(const ExtensionKey& key) {
     case ExtensionValue::count: return "a whole number from 1 to " + std::to_string(greatest_count);
     case ExtensionValue::whole: return "a whole number >= 0";
     case ExtensionValue::point: return "two numbers 'x y'";
-    case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw'";
+    case ExtensionValue::vector: return "three numbers 'x y z'";
+    case ExtensionValue::place: return "three numbers 'x y heading'";
+    case ExtensionValue::pose: return "six numbers 'x y z roll pitch yaw', or seven 'x y z qx qy qz qw'";
     case ExtensionValue::group: return "elements";
   }
   return {};

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "server/description/text.hpp"
+#include "server/description/yaml_values.hpp"
 
 namespace cohort::description {
 namespace {
@@ -23,7 +23,17 @@ auto named(const Named& choices, std::string_view name) {
   return found->second;
 }
 
+template <class Named, class Choice>
+std::string name_in(const Named& choices, Choice wanted) {
+  for (const auto& [name, choice] : choices)
+    if (choice == wanted) return std::string(name);
+  throw std::logic_error("a choice without a name");
+}
+
 }  // namespace
+
+std::string name_of(Fidelity fidelity) { return name_in(fidelities, fidelity); }
+std::string name_of(Solver solver) { return name_in(solvers, solver); }
 
 PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values) {
   if (values.has("fidelity")) settings.fidelity = named(fidelities, values.text("fidelity"));
@@ -36,23 +46,7 @@ PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values) {
 }
 
 KeyValues read_physics_map(const YAML::Node& node, const std::string& path, const YamlReport& report) {
-  const Extension& extension = *find_extension("physics", "world");
-  std::vector<std::string> known;
-  for (const ExtensionKey& key : extension.keys) known.emplace_back(key.name);
-  const YamlMap map(node, path, known, report);
-
-  KeyValues values;
-  for (const ExtensionKey& key : extension.keys) {
-    const std::string name(key.name);
-    if (!map.has(name)) continue;
-    const YAML::Node value = map.where(name);
-    const std::string_view text = value.IsScalar() ? trimmed(value.Scalar()) : std::string_view();
-    if (std::optional<KeyValues::Value> parsed = parse_value(text, key))
-      values.add(name, *std::move(parsed));
-    else
-      map.problem(name, text.empty() ? "expected " + expected(key) + ", not " + shown(value) : why_wrong(text, key));
-  }
-  return values;
+  return read_values(node, path, *find_extension("physics", "world"), false, report);
 }
 
 }  // namespace cohort::description

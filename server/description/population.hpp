@@ -15,7 +15,8 @@ struct Population {
   sdf::ElementPtr uri_element;
   sdf::ElementPtr placement_element;
   std::string uri;
-  UniformPlacement placement;
+  Placement placement;
+  bool may_be_fewer = false;  ///< than there are to be, if there is no room
 };
 
 /// Nothing if anything is wrong with the element; the report then has it. `seed` is that of the run.

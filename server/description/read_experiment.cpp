@@ -10,25 +10,25 @@
 #include <utility>
 
 #include "server/description/experiment.hpp"
+#include "server/description/experiment_keys.hpp"
 #include "server/description/file_kind.hpp"
 #include "server/description/input_error.hpp"
 #include "server/description/input_file.hpp"
 #include "server/description/physics_settings.hpp"
+#include "server/description/read_course.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
 #include "server/description/yaml_document.hpp"
 #include "server/description/yaml_map.hpp"
+#include "server/description/yaml_values.hpp"
 
 namespace cohort::description {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uint64_t most_threads = 1024;
 constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>::max();
-
-const std::vector<std::string> experiment_keys = {"world", "duration", "seed", "physics", "teams"};
-const std::vector<std::string> team_keys = {"name",  "robots", "controller", "parameters", "period",
-                                            "phase", "delay",  "on_late",    "deadline",   "restart"};
 
 const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLate::wait},
                                                                    {"hold", OnLate::hold},
@@ -105,7 +105,8 @@ class ExperimentReader {
 
  private:
   YAML::Node load() const;
-  void read_world_of(const YamlMap& top);
+  void read_world_of(const YamlMap& top, const std::vector<LaterObject>& later);
+  void read_step(const YamlMap& top);
   void read_teams(const YamlMap& top);
   void read_team(const YAML::Node& node, const std::string& path);
   void read_parameters(const YAML::Node& map, const std::string& path, const std::string& prefix,
@@ -127,7 +128,7 @@ class ExperimentReader {
 
 Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration) {
   const YAML::Node node = load();
-  const YamlMap top(node, "", experiment_keys, report_);
+  const YamlMap top(node, "", names_of_keys(experiment_part("experiment", "")), report_);
   experiment_.name = experiment_.file.stem().string();
 
   const std::uint64_t written_seed =
@@ -137,11 +138,16 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   experiment_.duration = duration.value_or(read_seconds(top, "duration").value_or(experiment_.duration));
   top.require("world", "the file of the world, relative to this file");
   top.require("teams", "which robots have which controller");
-  read_world_of(top);
+  const CourseReader course(top, experiment_.file, report_);
+  read_world_of(top, course.later_objects());
+  read_step(top);
+  if (top.has("threads"))
+    experiment_.threads = static_cast<unsigned>(top.whole("threads", 1, most_threads).value_or(1));
   if (top.has("physics"))
     experiment_.world.physics =
         with_values(experiment_.world.physics, read_physics_map(top.where("physics"), top.path_to("physics"), report_));
   read_teams(top);
+  if (world_is_read_) course.read(experiment_);
 
   if (!problems_.empty()) throw InputError(std::move(problems_));
   return std::move(experiment_);
@@ -166,7 +172,7 @@ YAML::Node ExperimentReader::load() const {
   }
 }
 
-void ExperimentReader::read_world_of(const YamlMap& top) {
+void ExperimentReader::read_world_of(const YamlMap& top, const std::vector<LaterObject>& later) {
   const std::optional<std::string> name = top.text("world");
   if (!name) return;
   const fs::path world = experiment_.file.parent_path() / *name;
@@ -175,12 +181,23 @@ void ExperimentReader::read_world_of(const YamlMap& top) {
     return;
   }
   try {
-    experiment_.world = read_world(world.lexically_normal(), experiment_.seed, last_model_folders_);
+    experiment_.world = read_world(world.lexically_normal(), experiment_.seed, last_model_folders_, later);
     team_of_.resize(experiment_.world.robots.size());
     world_is_read_ = true;
   } catch (const InputError& error) {
     problems_.insert(problems_.end(), error.problems().begin(), error.problems().end());
   }
+}
+
+void ExperimentReader::read_step(const YamlMap& top) {
+  constexpr std::chrono::nanoseconds longest = std::chrono::seconds(1);
+  constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
+  const std::optional<std::chrono::nanoseconds> step = read_seconds(top, "step");
+  if (!step) return;
+  const double nanoseconds = *top.real("step") * 1e9;
+  if (*step > longest || std::abs(nanoseconds - std::round(nanoseconds)) > rounding)
+    top.problem("step", "expected a whole number of nanoseconds, at most 1 s");
+  experiment_.world.step = *step;
 }
 
 void ExperimentReader::read_teams(const YamlMap& top) {
@@ -196,7 +213,7 @@ void ExperimentReader::read_teams(const YamlMap& top) {
 }
 
 void ExperimentReader::read_team(const YAML::Node& node, const std::string& path) {
-  const YamlMap map(node, path, team_keys, report_);
+  const YamlMap map(node, path, names_of_keys(experiment_part("teams", "experiment")), report_);
   map.require("name", "a name for the team");
   map.require("robots", "which robots belong to it");
   map.require("controller", "a controller plugin: its name or a path to it");

@@ -80,6 +80,8 @@ std::optional<JointAxis> read_axis(const sdf::Joint& sdf_joint, unsigned place, 
   }
   JointAxis axis;
   axis.direction = to_eigen(direction).normalized();
+  if (sdf_axis->XyzExpressedIn().empty())
+    if (const auto written = written_unit_vector(element->FindElement("xyz"))) axis.direction = *written;
   read_dynamics(*sdf_axis, report, axis);
   if (sdf_joint.Type() != sdf::JointType::CONTINUOUS) read_limits(*sdf_axis, report, axis);
   return axis;
@@ -155,7 +157,9 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
     joint.type = *type;
     joint.parent = *parent;
     joint.child = *child;
-    joint.X_LJ = resolved_pose(sdf_joint, reading, child_name);
+    const bool is_in_child = sdf_joint.PoseRelativeTo().empty() && sdf_joint.ChildLinkName() == child_name;
+    joint.X_LJ = is_in_child ? written_pose(sdf_joint.RawPose(), sdf_joint.Element())
+                             : resolved_pose(sdf_joint, reading, child_name);
     read_axes(sdf_joint, reading.report, joint);
     joints.push_back(joint);
   }

@@ -23,7 +23,7 @@ Inertial read_written_inertial(const sdf::Link& link, const SdfReport& report) {
   if (!inertia) report.warning(element, "has no inertia; SDF's default acts, 1 kg m^2 about each axis");
 
   Inertial inertial;
-  inertial.X_LI = to_pose(link.Inertial().Pose());
+  inertial.X_LI = written_pose(link.Inertial().Pose(), find(element, {"inertial"}));
   if (mass) inertial.mass = mass->Get<double>();
   if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
     report.problem(mass, "expected a mass > 0 kg, not " + mass->GetValue()->GetAsString());

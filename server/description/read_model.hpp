@@ -49,10 +49,20 @@ struct DeviceScope {
 /// The devices of a model whose links and joints are read.
 std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report);
 
+/// Whether the pose is given in the frame that it is to be in, and needs no resolving.
+inline bool is_in_frame_of_parent(const sdf::Model& model) {
+  return model.PoseRelativeTo().empty() && model.PlacementFrameName().empty();
+}
+template <class Posed>
+bool is_in_frame_of_parent(const Posed& posed) {
+  return posed.PoseRelativeTo().empty();
+}
+
 /// The pose of anything that has one, in the frame `in`; by default, in that of the element that it stands in.
 template <class Posed>
 Pose resolved_pose(const Posed& posed, const ModelReading& reading, const std::string& in = "") {
   if (!reading.frames_resolve) return {};
+  if (in.empty() && is_in_frame_of_parent(posed)) return written_pose(posed.RawPose(), posed.Element());
   ignition::math::Pose3d X;
   for (const sdf::Error& error : posed.SemanticPose().Resolve(X, in))
     reading.report.problem(posed.Element(), error.Message());

@@ -107,7 +107,7 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
     const Eigen::Vector3d normal = to_eigen(plane->Normal());
     if (!reading.is_static) report.problem(element, "a plane needs <static>true</static> in its model");
     if (normal.isZero()) report.problem(element, "expected a normal that is not zero");
-    return Plane{normal.normalized()};
+    return Plane{written_unit_vector(find(element, {"plane", "normal"})).value_or(normal.normalized())};
   }
   if (const sdf::Mesh* const mesh = geometry.MeshShape()) return read_mesh_shape(*mesh, reading);
   if (const sdf::Heightmap* const map = geometry.HeightmapShape()) return read_heightmap(*map, reading);

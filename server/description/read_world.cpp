@@ -36,7 +36,7 @@ class WorldReader {
     world_.file = file;
   }
 
-  World read(bool may_be_a_model);
+  World read(bool may_be_a_model, const std::vector<LaterObject>& later);
 
  private:
   World finished();
@@ -53,8 +53,12 @@ class WorldReader {
     return {is_static, file.sound, report_, shape_files_, world_.materials};
   }
   void expand(const Population& population);
+  /// The file of a model. Null if there is none, or it is not sound; `problem` is called with what is wrong.
+  template <class Report>
+  const SdfFile* find_model(const std::string& uri, const Report& problem);
   /// The place in World::models of the model in a file: one for all that include it.
   std::size_t shared_model(const SdfFile& file, bool is_static);
+  void add_later(const LaterObject& object);
   /// False if the name is taken.
   bool add_instance(std::string name, std::size_t model, const Pose& X_WM);
 
@@ -66,9 +70,11 @@ class WorldReader {
   SdfReport report_;
   std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
   std::set<std::string> names_;
+  Site site_;  // with the first `in_site_` instances
+  std::size_t in_site_ = 0;
 };
 
-World WorldReader::read(bool may_be_a_model) {
+World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& later) {
   const SdfFile& file = files_.world();
   if (!file.loaded) throw InputError(std::move(problems_));
   if (may_be_a_model && file.root.Model() != nullptr) {
@@ -86,6 +92,7 @@ World WorldReader::read(bool may_be_a_model) {
   read_settings(sdf_world);
   read_models(sdf_world, file);
   read_extensions(sdf_world);
+  for (const LaterObject& object : later) add_later(object);
   return finished();
 }
 
@@ -228,34 +235,60 @@ void WorldReader::add_material_pair(const ExtensionValues& values) {
       {*first, *second, values.real("friction"), values.real("restitution"), values.real("rolling_resistance")});
 }
 
-void WorldReader::expand(const Population& population) {
+template <class Report>
+const SdfFile* WorldReader::find_model(const std::string& uri, const Report& problem) {
   const SdfFile* file = nullptr;
   try {
-    file = &files_.model(population.uri);
+    file = &files_.model(uri);
   } catch (const std::runtime_error& error) {
-    report_.problem(population.uri_element, error.what());
-    return;
+    problem(error.what());
+    return nullptr;
   }
-  if (!file->loaded) return;
+  if (!file->loaded) return nullptr;
   if (file->root.Model() == nullptr) {
-    report_.problem(population.uri_element, "'" + file->shown.string() + "' has no <model>");
-    return;
+    problem("'" + file->shown.string() + "' has no <model>");
+    return nullptr;
   }
+  return file;
+}
+
+void WorldReader::add_later(const LaterObject& object) {
+  const auto problem = [&](std::string message) {
+    problems_.push_back({object.where.file, object.where.line, object.where.element, std::move(message)});
+  };
+  const SdfFile* const file = find_model(object.uri, problem);
+  if (file == nullptr) return;
+  if (!add_instance(object.name, shared_model(*file, file->root.Model()->Static()), object.X_WM))
+    return problem("another object has the name '" + object.name + "'");
+  world_.instances.back().is_present = false;
+}
+
+void WorldReader::expand(const Population& population) {
+  const auto problem = [&](std::string message) { report_.problem(population.uri_element, std::move(message)); };
+  const SdfFile* const file = find_model(population.uri, problem);
+  if (file == nullptr) return;
   const std::size_t model = shared_model(*file, file->root.Model()->Static());
   // Where a shape is wrong, so is the room that it takes.
   if (!problems_.empty()) return;
 
-  std::vector<Footprint> obstacles;
-  for (const Instance& instance : world_.instances)
-    for (const Footprint& part : footprints_of(world_.models[instance.model], instance.X_WM)) obstacles.push_back(part);
-  const std::vector<Pose> poses = place_uniformly(population.placement, world_.models[model], obstacles);
-  if (poses.size() < population.placement.count)
-    report_.problem(population.placement_element, "only " + std::to_string(poses.size()) + " of " +
-                                                      std::to_string(population.placement.count) +
-                                                      " fit; enlarge the rectangle, or lower the count or the gap");
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::string name = population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(i);
-    if (add_instance(name, model, poses[i])) continue;
+  for (; in_site_ < world_.instances.size(); ++in_site_) {
+    const Instance& instance = world_.instances[in_site_];
+    site_.add(world_.models[instance.model], instance.X_WM);
+  }
+  const std::vector<Placed> placed = place_instances(population.placement, world_.models[model], site_);
+  if (placed.size() < population.placement.count) {
+    const std::string how_many =
+        "only " + std::to_string(placed.size()) + " of " + std::to_string(population.placement.count) + " fit";
+    if (population.may_be_fewer)
+      report_.warning(population.placement_element, how_many);
+    else
+      report_.problem(population.placement_element,
+                      how_many + "; enlarge the area, or lower the count or the gap, or set <cohort:may_be_fewer>");
+  }
+  for (const Placed& each : placed) {
+    const std::string name =
+        population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(each.number);
+    if (add_instance(name, model, each.X_WM)) continue;
     report_.problem(population.uri_element->GetParent(), "another instance has the name '" + name + "'");
     return;
   }
@@ -270,13 +303,13 @@ bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& 
 }  // namespace
 
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
-                 const std::vector<std::filesystem::path>& last_model_folders) {
-  return WorldReader(file, seed, last_model_folders).read(false);
+                 const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
+  return WorldReader(file, seed, last_model_folders).read(false, later);
 }
 
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders) {
-  return WorldReader(file, seed, last_model_folders).read(true);
+  return WorldReader(file, seed, last_model_folders).read(true, {});
 }
 
 }  // namespace cohort::description

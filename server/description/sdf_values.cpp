@@ -53,12 +53,31 @@ void check_value(const sdf::ElementPtr& element, const SdfReport& report) {
     report.problem(element, "expected " + std::to_string(count) + " numbers, not '" + text + "'");
 }
 
+// What normalising leaves behind is never further from 1.
+bool is_unit(double squared_norm) { return std::abs(squared_norm - 1.0) < 1e-14; }
+
 }  // namespace
 
 Eigen::Vector3d to_eigen(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
 
 Pose to_pose(const ignition::math::Pose3d& X) {
   return {to_eigen(X.Pos()), Eigen::Quaterniond(X.Rot().W(), X.Rot().X(), X.Rot().Y(), X.Rot().Z()).normalized()};
+}
+
+Pose written_pose(const ignition::math::Pose3d& X, const sdf::ElementPtr& posed) {
+  Pose pose = to_pose(X);
+  const sdf::ElementPtr element = find(posed, {"pose"});
+  const sdf::ParamPtr format = element ? element->GetAttribute("rotation_format") : nullptr;
+  if (!format || format->GetAsString() != "quat_xyzw") return pose;
+  const Eigen::Quaterniond written(X.Rot().W(), X.Rot().X(), X.Rot().Y(), X.Rot().Z());
+  if (is_unit(written.squaredNorm())) pose.orientation = written;
+  return pose;
+}
+
+std::optional<Eigen::Vector3d> written_unit_vector(const sdf::ElementPtr& element) {
+  if (!element) return std::nullopt;
+  const Eigen::Vector3d written = to_eigen(element->Get<ignition::math::Vector3d>());
+  return is_unit(written.squaredNorm()) ? std::optional(written) : std::nullopt;
 }
 
 sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*> path) {

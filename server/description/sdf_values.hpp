@@ -3,6 +3,7 @@
 #include <ignition/math/Pose3.hh>
 #include <ignition/math/Vector3.hh>
 #include <initializer_list>
+#include <optional>
 #include <sdf/Element.hh>
 
 #include "server/core/pose.hpp"
@@ -12,6 +13,13 @@ namespace cohort::description {
 
 Eigen::Vector3d to_eigen(const ignition::math::Vector3d& v);
 Pose to_pose(const ignition::math::Pose3d& X);
+
+/// The pose that an element has, as it is written there: `X` without what resolving frames would do to its last bits. A
+/// quaternion is normalised only if it needs it, so that one that was written by us is the same again.
+Pose written_pose(const ignition::math::Pose3d& X, const sdf::ElementPtr& posed);
+
+/// A direction as it is written in an element, if that is a unit vector to the last bits but a few.
+std::optional<Eigen::Vector3d> written_unit_vector(const sdf::ElementPtr& element);
 
 /// The descendant at this path, nullptr if it is not there. (Element::GetElement would add it.)
 sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*> path);

@@ -77,4 +77,17 @@ std::vector<std::uint32_t> select_robots(const World& world, const std::string& 
                               (count == 0 ? "; the world has no robots" : suggestion(text, names)));
 }
 
+std::vector<std::size_t> select_objects(const World& world, const std::string& selector) {
+  const std::string_view text = trimmed(selector);
+  std::vector<std::size_t> found;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < world.instances.size(); ++i) {
+    if (matches(world.instances[i].name, text)) found.push_back(i);
+    names.push_back(world.instances[i].name);
+  }
+  if (found.empty())
+    throw std::invalid_argument("no object is called '" + std::string(text) + "'" + suggestion(text, names));
+  return found;
+}
+
 }  // namespace cohort::description

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,5 +16,9 @@ namespace cohort::description {
 /// - a scoped name, in which `*` stands for any characters or none, such as `explorers/*`.
 /// Throws std::invalid_argument, with a message for the user, if it is none of these or means no robot.
 std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector);
+
+/// The instances, ascending, whose names are `selector`, in which `*` stands for any characters or none. Throws
+/// std::invalid_argument, with a message for the user, if there are none.
+std::vector<std::size_t> select_objects(const World& world, const std::string& selector);
 
 }  // namespace cohort::description

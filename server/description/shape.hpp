@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -40,6 +41,8 @@ struct Plane {
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;                ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices, counter-clockwise seen from outside
+  std::filesystem::path file{};                         ///< where they came from, if anywhere
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();      ///< that the coordinates of the file were multiplied by
 };
 /// If `convex`, the convex hull of the vertices is solid: so in all models that move. Otherwise the triangles
 /// themselves: where they close a surface, what it encloses is solid, and where they do not, they are a skin with two
@@ -55,6 +58,8 @@ struct HeightGrid {
   std::size_t rows = 0;                               ///< >= 2
   Eigen::Vector2d spacing = Eigen::Vector2d::Ones();  ///< between neighbouring columns and rows [m]
   std::vector<double> heights;                        ///< z, row by row [m]
+  std::filesystem::path file{};                       ///< where they came from, if anywhere
+  Eigen::Vector3d size = Eigen::Vector3d::Ones();     ///< that the image was given [m]
 
   double height(std::size_t column, std::size_t row) const { return heights[row * columns + column]; }
   /// From the origin to the edges.

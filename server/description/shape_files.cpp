@@ -28,6 +28,8 @@ std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri,
   if (mesh) return mesh;
   TriangleMesh read = read_mesh(file, scale);
   if (convex) read = hull_of(read, file);
+  read.file = file;
+  read.scale = scale;
   mesh = std::make_shared<const TriangleMesh>(std::move(read));
   return mesh;
 }
@@ -35,7 +37,11 @@ std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri,
 std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size) {
   const std::filesystem::path file = files_.find_file(uri);
   std::shared_ptr<const HeightGrid>& grid = grids_[{file, size.x(), size.y(), size.z()}];
-  if (!grid) grid = std::make_shared<const HeightGrid>(read_height_image(file, size));
+  if (grid) return grid;
+  HeightGrid read = read_height_image(file, size);
+  read.file = file;
+  read.size = size;
+  grid = std::make_shared<const HeightGrid>(std::move(read));
   return grid;
 }
 

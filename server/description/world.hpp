@@ -17,6 +17,15 @@ struct Instance {
   std::string name;       ///< scoped, unique in the world, such as `explorers/sbot_7`
   std::size_t model = 0;  ///< index into World::models
   Pose X_WM;
+  bool is_present = true;  ///< from the beginning; otherwise an event of the experiment brings it
+};
+
+/// An object that an event of an experiment brings into the world.
+struct LaterObject {
+  std::string uri;  ///< of its model
+  std::string name;
+  Pose X_WM;
+  Problem where;  ///< of the event, without a message
 };
 
 /// What is simulated of a model (docs/fidelity.md).
@@ -74,10 +83,11 @@ struct World {
 /// elements. The instances are the models and includes in document order, then the populations in theirs.
 /// `model://NAME` is looked for in the folders of the environment variable COHORT_MODEL_PATH, in `robots` and `objects`
 /// in the folder of the file and in its parents, four levels up, and in `last_model_folders`; other URIs are paths
-/// relative to the file. docs/worlds.md has the details. Throws InputError with every problem found. Callable from any
-/// thread; calls wait for each other.
+/// relative to the file. docs/worlds.md has the details. `later`: instances that are not present at first; they come
+/// last. Throws InputError with every problem found. Callable from any thread; calls wait for each other.
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
-                 const std::vector<std::filesystem::path>& last_model_folders = {});
+                 const std::vector<std::filesystem::path>& last_model_folders = {},
+                 const std::vector<LaterObject>& later = {});
 
 /// The same; a file with a model alone is a world with nothing but this model, at the origin.
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,

@@ -1,26 +1,26 @@
 #include "server/geometry/grid.hpp"
 
-#include <bit>
+#include <cmath>
 
 namespace cohort::geometry {
 
 double Grid::cells_covered(const Bounds& bounds) const {
-  const double width = std::floor((bounds.upper.x() - bounds.lower.x()) * inverse_) + 2.0;
-  const double depth = std::floor((bounds.upper.y() - bounds.lower.y()) * inverse_) + 2.0;
+  const double width = std::floor((bounds.upper.x() - bounds.lower.x()) / cells_.size()) + 2.0;
+  const double depth = std::floor((bounds.upper.y() - bounds.lower.y()) / cells_.size()) + 2.0;
   return width * depth;
 }
 
 void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds) {
   const auto for_each_cell = [&](std::uint32_t item, auto&& act) {
-    const Cell lower = cell_at(bounds[item].lower.x(), bounds[item].lower.y());
-    const Cell upper = cell_at(bounds[item].upper.x(), bounds[item].upper.y());
-    for (std::int64_t y = lower.y; y <= upper.y; ++y)
-      for (std::int64_t x = lower.x; x <= upper.x; ++x) act(bucket_of({x, y}));
+    const std::int64_t last = cells_.index_of(bounds[item].upper.x());
+    const std::int64_t last_row = cells_.index_of(bounds[item].upper.y());
+    for (std::int64_t row = cells_.index_of(bounds[item].lower.y()); row <= last_row; ++row)
+      for (std::int64_t column = cells_.index_of(bounds[item].lower.x()); column <= last; ++column)
+        act(cells_.bucket_of(column, row));
   };
 
   // Counting sort into buckets: sizes, then ends, then items from the last to the first, which leaves the beginnings.
-  const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(16, 4 * items.size()));
-  mask_ = buckets - 1;
+  const std::size_t buckets = cells_.choose_buckets(items.size());
   begin_.assign(buckets + 1, 0);
   for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "server/geometry/cells.hpp"
 #include "server/geometry/shapes.hpp"
 
 namespace cohort::geometry {
@@ -15,17 +14,7 @@ namespace cohort::geometry {
 /// bounds touch. Built at once; queries may then run from any thread.
 class Grid {
  public:
-  struct Cell {
-    std::int64_t x;
-    std::int64_t y;
-    friend bool operator==(const Cell&, const Cell&) = default;
-  };
-
-  void set_cell_size(double edge) {
-    edge_ = edge;
-    inverse_ = 1.0 / edge;
-  }
-  double cell_size() const { return edge_; }
+  void set_cell_size(double edge) { cells_.set_size(edge); }
 
   /// Cells that `bounds` touches; more than any grid should hold if it is very large.
   double cells_covered(const Bounds& bounds) const;
@@ -38,20 +27,22 @@ class Grid {
   template <class Visit>
   void for_each_overlap(const Bounds& query, const std::vector<Bounds>& bounds, Visit&& visit) const {
     if (entries_.empty()) return;
-    const Cell lower = cell_at(query.lower.x(), query.lower.y());
-    const Cell upper = cell_at(query.upper.x(), query.upper.y());
-    for (std::int64_t y = lower.y; y <= upper.y; ++y)
-      for (std::int64_t x = lower.x; x <= upper.x; ++x) {
-        const std::span<const std::uint32_t> items = bucket({x, y});
+    const std::int64_t first = cells_.index_of(query.lower.x());
+    const std::int64_t last = cells_.index_of(query.upper.x());
+    const std::int64_t first_row = cells_.index_of(query.lower.y());
+    const std::int64_t last_row = cells_.index_of(query.upper.y());
+    for (std::int64_t row = first_row; row <= last_row; ++row)
+      for (std::int64_t column = first; column <= last; ++column) {
+        const std::span<const std::uint32_t> items = bucket(column, row);
         for (std::size_t i = 0; i < items.size(); ++i) {
           const std::uint32_t item = items[i];
           if (i > 0 && items[i - 1] == item) continue;  // two of its cells fell into this bucket
           const Bounds& other = bounds[item];
           if (!query.overlaps(other)) continue;
           // Of the cells that both touch, the lowest one reports.
-          const Cell first =
-              cell_at(std::max(query.lower.x(), other.lower.x()), std::max(query.lower.y(), other.lower.y()));
-          if (first == Cell{x, y}) visit(item);
+          if (std::max(first, cells_.index_of(other.lower.x())) == column &&
+              std::max(first_row, cells_.index_of(other.lower.y())) == row)
+            visit(item);
         }
       }
   }
@@ -62,51 +53,20 @@ class Grid {
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
     if (entries_.empty()) return;
-    const double infinity = std::numeric_limits<double>::infinity();
-    Cell cell = cell_at(origin.x(), origin.y());
-    const std::int64_t step_x = direction.x() >= 0.0 ? 1 : -1;
-    const std::int64_t step_y = direction.y() >= 0.0 ? 1 : -1;
-    const double per_cell_x = direction.x() != 0.0 ? edge_ / std::abs(direction.x()) : infinity;
-    const double per_cell_y = direction.y() != 0.0 ? edge_ / std::abs(direction.y()) : infinity;
-    const auto to_border = [&](double at, std::int64_t index, std::int64_t step, double d) {
-      if (d == 0.0) return infinity;
-      const double border = static_cast<double>(step > 0 ? index + 1 : index) * edge_;
-      return (border - at) / d;
-    };
-    double next_x = to_border(origin.x(), cell.x, step_x, direction.x());
-    double next_y = to_border(origin.y(), cell.y, step_y, direction.y());
     double end = range;
-    for (;;) {
-      for (const std::uint32_t item : bucket(cell)) end = visit(item);
-      const double next = std::min(next_x, next_y);
-      if (!(next <= end)) return;
-      if (next_x <= next_y) {
-        cell.x += step_x;
-        next_x += per_cell_x;
-      } else {
-        cell.y += step_y;
-        next_y += per_cell_y;
-      }
-    }
+    cells_.for_each_along(origin, direction, [&](std::int64_t column, std::int64_t row) {
+      for (const std::uint32_t item : bucket(column, row)) end = visit(item);
+      return end;
+    });
   }
 
  private:
-  Cell cell_at(double x, double y) const {
-    return {static_cast<std::int64_t>(std::floor(x * inverse_)), static_cast<std::int64_t>(std::floor(y * inverse_))};
-  }
-  std::size_t bucket_of(Cell cell) const {
-    const auto hash = static_cast<std::uint64_t>(cell.x) * 0x9e3779b97f4a7c15u ^
-                      static_cast<std::uint64_t>(cell.y) * 0xc2b2ae3d27d4eb4fu;
-    return static_cast<std::size_t>((hash ^ hash >> 29) & mask_);
-  }
-  std::span<const std::uint32_t> bucket(Cell cell) const {
-    const std::size_t index = bucket_of(cell);
+  std::span<const std::uint32_t> bucket(std::int64_t column, std::int64_t row) const {
+    const std::size_t index = cells_.bucket_of(column, row);
     return {entries_.data() + begin_[index], entries_.data() + begin_[index + 1]};
   }
 
-  double edge_ = 1.0;
-  double inverse_ = 1.0;
-  std::uint64_t mask_ = 0;
+  Cells cells_;
   std::vector<std::uint32_t> begin_;    // of each bucket in entries_, and one past the last
   std::vector<std::uint32_t> entries_;  // items, ascending within a bucket
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "server/core/floor.hpp"
+
 namespace cohort::geometry {
 namespace {
 
@@ -72,8 +74,8 @@ class Walk {
     const std::int64_t most[] = {static_cast<std::int64_t>(grid_.columns) - 2,
                                  static_cast<std::int64_t>(grid_.rows) - 2};
     for (int axis = 0; axis < 2; ++axis)
-      cell_[axis] = std::clamp(static_cast<std::int64_t>(std::floor((point[axis] + half_[axis]) / grid_.spacing[axis])),
-                               std::int64_t{0}, most[axis]);
+      cell_[axis] =
+          std::clamp(integer_below((point[axis] + half_[axis]) / grid_.spacing[axis]), std::int64_t{0}, most[axis]);
   }
 
   // Where the ray reaches the next line of the grid across this axis.

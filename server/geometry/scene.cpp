@@ -18,7 +18,7 @@ std::uint32_t Scene::add(Solid solid) {
   balls_.push_back({solid.X_WC.position, radius_of(solid.shape) * (1.0 + rounding) + rounding});
   const auto* const mesh = std::get_if<description::Mesh>(&solid.shape);
   surfaces_.push_back(mesh != nullptr ? surface_of(*mesh) : nullptr);
-  if (solid.moves) moving_.push_back(index);
+  is_removed_.push_back(0);
   solids_.push_back(std::move(solid));
   return index;
 }
@@ -29,28 +29,54 @@ std::shared_ptr<const MeshSurface> Scene::surface_of(const description::Mesh& me
   return surface;
 }
 
+// As wide as the widest thing that moves, but for the few that are much wider than the others.
+double Scene::choose_cell_size() const {
+  constexpr double much_wider = 4.0;
+  std::vector<double> widths;
+  for (std::uint32_t index = 0; index < solids_.size(); ++index)
+    if (solids_[index].moves) widths.push_back(2.0 * balls_[index].radius);
+  if (widths.empty()) return 1.0;
+  std::sort(widths.begin(), widths.end());
+  const double most = much_wider * widths[widths.size() / 2];
+  return *std::prev(std::upper_bound(widths.begin(), widths.end(), most));
+}
+
 void Scene::build() {
-  // A cell as wide as the widest thing that moves: it then touches four cells at the most.
-  double edge = 0.0;
-  for (const std::uint32_t index : moving_)
-    edge = std::max(edge, (bounds_[index].upper - bounds_[index].lower).head<2>().maxCoeff());
-  if (!(edge > 0.0)) edge = 1.0;
+  const double edge = choose_cell_size();
   static_grid_.set_cell_size(edge);
   moving_grid_.set_cell_size(edge);
+  wide_grid_.set_cell_size(edge);
 
-  large_.clear();
+  for (std::vector<std::uint32_t>* list : {&large_, &moving_, &wide_, &large_moving_}) list->clear();
   std::vector<std::uint32_t> small;
   for (std::uint32_t index = 0; index < solids_.size(); ++index) {
-    if (solids_[index].moves) continue;
-    (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
+    if (is_removed_[index]) continue;
+    const double width = 2.0 * balls_[index].radius;
+    if (!solids_[index].moves) {
+      (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
+    } else {
+      (width <= edge ? moving_ : width * width > most_cells * edge * edge ? large_moving_ : wide_).push_back(index);
+    }
   }
   static_grid_.build(small, bounds_);
   update();
 }
 
+void Scene::update() {
+  moving_grid_.build(moving_, bounds_);
+  wide_grid_.build(wide_, bounds_);
+}
+
 void Scene::remove(std::uint32_t index) {
-  std::erase(moving_, index);
+  is_removed_[index] = 1;
+  if (!solids_[index].moves) return build();
+  for (std::vector<std::uint32_t>* list : {&moving_, &wide_, &large_moving_}) std::erase(*list, index);
   update();
+}
+
+void Scene::put_back(std::uint32_t index) {
+  is_removed_[index] = 0;
+  build();
 }
 
 void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
@@ -77,28 +103,22 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eig
   std::optional<RayHit> best;
   const auto test = [&](std::uint32_t index) {
     const double reach = best ? best->distance : range;
-    if (solids_[index].body == ignored_body || misses(index, origin_W, direction_W, reach)) return reach;
+    if (solids_[index].body == ignored_body || balls_[index].is_missed(origin_W, direction_W, reach)) return reach;
     return improve(best, index, origin_W, direction_W, range);
   };
   for (const std::uint32_t index : large_) test(index);
+  for (const std::uint32_t index : large_moving_) test(index);
   static_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
+  wide_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
   moving_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
   return best;
-}
-
-std::vector<std::uint32_t> Scene::solids_in(const Bounds& region, std::uint32_t ignored_body) const {
-  std::vector<std::uint32_t> found;
-  for_each_overlap(region, [&](std::uint32_t index) {
-    if (solids_[index].body != ignored_body) found.push_back(index);
-  });
-  return found;
 }
 
 std::optional<RayHit> Scene::cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
                                             const Eigen::Vector3d& direction_W, double range) const {
   std::optional<RayHit> best;
   for (const std::uint32_t index : candidates)
-    if (!misses(index, origin_W, direction_W, best ? best->distance : range))
+    if (!balls_[index].is_missed(origin_W, direction_W, best ? best->distance : range))
       improve(best, index, origin_W, direction_W, range);
   return best;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/description/model.hpp"
+#include "server/geometry/corner_grid.hpp"
 #include "server/geometry/grid.hpp"
 #include "server/geometry/mesh_surface.hpp"
 #include "server/geometry/shapes.hpp"
@@ -40,28 +41,46 @@ class Scene {
   std::uint32_t add(Solid solid);
   /// Chooses the cell size and sorts what does not move. After the last `add`; again if more are added later.
   void build();
-  /// Takes a solid that moves out of all further queries. Its index is never used again.
+  /// Takes a solid out of all further queries, until `put_back`. Its index is never another one's.
   void remove(std::uint32_t index);
+  void put_back(std::uint32_t index);
 
   std::size_t size() const { return solids_.size(); }
   const Solid& solid(std::uint32_t index) const { return solids_[index]; }
   const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
 
-  /// Moves a solid that moves. Different solids may be moved from different threads.
+  /// Moves a solid. Different ones that move may be moved from different threads; after one that does not, `build`.
   void set_pose(std::uint32_t index, const Pose& X_WC);
   /// Takes the new poses into the grid.
-  void update() { moving_grid_.build(moving_, bounds_); }
+  void update();
 
   /// The first solid along a ray of unit direction and length `range`, those of `ignored_body` left out. Of two at the
   /// very same distance the one with the lower index, so the answer depends on the scene alone.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
                                  std::uint32_t ignored_body = no_body) const;
 
-  /// The solids that a ray inside `region` can hit, for `cast_ray_among`: several rays from one place find them once.
-  std::vector<std::uint32_t> solids_in(const Bounds& region, std::uint32_t ignored_body = no_body) const;
-  /// As `cast_ray`, among `candidates` only. The same answer, bit for bit, if the ray stays inside their region.
+  /// As `cast_ray`, among `candidates` only.
   std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
                                        const Eigen::Vector3d& direction_W, double range) const;
+
+  /// A ball that holds a solid, around its origin: a ray that misses the ball misses the solid.
+  struct Ball {
+    Eigen::Vector3d centre_W;
+    double radius = 0.0;  ///< [m], infinite for planes and height maps
+
+    /// Whether a ray surely passes beside it on its first `reach`.
+    bool is_missed(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double reach) const {
+      const Eigen::Vector3d offset = centre_W - origin_W;
+      const double along = offset.dot(direction_W);
+      return along < -radius || along > reach + radius || offset.squaredNorm() - along * along > radius * radius;
+    }
+  };
+  const Ball& ball(std::uint32_t index) const { return balls_[index]; }
+
+  /// Makes `best` the solid's hit if that is nearer along the ray, or as near and of a lower index. Returns how far a
+  /// nearer hit may be.
+  double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
+                 const Eigen::Vector3d& direction_W, double range) const;
 
   /// Whether a solid's bounds overlap `query`, or, of a plane, it reaches into it.
   bool reaches_into(std::uint32_t index, const Bounds& query) const {
@@ -73,7 +92,10 @@ class Scene {
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
     for_each_static_overlap(query, visit);
-    moving_grid_.for_each_overlap(query, bounds_, visit);
+    moving_grid_.for_each_overlap(query, visit);
+    for (const std::uint32_t index : large_moving_)
+      if (bounds_[index].overlaps(query)) visit(index);
+    wide_grid_.for_each_overlap(query, bounds_, visit);
   }
   /// The same, of those that do not move.
   template <class Visit>
@@ -84,35 +106,25 @@ class Scene {
   }
 
  private:
+  double choose_cell_size() const;
   std::shared_ptr<const MeshSurface> surface_of(const description::Mesh& mesh);
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
-  /// Whether a ray surely misses a solid on its first `reach`.
-  bool misses(std::uint32_t index, const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W,
-              double reach) const {
-    const Ball& ball = balls_[index];
-    const Eigen::Vector3d offset = ball.centre_W - origin_W;
-    const double along = offset.dot(direction_W);
-    return along < -ball.radius || along > reach + ball.radius ||
-           offset.squaredNorm() - along * along > ball.radius * ball.radius;
-  }
-  /// Makes `best` the solid's hit if that is nearer. Returns how far a nearer hit may be.
-  double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
-                 const Eigen::Vector3d& direction_W, double range) const;
-
   std::vector<Solid> solids_;
   std::vector<Pose> X_CW_;  // inverse of each solid's pose
   std::vector<Bounds> bounds_;
-  struct Ball {
-    Eigen::Vector3d centre_W;
-    double radius;
-  };
-  std::vector<Ball> balls_;  // around each solid; a ray that misses it misses the solid
+  std::vector<Ball> balls_;                                   // around each solid
   std::vector<std::shared_ptr<const MeshSurface>> surfaces_;  // of each solid that is a mesh
   std::map<std::pair<const description::TriangleMesh*, bool>, std::shared_ptr<const MeshSurface>> shared_;
-  std::vector<std::uint32_t> moving_;
+  std::vector<char> is_removed_;
+  // What does not move.
   std::vector<std::uint32_t> large_;  // planes, and what would fill many cells
   Grid static_grid_;
-  Grid moving_grid_;
+  // What moves.
+  std::vector<std::uint32_t> moving_;        // no wider than a cell, in any orientation
+  std::vector<std::uint32_t> wide_;          // the others, but for
+  std::vector<std::uint32_t> large_moving_;  // those that would fill many cells
+  CornerGrid moving_grid_;
+  Grid wide_grid_;
 };
 
 }  // namespace cohort::geometry

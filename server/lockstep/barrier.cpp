@@ -12,6 +12,7 @@ Barrier::Barrier(std::vector<description::Policy> policies, const std::vector<st
     robots_[i].policy = policies[i];
     robots_[i].answers.resize(policies[i].delay + 1);
     for (Answer& answer : robots_[i].answers) answer.values.resize(command_sizes[i]);
+    answer_of(robots_[i], 0).asked = is_asked(robots_[i], 0);
   }
 }
 
@@ -20,7 +21,9 @@ void Barrier::open(std::uint64_t tick, Time now) {
   opened_at_ = now;
   awaited_count_ = 0;
   for (Robot& robot : robots_) {
-    answer_of(robot, tick).state = Answer::State::none;  // the slot of the frame that goes out now
+    Answer& answer = answer_of(robot, tick);  // to the frame that goes out now
+    answer.state = Answer::State::none;
+    answer.asked = robot.present && is_asked(robot, tick);
     const auto frame = acting_frame(robot);
     robot.awaited = frame && answer_of(robot, *frame).state == Answer::State::none;
     if (robot.awaited) ++awaited_count_;
@@ -28,8 +31,10 @@ void Barrier::open(std::uint64_t tick, Time now) {
 }
 
 bool Barrier::is_due(std::uint32_t robot, std::uint64_t tick) const {
-  const description::Policy& policy = robots_[robot].policy;
-  return !robots_[robot].detached && tick >= policy.phase && (tick - policy.phase) % policy.period == 0;
+  const Robot& r = robots_[robot];
+  if (r.detached) return false;
+  const bool is_under_way = tick <= tick_ && tick + r.policy.delay >= tick_;
+  return is_under_way ? answer_of(r, tick).asked : is_asked(r, tick);
 }
 
 std::optional<std::uint64_t> Barrier::acting_frame(const Robot& robot) const {

@@ -23,12 +23,16 @@ class Barrier {
   /// `policies` and `command_sizes` (float64 values) by robot.
   Barrier(std::vector<description::Policy> policies, const std::vector<std::size_t>& command_sizes);
 
+  /// Whether the robot is in the world, from the tick on that is opened next: one that is not is not asked. At first
+  /// all are. Frames under way stay as they are.
+  void set_present(std::uint32_t robot, bool present) { robots_[robot].present = present; }
+
   /// Starts tick `tick` at time `now`; the first call has tick 0, each further one the next tick. The tick before must
   /// be complete.
   void open(std::uint64_t tick, Time now);
 
   std::uint64_t tick() const { return tick_; }
-  /// Whether the robot is asked at this tick, detached ones aside.
+  /// Whether the robot is asked at this tick, detached ones and those that are not in the world then aside.
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   enum class Verdict {
@@ -79,11 +83,13 @@ class Barrier {
  private:
   struct Answer {
     enum class State { none, given, missed, refused } state = State::none;
+    bool asked = false;  // whether the frame goes out
     std::vector<double> values;
   };
   struct Robot {
     description::Policy policy;
     std::vector<Answer> answers;  // by frame tick, modulo delay + 1
+    bool present = true;
     bool awaited = false;
     bool detached = false;
   };
@@ -96,6 +102,10 @@ class Barrier {
   /// The frame whose answer acts at this tick, if there is one.
   std::optional<std::uint64_t> acting_frame(const Robot& robot) const;
   void settle(Robot& robot);
+  /// By the robot's policy alone.
+  static bool is_asked(const Robot& robot, std::uint64_t tick) {
+    return tick >= robot.policy.phase && (tick - robot.policy.phase) % robot.policy.period == 0;
+  }
 
   std::vector<Robot> robots_;
   std::uint64_t tick_ = 0;

@@ -15,6 +15,9 @@ class Engine {
   virtual bool is_active(std::uint32_t body) const = 0;
   virtual std::uint32_t add_body(std::size_t model, const Pose& X_WM) = 0;
   virtual void remove_body(std::uint32_t body) = 0;
+  virtual void put_back_body(std::uint32_t body) = 0;
+  virtual void place_body(std::uint32_t body, const Pose& X_WM) = 0;
+  virtual void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) = 0;
 
   virtual const geometry::Scene& scene() const = 0;
   virtual std::size_t body_count() const = 0;

@@ -99,8 +99,11 @@ void Equations::move_outwards(const Eigen::Vector3d& gravity) {
     const Spatial& a = work.acceleration;
     const Eigen::Vector3d angular_momentum = work.inertia * v.angular + work.moment.cross(v.linear);
     const Eigen::Vector3d linear_momentum = work.mass * v.linear - work.moment.cross(v.angular);
-    work.force.angular = work.inertia * a.angular + work.moment.cross(a.linear) + v.angular.cross(angular_momentum) +
-                         v.linear.cross(linear_momentum);
+    // That of a body on its own is left to how it moves on: Multibody::integrate.
+    const Eigen::Vector3d gyroscopic =
+        mechanism_->is_free_body() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(v.angular.cross(angular_momentum));
+    work.force.angular =
+        work.inertia * a.angular + work.moment.cross(a.linear) + gyroscopic + v.linear.cross(linear_momentum);
     work.force.linear = work.mass * a.linear - work.moment.cross(a.angular) + v.angular.cross(linear_momentum);
   }
 }
@@ -243,6 +246,16 @@ void Equations::respond(const double* jacobian, double* response) const {
   std::fill_n(response, stride_, 0.0);
   for (int i = 0; i < size_; ++i)
     if (jacobian[i] != 0.0) add_scaled(jacobian[i], inverse_.data() + i * stride_, response, stride_);
+}
+
+void Equations::push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
+                     const Eigen::Vector3d& angular_impulse_W) {
+  std::vector<double> generalised(at(stride_), 0.0);
+  std::vector<double> response(at(stride_), 0.0);
+  add_force(segment, point_W, impulse_W, generalised.data());
+  add_torque(segment, angular_impulse_W, generalised.data());
+  respond(generalised.data(), response.data());
+  for (int i = 0; i < size_; ++i) velocity_[at(i)] += response[at(i)];
 }
 
 }  // namespace cohort::physics

@@ -32,6 +32,9 @@ class Equations {
                  double* jacobian) const;
   /// The same of a unit torque.
   void add_torque(int segment, const Eigen::Vector3d& direction_W, double* jacobian) const;
+  /// Changes the velocities by an impulse at `point_W` of a segment and an angular impulse on it [N s, N m s].
+  void push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
+            const Eigen::Vector3d& angular_impulse_W);
   /// `response`: the change of the velocities by the generalised impulse `jacobian`.
   void respond(const double* jacobian, double* response) const;
 

@@ -4,9 +4,35 @@
 
 namespace cohort::physics {
 
-/// Sequential impulses (projected Gauss-Seidel), started from the impulses of the last step. Ends after `iterations`
-/// passes over the rows, or earlier when a pass changed no row's velocity by more than `tolerance` [m/s or rad/s].
-/// Leaves the impulses in the rows and the bodies' velocities changed by them. Returns the passes made.
-int solve_iteratively(Problem& problem, std::uint32_t iterations, double tolerance);
+/// A pass that changes no row's velocity by more ends the iterative solver [m/s or rad/s].
+inline constexpr double negligible_change = 1e-9;
+
+/// Sequential impulses (projected Gauss-Seidel), started from the impulses of the last step. Leaves the impulses in the
+/// rows and the bodies' velocities changed by them.
+class SequentialImpulses {
+ public:
+  /// For the rows that the problem has now; it must outlive this.
+  explicit SequentialImpulses(Problem& problem) : rows_(problem.rows()), numbers_(problem.numbers()) {}
+
+  /// Once, before the first pass.
+  void start();
+  /// One pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
+  double pass(bool forwards);
+
+ private:
+  double turn(std::size_t index);
+  double turn_cone(Row& first, Row& second);
+  double limit_of(const Row& row) const;
+  double velocity(const Row& row) const;
+  double wanted(const Row& row) const;
+  double change(Row& row, double impulse);
+  void apply(const Row& row, double impulse);
+
+  std::vector<Row>& rows_;
+  const double* numbers_;
+};
+
+/// At most `iterations` passes, there and back.
+void solve_iteratively(Problem& problem, std::uint32_t iterations);
 
 }  // namespace cohort::physics

@@ -64,6 +64,8 @@ class Mechanism {
   const JointPlace& joint(std::size_t index) const { return joints_[index]; }
   /// All coordinates where every joint is at zero.
   const std::vector<double>& zero_coordinates() const { return zero_coordinates_; }
+  /// A single rigid body, free to move.
+  bool is_free_body() const { return segments_.size() == 1 && segments_[0].motion == Motion::free; }
   bool has_free_root() const { return segments_[0].motion == Motion::free; }
   /// Wheels are simulated: what drives is their joints' motors.
   bool has_wheels() const { return has_wheels_; }

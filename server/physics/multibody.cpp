@@ -135,6 +135,16 @@ double Multibody::joint_velocity(std::size_t joint) const {
   return place.dofs == 0 ? 0.0 : velocities_[static_cast<std::size_t>(place.first_dof)];
 }
 
+void Multibody::place(const Pose& X_WM) {
+  const Segment& root = mechanism_->segments()[0];
+  const Pose X_WS = X_WM * root.X_PS;
+  X_WM_ = X_WM;
+  root_rotation_ = X_WS.orientation;
+  reference_W_ = mechanism_->has_free_root() ? X_WS * root.centre_S : X_WS.position;
+  stop();
+  update_poses();
+}
+
 void Multibody::set_root_twist(const Twist& twist) {
   const Eigen::Vector3d to_reference_W = reference_W_ - link_pose(0).position;
   const Eigen::Vector3d linear_W = twist.linear_W + twist.angular_W.cross(to_reference_W);
@@ -195,6 +205,23 @@ void Multibody::add_rows(Problem& problem, int index, const Anchors& anchors, do
   for (TreelDrive& treel : treels_) treel.add_rows(problem, index, anchors, step);
 }
 
+// Keeps the angular momentum as it is while the body turns, and its energy nearly: half a step with the angular
+// velocity at its beginning, then all of it with that of the middle.
+void Multibody::turn_freely(double step) {
+  const Eigen::Matrix3d& inertia_S = mechanism_->segments()[0].inertia_S;
+  const Eigen::Matrix3d inverse_S = inertia_S.inverse();
+  const Eigen::Map<Eigen::Vector3d> angular_W(velocities_.data());
+  const Eigen::Vector3d momentum_W = root_rotation_ * (inertia_S * (root_rotation_.conjugate() * angular_W));
+  const auto turned_by = [&](const Eigen::Vector3d& turn) { return (rotation_by(turn) * root_rotation_).normalized(); };
+  const auto velocity_at = [&](const Eigen::Quaterniond& rotation) -> Eigen::Vector3d {
+    return rotation * (inverse_S * (rotation.conjugate() * momentum_W));
+  };
+  const Eigen::Vector3d middle_W = velocity_at(turned_by(0.5 * step * angular_W));
+  root_rotation_ = turned_by(step * middle_W);
+  const Eigen::Vector3d new_angular_W = velocity_at(root_rotation_);
+  std::copy_n(new_angular_W.data(), 3, velocities_.begin());
+}
+
 void Multibody::integrate(const double* velocities, double step) {
   std::copy_n(velocities, velocities_.size(), velocities_.begin());
   last_step_ = step;
@@ -204,6 +231,11 @@ void Multibody::integrate(const double* velocities, double step) {
     switch (segment.motion) {
       case Motion::anchored: break;
       case Motion::free:
+        if (mechanism_->is_free_body()) {
+          turn_freely(step);
+          reference_W_ += step * Eigen::Vector3d(v[3], v[4], v[5]);
+          break;
+        }
         root_rotation_ = (rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2])) * root_rotation_).normalized();
         reference_W_ += step * Eigen::Vector3d(v[3], v[4], v[5]);
         break;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -39,6 +40,10 @@ class Multibody {
   double joint_position(std::size_t joint) const;
   double joint_velocity(std::size_t joint) const;
 
+  /// Puts the model at X_WM, at rest, with its joints as they are.
+  void place(const Pose& X_WM);
+  /// All velocities become zero.
+  void stop() { std::fill(velocities_.begin(), velocities_.end(), 0.0); }
   void set_root_twist(const Twist& twist);
   void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
 
@@ -82,6 +87,7 @@ class Multibody {
     int wheels = -1;
   };
 
+  void turn_freely(double step);
   void build_devices();
   void add_drive(std::size_t device, const description::TreelDrive& drive);
   void add_motor(int dof, double max_effort, const std::string& device);

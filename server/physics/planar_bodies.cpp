@@ -29,23 +29,51 @@ std::uint32_t PlanarBodies::add(const PlanarModel& model, const Pose& X_WM) {
   const Mechanism& mechanism = model.mechanism();
   members_.push_back({&model, X_BS_.size(), coordinates_.size(), motors_.size(), false});
 
-  const Vector3d centre_W = X_WM * model.centre();
-  PlanarPlace place;
-  place.x = centre_W.x();
-  place.y = centre_W.y();
-  places_.push_back(place);
+  places_.emplace_back();
   velocities_.emplace_back();
   const Vector3d up_M = X_WM.orientation.conjugate() * Vector3d::UnitZ();
   inertias_.push_back(model.is_fixed() ? PlanarInertia{}
                                        : PlanarInertia{1.0 / model.mass(), 1.0 / up_M.dot(model.inertia() * up_M)});
 
-  const Pose X_BM{X_WM.position - Vector3d(centre_W.x(), centre_W.y(), 0.0), X_WM.orientation};
-  X_BS_.push_back(X_BM * mechanism.segments()[0].X_PS);
-  X_BS_.resize(X_BS_.size() + mechanism.segments().size() - 1);
+  X_BS_.resize(X_BS_.size() + mechanism.segments().size());
   coordinates_.insert(coordinates_.end(), mechanism.zero_coordinates().begin(), mechanism.zero_coordinates().end());
   motors_.resize(motors_.size() + model.motors().size());
-  update_segments(members_.back());
+  put(index, X_WM);
   return index;
+}
+
+void PlanarBodies::put(std::uint32_t index, const Pose& X_WM) {
+  const Member& member = members_[index];
+  const Vector3d centre_W = X_WM * member.model->centre();
+  PlanarPlace place;
+  place.x = centre_W.x();
+  place.y = centre_W.y();
+  places_[index] = place;
+  const Pose X_BM{X_WM.position - Vector3d(centre_W.x(), centre_W.y(), 0.0), X_WM.orientation};
+  X_BS_[member.first_segment] = X_BM * member.model->mechanism().segments()[0].X_PS;
+  update_segments(member);
+}
+
+void PlanarBodies::place(std::uint32_t member, const Pose& X_WM) {
+  stop(member);
+  put(member, X_WM);
+}
+
+void PlanarBodies::stop(std::uint32_t member) {
+  velocities_[member] = {};
+  for (std::size_t i = 0; i < model(member).motors().size(); ++i)
+    motors_[members_[member].first_motor + i].velocity = 0.0;
+}
+
+void PlanarBodies::push(std::uint32_t member, const Vector3d& point_W, const Vector3d& impulse_W,
+                        const Vector3d& angular_impulse_W) {
+  const PlanarPlace& place = places_[member];
+  const PlanarInertia& inertia = inertias_[member];
+  PlanarVelocity& velocity = velocities_[member];
+  velocity.x += inertia.inverse_mass * impulse_W.x();
+  velocity.y += inertia.inverse_mass * impulse_W.y();
+  const double turn = (point_W.x() - place.x) * impulse_W.y() - (point_W.y() - place.y) * impulse_W.x();
+  velocity.spin += inertia.inverse_inertia * (turn + angular_impulse_W.z());
 }
 
 void PlanarBodies::update_segments(const Member& member) {

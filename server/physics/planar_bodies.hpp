@@ -67,6 +67,12 @@ class PlanarBodies {
   double joint_position(std::uint32_t member, std::size_t joint) const;
   double joint_velocity(std::uint32_t member, std::size_t joint) const;
 
+  /// Puts the model at X_WM, at rest, with its joints as they are.
+  void place(std::uint32_t member, const Pose& X_WM);
+  void stop(std::uint32_t member);
+  /// Changes the velocities by an impulse at a point and an angular impulse [N s, N m s].
+  void push(std::uint32_t member, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
+            const Eigen::Vector3d& angular_impulse_W);
   void set_root_twist(std::uint32_t member, const Twist& twist);
   void set_joint_state(std::uint32_t member, std::size_t joint, std::span<const double> coordinates,
                        std::span<const double> velocities);
@@ -120,6 +126,7 @@ class PlanarBodies {
     double velocity = 0.0;
   };
   void update_segments(const Member& member);
+  void put(std::uint32_t index, const Pose& X_WM);
 
   std::vector<Member> members_;
   std::vector<PlanarPlace> places_;

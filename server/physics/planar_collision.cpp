@@ -23,7 +23,12 @@ bool is_before(const PlanarPair& one, const PlanarPair& two) { return one.a != t
 }  // namespace
 
 void PlanarCollision::add_static() {
-  const geometry::Solid& solid = scene_.solid(static_cast<std::uint32_t>(outlines_.size()));
+  outlines_.push_back(outline_of_static(static_cast<std::uint32_t>(outlines_.size())));
+  member_of_solid_.push_back(Anchors::nobody);
+}
+
+PlanarCollision::Outline PlanarCollision::outline_of_static(std::uint32_t index) const {
+  const geometry::Solid& solid = scene_.solid(index);
   Outline outline;
   if (const auto* plane = std::get_if<description::Plane>(&solid.shape)) {
     const Eigen::Vector3d normal_W = solid.X_WC.orientation * plane->normal.normalized();
@@ -41,8 +46,7 @@ void PlanarCollision::add_static() {
       throw std::invalid_argument("a mesh that is neither flat nor convex cannot be planar");
     }
   }
-  outlines_.push_back(outline);
-  member_of_solid_.push_back(Anchors::nobody);
+  return outline;
 }
 
 void PlanarCollision::add_member(bool is_fixed) {
@@ -58,6 +62,10 @@ void PlanarCollision::add_moving() {
 
 void PlanarCollision::remove(std::uint32_t member) {
   members_[member].is_active = false;
+  forget(member);
+}
+
+void PlanarCollision::forget(std::uint32_t member) {
   members_[member].pairs.clear();
   for (Member& other : members_)
     std::erase_if(other.pairs, [&](const PlanarPair& pair) { return pair.member_b == member; });

@@ -36,8 +36,14 @@ class PlanarCollision {
   void add_member(bool is_fixed);
   /// The next solid of the scene, one of the last member.
   void add_moving();
+  /// After a solid that does not move was put elsewhere. Throws as `add_static`.
+  void place_static(std::uint32_t solid) { outlines_[solid] = outline_of_static(solid); }
   /// Forgets a member that is no longer in the scene.
   void remove(std::uint32_t member);
+  /// Takes it in again.
+  void put_back(std::uint32_t member) { members_[member].is_active = true; }
+  /// Forgets what a member touches.
+  void forget(std::uint32_t member);
 
   /// Where a solid that moves is now; different ones from any thread.
   void move(std::uint32_t solid, const Eigen::Vector2d& centre_W, const Eigen::Vector2d& axis_W) {
@@ -83,6 +89,7 @@ class PlanarCollision {
     std::vector<std::uint32_t> near;
     std::vector<PlanarPair> pairs;
   };
+  Outline outline_of_static(std::uint32_t solid) const;
   void find_near(std::uint32_t index, std::vector<std::uint32_t>& near) const;
   void find_pairs(std::uint32_t index, Memory& memory);
   void find_contact(std::uint32_t solid, std::uint32_t other, Memory& memory);

@@ -16,7 +16,7 @@ constexpr double furthest = 1e6;
 }  // namespace
 
 bool PlanarEngine::is_active(std::uint32_t body) const {
-  return bodies_[body].member == Anchors::nobody || members_[bodies_[body].member].is_active;
+  return bodies_[body].member == Anchors::nobody ? !bodies_[body].is_out : members_[bodies_[body].member].is_active;
 }
 
 Pose PlanarEngine::link_pose(std::uint32_t body, std::size_t link) const {
@@ -49,8 +49,9 @@ void PlanarEngine::step() {
     for (std::size_t member = begin; member < end; ++member) move(static_cast<std::uint32_t>(member));
   });
   report_contacts();
-  break_connections();
+  connections_.break_overloaded(step_);
   quarantine();
+  pushes_.clear();
   scene_.update();
 }
 
@@ -61,10 +62,9 @@ void PlanarEngine::find_islands() {
     if (!members_[member].is_active) continue;
     for (const PlanarPair& pair : collision_.pairs_of(member))
       if (pair.member_b != Anchors::nobody) islands_.link(member, pair.member_b);
-    for (const std::uint32_t index : members_[member].connections) {
-      const Connection& connection = connections_[index];
-      if (connection.holds() && connection.b().member != Anchors::nobody) islands_.link(member, connection.b().member);
-    }
+    connections_.for_each_of(member, [&](const Connection& connection) {
+      if (connection.b().member != Anchors::nobody) islands_.link(member, connection.b().member);
+    });
   }
   islands_.finish();
 }
@@ -90,6 +90,9 @@ bool PlanarEngine::try_island(const std::vector<std::uint32_t>& members, Memory&
   memory.before.clear();
   for (const std::uint32_t member : members) {
     memory.before.push_back({planar_.velocity(member), grounds_[member].impulse()});
+    pushes_.for_each_of(member, [&](const Pushes::Push& push) {
+      planar_.push(member, push.point_W, step_ * push.wrench.force_W, step_ * push.wrench.torque_W);
+    });
     solver.add_member(member);
     add_rows_of(member, solver);
   }
@@ -112,10 +115,9 @@ bool PlanarEngine::try_island(const std::vector<std::uint32_t>& members, Memory&
 
 void PlanarEngine::add_rows_of(std::uint32_t member, PlanarSolver& solver) {
   const auto is_out = [&](std::uint32_t other) { return other != Anchors::nobody && !members_[other].is_finite; };
-  for (const std::uint32_t index : members_[member].connections) {
-    Connection& connection = connections_[index];
-    if (connection.holds() && !is_out(connection.b().member)) solver.add_connection(connection, step_);
-  }
+  connections_.for_each_of(member, [&](Connection& connection) {
+    if (!is_out(connection.b().member)) solver.add_connection(connection, step_);
+  });
   for (PlanarPair& pair : collision_.pairs_of(member)) {
     if (is_out(pair.member_b)) continue;
     const SurfacePair surfaces = surfaces_.of(scene_.solid(pair.a).surface, scene_.solid(pair.b).surface);
@@ -192,19 +194,7 @@ std::uint32_t PlanarEngine::connect(std::uint32_t body_a, std::size_t link_a, co
     const int segment = link_of(body_b, link_b).segment;
     end_b = {member, segment, planar_.segment_pose(member, segment).inverse() * X_WP};
   }
-  const auto index = static_cast<std::uint32_t>(connections_.size());
-  connections_.emplace_back(end_a, end_b, limits);
-  members_[end_a.member].connections.push_back(index);
-  return index;
-}
-
-void PlanarEngine::break_connections() {
-  broken_.clear();
-  for (std::uint32_t index = 0; index < connections_.size(); ++index) {
-    if (!connections_[index].holds() || !connections_[index].is_overloaded(step_)) continue;
-    connections_[index].release();
-    broken_.push_back(index);
-  }
+  return connections_.add(end_a, end_b, limits);
 }
 
 void PlanarEngine::quarantine() {
@@ -220,8 +210,7 @@ void PlanarEngine::quarantine() {
 
 void PlanarEngine::take_out(std::uint32_t index) {
   members_[index].is_active = false;
-  for (Connection& connection : connections_)
-    if (connection.a().member == index || connection.b().member == index) connection.release();
+  connections_.release_of(index);
   for (std::uint32_t i = 0; i < members_[index].part_count; ++i)
     scene_.remove(parts_[members_[index].first_part + i].solid);
   collision_.remove(index);

@@ -4,13 +4,15 @@
 #include <span>
 #include <vector>
 
-#include "server/physics/connection.hpp"
+#include "server/physics/connections.hpp"
 #include "server/physics/contact_rows.hpp"
 #include "server/physics/engine.hpp"
 #include "server/physics/islands.hpp"
+#include "server/physics/placed_body.hpp"
 #include "server/physics/planar_collision.hpp"
 #include "server/physics/planar_ground.hpp"
 #include "server/physics/planar_solver.hpp"
+#include "server/physics/pushes.hpp"
 
 namespace cohort::physics {
 
@@ -38,7 +40,10 @@ class PlanarEngine final : public Engine {
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   bool is_active(std::uint32_t body) const override;
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
-  void remove_body(std::uint32_t body) override { take_out(bodies_[body].member); }
+  void remove_body(std::uint32_t body) override;
+  void put_back_body(std::uint32_t body) override;
+  void place_body(std::uint32_t body, const Pose& X_WM) override;
+  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
 
   const geometry::Scene& scene() const override { return scene_; }
   std::size_t body_count() const override { return bodies_.size(); }
@@ -56,10 +61,10 @@ class PlanarEngine final : public Engine {
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
-  void disconnect(std::uint32_t connection) override { connections_[connection].release(); }
+  void disconnect(std::uint32_t connection) override { connections_.release(connection); }
   bool is_connected(std::uint32_t connection) const override { return connections_[connection].holds(); }
   Wrench connection_wrench(std::uint32_t connection) const override { return connections_[connection].wrench(step_); }
-  std::span<const std::uint32_t> broken_connections() const override { return broken_; }
+  std::span<const std::uint32_t> broken_connections() const override { return connections_.broken(); }
 
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
     planar_.set_joint_velocity_target(bodies_[body].member, joint, velocity);
@@ -80,17 +85,12 @@ class PlanarEngine final : public Engine {
   void restore(SnapshotReader& reader) override;
 
  private:
-  struct Body {
-    std::size_t model = 0;
-    Pose X_WM;  // at first; of a static body for ever
-    std::uint32_t member = Anchors::nobody;
-  };
   struct Member {  // a body that moves
     std::uint32_t body = 0;
     std::uint32_t first_part = 0;
     std::uint32_t part_count = 0;
-    std::vector<std::uint32_t> connections{};  // whose end a is here, ascending
     bool is_active = true;
+    bool has_ground = false;  // or needs none
     // Of this step:
     bool is_finite = true;
     bool is_inside = true;
@@ -130,7 +130,6 @@ class PlanarEngine final : public Engine {
   void find_parts_in_body(const Member& member, std::uint32_t index);
   void place_solids(std::uint32_t index);
   void report_contacts();
-  void break_connections();
   void quarantine();
   void take_out(std::uint32_t index);
   Anchors::Part part_of(std::uint32_t solid) const { return part_of_solid_[solid]; }
@@ -141,7 +140,7 @@ class PlanarEngine final : public Engine {
   SurfacePairs surfaces_;
   geometry::Scene scene_;
   std::vector<std::unique_ptr<PlanarModel>> models_;  // null for what is static
-  std::vector<Body> bodies_;
+  std::vector<PlacedBody> bodies_;
   std::vector<Member> members_;
   std::vector<Part> parts_;
   std::vector<PartInBody> parts_in_body_;  // of parts_
@@ -150,10 +149,10 @@ class PlanarEngine final : public Engine {
   std::vector<PlanarGround> grounds_;  // by member
   PlanarCollision collision_;
   Islands islands_;
-  std::vector<Connection> connections_;
-  std::vector<std::uint32_t> broken_;
+  Connections connections_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
+  Pushes pushes_;
   std::vector<Memory> memory_;  // by worker
 };
 

@@ -51,6 +51,8 @@ PlanarEngine::PlanarEngine(const description::World& description, WorkerPool& wo
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
   scene_.build();
   for (std::uint32_t member = 0; member < members_.size(); ++member) put_on_ground(member);
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(body);
 }
 
 std::uint32_t PlanarEngine::add_body(std::size_t model, const Pose& X_WM) {
@@ -75,7 +77,9 @@ std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_W
     const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
     if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
       throw std::invalid_argument("a robot that leans cannot be planar");
-    bodies_.push_back({model_index, X_WM, Anchors::nobody});
+    PlacedBody& placed = bodies_.emplace_back();
+    placed.model = model_index;
+    placed.X_WM = X_WM;
     if (model.is_static) {
       add_static(body);
     } else {
@@ -90,7 +94,8 @@ std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_W
 void PlanarEngine::add_static(std::uint32_t body) {
   for (const description::Link& link : description_.models[bodies_[body].model].links) {
     for (const description::Collision& collision : link.collisions) {
-      scene_.add({collision.shape, collision.surface, body, false, bodies_[body].X_WM * link.X_ML * collision.X_LC});
+      bodies_[body].solids.push_back(scene_.add(
+          {collision.shape, collision.surface, body, false, bodies_[body].X_WM * link.X_ML * collision.X_LC}));
       collision_.add_static();
       part_of_solid_.emplace_back();
     }
@@ -125,10 +130,11 @@ void PlanarEngine::add_moving(std::uint32_t body) {
 }
 
 void PlanarEngine::put_on_ground(std::uint32_t index) {
-  const Member& member = members_[index];
+  Member& member = members_[index];
   const PlanarModel& model = planar_.model(index);
   const double weight = -description_.gravity.z() * model.mass();
-  if (model.is_fixed() || weight == 0.0) return;
+  member.has_ground = model.is_fixed() || weight == 0.0;
+  if (member.has_ground) return;
   const std::span<const Part> parts(parts_.data() + member.first_part, member.part_count);
   const auto is_lower = [](const Part& a, const Part& b) { return a.outline_B.lowest < b.outline_B.lowest; };
   const auto lowest = std::min_element(parts.begin(), parts.end(), is_lower);
@@ -143,6 +149,7 @@ void PlanarEngine::put_on_ground(std::uint32_t index) {
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("model '" + model.mechanism().model().name + "': " + error.what());
   }
+  member.has_ground = true;
   const description::Surface& under = scene_.solid(ground).surface;
   if (const description::TreelDrive* drive = model.drive()) {
     const Mechanism::LinkPlace& place = model.mechanism().link(drive->link);
@@ -160,8 +167,9 @@ std::uint32_t PlanarEngine::ground_under(std::uint32_t index, double z) const {
   constexpr double depth = 10.0;  // [m]
   const PlanarPlace& place = planar_.place(index);
   const Vector3d origin_W(place.x, place.y, z);
-  std::vector<std::uint32_t> below = scene_.solids_in({origin_W - depth * Vector3d::UnitZ(), origin_W});
-  std::erase_if(below, [&](std::uint32_t solid) { return scene_.solid(solid).moves; });
+  std::vector<std::uint32_t> below;
+  scene_.for_each_static_overlap({origin_W - depth * Vector3d::UnitZ(), origin_W},
+                                 [&](std::uint32_t solid) { below.push_back(solid); });
   const auto hit = scene_.cast_ray_among(below, origin_W, -Vector3d::UnitZ(), depth);
   if (!hit || hit->distance == 0.0) throw std::invalid_argument("there is no ground under it, so it cannot be planar");
   if (hit->normal_W.head<2>().norm() > most_lean)

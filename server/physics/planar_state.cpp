@@ -7,6 +7,7 @@ namespace cohort::physics {
 
 void PlanarEngine::hash_body(std::uint32_t body, StateHash& hash) const {
   const std::uint32_t member = bodies_[body].member;
+  hash_changes(bodies_[body], hash);
   if (member == Anchors::nobody) return;
   StateHasher{hash}(members_[member].is_active);
   PlanarBodies::visit_state(planar_, member, StateHasher{hash});
@@ -14,7 +15,7 @@ void PlanarEngine::hash_body(std::uint32_t body, StateHash& hash) const {
 }
 
 void PlanarEngine::hash_contacts(StateHash& hash) const {
-  for (const Connection& connection : connections_) Connection::visit_state(connection, StateHasher{hash});
+  connections_.hash(hash);
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     for (const PlanarPair& pair : collision_.pairs_of(member)) {
       hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
@@ -25,47 +26,34 @@ void PlanarEngine::hash_contacts(StateHash& hash) const {
 
 void PlanarEngine::save(SnapshotWriter& writer) const {
   const StateSaver save{writer};
-  writer.add_count(description_.instances.size());
-  writer.add_count(bodies_.size());
-  for (std::size_t body = description_.instances.size(); body < bodies_.size(); ++body) {
-    writer.add_count(bodies_[body].model);
-    visit_pose(bodies_[body].X_WM, save);
-  }
+  save_added_bodies(bodies_, description_.instances.size(), writer);
+  save_changes(bodies_, writer);
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     save(members_[member].is_active);
+    save(members_[member].is_finite);
+    save(members_[member].is_inside);
+    save(members_[member].has_ground);
     PlanarBodies::visit_state(planar_, member, save);
     PlanarGround::visit_state(grounds_[member], save);
   }
-  writer.add_count(connections_.size());
-  for (const Connection& connection : connections_) {
-    visit_end(connection.a(), save);
-    visit_end(connection.b(), save);
-    save(connection.limits().force);
-    save(connection.limits().torque);
-    Connection::visit_state(connection, save);
-  }
+  connections_.save(writer);
   collision_.save(writer);
 }
 
 void PlanarEngine::restore(SnapshotReader& reader) {
   const StateRestorer restore{reader};
-  reader.expect_count(description_.instances.size(), "models in its world");
-  constexpr std::size_t least_bytes = 1;
-  const std::size_t body_count = reader.read_count(least_bytes);
-  while (bodies_.size() < body_count) {
-    const std::size_t model = reader.read_count(least_bytes);
-    if (model >= description_.models.size()) throw SnapshotError("the snapshot has a model that is not there");
-    Pose X_WM;
-    visit_pose(X_WM, restore);
-    create_body(model, X_WM);
-  }
+  restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
+                       [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
   scene_.build();
-  for (std::uint32_t member = 0; member < members_.size(); ++member) {
-    if (members_[member].body >= description_.instances.size()) put_on_ground(member);
-  }
+  restore_changes(reader, *this);
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     bool is_active = true;
     restore(is_active);
+    restore(members_[member].is_finite);
+    restore(members_[member].is_inside);
+    bool has_ground = true;
+    restore(has_ground);
+    if (has_ground && !members_[member].has_ground) put_on_ground(member);
     PlanarBodies::visit_state(planar_, member, restore);
     PlanarGround::visit_state(grounds_[member], restore);
     planar_.update_poses(member);
@@ -74,20 +62,7 @@ void PlanarEngine::restore(SnapshotReader& reader) {
     if (!is_active) take_out(member);
   }
   scene_.update();
-  constexpr std::size_t connection_bytes = 100;
-  for (std::size_t count = reader.read_count(connection_bytes); count > 0; --count) {
-    Connection::End a;
-    Connection::End b;
-    ConnectionLimits limits;
-    visit_end(a, restore);
-    visit_end(b, restore);
-    restore(limits.force);
-    restore(limits.torque);
-    if (a.member >= members_.size() || (b.member >= members_.size() && b.member != Anchors::nobody))
-      throw SnapshotError("the snapshot has a connection of a body that is not there");
-    members_[a.member].connections.push_back(static_cast<std::uint32_t>(connections_.size()));
-    Connection::visit_state(connections_.emplace_back(a, b, limits), restore);
-  }
+  connections_.restore(reader, members_.size());
   collision_.restore(reader);
   report_contacts();
 }

@@ -2,17 +2,14 @@
 
 namespace cohort::physics {
 
-void Problem::clear() {
-  body_count_ = 0;
-  rows_.clear();
-  numbers_.clear();
+void IslandBodies::reset(std::size_t count) {
+  count_ = static_cast<int>(count);
+  if (equations_.size() < count) equations_.resize(count);
 }
 
-int Problem::add_body(const Multibody& body, const Eigen::Vector3d& gravity, double step) {
-  const auto index = static_cast<std::size_t>(body_count_++);
-  if (equations_.size() == index) equations_.emplace_back();
-  equations_[index].set_up(body, gravity, step);
-  return static_cast<int>(index);
+void Problem::clear() {
+  rows_.clear();
+  numbers_.clear();
 }
 
 Row& Problem::begin_row(Anchor a, Anchor b, double* kept) {
@@ -20,11 +17,11 @@ Row& Problem::begin_row(Anchor a, Anchor b, double* kept) {
   row.kept = kept;
   row.impulse = kept == nullptr ? 0.0 : *kept;
   row.numbers = numbers_.size();
-  Equations& body_a = equations_[static_cast<std::size_t>(a.body)];
+  Equations& body_a = (*bodies_)[a.body];
   row.velocity_a = body_a.velocity();
   row.stride_a = body_a.stride();
   if (b.body >= 0 && b.body != a.body) {
-    Equations& body_b = equations_[static_cast<std::size_t>(b.body)];
+    Equations& body_b = (*bodies_)[b.body];
     row.velocity_b = body_b.velocity();
     row.stride_b = body_b.stride();
   }

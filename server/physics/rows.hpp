@@ -43,17 +43,32 @@ struct Row {
   }
 };
 
-/// The constraints of one island over one step: its bodies' equations and the rows that couple them. Rows are solved in
-/// the order in which they were added.
+/// The equations of the bodies of one island.
+class IslandBodies {
+ public:
+  /// Forgets the bodies, keeps the memory, and makes room for `count` others, each to be set up before its first row.
+  void reset(std::size_t count);
+  int count() const { return count_; }
+  Equations& operator[](int body) { return equations_[static_cast<std::size_t>(body)]; }
+  const Equations& operator[](int body) const { return equations_[static_cast<std::size_t>(body)]; }
+
+ private:
+  std::vector<Equations> equations_;
+  int count_ = 0;
+};
+
+/// Constraints of one island over one step: the rows that couple its bodies, all of them or those of a part. Rows are
+/// solved in the order in which they were added.
 class Problem {
  public:
-  /// Forgets bodies and rows, keeps the memory.
-  void clear();
-  /// Returns the body's index in the problem. All bodies before the first row.
-  int add_body(const Multibody& body, const Eigen::Vector3d& gravity, double step);
+  /// The bodies must outlive this.
+  explicit Problem(IslandBodies& bodies) : bodies_(&bodies) {}
 
-  int body_count() const { return body_count_; }
-  const Equations& equations(int body) const { return equations_[static_cast<std::size_t>(body)]; }
+  /// Forgets the rows, keeps the memory.
+  void clear();
+
+  int body_count() const { return bodies_->count(); }
+  const Equations& equations(int body) const { return (*bodies_)[body]; }
   std::vector<Row>& rows() { return rows_; }
   const std::vector<Row>& rows() const { return rows_; }
   int row_count() const { return static_cast<int>(rows_.size()); }
@@ -78,8 +93,7 @@ class Problem {
   Row& begin_row(Anchor a, Anchor b, double* kept);
   Row& finish_row(Row& row, Anchor a, Anchor b);
 
-  std::vector<Equations> equations_;
-  int body_count_ = 0;
+  IslandBodies* bodies_;
   std::vector<Row> rows_;
   std::vector<double> numbers_;
 };

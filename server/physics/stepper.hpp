@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "server/physics/collision.hpp"
-#include "server/physics/connection.hpp"
-#include "server/physics/contact_rows.hpp"
+#include "server/physics/assembly.hpp"
 #include "server/physics/engine.hpp"
+#include "server/physics/island_solver.hpp"
 #include "server/physics/islands.hpp"
-#include "server/physics/multibody.hpp"
+#include "server/physics/large_island_solver.hpp"
+#include "server/physics/placed_body.hpp"
 #include "server/physics/world.hpp"
 
 namespace cohort::physics {
@@ -26,37 +26,40 @@ class Stepper final : public Engine {
   bool is_active(std::uint32_t body) const override;
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
   void remove_body(std::uint32_t body) override;
+  void put_back_body(std::uint32_t body) override;
+  void place_body(std::uint32_t body, const Pose& X_WM) override;
+  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
 
-  const geometry::Scene& scene() const override { return scene_; }
+  const geometry::Scene& scene() const override { return assembly_.scene; }
   std::size_t body_count() const override { return bodies_.size(); }
   Pose link_pose(std::uint32_t body, std::size_t link) const override;
   Twist link_twist(std::uint32_t body, std::size_t link) const override;
   double joint_position(std::uint32_t body, std::size_t joint) const override {
-    return bodies_[body].multibody->joint_position(joint);
+    return multibody(body).joint_position(joint);
   }
   double joint_velocity(std::uint32_t body, std::size_t joint) const override {
-    return bodies_[body].multibody->joint_velocity(joint);
+    return multibody(body).joint_velocity(joint);
   }
   TrackState track(std::uint32_t body, std::size_t drive, Side side) const override {
-    return bodies_[body].multibody->track(drive, side);
+    return multibody(body).track(drive, side);
   }
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
-  void disconnect(std::uint32_t connection) override { connections_[connection].release(); }
-  bool is_connected(std::uint32_t connection) const override { return connections_[connection].holds(); }
-  Wrench connection_wrench(std::uint32_t connection) const override { return connections_[connection].wrench(step_); }
-  std::span<const std::uint32_t> broken_connections() const override { return broken_; }
+  void disconnect(std::uint32_t connection) override { assembly_.connections.release(connection); }
+  bool is_connected(std::uint32_t connection) const override { return assembly_.connections[connection].holds(); }
+  Wrench connection_wrench(std::uint32_t connection) const override {
+    return assembly_.connections[connection].wrench(assembly_.step);
+  }
+  std::span<const std::uint32_t> broken_connections() const override { return assembly_.connections.broken(); }
 
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
-    bodies_[body].multibody->set_joint_velocity_target(joint, velocity);
+    multibody(body).set_joint_velocity_target(joint, velocity);
   }
   void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) override {
-    bodies_[body].multibody->set_track_velocity_target(drive, side, velocity);
+    multibody(body).set_track_velocity_target(drive, side, velocity);
   }
-  void set_root_twist(std::uint32_t body, const Twist& twist) override {
-    bodies_[body].multibody->set_root_twist(twist);
-  }
+  void set_root_twist(std::uint32_t body, const Twist& twist) override { multibody(body).set_root_twist(twist); }
   void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
                        std::span<const double> velocities) override;
 
@@ -67,71 +70,32 @@ class Stepper final : public Engine {
   void restore(SnapshotReader& reader) override;
 
  private:
-  struct Part {  // a solid of a body that moves
-    std::uint32_t solid = 0;
-    int segment = 0;
-    Pose X_SC;
-  };
-  struct Body {
-    std::size_t model = 0;
-    Pose X_WM;  // at first; of a static body for ever
-    std::uint32_t member = Anchors::nobody;
-    std::unique_ptr<Multibody> multibody;  // null for what is static
-  };
-  struct Member {  // a body that moves
-    std::uint32_t body = 0;
-    std::vector<Part> parts;                   // ascending solids
-    std::vector<std::uint32_t> connections{};  // whose end a is here, ascending
-    bool is_active = true;
-    // Of this step:
-    bool is_finite = true;
-    bool is_inside = true;
-  };
   struct Memory {  // of one worker
-    Problem problem;
+    IslandSolver solver;
     std::vector<std::uint32_t> near;
     std::vector<std::uint32_t> candidates;
-    std::vector<std::uint32_t> members;
   };
 
   std::uint32_t create_body(std::size_t model, const Pose& X_WM);
-  void add_solid(std::uint32_t body, const description::Collision& collision, const Pose& X_WC, Anchors::Part part,
-                 std::shared_ptr<const BulletShape> shape);
-  void add_static_solids(std::uint32_t body);
-  void add_moving_solids(std::uint32_t body);
   void find_lowest();
-  bool may_touch(std::uint32_t solid, std::uint32_t other) const;
   void detect();
-  void look_around(const Member& member, Memory& memory);
   void find_islands();
-  void solve_island(std::span<const std::uint32_t> members, Memory& memory);
-  bool try_island(const std::vector<std::uint32_t>& members, Problem& problem);
-  void add_connection_rows_of(const Member& member, Problem& problem);
-  void break_connections();
+  void solve_islands();
   void quarantine();
-  void take_out(Member& member);
-  void solve(Problem& problem) const;
-  void place_solids_of(const Member& member);
-  void add_contact_rows_of(const Member& member, Problem& problem);
   void report_contacts();
-  Multibody& of(const Member& member) { return *bodies_[member.body].multibody; }
-  const Multibody& of(const Member& member) const { return *bodies_[member.body].multibody; }
+  // Of a body that moves.
+  Multibody& multibody(std::uint32_t body) { return *assembly_.members[bodies_[body].member].multibody; }
+  const Multibody& multibody(std::uint32_t body) const { return *assembly_.members[bodies_[body].member].multibody; }
+  bool is_static(std::uint32_t body) const { return bodies_[body].member == Anchors::nobody; }
 
   const description::World& description_;
   WorkerPool& workers_;
-  double step_;
-  double lowest_ = 0.0;  // a body below this has left the world
-  SurfacePairs surfaces_;
-  geometry::Scene scene_;
   std::vector<std::unique_ptr<Mechanism>> mechanisms_;                   // by model, null for what is static
   std::vector<std::vector<std::shared_ptr<const BulletShape>>> shapes_;  // by model, of its collisions in their order
-  std::vector<Body> bodies_;
-  std::vector<Member> members_;
-  Anchors anchors_;
-  Collision collision_;
+  std::vector<PlacedBody> bodies_;
+  Assembly assembly_;
   Islands islands_;
-  std::vector<Connection> connections_;
-  std::vector<std::uint32_t> broken_;
+  LargeIslandSolver large_island_solver_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
   std::vector<Memory> memory_;  // by worker

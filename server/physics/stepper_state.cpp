@@ -6,85 +6,56 @@
 namespace cohort::physics {
 
 void Stepper::hash_body(std::uint32_t body, StateHash& hash) const {
-  if (bodies_[body].member == Anchors::nobody) return;
-  StateHasher{hash}(members_[bodies_[body].member].is_active);
-  Multibody::visit_state(*bodies_[body].multibody, StateHasher{hash});
+  hash_changes(bodies_[body], hash);
+  if (is_static(body)) return;
+  StateHasher{hash}(is_active(body));
+  Multibody::visit_state(multibody(body), StateHasher{hash});
 }
 
 void Stepper::hash_contacts(StateHash& hash) const {
-  for (const Connection& connection : connections_) Connection::visit_state(connection, StateHasher{hash});
-  for (const Member& member : members_) {
-    for (const Part& part : member.parts) {
-      for (const SolidPair& pair : collision_.pairs_of(part.solid)) {
-        if (pair.contact.count == 0) continue;
-        hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
-        for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateHasher{hash});
-      }
-    }
+  assembly_.connections.hash(hash);
+  for (std::uint32_t member = 0; member < assembly_.members.size(); ++member) {
+    assembly_.for_each_pair(member, [&](const SolidPair& pair) {
+      hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
+      for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateHasher{hash});
+    });
   }
 }
 
 void Stepper::save(SnapshotWriter& writer) const {
   const StateSaver save{writer};
-  writer.add_count(description_.instances.size());
-  writer.add_count(bodies_.size());
-  for (std::size_t body = description_.instances.size(); body < bodies_.size(); ++body) {
-    writer.add_count(bodies_[body].model);
-    visit_pose(bodies_[body].X_WM, save);
-  }
-  for (const Member& member : members_) {
+  save_added_bodies(bodies_, description_.instances.size(), writer);
+  save_changes(bodies_, writer);
+  for (const Member& member : assembly_.members) {
     save(member.is_active);
-    Multibody::visit_state(of(member), save);
+    save(member.is_finite);
+    save(member.is_inside);
+    Multibody::visit_state(*member.multibody, save);
   }
-  writer.add_count(connections_.size());
-  for (const Connection& connection : connections_) {
-    visit_end(connection.a(), save);
-    visit_end(connection.b(), save);
-    save(connection.limits().force);
-    save(connection.limits().torque);
-    Connection::visit_state(connection, save);
-  }
-  collision_.save(writer);
+  assembly_.connections.save(writer);
+  assembly_.collision.save(writer);
 }
 
 void Stepper::restore(SnapshotReader& reader) {
   const StateRestorer restore{reader};
-  reader.expect_count(description_.instances.size(), "models in its world");
-  constexpr std::size_t least_bytes = 1;
-  const std::size_t body_count = reader.read_count(least_bytes);
-  while (bodies_.size() < body_count) {
-    const std::size_t model = reader.read_count(least_bytes);
-    if (model >= description_.models.size()) throw SnapshotError("the snapshot has a model that is not there");
-    Pose X_WM;
-    visit_pose(X_WM, restore);
-    create_body(model, X_WM);
-  }
-  scene_.build();
-  for (Member& member : members_) {
+  restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
+                       [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
+  assembly_.scene.build();
+  restore_changes(reader, *this);
+  for (std::uint32_t index = 0; index < assembly_.members.size(); ++index) {
     bool is_active = true;
     restore(is_active);
-    Multibody& multibody = of(member);
-    Multibody::visit_state(multibody, restore);
-    multibody.update_poses();
-    place_solids_of(member);
-    if (!is_active) take_out(member);
+    Member& member = assembly_.members[index];
+    restore(member.is_finite);
+    restore(member.is_inside);
+    Multibody::visit_state(*member.multibody, restore);
+    member.multibody->update_poses();
+    assembly_.place_solids_of(member);
+    if (!is_active) assembly_.take_out(index);
   }
-  scene_.update();
-  constexpr std::size_t connection_bytes = 100;
-  for (std::size_t count = reader.read_count(connection_bytes); count > 0; --count) {
-    Connection::End a;
-    Connection::End b;
-    ConnectionLimits limits;
-    visit_end(a, restore);
-    visit_end(b, restore);
-    restore(limits.force);
-    restore(limits.torque);
-    if (a.member >= members_.size() || (b.member >= members_.size() && b.member != Anchors::nobody))
-      throw SnapshotError("the snapshot has a connection of a body that is not there");
-    members_[a.member].connections.push_back(static_cast<std::uint32_t>(connections_.size()));
-    Connection::visit_state(connections_.emplace_back(a, b, limits), restore);
-  }
-  collision_.restore(reader);
+  assembly_.scene.update();
+  assembly_.connections.restore(reader, assembly_.members.size());
+  assembly_.collision.restore(reader);
   report_contacts();
 }
 

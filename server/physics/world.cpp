@@ -22,6 +22,11 @@ std::span<const Quarantine> World::quarantined() const { return engine_->quarant
 bool World::is_active(std::uint32_t body) const { return engine_->is_active(body); }
 std::uint32_t World::add_body(std::size_t model, const Pose& X_WM) { return engine_->add_body(model, X_WM); }
 void World::remove_body(std::uint32_t body) { engine_->remove_body(body); }
+void World::put_back_body(std::uint32_t body) { engine_->put_back_body(body); }
+void World::place_body(std::uint32_t body, const Pose& X_WM) { engine_->place_body(body, X_WM); }
+void World::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {
+  engine_->push_body(body, link, wrench);
+}
 const geometry::Scene& World::scene() const { return engine_->scene(); }
 std::size_t World::body_count() const { return engine_->body_count(); }
 std::span<const Contact> World::contacts() const { return engine_->contacts(); }

@@ -78,14 +78,22 @@ class World {
   void step();
   /// Those of the last step, in the order of the bodies.
   std::span<const Quarantine> quarantined() const;
-  /// Whether the body is simulated, or static: neither quarantined nor removed.
+  /// Whether the body is in the world: neither quarantined nor removed.
   bool is_active(std::uint32_t body) const;
 
   /// Adds an instance of one of the description's models; between steps. Returns its body, the next free index. Throws
   /// std::invalid_argument for a model that cannot be simulated.
   std::uint32_t add_body(std::size_t model, const Pose& X_WM);
-  /// Takes a body that moves out of the world; between steps.
+  /// Takes a body out of the world, also one that is static: it touches nothing, is seen by nobody and does not move,
+  /// and what connects it is released. Between steps, as the next three.
   void remove_body(std::uint32_t body);
+  /// A body that was removed or quarantined comes back as it was, at rest if it was quarantined.
+  void put_back_body(std::uint32_t body);
+  /// Puts the whole model of a body at X_WM, at rest, with its joints as they are; connections are released. Throws
+  /// std::invalid_argument where a planar body has no ground.
+  void place_body(std::uint32_t body, const Pose& X_WM);
+  /// A force at the centre of mass of a link, and a torque, that act during the next step, besides others.
+  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench);
 
   const geometry::Scene& scene() const;
   std::size_t body_count() const;

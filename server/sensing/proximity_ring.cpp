@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/geometry/ray_fan.hpp"
+
 namespace cohort::sensing {
 
 ProximityRing::ProximityRing(const description::ProximityRing& ring, Mount mount)
@@ -22,13 +24,12 @@ std::vector<Channel> ProximityRing::channels() const {
 
 void ProximityRing::sense(std::uint64_t tick, std::span<double> values) const {
   const Pose X_WS = mount_.world.link_pose(mount_.body, ring_.link) * ring_.X_LS;
-  const geometry::Scene& scene = mount_.world.scene();
   const geometry::Bounds disc = geometry::bounds_of_disc(X_WS, ring_.ring_radius + ring_.range);
-  const std::vector<std::uint32_t> near = scene.solids_in(disc, mount_.body);
+  const geometry::RayFan fan(mount_.world.scene(), X_WS.position, disc, mount_.body);
   for (std::size_t i = 0; i < ring_.count; ++i) {
     const Eigen::Vector3d direction_W = X_WS.orientation * directions_S_[i];
     const Eigen::Vector3d origin_W = X_WS.position + ring_.ring_radius * direction_W;
-    const auto hit = scene.cast_ray_among(near, origin_W, direction_W, ring_.range);
+    const auto hit = fan.cast(origin_W, direction_W, ring_.range);
     double reading = hit ? 1.0 - hit->distance / ring_.range : 0.0;
     if (ring_.noise > 0.0) reading += ring_.noise * noise_.normal(tick, static_cast<std::uint32_t>(i));
     values[i] = std::clamp(reading, 0.0, 1.0);

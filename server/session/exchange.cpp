@@ -38,6 +38,8 @@ Exchange::Exchange(Simulation& simulation)
 
 void Exchange::open(lockstep::Time now) {
   const std::uint64_t tick = simulation_.tick();
+  for (std::uint32_t robot = 0; robot < simulation_.robot_count(); ++robot)
+    barrier_.set_present(robot, simulation_.is_present(robot));
   barrier_.open(tick, now);
   for (std::uint32_t robot = 0; robot < history_.size(); ++robot) {
     if (!barrier_.is_due(robot, tick)) continue;

@@ -29,7 +29,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
 
     book.start();
     Exchange::Frame frame;
-    while (simulation.tick() < book.total_ticks()) {
+    while (!book.is_over()) {
       if (stop) return book.finish(RunResult::End::interrupted);
       const auto begin = RunBook::Clock::now();
       exchange.open(begin.time_since_epoch());

@@ -13,6 +13,7 @@ RunBook::RunBook(const description::Experiment& experiment, const Simulation& si
       last_report_(start_) {}
 
 void RunBook::start() {
+  for (const std::string& text : simulation_.happened()) add_event("event", text);
   if (listener_.boundary) listener_.boundary();
   started_ = true;
   start_ = Clock::now();
@@ -53,6 +54,7 @@ RunResult RunBook::finish(RunResult::End end, std::string error) {
   stop();
   result_.end = end;
   result_.error = std::move(error);
+  result_.stop_reason = simulation_.stop_reason().value_or("");
   result_.ticks = simulation_.tick();
   result_.sim_time = simulation_.time();
   result_.state_hash = simulation_.state_hash();

@@ -38,12 +38,13 @@ struct RunListener {
 
 struct RunResult {
   enum class End {
-    finished,     ///< the whole duration was simulated
+    finished,     ///< the whole duration was simulated, or a stop condition of the experiment holds
     interrupted,  ///< asked to stop
     failed,       ///< `error` says why
   };
   End end = End::finished;
   std::string error;
+  std::string stop_reason;  ///< the stop condition that ended it; empty if none did
   std::uint64_t ticks = 0;
   std::chrono::nanoseconds sim_time{0};
   std::chrono::nanoseconds wall_time{0};  ///< from the first frame to the last step
@@ -63,12 +64,14 @@ class RunBook {
   RunBook(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
           RunListener listener);
 
-  std::uint64_t total_ticks() const { return total_ticks_; }
+  /// The whole duration is simulated, or a stop condition holds.
+  bool is_over() const { return simulation_.tick() >= total_ticks_ || simulation_.stop_reason(); }
   void start();  ///< the first frame is about to go out
   void stop();   ///< the last step is done, or there will be none
   /// A step is done.
   void stepped() {
     for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
+    for (const std::string& text : simulation_.happened()) add_event("event", text);
     if (listener_.boundary) listener_.boundary();
   }
   /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.

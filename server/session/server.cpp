@@ -68,7 +68,7 @@ RunResult Server::run(const std::atomic<bool>& stop) {
   if (!wait_for_controllers(stop)) return end_early();
   book_.start();
   running_ = true;
-  while (simulation_.tick() < book_.total_ticks()) {
+  while (!book_.is_over()) {
     if (!run_tick(stop)) return end_early();
     try {
       simulation_.step();
@@ -239,14 +239,17 @@ void Server::publish_world_state() {
   }
   if (!observed_) return;
   poses_.clear();
+  std::vector<std::uint32_t> present;
   for (const std::uint32_t robot : all_robots_) {
+    if (!simulation_.is_present(robot)) continue;
+    present.push_back(robot);
     const Pose X_WL = simulation_.robot_pose(robot);
     const auto& p = X_WL.position;
     const auto& q = X_WL.orientation;
     poses_.insert(poses_.end(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
   }
   world_state_.write(
-      {run_number_, simulation_.tick(), simulation_.time().count(), simulation_.state_hash(), all_robots_, poses_});
+      {run_number_, simulation_.tick(), simulation_.time().count(), simulation_.state_hash(), present, poses_});
 }
 
 void Server::on_join(const wire::Join& join, const wire::Sender& sender) {

@@ -32,7 +32,11 @@ std::vector<double> neutral_values(const RobotKind& kind) {
 }  // namespace
 
 Simulation::Simulation(const description::Experiment& experiment, unsigned threads)
-    : experiment_(experiment), workers_(threads), world_(experiment.world, workers_) {
+    : experiment_(experiment),
+      workers_(threads),
+      world_(experiment.world, workers_),
+      objects_(experiment, world_),
+      course_(experiment, world_, objects_) {
   const description::World& world = experiment.world;
   kind_of_model_.assign(world.models.size(), none);
   robot_of_body_.assign(world.instances.size(), none);
@@ -45,6 +49,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
     for (const std::uint32_t robot : team.robots) robots_[robot].policy = team.policy;
   for (std::uint32_t robot = 0; robot < robots_.size(); ++robot) build_robot(robot);
   body_hashes_.resize(world.instances.size());
+  begin_tick();
   sense();
 }
 
@@ -134,18 +139,39 @@ void Simulation::step() {
       values = values.subspan(robot.actuator_sizes[i]);
     }
   }
+  course_.push(tick_);
   world_.step();
   ++tick_;
   name_quarantined();
   count_touches();
+  begin_tick();
   sense();
+}
+
+void Simulation::begin_tick() {
+  happened_ = course_.begin_tick(tick_);
+  objects_.record(tick_);
+  course_.check_stops();
+}
+
+std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM) {
+  const std::uint32_t object = objects_.add(name, model, X_WM);
+  note_added();
+  return object;
+}
+
+// The world has bodies that the description does not list.
+void Simulation::note_added() {
+  robot_of_body_.resize(world_.body_count(), none);
+  is_ground_.resize(world_.body_count(), 0);
+  body_hashes_.resize(world_.body_count());
 }
 
 void Simulation::name_quarantined() {
   quarantined_.clear();
   for (const physics::Quarantine& event : world_.quarantined()) {
     const bool broke = event.reason == physics::Quarantine::Reason::not_finite;
-    quarantined_.push_back("'" + experiment_.world.instances[event.body].name +
+    quarantined_.push_back("'" + objects_.name(event.body) +
                            (broke ? "': its state is no longer finite" : "' has left the world"));
   }
   if (experiment_.world.physics.strict && !quarantined_.empty()) throw std::runtime_error(quarantined_[0]);
@@ -154,7 +180,7 @@ void Simulation::name_quarantined() {
 void Simulation::sense() {
   workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t id = begin; id < end; ++id) {
-      if (!is_due(static_cast<std::uint32_t>(id), tick_)) continue;
+      if (!is_due(static_cast<std::uint32_t>(id), tick_) || !is_present(static_cast<std::uint32_t>(id))) continue;
       const Robot& robot = robots_[id];
       std::span<double> values(observations_.data() + robot.observation_offset, kinds_[robot.kind].observation_size);
       for (std::size_t i = 0; i < robot.sensors.size(); ++i) {
@@ -177,7 +203,8 @@ void Simulation::count_touches() {
     note(contact.body_a, contact.body_b);
     note(contact.body_b, contact.body_a);
   }
-  touches_.robot_ticks += robots_.size();
+  for (std::uint32_t robot = 0; robot < robots_.size(); ++robot)
+    if (is_present(robot)) ++touches_.robot_ticks;
   for (const char touched : touches_obstacle) touches_.obstacles += static_cast<std::uint64_t>(touched);
   for (const char touched : touches_robot) touches_.robots += static_cast<std::uint64_t>(touched);
 }
@@ -190,6 +217,8 @@ std::vector<std::byte> Simulation::save() const {
   writer.add(static_cast<std::uint64_t>(experiment_.world.step.count()));
   writer.add(tick_);
   world_.save(writer);
+  objects_.save(writer);
+  course_.save(writer);
   writer.add_count(robots_.size());
   for (const Robot& robot : robots_) {
     writer.add_count(robot.command.size());
@@ -216,6 +245,9 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   reader.expect_count(static_cast<std::size_t>(experiment_.world.step.count()), "ns as its step");
   reader.read(tick_);
   world_.restore(reader);
+  objects_.restore(reader);
+  course_.restore(reader, tick_);
+  note_added();
   reader.expect_count(robots_.size(), "robots");
   for (Robot& robot : robots_) {
     reader.expect_count(robot.command.size(), "commanded values of a robot");
@@ -245,6 +277,8 @@ std::uint64_t Simulation::state_hash() const {
   hash.add(tick_);
   for (const std::uint64_t body_hash : body_hashes_) hash.add(body_hash);
   world_.hash_contacts(hash);
+  objects_.hash(hash);
+  course_.hash(hash);
   return hash.value();
 }
 

@@ -15,6 +15,8 @@
 #include "server/description/experiment.hpp"
 #include "server/physics/world.hpp"
 #include "server/sensing/sensor.hpp"
+#include "server/simulation/course.hpp"
+#include "server/simulation/objects.hpp"
 
 namespace cohort {
 
@@ -61,7 +63,9 @@ class Simulation {
   std::span<const RobotKind> kinds() const { return kinds_; }
   std::uint32_t kind_of(std::uint32_t robot) const { return robots_[robot].kind; }
   const description::Policy& policy(std::uint32_t robot) const { return robots_[robot].policy; }
-  /// Whether the robot is asked at this tick.
+  /// Whether the robot is in the world: an event of the experiment may bring it later, or take it out.
+  bool is_present(std::uint32_t robot) const { return objects_.is_present(robots_[robot].body); }
+  /// Whether the robot is asked at this tick, if it is in the world then.
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   /// As of the last tick at which the robot was due.
@@ -76,8 +80,26 @@ class Simulation {
   void set_neutral_command(std::uint32_t robot);
 
   /// Actuates in the order of the robots, steps the world to the next boundary and senses there. A body whose state
-  /// breaks is quarantined; in a `strict` world std::runtime_error is thrown, which names it.
+  /// breaks is quarantined; in a `strict` world std::runtime_error is thrown, which names it. The events of the new
+  /// boundary happen before the robots sense; one that cannot be done throws std::runtime_error too.
   void step();
+  /// The events of this boundary, a sentence for each.
+  const std::vector<std::string>& happened() const { return happened_; }
+  /// Says which stop condition of the experiment holds, as soon as one does.
+  const std::optional<std::string>& stop_reason() const { return course_.stop_reason(); }
+
+  /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
+  const Objects& objects() const { return objects_; }
+  /// The next four between steps. They act on any object, at once; what is sensed changes with the next step. An object
+  /// of one of the description's models, not a robot's; throws std::invalid_argument if the name is taken or the model
+  /// cannot be simulated.
+  std::uint32_t add_object(const std::string& name, std::size_t model, const Pose& X_WM);
+  void remove_object(std::uint32_t object) { objects_.set_present(object, false); }
+  /// One that was removed comes back as it was.
+  void put_back_object(std::uint32_t object) { objects_.set_present(object, true); }
+  /// At rest. Throws std::invalid_argument where a planar body has no ground.
+  void place_object(std::uint32_t object, const Pose& X_WM) { world_.place_body(object, X_WM); }
+  Pose object_pose(std::uint32_t object) const { return world_.link_pose(object, 0); }  ///< of its root link, X_WL
   /// What the last step took out of the world: a sentence for each body, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }
 
@@ -112,10 +134,14 @@ class Simulation {
   void sense();
   void count_touches();
   void name_quarantined();
+  void begin_tick();
+  void note_added();
 
   const description::Experiment& experiment_;
   mutable WorkerPool workers_;
   physics::World world_;
+  Objects objects_;
+  Course course_;
   std::vector<RobotKind> kinds_;
   std::vector<std::uint32_t> kind_of_model_;
   std::vector<Robot> robots_;
@@ -125,6 +151,7 @@ class Simulation {
   std::uint64_t tick_ = 0;
   TouchCounts touches_;
   std::vector<std::string> quarantined_;
+  std::vector<std::string> happened_;
   mutable std::vector<std::uint64_t> body_hashes_;
 };
 

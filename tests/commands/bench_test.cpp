@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
 #include <sstream>
 
 #include "tests/support/process.hpp"
@@ -125,6 +127,27 @@ TEST(Bench, TellsWhichEnginesCannotConnectRobots) {
     EXPECT_EQ(engine.contains("left_out"), !engine.contains("cpu_us_per_robot_step")) << engine;
     if (!engine.contains("left_out")) continue;
     EXPECT_NE(measured.ended.out.find("left out: " + engine.value("engine", "") + ": "), std::string::npos);
+  }
+}
+
+// Cohort's own errors are deterministic, and what docs/fidelity.md says of them holds here.
+TEST(Bench, ComparesMotionsWithTheirKnownSolutions) {
+  const Measured measured = measure({"--scene", "accuracy", "--engines", "cohort"});
+  const std::map<std::string, double> most = {{"free fall, way of 1 s", 50.0},
+                                              {"box sliding down a slope, speed after 1 s", 0.2},
+                                              {"box at rest on a slope, creep in 5 s", 0.4},
+                                              {"pendulum, period of 2 s", 0.1},
+                                              {"double pendulum, energy of 29 J in 5 s, greatest", 3.2},
+                                              {"tumbling box, energy after 10 s", 0.01},
+                                              {"tumbling box, angular momentum after 10 s", 1e-6}};
+  const Json& cases = measured.json["results"][0]["cases"];
+  ASSERT_EQ(cases.size(), most.size()) << cases;
+  for (const Json& of : cases) {
+    ASSERT_TRUE(most.contains(of.value("case", ""))) << of;
+    for (const Json& error : of["errors"]) {
+      const double share = error.value("step_s", 0.0) == 0.01 ? 1.0 : 0.11;  // of first order, or better
+      EXPECT_LE(std::abs(error.value("error", 1e9)), share * most.at(of.value("case", ""))) << of;
+    }
   }
 }
 

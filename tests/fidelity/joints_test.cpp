@@ -184,6 +184,31 @@ TEST(Joints, ALimitStopsAJointThatFallsOnIt) {
   EXPECT_NEAR(small.world().joint_position(body, 0), -0.5, 1e-3) << "it hangs against its limit";
 }
 
+// About the axis of the middle moment of inertia a body turns over again and again.
+TEST(Bodies, ATumblingBoxKeepsItsAngularMomentumAndItsEnergy) {
+  SmallWorld small;
+  small.description.gravity.setZero();
+  const Vector3d size(0.3, 0.2, 0.1);
+  const description::Inertial inertial = solid_box(1.0, size);
+  const std::uint32_t box = small.add(loose("box", description::Box{size}, inertial), at(0, 0, 5));
+  small.world().set_root_twist(box, {Vector3d(0.1, 5.0, 0.1), Vector3d::Zero()});
+  const auto momentum = [&]() -> Vector3d {
+    const Eigen::Matrix3d R = small.world().link_pose(box, 0).orientation.toRotationMatrix();
+    return R * (inertial.inertia * (R.transpose() * small.world().link_twist(box, 0).angular_W));
+  };
+  const auto energy = [&] { return 0.5 * momentum().dot(small.world().link_twist(box, 0).angular_W); };
+  const Vector3d momentum_before = momentum();
+  const double energy_before = energy();
+  double turned_over = 1.0;
+  for (int second = 0; second < 60; ++second) {
+    small.run(1.0);
+    turned_over = std::min(turned_over, small.world().link_pose(box, 0).orientation.toRotationMatrix()(1, 1));
+  }
+  EXPECT_LT(turned_over, 0.0);
+  EXPECT_LT((momentum() - momentum_before).norm(), 1e-9 * momentum_before.norm());
+  EXPECT_NEAR(energy(), energy_before, 1e-4 * energy_before);
+}
+
 // Two links on two hinges, let go from the side: without damping its energy stays.
 TEST(Joints, ADoublePendulumKeepsItsEnergy) {
   SmallWorld small(empty_world(std::chrono::milliseconds(1)));

@@ -28,6 +28,24 @@ TEST(SameHashAnyPlacement, ControllersThatAttachFromOutsideGiveTheSameBits) {
   EXPECT_NE(server.output().find(reference_hash(5)), std::string::npos) << server.output();
 }
 
+// A wall goes, a robot comes, another one leaves, one is away for a second.
+TEST(SameHashAnyPlacement, EventsHappenAlikeWhereverControllersAreAndWithAnyNumberOfThreads) {
+  const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/changes.yaml";
+  const auto expected = run_experiment(experiment, {"--controllers", "inprocess", "--threads", "1"});
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"--controllers", "inprocess", "--threads", "4"},
+        {"--controllers", "process"},
+        {"--controllers", "per-robot", "--threads", "2"}}) {
+    const auto summary = run_experiment(experiment, arguments);
+    EXPECT_EQ(summary["state_hash"], expected["state_hash"]) << arguments[1];
+    EXPECT_EQ(summary["late"], 0);
+    EXPECT_EQ(summary["touches"]["robot_ticks"], expected["touches"]["robot_ticks"]);
+  }
+  int events = 0;
+  for (const auto& event : expected["events"]) events += event["kind"] == "event";
+  EXPECT_EQ(events, 6);
+}
+
 TEST(SameHashAnyPlacement, TheSameRunTwiceInARowGivesTheSameBits) {
   const auto once = run_demo({"--duration", "10"});
   const auto again = run_demo({"--duration", "10"});

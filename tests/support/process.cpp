@@ -163,14 +163,19 @@ std::string test_controller(const std::string& name) {
 }
 std::string demo_experiment() { return COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml"; }
 
-nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment) {
+nlohmann::json run_experiment(const std::string& experiment, const std::vector<std::string>& arguments,
+                              const Process::Environment& environment) {
   const ScratchFolder folder;
   const std::string summary = (folder / "summary.json").string();
-  std::vector<std::string> command = {cohort_program(), "run", demo_experiment(), "--summary", summary};
+  std::vector<std::string> command = {cohort_program(), "run", experiment, "--summary", summary};
   command.insert(command.end(), arguments.begin(), arguments.end());
   Process process(command, environment);
   EXPECT_EQ(process.wait_for_exit(), 0) << process.output();
   return nlohmann::json::parse(read_file(summary), nullptr, false);
+}
+
+nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment) {
+  return run_experiment(demo_experiment(), arguments, environment);
 }
 
 std::string reference_hash(double seconds) {

@@ -96,6 +96,9 @@ std::string cohort_program();
 std::string test_controller(const std::string& name);
 std::string demo_experiment();
 
+/// Runs `cohort run` on an experiment with more arguments, checks that it succeeds, and returns its summary.
+nlohmann::json run_experiment(const std::string& experiment, const std::vector<std::string>& arguments,
+                              const Process::Environment& environment = {});
 /// Runs `cohort run` on the demo with more arguments, checks that it succeeds, and returns its summary.
 nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment = {});
 /// Hash of the first `seconds` of the demo with its controllers in the server's process: what every other way to run it

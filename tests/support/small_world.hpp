@@ -10,8 +10,8 @@ namespace cohort::testing {
 /// A world that a test puts together and then steps. Bodies are added before the first step.
 class SmallWorld {
  public:
-  explicit SmallWorld(description::World its_description = world_with_floor())
-      : description(std::move(its_description)) {}
+  explicit SmallWorld(description::World its_description = world_with_floor(), unsigned threads = 1)
+      : description(std::move(its_description)), workers_(threads) {}
 
   std::uint32_t add(const description::Model& model, const Pose& X_WM) {
     return place(description, model, model.name + "_" + std::to_string(description.instances.size()), X_WM);
@@ -36,7 +36,7 @@ class SmallWorld {
   description::World description;
 
  private:
-  WorkerPool workers_{1};
+  WorkerPool workers_;
   std::optional<physics::World> world_;
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/description/experiment.hpp"
+#include "server/description/experiment_keys.hpp"
 #include "server/description/extensions.hpp"
 #include "server/description/footprint.hpp"
 #include "server/description/input_error.hpp"
@@ -120,17 +121,26 @@ TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
   EXPECT_DOUBLE_EQ(ring.first_bearing, std::numbers::pi / 15);
 }
 
-TEST(ShippedWorlds, TheManualListsEveryExtensionKeyAsTheReaderKnowsIt) {
+TEST(ShippedWorlds, TheManualListsEveryKeyAsTheReaderKnowsIt) {
   std::ifstream stream(source / "docs/worlds.md");
   const std::string manual(std::istreambuf_iterator<char>(stream), {});
-  for (const Extension& extension : extensions()) {
-    EXPECT_NE(manual.find("`<cohort:" + std::string(extension.name)), std::string::npos) << extension.name;
+  const auto expect_keys = [&](const Extension& extension) {
     for (const ExtensionKey& key : extension.keys) {
       const std::string row = "| `" + std::string(key.name) + "` | " + std::string(key.unit) + " | " +
                               (key.required() ? "required" : std::string(key.fallback)) + " | " + std::string(key.doc) +
                               " |";
       EXPECT_NE(manual.find(row), std::string::npos) << row;
     }
+  };
+  for (const Extension& extension : extensions()) {
+    EXPECT_NE(manual.find("`<cohort:" + std::string(extension.name)), std::string::npos) << extension.name;
+    expect_keys(extension);
+  }
+  for (const Extension& part : experiment_parts()) {
+    if (!part.parent.empty()) {
+      EXPECT_NE(manual.find("`" + std::string(part.name) + "`"), std::string::npos) << part.name;
+    }
+    expect_keys(part);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "server/core/random.hpp"
+#include "server/geometry/ray_fan.hpp"
 #include "server/geometry/scene.hpp"
 
 namespace cohort::geometry {
@@ -206,11 +207,13 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
     EXPECT_EQ(hit->solid, expected) << n;
     EXPECT_DOUBLE_EQ(hit->distance, nearest) << n;
     const Vector3d reach = Vector3d::Constant(range);
-    const auto among =
-        scene.cast_ray_among(scene.solids_in({origin - reach, origin + reach}, ignored), origin, direction, range);
-    ASSERT_TRUE(among.has_value()) << n;
-    EXPECT_EQ(among->solid, hit->solid) << n;
-    EXPECT_EQ(among->distance, hit->distance) << n;
+    // A fan whose rays do not start in its centre.
+    const Vector3d centre = origin + Vector3d(0.3, -0.2, 0.1);
+    const auto of_fan = RayFan(scene, centre, {origin - reach, origin + reach}, ignored).cast(origin, direction, range);
+    ASSERT_TRUE(of_fan.has_value()) << n;
+    EXPECT_EQ(of_fan->solid, hit->solid) << n;
+    EXPECT_EQ(of_fan->distance, hit->distance) << n;
+    EXPECT_EQ(of_fan->normal_W, hit->normal_W) << n;
   }
   EXPECT_GT(hits, 100);
 }

@@ -72,6 +72,32 @@ TEST(Barrier, AsksEveryPeriodFromThePhaseAndKeepsTheLastCommandBetween) {
   EXPECT_EQ(due, (Ticks{1, 4, 7}));
 }
 
+TEST(Barrier, AsksNobodyWhoIsNotInTheWorld) {
+  Barrier barrier = barrier_of({policy(), policy(1, 0, 1)});
+  barrier.set_present(1, false);
+  barrier.open(0, 0ns);
+  EXPECT_FALSE(barrier.is_due(1, 0));
+  answer(barrier, 0, 0, 1.0);
+  EXPECT_TRUE(barrier.complete());
+  barrier.set_present(1, true);
+  barrier.open(1, 0ns);
+  EXPECT_TRUE(barrier.is_due(1, 1));
+  EXPECT_FALSE(barrier.is_due(1, 0)) << "that frame did not go out";
+  answer(barrier, 0, 1, 1.0);
+  EXPECT_TRUE(barrier.complete()) << "its first answer acts at tick 2";
+  // It goes again: the frame under way is still to be answered, and the one after it never goes out.
+  barrier.set_present(1, false);
+  barrier.open(2, 0ns);
+  EXPECT_FALSE(barrier.is_due(1, 2));
+  EXPECT_TRUE(barrier.is_due(1, 1));
+  EXPECT_TRUE(barrier.is_awaited(1));
+  answer(barrier, 1, 1, 5.0);
+  EXPECT_EQ(barrier.awaited(), Robots{0});
+  answer(barrier, 0, 2, 1.0);
+  barrier.open(3, 0ns);
+  EXPECT_EQ(barrier.awaited(), Robots{0});
+}
+
 TEST(Barrier, LetsAnAnswerActAtExactlyItsDelay) {
   Barrier barrier = barrier_of({policy(1, 0, 2)});
   for (std::uint64_t tick = 0; tick < 2; ++tick) {

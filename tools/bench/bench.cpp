@@ -27,6 +27,13 @@ const std::vector<StepScene>& step_scenes() {
          scene.drive = Drive::wheels;
          return scene;
        }},
+      {"crowd_planar",
+       {128, 1000},
+       [](std::uint32_t robots, std::uint64_t seed) {
+         Scene scene = crowd(robots, seed);
+         scene.planar = true;
+         return scene;
+       }},
       {"chain", {25, 128}, [](std::uint32_t robots, std::uint64_t) { return chain(robots); }},
   };
   return scenes;
@@ -34,6 +41,7 @@ const std::vector<StepScene>& step_scenes() {
 
 constexpr const char* rays_scene = "rays";
 constexpr const char* build_scene = "build";
+constexpr const char* accuracy_scene = "accuracy";
 constexpr std::uint32_t robots_of_others = 10'000;
 
 bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
@@ -64,7 +72,7 @@ nlohmann::ordered_json heading(const Options& options) {
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
   for (const StepScene& scene : step_scenes()) names.emplace_back(scene.name);
-  names.insert(names.end(), {rays_scene, build_scene});
+  names.insert(names.end(), {rays_scene, build_scene, accuracy_scene});
   return names;
 }
 
@@ -110,6 +118,7 @@ nlohmann::ordered_json measure_all(const Options& options, const Surroundings& s
   if (is_wanted(options.scenes, rays_scene))
     for (const std::uint32_t robots : numbers({robots_of_others}))
       take(measure_rays(rays_scene, robots, options, surroundings));
+  if (is_wanted(options.scenes, accuracy_scene)) take(measure_accuracy(accuracy_scene, engines, surroundings));
   return all;
 }
 

@@ -123,6 +123,7 @@ description::World describe(const Scene& scene) {
   world.gravity = {0.0, 0.0, -scene.gravity};
   world.physics.strict = true;  // a body that breaks is a result, not a saving
   if (scene.drive == Drive::wheels) world.physics.fidelity = description::Fidelity::articulated;
+  if (scene.planar) world.physics.fidelity = description::Fidelity::planar;
   place_static(world, description::Plane{}, scene.ground_friction, {});
   if (scene.half_arena) place_walls(world, scene);
   world.models.push_back(robot_model(scene.robot, scene.drive));

@@ -33,18 +33,20 @@ Limitation enki_limitation(const Scene& scene) {
 }
 
 std::vector<EngineKind> known_engines() {
-  std::vector<EngineKind> kinds = {{"cohort", "", make_cohort_engine, none},
-                                   {"ode-worldstep", "libode-dev", {}, world_step_limitation},
-                                   {"ode-quickstep", "libode-dev", {}, none},
-                                   {"mujoco", "libmujoco-dev", {}, mujoco_limitation},
-                                   {"enki", "libenki-dev", {}, enki_limitation}};
+  std::vector<EngineKind> kinds = {{"cohort", "", make_cohort_engine, make_cohort_mechanism, none},
+                                   {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
+                                   {"ode-quickstep", "libode-dev", {}, {}, none},
+                                   {"mujoco", "libmujoco-dev", {}, {}, mujoco_limitation},
+                                   {"enki", "libenki-dev", {}, {}, enki_limitation}};
   // The build defines each as true or false, and links the sources of those that are true.
   if constexpr (COHORT_BENCH_ODE) {
     kinds[1].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
     kinds[2].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
   }
-  if constexpr (COHORT_BENCH_MUJOCO)
+  if constexpr (COHORT_BENCH_MUJOCO) {
     kinds[3].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
+    kinds[3].make_mechanism = make_mujoco_mechanism;
+  }
   if constexpr (COHORT_BENCH_ENKI) kinds[4].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
   return kinds;
 }

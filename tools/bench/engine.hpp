@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/bench/driving.hpp"
+#include "tools/bench/mechanics.hpp"
 #include "tools/bench/scene.hpp"
 
 namespace cohort::bench {
@@ -43,6 +44,8 @@ struct EngineKind {
   std::string package;  ///< Debian's, which the engine comes with; empty for Cohort
   /// Empty if the package was not there when this was built. `threads`: for Cohort; the others have one.
   std::function<std::unique_ptr<Engine>(const Scene&, unsigned threads)> make;
+  /// Empty also if the engine is not compared by its accuracy.
+  std::function<std::unique_ptr<MechanismRun>(const Mechanism&)> make_mechanism;
   /// Why the engine cannot do this scene, or nothing.
   std::function<std::optional<std::string>(const Scene&)> limitation;
 };

@@ -148,8 +148,11 @@ StepCost cost_of(const Run& run, const std::vector<std::unique_ptr<Run>>& runs) 
   cost.error = run.error();
   if (const Run* reference = find(runs, reference_engine))
     cost.against_reference = median_ratio(reference->cpu(), run.cpu());
-  if (const Run* single = find(runs, run.name()); single != nullptr && run.threads() > 1)
+  if (const Run* single = find(runs, run.name()); single != nullptr && run.threads() > 1) {
     cost.speed_up = median_ratio(single->wall(), run.wall());
+    const double even = 1.0 / run.threads();
+    cost.serial_share = (1.0 / *cost.speed_up - even) / (1.0 - even);
+  }
   return cost;
 }
 

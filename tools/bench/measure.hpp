@@ -55,6 +55,9 @@ struct StepCost {
   double speed_ratio = 0.0;  ///< reached to commanded, straight on and alone
   std::optional<double> against_reference;  ///< CPU time of the reference engine to this one's, median of repetitions
   std::optional<double> speed_up;           ///< wall time with one thread to this, median of repetitions
+  /// The share of the work that, were the rest spread evenly, would explain the speed-up (Karp and Flatt, "Measuring
+  /// parallel processor performance", CACM 33(5), 1990): what is serial, and all else that keeps threads waiting.
+  std::optional<double> serial_share;
 };
 
 struct StepResult {

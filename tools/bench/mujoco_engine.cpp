@@ -1,15 +1,12 @@
 #include <fmt/format.h>
-#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
 #include <iterator>
 #include <stdexcept>
 
 #include "tools/bench/engines.hpp"
+#include "tools/bench/mujoco_model.hpp"
 
 namespace cohort::bench {
 namespace {
@@ -141,40 +138,10 @@ class ModelText {
   Output out_;
 };
 
-struct Delete {
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-
-// MuJoCo's own handlers write a file and wait for a key. There is no way on from an error.
-void take_over_messages() {
-  mju_user_error = [](const char* message) {
-    std::fprintf(stderr, "cohort: error: MuJoCo: %s\n", message);
-    std::_Exit(1);
-  };
-  mju_user_warning = [](const char*) {};  // step() looks for them
-}
-
-std::unique_ptr<mjModel, Delete> compile(const std::string& text) {
-  const char* const file = "bench.xml";
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  if (mj_makeEmptyFileVFS(files.get(), file, static_cast<int>(text.size())) != 0)
-    throw std::runtime_error("MuJoCo does not take the model's text");
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), file)], text.data(), text.size());
-  std::string message(1000, '\0');
-  std::unique_ptr<mjModel, Delete> model(
-      mj_loadXML(file, files.get(), message.data(), static_cast<int>(message.size())));
-  mj_deleteVFS(files.get());
-  if (!model) throw std::runtime_error("MuJoCo: " + message.substr(0, message.find('\0')));
-  return model;
-}
-
 class MujocoEngine final : public Engine {
  public:
   explicit MujocoEngine(const Scene& scene) : wheel_radius_(scene.robot.wheel_radius) {
-    take_over_messages();
-    model_ = compile(ModelText(scene).write());
+    model_ = compile_mujoco(ModelText(scene).write());
     data_.reset(mj_makeData(model_.get()));
     mj_kinematics(model_.get(), data_.get());  // positions at tick 0
   }
@@ -186,13 +153,7 @@ class MujocoEngine final : public Engine {
     control[2] = command.turret;
   }
 
-  void step() override {
-    mj_step(model_.get(), data_.get());
-    for (int i = 0; i < mjNWARNING; ++i) {
-      const mjWarningStat& warning = data_->warning[i];
-      if (warning.number > 0) throw std::runtime_error(std::string("MuJoCo: ") + mju_warningText(i, warning.lastinfo));
-    }
-  }
+  void step() override { step_mujoco(*model_, *data_); }
 
   Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
     const mjtNum* position =
@@ -221,8 +182,8 @@ class MujocoEngine final : public Engine {
   }
 
   double wheel_radius_;
-  std::unique_ptr<mjModel, Delete> model_;
-  std::unique_ptr<mjData, Delete> data_;
+  MujocoModel model_;
+  MujocoData data_;
 };
 
 }  // namespace

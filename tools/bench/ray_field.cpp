@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "server/geometry/ray_fan.hpp"
 #include "tools/bench/scene.hpp"
 
 namespace cohort::bench {
@@ -38,11 +39,11 @@ std::size_t RayField::cast() const {
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
     const Pose& X_WS = poses_[i];
     const geometry::Bounds disc = geometry::bounds_of_disc(X_WS, turret.radius + range);
-    const std::vector<std::uint32_t> near = scene_.solids_in(disc, i);
+    const geometry::RayFan fan(scene_, X_WS.position, disc, i);
     for (const Eigen::Vector3d& direction : directions_) {
       const Eigen::Vector3d direction_W = X_WS.orientation * direction;
       const Eigen::Vector3d origin_W = X_WS.position + turret.radius * direction_W;
-      if (scene_.cast_ray_among(near, origin_W, direction_W, range)) ++hits;
+      if (fan.cast(origin_W, direction_W, range)) ++hits;
     }
   }
   return hits;

@@ -49,6 +49,7 @@ std::string table(const StepResult& result) {
   text += fmt::format("  {:<14}{:>9}{:>17}{:>10}{:>12}{:>8}{:>14}", "engine", "CPU us", "min-max", "touches",
                       result.connected ? "stretch mm" : "overlap mm", "speed", "vs quickstep");
   if (has_threads) text += fmt::format("{:>9}{:>9}{:>17}{:>10}", "threads", "wall us", "min-max", "speed-up");
+  if (has_threads) text += fmt::format("{:>8}", "serial");
   text += '\n';
   for (const StepCost& cost : result.costs) {
     text += fmt::format("  {:<14}{:>9.2f}{:>17}{:>10.3f}{:>12.1f}{:>8.3f}{:>14}", cost.engine, micro * cost.cpu.median,
@@ -56,7 +57,8 @@ std::string table(const StepResult& result) {
                         or_dash(cost.against_reference));
     if (has_threads)
       text += fmt::format("{:>9}{:>9.2f}{:>17}{:>10}", cost.threads, micro * cost.wall.median,
-                          range_of(cost.wall, micro), or_dash(cost.speed_up));
+                          range_of(cost.wall, micro), or_dash(cost.speed_up)) +
+              fmt::format("{:>8}", cost.serial_share ? fmt::format("{:.1f}%", 100.0 * *cost.serial_share) : "-");
     text += '\n';
   }
   return text + lines_of(result.left_out);
@@ -80,6 +82,24 @@ std::string table(const RayResult& result) {
   return text;
 }
 
+std::string table(const AccuracyResult& result) {
+  std::string text = result.scene + ": how far off the known solution\n";
+  bool has_heading = false;
+  for (const AccuracyCase& of : result.cases) {
+    if (!has_heading) {
+      text += fmt::format("  {:<50}{:>6}", "case", "unit");
+      for (const AccuracyError& error : of.errors)
+        text += fmt::format("{:>15}", fmt::format("{} {:g} ms", error.engine, milli * error.step));
+      text += '\n';
+      has_heading = true;
+    }
+    text += fmt::format("  {:<50}{:>6}", of.name, of.unit);
+    for (const AccuracyError& error : of.errors) text += fmt::format("{:>15.2g}", error.error);
+    text += '\n';
+  }
+  return text;
+}
+
 Json to_json(const StepResult& result) {
   Json engines = Json::array();
   for (const StepCost& cost : result.costs)
@@ -91,7 +111,8 @@ Json to_json(const StepResult& result) {
                        {result.connected ? "connection_error_m" : "deepest_overlap_m", cost.error},
                        {"speed_ratio", cost.speed_ratio},
                        {"vs_ode_quickstep", optional_json(cost.against_reference)},
-                       {"speed_up", optional_json(cost.speed_up)}});
+                       {"speed_up", optional_json(cost.speed_up)},
+                       {"serial_share", optional_json(cost.serial_share)}});
   add(engines, result.left_out);
   return {{"scene", result.scene}, {"robots", result.robots}, {"step_s", result.step}, {"engines", engines}};
 }
@@ -114,6 +135,17 @@ Json to_json(const RayResult& result) {
                          {"hit_share", cost.hits},
                          {"mrays_per_s", spread_json(cost.rays_a_second, mega)}});
   return {{"scene", result.scene}, {"robots", result.robots}, {"densities", densities}};
+}
+
+Json to_json(const AccuracyResult& result) {
+  Json cases = Json::array();
+  for (const AccuracyCase& of : result.cases) {
+    Json errors = Json::array();
+    for (const AccuracyError& error : of.errors)
+      errors.push_back({{"engine", error.engine}, {"step_s", error.step}, {"error", error.error}});
+    cases.push_back({{"case", of.name}, {"unit", of.unit}, {"errors", errors}});
+  }
+  return {{"scene", result.scene}, {"cases", cases}};
 }
 
 }  // namespace cohort::bench

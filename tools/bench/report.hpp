@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tools/bench/accuracy.hpp"
 #include "tools/bench/build_cost.hpp"
 #include "tools/bench/rays.hpp"
 
@@ -13,9 +14,11 @@ namespace cohort::bench {
 std::string table(const StepResult& result);
 std::string table(const BuildResult& result);
 std::string table(const RayResult& result);
+std::string table(const AccuracyResult& result);
 
 nlohmann::ordered_json to_json(const StepResult& result);
 nlohmann::ordered_json to_json(const BuildResult& result);
 nlohmann::ordered_json to_json(const RayResult& result);
+nlohmann::ordered_json to_json(const AccuracyResult& result);
 
 }  // namespace cohort::bench

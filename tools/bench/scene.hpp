@@ -59,6 +59,7 @@ struct Scene {
   Robot robot;
   Drive drive = Drive::tracks;
   std::vector<Placement> robots;
+  bool planar = false;               ///< Cohort leaves out all that is not in the plane (Fidelity::planar)
   std::optional<double> half_arena;  ///< four walls at this distance from the middle [m]
   bool connected = false;            ///< the turret of each robot is fixed to that of the one before it
   double connection_length = 0.13;   ///< between the middles of two connected turrets, which do not touch [m]

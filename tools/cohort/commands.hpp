@@ -37,6 +37,7 @@ struct RunCommand {
   std::optional<double> speed;    ///< 0: as fast as it goes; none: that, or real time if people drive
   std::filesystem::path summary;  ///< file to write; empty: none
   std::filesystem::path plot;     ///< the same
+  std::filesystem::path csv;      ///< the same: what the experiment prints
   bool quiet = false;
   std::optional<std::uint32_t> domain;
   std::string network = "127.0.0.1";
@@ -60,6 +61,16 @@ struct TeleopCommand {
 int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop);
 
 int check(const std::filesystem::path& file, Log& log);
+
+struct ExportCommand {
+  std::filesystem::path file;
+  std::filesystem::path output;       ///< .sdf or .yaml
+  std::optional<std::uint64_t> seed;  ///< of the populations; none: the experiment's, or 1
+};
+int export_world(const ExportCommand& command, Log& log);
+
+/// `topic`: empty for the list of topics.
+int help(const std::string& topic, Log& log);
 
 struct BenchCommand {
   bench::Options options;

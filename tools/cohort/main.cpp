@@ -120,6 +120,7 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->type_name("max|X");
   app.add_option("--summary", options.summary, "Write the summary to this file as JSON")->type_name("FILE");
   app.add_option("--plot", options.plot, "Draw arena, paths and contacts to this file as SVG")->type_name("FILE");
+  app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   app.add_option("--domain", options.domain, "DDS domain (default: a free one, or 0 if others start controllers)")
       ->envname("COHORT_DOMAIN")
       ->check(whole_number(0, last_domain))
@@ -176,9 +177,10 @@ void add_bench_options(CLI::App& app, BenchCommand& command) {
       ->type_name("N");
   app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
   app.footer(
-      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies), chain\n"
-      "(connected robots), rays, build (time and memory). Engines: cohort, and as Debian ships them ode-worldstep,\n"
-      "ode-quickstep, mujoco and enki.\n"
+      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies),\n"
+      "crowd_planar (Cohort in the plane only), chain (connected robots), rays, build (time and memory),\n"
+      "accuracy (against closed forms).\n"
+      "Engines: cohort, and as Debian ships them ode-worldstep, ode-quickstep, mujoco and enki.\n"
       "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
       "they can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with\n"
       "speed; Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
@@ -196,7 +198,8 @@ int main(int argc, char** argv) {
   add_log_options(app, log_flags);
   app.footer(
       "Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10\n"
-      "'cohort COMMAND --help' says more. Exit codes: 0 done, 1 the run failed, 2 a mistake in the command line, the\n"
+      "'cohort COMMAND --help' says more, 'cohort help' what may be written in files. Exit codes: 0 done, 1 the run "
+      "failed, 2 a mistake in the command line, the\n"
       "files or the set-up, 130 interrupted.");
 
   RunCommand run_options;
@@ -247,6 +250,24 @@ int main(int argc, char** argv) {
   add_log_options(*check_app, log_flags);
   check_app->footer("Example: cohort check worlds/arenas/obstacles.sdf");
 
+  ExportCommand export_options;
+  CLI::App* export_app = app.add_subcommand("export", "Write a world, or that of an experiment, as SDF or YAML");
+  export_app->add_option("FILE", export_options.file, "World, model or experiment")->required()->type_name("");
+  export_app->add_option("-o,--output", export_options.output, "File to write, .sdf or .yaml")
+      ->required()
+      ->type_name("FILE");
+  export_app->add_option("--seed", export_options.seed, "Seed of the populations, instead of the experiment's")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->type_name("N");
+  add_log_options(*export_app, log_flags);
+  export_app->footer("Example: cohort export worlds/arenas/obstacles.sdf -o placed.sdf");
+
+  std::string help_topic;
+  CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
+  help_app->add_option("TOPIC", help_topic, "Such as sensors, placement, proximity_ring or events")->type_name("");
+  add_log_options(*help_app, log_flags);
+  help_app->footer("Example: cohort help sensors");
+
   BenchCommand bench_command;
   CLI::App* bench_app = app.add_subcommand("bench", "Measure Cohort and other physics engines on the same scenes");
   add_bench_options(*bench_app, bench_command);
@@ -280,6 +301,8 @@ int main(int argc, char** argv) {
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
+  if (export_app->parsed()) return export_world(export_options, log);
+  if (help_app->parsed()) return help(help_topic, log);
   if (bench_app->parsed()) return bench(bench_command, log, stop_requested);
   return check(checked_file, log);
 }

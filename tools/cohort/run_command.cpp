@@ -16,6 +16,7 @@
 #include "tools/cohort/installed_models.hpp"
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
+#include "tools/cohort/printed_table.hpp"
 #include "tools/cohort/run_trace.hpp"
 #include "tools/cohort/summary_file.hpp"
 #include "tools/cohort/team_controllers.hpp"
@@ -139,7 +140,8 @@ void warn_if_not_portable(Log& log) {
 
 // Whether all that was asked for is written.
 bool write_files(const RunCommand& command, const description::Experiment& experiment, const RunResult& result,
-                 double cpu, std::optional<TraceRecorder>& recorder, Log& log) {
+                 double cpu, std::optional<TraceRecorder>& recorder, const std::optional<PrintedTable>& table,
+                 Log& log) {
   const auto try_to = [&](const auto& write) {
     try {
       write();
@@ -156,6 +158,8 @@ bool write_files(const RunCommand& command, const description::Experiment& exper
       const PlotCaption caption = {experiment.name, result.sim_time, result.state_hash};
       write_file("the plot", command.plot, draw_plot(recorder->finish(), caption));
     });
+  if (!command.csv.empty())
+    written &= try_to([&] { write_file("the table", command.csv, table ? table->text() : std::string()); });
   return written;
 }
 
@@ -167,6 +171,7 @@ int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
   try {
     if (!command.summary.empty()) check_writable("the summary", command.summary);
     if (!command.plot.empty()) check_writable("the plot", command.plot);
+    if (!command.csv.empty()) check_writable("the table", command.csv);
     std::optional<std::chrono::nanoseconds> duration;
     if (command.duration)
       duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
@@ -187,7 +192,8 @@ int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
     std::vector<TeamController> controllers;
     if (command.controllers != Controllers::external) controllers = load_controllers(experiment);
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-    const unsigned threads = command.threads == 0 ? cores : command.threads;
+    const unsigned wanted = command.threads == 0 ? experiment.threads : command.threads;
+    const unsigned threads = wanted == 0 ? cores : wanted;
     Stopwatch building;
     Simulation simulation(experiment, threads);
     log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
@@ -198,11 +204,17 @@ int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
     std::optional<TraceRecorder> recorder;
     if (!command.plot.empty()) recorder.emplace(experiment.world, simulation);
     const bool own_controllers = command.controllers != Controllers::external && !has_keyboard(experiment);
+    std::optional<PrintedTable> table;
+    if (!experiment.prints.empty()) table.emplace(experiment, simulation, command.csv.empty() && !command.quiet);
     Terminal terminal(log, {.quiet = command.quiet, .own_controllers = own_controllers});
     const session::RunListener listener = {
         .progress = [&](const session::Progress& progress) { terminal.progress(progress); },
         .event = [&](const session::Event& event) { terminal.event(event); },
-        .boundary = recorder ? std::function<void()>([&] { recorder->boundary(); }) : nullptr,
+        .boundary =
+            [&] {
+              if (recorder) recorder->boundary();
+              if (table) table->boundary();
+            },
     };
     has_begun = command.controllers == Controllers::in_process;
     const RunResult result =
@@ -210,7 +222,7 @@ int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
                   : run_over_dds(command, experiment, simulation, controllers, log, listener, stop, has_begun);
     const double cpu = cpu_seconds() - cpu_before;
     terminal.summary(result, cpu);
-    const bool written = write_files(command, experiment, result, cpu, recorder, log);
+    const bool written = write_files(command, experiment, result, cpu, recorder, table, log);
     switch (result.end) {
       case RunResult::End::finished: return written ? exit_ok : exit_failed;
       case RunResult::End::interrupted: return exit_interrupted;

@@ -99,6 +99,7 @@ void TraceRecorder::boundary() {
 void TraceRecorder::sample() {
   next_sample_ = simulation_.tick() + sample_ticks_;
   for (std::uint32_t robot = 0; robot < trace_.robots.size(); ++robot) {
+    if (!simulation_.is_present(robot)) continue;
     const Pose X_WL = simulation_.robot_pose(robot);
     const Eigen::Vector3d forward_W = X_WL.orientation * Eigen::Vector3d::UnitX();
     if (!X_WL.position.allFinite() || !forward_W.allFinite()) continue;
@@ -132,6 +133,7 @@ RunTrace TraceRecorder::finish() {
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
+    if (!simulation_.objects().is_present(solid.body)) continue;
     const bool of_robot = robot_of_body_[solid.body] != none;
     if (!of_robot && !geometry::is_ground(solid.shape) && scene.bounds(i).lower.allFinite() &&
         scene.bounds(i).upper.allFinite())

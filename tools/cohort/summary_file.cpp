@@ -35,6 +35,7 @@ void write_summary(const std::filesystem::path& file, const session::RunResult& 
         {"max", microseconds(result.barrier.max())}}},
       {"late", result.late},
       {"events", events},
+      {"stop_reason", result.stop_reason},
       {"touches",
        {{"robot_ticks", result.touches.robot_ticks},
         {"obstacles", result.touches.obstacles},

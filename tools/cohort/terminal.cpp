@@ -67,7 +67,8 @@ void Terminal::event(const session::Event& event) {
 // What an error at the end says again, or what is in the nature of things, need not be read.
 LogLevel Terminal::level_of(const session::Event& event) {
   const std::string& kind = event.kind;
-  if (kind == "joined" || kind == "back" || kind == "superseded" || kind == "failed" || kind == "stopped")
+  if (kind == "event" || kind == "joined" || kind == "back" || kind == "superseded" || kind == "failed" ||
+      kind == "stopped")
     return LogLevel::info;
   if (kind == "lost" && options_.own_controllers) return LogLevel::info;
   // A frame that is sent again may be answered twice.
@@ -86,6 +87,7 @@ void Terminal::summary(const session::RunResult& result, double cpu_seconds) {
   const double wall = seconds(result.wall_time);
   std::printf("ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
               seconds(result.sim_time), counted(result.robots, "robot").c_str());
+  if (!result.stop_reason.empty()) std::printf("stopped           by %s\n", result.stop_reason.c_str());
   std::printf("real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0,
               wall, cpu_seconds);
   std::printf("barrier latency   p50 %s us, p99 %s us, max %s us\n", microseconds(result.barrier.quantile(0.5)).c_str(),

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/core/pose.hpp"
+
+/// What an experiment says of the course of a run, as plain data. Objects are indices into World::instances; times are
+/// simulated, and what is to happen at one happens at the first boundary that is not before it.
+namespace cohort::description {
+
+/// The object comes into the world, where it was or at first, or leaves it.
+struct SetPresence {
+  bool present = true;
+};
+/// At rest, with its joints as they are.
+struct PlaceAt {
+  Pose X_WM;
+};
+/// Of the root link, which has to be free to move.
+struct SetVelocity {
+  Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();   ///< of its origin [m/s]
+  Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();  ///< [rad/s]
+};
+/// Acts on a link at its centre of mass.
+struct ApplyForce {
+  std::size_t link = 0;
+  Eigen::Vector3d force_W = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d torque_W = Eigen::Vector3d::Zero();  ///< [N m]
+  std::chrono::nanoseconds duration{0};
+};
+using Action = std::variant<SetPresence, PlaceAt, SetVelocity, ApplyForce>;
+
+struct Event {
+  std::chrono::nanoseconds time{0};
+  std::size_t object = 0;
+  Action action;
+  std::string kind;  ///< as the file calls it
+};
+
+/// All of the objects that are in the world, and at least one, have the origins of their root links in a rectangle.
+struct AllInside {
+  Eigen::Vector2d lower = Eigen::Vector2d::Zero();  ///< [m]
+  Eigen::Vector2d upper = Eigen::Vector2d::Zero();
+};
+/// The origin of the root link of one of the objects in the world is beyond a line.
+struct OneBeyond {
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();       ///< of the line [m]
+  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  ///< at right angles to the line; any length
+};
+/// The root links of all of the objects in the world are slower than this.
+struct AllAtRest {
+  double speed = 0.0;      ///< [m/s]
+  double turn_rate = 0.0;  ///< [rad/s]
+};
+struct OneQuarantined {};
+
+/// When a run ends before its duration is over.
+struct StopCondition {
+  std::string name;  ///< for people, such as `inside`
+  std::vector<std::size_t> objects;
+  std::variant<AllInside, OneBeyond, AllAtRest, OneQuarantined> what;
+  std::chrono::nanoseconds holds_for{0};  ///< at every boundary of so long a time
+};
+
+enum class Quantity {
+  position,     ///< of the root link: x, y, z [m]
+  pose,         ///< the same, and the quaternion x y z w
+  heading,      ///< of the root link's x axis in the plane, from that of the world [rad]
+  velocity,     ///< of the root link's origin [m/s]
+  count,        ///< how many of the objects are in the world
+  quarantined,  ///< how many of the objects have been quarantined
+};
+
+/// What is printed in a run.
+struct PrintedQuantity {
+  Quantity quantity = Quantity::position;
+  std::string selector;  ///< of the objects, as written
+  std::vector<std::size_t> objects;
+  std::chrono::nanoseconds every{0};
+};
+
+/// Of which objects how many poses are kept.
+struct History {
+  std::vector<std::size_t> objects;  ///< ascending
+  std::size_t length = 0;
+  std::chrono::nanoseconds every{0};  ///< 0: every tick
+};
+
+}  // namespace cohort::description

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <vector>
+
+#include "server/description/experiment.hpp"
+#include "server/description/yaml_map.hpp"
+
+namespace cohort::description {
+
+/// Reads what an experiment says of the course of its run: `events`, `stop`, `print` and `history`. What is wrong goes
+/// to the report.
+class CourseReader {
+ public:
+  CourseReader(const YamlMap& top, std::filesystem::path file, const YamlReport& report)
+      : top_(top), file_(std::move(file)), report_(report) {}
+
+  /// The objects that events add: to be read with the world.
+  std::vector<LaterObject> later_objects() const;
+
+  /// All of it, into `experiment`, whose world is read.
+  void read(Experiment& experiment) const;
+
+ private:
+  struct Written;    // one entry of a list: its kind and the map of its keys
+  struct ReadEvent;  // and where it stands
+  std::vector<Written> entries(const std::string& list, bool have_times) const;
+  void read_events(Experiment& experiment) const;
+  void read_event(const Written& written, const World& world, std::vector<ReadEvent>& events) const;
+  void check_order(const World& world, const std::vector<ReadEvent>& events) const;
+  void read_stops(Experiment& experiment) const;
+  void read_prints(Experiment& experiment) const;
+  void read_history(Experiment& experiment) const;
+
+  const YamlMap& top_;
+  std::filesystem::path file_;
+  const YamlReport& report_;
+};
+
+}  // namespace cohort::description

@@ -1,0 +1,298 @@
+#include "server/description/write_world.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "server/description/extensions.hpp"
+#include "server/description/physics_settings.hpp"
+
+namespace cohort::description {
+namespace {
+
+// As few digits as give the same number again.
+std::string text_of(double number) {
+  char buffer[32];
+  const auto end = std::to_chars(std::begin(buffer), std::end(buffer), number).ptr;
+  return {std::begin(buffer), end};
+}
+std::string text_of(const std::string& text) { return text; }
+std::string text_of(bool flag) { return flag ? "true" : "false"; }
+std::string text_of(std::uint64_t number) { return std::to_string(number); }
+std::string text_of(const Eigen::Vector3d& v) { return text_of(v.x()) + " " + text_of(v.y()) + " " + text_of(v.z()); }
+std::string text_of(const Pose& X) {
+  const Eigen::Quaterniond& q = X.orientation;
+  return text_of(X.position) + " " + text_of(q.x()) + " " + text_of(q.y()) + " " + text_of(q.z()) + " " +
+         text_of(q.w());
+}
+
+std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
+
+XmlNode& add(XmlNode& parent, std::string name) {
+  XmlNode& child = parent.children.emplace_back();
+  child.name = std::move(name);
+  return child;
+}
+XmlNode& add_named(XmlNode& parent, std::string element, const std::string& name) {
+  XmlNode& child = add(parent, std::move(element));
+  child.attributes.emplace_back("name", name);
+  return child;
+}
+template <class Value>
+XmlNode& add_value(XmlNode& parent, std::string name, const Value& value) {
+  XmlNode& child = add(parent, std::move(name));
+  child.text = text_of(value);
+  return child;
+}
+template <class Value>
+void add_key(XmlNode& extension, std::string_view key, const Value& value) {
+  add_value(extension, prefixed(key), value);
+}
+
+// SDF keeps "::" for itself: it stands in the names of what was in a model inside of the model.
+std::string without_scope_marks(std::string name) {
+  for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at)) name.replace(at, 2, ".");
+  return name;
+}
+
+void add_pose(XmlNode& parent, const Pose& X) {
+  add_value(parent, "pose", X).attributes.emplace_back("rotation_format", "quat_xyzw");
+}
+
+struct ShapeWriter {
+  XmlNode& geometry;
+  const std::filesystem::path& folder;
+
+  void operator()(const Box& box) const { add_value(add(geometry, "box"), "size", box.size); }
+  void operator()(const Sphere& sphere) const { add_value(add(geometry, "sphere"), "radius", sphere.radius); }
+  void operator()(const Cylinder& cylinder) const { add_round("cylinder", cylinder.radius, cylinder.length); }
+  void operator()(const Capsule& capsule) const { add_round("capsule", capsule.radius, capsule.length); }
+  void operator()(const Ellipsoid& ellipsoid) const { add_value(add(geometry, "ellipsoid"), "radii", ellipsoid.radii); }
+  void operator()(const Plane& plane) const { add_value(add(geometry, "plane"), "normal", plane.normal); }
+  void operator()(const Mesh& mesh) const {
+    XmlNode& element = add(geometry, "mesh");
+    add_value(element, "uri", relative(mesh.triangles->file));
+    add_value(element, "scale", mesh.triangles->scale);
+  }
+  void operator()(const Heightmap& map) const {
+    XmlNode& element = add(geometry, "heightmap");
+    add_value(element, "uri", relative(map.grid->file));
+    add_value(element, "size", map.grid->size);
+  }
+
+ private:
+  void add_round(const char* name, double radius, double length) const {
+    XmlNode& element = add(geometry, name);
+    add_value(element, "radius", radius);
+    add_value(element, "length", length);
+  }
+  std::string relative(const std::filesystem::path& file) const {
+    return std::filesystem::absolute(file).lexically_normal().lexically_proximate(
+        std::filesystem::absolute(folder).lexically_normal());
+  }
+};
+
+struct DeviceWriter {
+  XmlNode& parent;
+  const Model& model;
+
+  void operator()(const TreelDrive& drive) const {
+    XmlNode& element = add_named(parent, prefixed("treel_drive"), drive.name);
+    add_key(element, "link", link_name(drive.link));
+    add_key(element, "half_gauge", drive.half_gauge);
+    add_key(element, "half_contact_length", drive.half_contact_length);
+    add_key(element, "ground_height", drive.ground_height);
+    add_key(element, "wheel_radius", drive.wheel_radius);
+    add_key(element, "max_torque", drive.max_torque);
+    add_key(element, "max_velocity", drive.max_velocity);
+    add_key(element, "friction", drive.friction);
+    for (const std::size_t joint : drive.left_wheels) add_key(element, "left_wheel", joint_name(joint));
+    for (const std::size_t joint : drive.right_wheels) add_key(element, "right_wheel", joint_name(joint));
+  }
+  void operator()(const VelocityMotor& motor) const {
+    XmlNode& element = add_named(parent, prefixed("velocity_motor"), motor.name);
+    add_key(element, "joint", joint_name(motor.joint));
+    add_key(element, "max_velocity", motor.max_velocity);
+    add_key(element, "max_effort", motor.max_effort);
+  }
+  void operator()(const JointEncoder& encoder) const {
+    XmlNode& element = add_named(parent, prefixed("joint_encoder"), encoder.name);
+    add_key(element, "joint", joint_name(encoder.joint));
+  }
+  void operator()(const TreelEncoder& encoder) const {
+    XmlNode& element = add_named(parent, prefixed("treel_encoder"), encoder.name);
+    add_key(element, "drive", std::get<TreelDrive>(model.devices[encoder.drive]).name);
+  }
+  void operator()(const ProximityRing& ring) const {
+    XmlNode& element = add_named(parent, prefixed("proximity_ring"), ring.name);
+    add_key(element, "link", link_name(ring.link));
+    add_key(element, "pose", ring.X_LS);
+    add_key(element, "count", static_cast<std::uint64_t>(ring.count));
+    add_key(element, "first_bearing", ring.first_bearing);
+    add_key(element, "spacing", ring.spacing);
+    add_key(element, "ring_radius", ring.ring_radius);
+    add_key(element, "range", ring.range);
+    add_key(element, "noise", ring.noise);
+  }
+
+ private:
+  std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
+  std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
+};
+
+class WorldWriter {
+ public:
+  WorldWriter(const World& world, const std::filesystem::path& folder) : world_(world), folder_(folder) {}
+
+  XmlNode write() const {
+    XmlNode root;
+    root.name = "sdf";
+    root.attributes = {{"version", "1.9"}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
+    XmlNode& world = add_named(root, "world", world_.name);
+    add_value(world, "gravity", world_.gravity);
+    write_physics(world);
+    for (const Instance& instance : world_.instances)
+      if (instance.is_present) write_model(world, instance);
+    for (const MaterialPair& pair : world_.material_pairs) {
+      XmlNode& element = add(world, prefixed("material_pair"));
+      add_key(element, "first", world_.materials[pair.first]);
+      add_key(element, "second", world_.materials[pair.second]);
+      add_key(element, "friction", pair.friction);
+      add_key(element, "restitution", pair.restitution);
+      add_key(element, "rolling_resistance", pair.rolling_resistance);
+    }
+    return root;
+  }
+
+ private:
+  void write_physics(XmlNode& world) const {
+    XmlNode& sdf = add_named(world, "physics", "default");
+    sdf.attributes.emplace_back("type", "ignored");
+    constexpr double nanoseconds = 1e9;
+    add_value(sdf, "max_step_size", static_cast<double>(world_.step.count()) / nanoseconds);
+    const PhysicsSettings& settings = world_.physics;
+    XmlNode& physics = add(world, prefixed("physics"));
+    add_key(physics, "fidelity", name_of(settings.fidelity));
+    add_key(physics, "solver", name_of(settings.solver));
+    add_key(physics, "iterations", static_cast<std::uint64_t>(settings.iterations));
+    add_key(physics, "direct_bodies", static_cast<std::uint64_t>(settings.direct_bodies));
+    if (std::isfinite(settings.lowest)) add_key(physics, "lowest", settings.lowest);
+    add_key(physics, "strict", settings.strict);
+  }
+
+  void write_model(XmlNode& parent, const Instance& instance) const {
+    const Model& model = world_.models[instance.model];
+    XmlNode& element = add_named(parent, "model", instance.name);
+    add_value(element, "static", model.is_static);
+    add_value(element, "self_collide", model.self_collide);
+    add_pose(element, instance.X_WM);
+    for (const Link& link : model.links) write_link(element, link, model.is_static);
+    for (const Joint& joint : model.joints) write_joint(element, joint, model);
+    for (const Device& device : model.devices) std::visit(DeviceWriter{element, model}, device);
+  }
+
+  void write_link(XmlNode& parent, const Link& link, bool is_static) const {
+    XmlNode& element = add_named(parent, "link", without_scope_marks(link.name));
+    add_pose(element, link.X_ML);
+    if (!is_static) {
+      XmlNode& inertial = add(element, "inertial");
+      add_pose(inertial, link.inertial.X_LI);
+      add_value(inertial, "mass", link.inertial.mass);
+      XmlNode& inertia = add(inertial, "inertia");
+      const char* const axes = "xyz";
+      for (int row = 0; row < 3; ++row)
+        for (int column = row; column < 3; ++column)
+          add_value(inertia, std::string("i") + axes[row] + axes[column], link.inertial.inertia(row, column));
+    }
+    for (const Collision& collision : link.collisions) {
+      XmlNode& shape = add_named(element, "collision", collision.name);
+      add_pose(shape, collision.X_LC);
+      std::visit(ShapeWriter{add(shape, "geometry"), folder_}, collision.shape);
+      XmlNode& surface = add(shape, "surface");
+      XmlNode& friction = add(surface, "friction");
+      add_value(add(friction, "ode"), "mu", collision.surface.friction);
+      add_value(add(friction, "bullet"), "rolling_friction", collision.surface.rolling_resistance);
+      add_value(add(surface, "bounce"), "restitution_coefficient", collision.surface.restitution);
+      if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
+    }
+  }
+
+  static void write_joint(XmlNode& parent, const Joint& joint, const Model& model) {
+    constexpr std::pair<JointType, const char*> names[] = {{JointType::fixed, "fixed"},
+                                                           {JointType::revolute, "revolute"},
+                                                           {JointType::prismatic, "prismatic"},
+                                                           {JointType::ball, "ball"},
+                                                           {JointType::universal, "universal"}};
+    XmlNode& element = add_named(parent, "joint", without_scope_marks(joint.name));
+    for (const auto& [type, name] : names)
+      if (type == joint.type) element.attributes.emplace_back("type", name);
+    add_pose(element, joint.X_LJ);
+    add_value(
+        element, "parent",
+        joint.parent == Joint::world ? std::string("world") : without_scope_marks(model.links[joint.parent].name));
+    add_value(element, "child", without_scope_marks(model.links[joint.child].name));
+    if (joint.type != JointType::fixed) write_axis(add(element, "axis"), joint.axis);
+    if (joint.type == JointType::universal) write_axis(add(element, "axis2"), joint.second_axis);
+  }
+
+  static void write_axis(XmlNode& element, const JointAxis& axis) {
+    constexpr double no_limit = 1e16;  // as SDF writes it
+    add_value(element, "xyz", axis.direction);
+    if (std::isfinite(axis.lower) || std::isfinite(axis.upper)) {
+      XmlNode& limit = add(element, "limit");
+      add_value(limit, "lower", std::isfinite(axis.lower) ? axis.lower : -no_limit);
+      add_value(limit, "upper", std::isfinite(axis.upper) ? axis.upper : no_limit);
+    }
+    XmlNode& dynamics = add(element, "dynamics");
+    add_value(dynamics, "damping", axis.damping);
+    add_value(dynamics, "friction", axis.friction);
+    add_value(dynamics, "spring_stiffness", axis.spring_stiffness);
+    add_value(dynamics, "spring_reference", axis.spring_reference);
+  }
+
+  const World& world_;
+  const std::filesystem::path& folder_;
+};
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char character : text) {
+    switch (character) {
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '&': result += "&amp;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += character;
+    }
+  }
+  return result;
+}
+
+void print(const XmlNode& node, std::size_t depth, std::string& text) {
+  const std::string indent(2 * depth, ' ');
+  text += indent + "<" + node.name;
+  for (const auto& [name, value] : node.attributes) text += " " + name + "=\"" + escaped(value) + "\"";
+  if (node.children.empty() && node.text.empty()) {
+    text += "/>\n";
+    return;
+  }
+  text += ">" + escaped(node.text);
+  if (!node.children.empty()) {
+    text += "\n";
+    for (const XmlNode& child : node.children) print(child, depth + 1, text);
+    text += indent;
+  }
+  text += "</" + node.name + ">\n";
+}
+
+}  // namespace
+
+XmlNode sdf_of(const World& world, const std::filesystem::path& folder) { return WorldWriter(world, folder).write(); }
+
+std::string xml_text(const XmlNode& root) {
+  std::string text = "<?xml version=\"1.0\"?>\n";
+  print(root, 0, text);
+  return text;
+}
+
+}  // namespace cohort::description

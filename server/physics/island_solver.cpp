@@ -1,0 +1,68 @@
+#include "server/physics/island_solver.hpp"
+
+#include "server/physics/active_set_solver.hpp"
+#include "server/physics/direct_solver.hpp"
+#include "server/physics/iterative_solver.hpp"
+
+namespace cohort::physics {
+
+bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
+  return settings.solver == description::Solver::direct ||
+         (settings.solver == description::Solver::hybrid && bodies <= settings.direct_bodies);
+}
+
+void number_bodies(std::span<const std::uint32_t> members, Assembly& assembly, IslandBodies& bodies) {
+  bodies.reset(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i) assembly.anchors.index_of_member[members[i]] = static_cast<int>(i);
+}
+
+void leave_out_broken(std::vector<std::uint32_t>& members, Assembly& assembly) {
+  std::erase_if(members, [&](std::uint32_t member) {
+    if (assembly.members[member].is_finite) return false;
+    assembly.anchors.index_of_member[member] = -1;
+    return true;
+  });
+}
+
+void keep_impulses(const Problem& problem) {
+  for (const Row& row : problem.rows())
+    if (row.kept != nullptr) *row.kept = row.impulse;
+}
+
+void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
+  sound_.clear();
+  for (const std::uint32_t member : members)
+    if (assembly.members[member].is_active) sound_.push_back(member);
+  while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
+}
+
+// False, and no body moved, if one of them has no sensible velocities.
+bool IslandSolver::try_to_solve(Assembly& assembly) {
+  const auto all_are_finite = [&] {
+    bool all = true;
+    for (const std::uint32_t member : sound_) all = assembly.check(member, bodies_) && all;
+    return all;
+  };
+  number_bodies(sound_, assembly, bodies_);
+  for (const std::uint32_t member : sound_) assembly.set_up(member, bodies_);
+  if (!all_are_finite()) return false;
+
+  problem_.clear();
+  for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
+  for (const std::uint32_t member : sound_)
+    assembly.connections.for_each_of(
+        member, [&](Connection& connection) { assembly.add_connection_rows(connection, problem_); });
+  for (const std::uint32_t member : sound_)
+    assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_); });
+
+  const bool directly = is_solved_directly(assembly.settings, sound_.size());
+  if (!(directly ? solve_directly(problem_) : solve_by_active_set(problem_)))
+    solve_iteratively(problem_, assembly.settings.iterations);
+  if (!all_are_finite()) return false;
+
+  keep_impulses(problem_);
+  for (const std::uint32_t member : sound_) assembly.integrate(member, problem_);
+  return true;
+}
+
+}  // namespace cohort::physics

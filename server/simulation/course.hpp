@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/simulation/objects.hpp"
+
+namespace cohort {
+
+/// What an experiment says of the course of its run, at work: its events, and when it stops.
+class Course {
+ public:
+  Course(const description::Experiment& experiment, physics::World& world, Objects& objects);
+
+  /// The events of a boundary. Throws std::runtime_error for one that cannot be done. Returns a sentence for each.
+  std::vector<std::string> begin_tick(std::uint64_t tick);
+  /// Applies the forces that act in the step from `tick` on.
+  void push(std::uint64_t tick);
+  /// Looks at the stop conditions; once at each boundary, until one holds.
+  void check_stops();
+
+  /// The stop condition that holds, in words.
+  const std::optional<std::string>& stop_reason() const { return stop_reason_; }
+
+  void hash(StateHash& hash) const;
+  void save(SnapshotWriter& writer) const;
+  /// With the world at `tick`.
+  void restore(SnapshotReader& reader, std::uint64_t tick);
+
+ private:
+  std::string act(const description::Event& event);
+  std::optional<std::string> why_it_holds(const description::StopCondition& condition) const;
+
+  const description::Experiment& experiment_;
+  physics::World& world_;
+  Objects& objects_;
+  std::vector<std::uint64_t> event_ticks_;
+  std::size_t next_event_ = 0;
+  std::vector<std::uint64_t> boundaries_held_;  // in a row, of each stop condition
+  std::optional<std::string> stop_reason_;
+};
+
+}  // namespace cohort

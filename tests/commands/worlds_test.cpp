@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "tests/commands/small_experiment.hpp"
+
+// What users do with worlds: write them back, read about them, print what happens in them.
+namespace cohort::testing {
+namespace {
+
+TEST(Export, WritesAWorldThatRunsToTheSameHash) {
+  const ScratchFolder folder;
+  for (const char* const name : {"world.sdf", "world.yaml"}) {
+    const std::string world = (folder / name).string();
+    const Ended exported = run_to_end({cohort_program(), "export", demo_experiment(), "-o", world});
+    EXPECT_EQ(exported.exit_code, 0) << exported.err;
+    EXPECT_EQ(exported.out + exported.err, "");
+    write_file(folder / "e.yaml", std::string("world: ") + name +
+                                      "\nduration: 2\nteams: [{name: t, robots: explorers/*, controller: "
+                                      "obstacle_avoidance}]\n");
+    const auto summary = run_experiment((folder / "e.yaml").string(), {"--controllers", "inprocess"});
+    EXPECT_EQ(summary["state_hash"], reference_hash(2)) << name;
+  }
+}
+
+TEST(Export, HasTheSeedThatIsAskedFor) {
+  const ScratchFolder folder;
+  const auto exported = [&](const std::vector<std::string>& more) {
+    const std::string world = (folder / "w.sdf").string();
+    std::vector<std::string> command = {cohort_program(), "export", demo_experiment(), "-o", world};
+    command.insert(command.end(), more.begin(), more.end());
+    EXPECT_EQ(run_to_end(command).exit_code, 0);
+    return read_file(world);
+  };
+  EXPECT_EQ(exported({}), exported({"--seed", "1"}));
+  EXPECT_NE(exported({}), exported({"--seed", "2"}));
+}
+
+TEST(Export, RefusesWhatItCannotWriteOrRead) {
+  const ScratchFolder folder;
+  const Ended odd = run_to_end({cohort_program(), "export", demo_experiment(), "-o", (folder / "w.txt").string()});
+  EXPECT_EQ(odd.exit_code, 2);
+  EXPECT_NE(odd.err.find("'.txt'"), std::string::npos) << odd.err;
+  const Ended none =
+      run_to_end({cohort_program(), "export", (folder / "none.sdf").string(), "-o", (folder / "w.sdf").string()});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("no such file"), std::string::npos) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "w.sdf"));
+}
+
+TEST(Help, FindsWhatIsAskedForAndSuggestsTheNearest) {
+  const Ended contents = run_to_end({cohort_program(), "help"});
+  EXPECT_EQ(contents.exit_code, 0);
+  EXPECT_NE(contents.out.find("sensors"), std::string::npos);
+  const Ended proximity = run_to_end({cohort_program(), "help", "proximity"});
+  EXPECT_EQ(proximity.exit_code, 0);
+  EXPECT_NE(proximity.out.find("cohort:proximity_ring"), std::string::npos);
+  const Ended misspelt = run_to_end({cohort_program(), "help", "sensers"});
+  EXPECT_EQ(misspelt.exit_code, 2);
+  EXPECT_NE(misspelt.err.find("did you mean 'sensors'?"), std::string::npos) << misspelt.err;
+}
+
+const std::string constant = "constant";
+const std::string course =
+    "print:\n  - {quantity: position, objects: r1, every: 0.5}\n  - {quantity: count, objects: 'r*', every: 1}\n"
+    "events:\n  - {at: 1, move: {objects: r1, pose: [3, 4, 5, 0, 0, 0]}}\n  - {at: 1.5, remove: {objects: r1}}\n"
+    "stop:\n  - beyond: {objects: r0, point: [-1, 0], direction: [1, 0], for: 2}\n";
+
+TEST(Print, WritesATableToStandardOutputOrToAFile) {
+  const SmallExperiment experiment(constant, course, 5.0);
+  const std::string expected = "time,r1/x,r1/y,r1/z,r*/count\n0,1,0,0,2\n0.5,1,0,0,\n1,3,4,5,2\n1.5,,,,\n2,,,,1\n";
+  const Ended printed = run_to_end(experiment.run({"--controllers", "inprocess"}));
+  EXPECT_EQ(printed.exit_code, 0) << printed.err;
+  EXPECT_TRUE(printed.out.starts_with(expected)) << printed.out;
+  EXPECT_NE(printed.out.find("stopped           by beyond: 'r0'"), std::string::npos) << printed.out;
+  const std::string file = (experiment / "table.csv").string();
+  const Ended written = run_to_end(experiment.run({"--controllers", "inprocess", "--csv", file}));
+  EXPECT_EQ(read_file(file), expected);
+  EXPECT_EQ(written.out.find("r1/x"), std::string::npos) << written.out;
+}
+
+}  // namespace
+}  // namespace cohort::testing

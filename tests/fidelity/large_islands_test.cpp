@@ -1,0 +1,168 @@
+// Islands that are cut into parts and solved by all workers at once.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "server/core/random.hpp"
+#include "server/physics/island_parts.hpp"
+#include "server/physics/large_island_solver.hpp"
+#include "tests/support/small_world.hpp"
+
+namespace cohort::testing {
+namespace {
+
+using Eigen::Vector3d;
+using physics::IslandParts;
+
+constexpr double spacing = 0.13;
+constexpr std::size_t turret = 1;
+
+std::uint64_t hash_of(const SmallWorld& small, const physics::World& world) {
+  StateHash hash;
+  for (std::uint32_t body = 0; body < small.description.instances.size(); ++body) world.hash_body(body, hash);
+  world.hash_contacts(hash);
+  return hash.value();
+}
+
+void drive_at_random(SmallWorld& small, const std::vector<std::uint32_t>& robots, int tick) {
+  const RandomStream random(1, "island", "drive");
+  for (const std::uint32_t robot : robots)
+    small.drive(robot, 0.4 * random.uniform(tick / 10, 2 * robot) - 0.2,
+                0.4 * random.uniform(tick / 10, 2 * robot + 1) - 0.2);
+}
+
+// Robots in a square, each held to the one before it in its row and in its column.
+struct Raft {
+  SmallWorld small;
+  std::vector<std::uint32_t> robots;
+
+  Raft(int edge, unsigned threads) : small(world_with_floor(), threads) {
+    for (int y = 0; y < edge; ++y)
+      for (int x = 0; x < edge; ++x) robots.push_back(small.add(tracked_robot(), at(spacing * x, spacing * y, 0)));
+    const auto robot = [&](int x, int y) { return robots[static_cast<std::size_t>(y * edge + x)]; };
+    for (int y = 0; y < edge; ++y) {
+      for (int x = 0; x < edge; ++x) {
+        if (x > 0) small.world().connect(robot(x, y), turret, {{-0.5 * spacing, 0, 0.02}}, robot(x - 1, y), turret);
+        if (y > 0) small.world().connect(robot(x, y), turret, {{0, -0.5 * spacing, 0.02}}, robot(x, y - 1), turret);
+      }
+    }
+  }
+  std::uint64_t run(int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      drive_at_random(small, robots, tick);
+      small.world().step();
+    }
+    return hash_of(small, small.world());
+  }
+};
+
+// A loose board with robots that drive about on it and push each other; some stand half on it, half on the floor.
+struct CrowdedBoard {
+  SmallWorld small;
+  std::uint32_t board = 0;
+  std::vector<std::uint32_t> robots;
+
+  explicit CrowdedBoard(unsigned threads) : small(world_with_floor(), threads) {
+    const Vector3d size(1.6, 1.6, 0.01);
+    board = small.add(loose("board", description::Box{size}, solid_box(50.0, size)), at(0.72, 0.72, 0.005));
+    for (int y = 0; y < 11; ++y)
+      for (int x = 0; x < 11; ++x)
+        robots.push_back(small.add(tracked_robot(), at(0.145 * x - 0.06, 0.145 * y, x == 0 ? 0.006 : 0.01)));
+  }
+  std::uint64_t run(int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      drive_at_random(small, robots, tick);
+      small.world().step();
+    }
+    return hash_of(small, small.world());
+  }
+};
+
+TEST(LargeIslands, HaveTheSameBitsForAnyNumberOfThreads) {
+  const std::uint64_t expected = Raft(12, 1).run(60);
+  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(Raft(12, threads).run(60), expected) << threads;
+}
+
+TEST(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
+  CrowdedBoard one(1);
+  const std::uint64_t expected = one.run(100);
+  EXPECT_NEAR(one.small.position(one.board).z(), 0.005, 1e-3);
+  for (const std::uint32_t robot : one.robots) EXPECT_GT(one.small.up(robot).z(), 0.95);
+  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(CrowdedBoard(threads).run(100), expected) << threads;
+}
+
+TEST(LargeIslands, HoldTogetherAsSmallOnesDo) {
+  Raft raft(12, 2);
+  raft.run(200);
+  for (std::size_t i = 1; i < raft.robots.size(); ++i) {
+    if (i % 12 == 0) continue;
+    const double distance =
+        (raft.small.position(raft.robots[i], turret) - raft.small.position(raft.robots[i - 1], turret)).norm();
+    EXPECT_NEAR(distance, spacing, 2e-3) << i;
+  }
+  for (const std::uint32_t robot : raft.robots) EXPECT_GT(raft.small.up(robot).z(), 0.99);
+}
+
+TEST(LargeIslands, GoOnWithoutABodyThatBreaks) {
+  const auto broken_run = [](unsigned threads) {
+    Raft raft(11, threads);
+    raft.run(10);
+    const std::uint32_t broken = raft.robots[60];
+    raft.small.world().set_root_twist(broken, {Vector3d::Zero(), Vector3d(1e9, 0, 0)});
+    raft.small.world().step();
+    EXPECT_EQ(raft.small.world().quarantined().size(), 1u);
+    EXPECT_FALSE(raft.small.world().is_active(broken));
+    const std::uint64_t hash = raft.run(50);
+    for (const std::uint32_t robot : raft.robots) {
+      if (robot != broken) {
+        EXPECT_GT(raft.small.up(robot).z(), 0.99);
+      }
+    }
+    return hash;
+  };
+  EXPECT_EQ(broken_run(1), broken_run(4));
+}
+
+// A hundred bodies in a row, of which every third is linked to one far away.
+void link_all(IslandParts& parts, std::uint32_t count) {
+  parts.reset(count);
+  for (std::uint32_t body = 1; body < count; ++body) parts.link(body - 1, body);
+  for (std::uint32_t body = 0; body + 50 < count; body += 3) parts.link(body, body + 50);
+}
+
+TEST(IslandParts, HaveEveryBodyOnceAndAreFullButForTheLast) {
+  IslandParts parts;
+  link_all(parts, 100);
+  parts.cut(16);
+  std::vector<int> seen(100, 0);
+  for (std::uint32_t part = 0; part < parts.count(); ++part) {
+    EXPECT_EQ(parts.bodies(part).size(), part + 1 < parts.count() ? 16u : 4u);
+    for (const std::uint32_t body : parts.bodies(part)) {
+      ++seen[body];
+      EXPECT_EQ(parts.part_of(body), part);
+    }
+    EXPECT_TRUE(std::is_sorted(parts.bodies(part).begin(), parts.bodies(part).end()));
+  }
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), 100);
+}
+
+TEST(IslandParts, OfARowAreStretchesOfIt) {
+  IslandParts parts;
+  parts.reset(96);
+  for (std::uint32_t body = 1; body < 96; ++body) parts.link(body, body - 1);
+  parts.cut(32);
+  ASSERT_EQ(parts.count(), 3u);
+  for (std::uint32_t body = 0; body < 96; ++body) EXPECT_EQ(parts.part_of(body), body / 32);
+}
+
+TEST(IslandParts, OfBodiesThatOnlyShareOneAreStillFull) {
+  IslandParts parts;
+  parts.reset(200);
+  for (std::uint32_t body = 1; body < 200; ++body) parts.link(0, body);
+  parts.cut(32);
+  EXPECT_EQ(parts.count(), 7u);
+}
+
+}  // namespace
+}  // namespace cohort::testing

@@ -1,0 +1,181 @@
+// What happens in the experiments that ship, in numbers.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "client_sdk/src/plugin_loader.hpp"
+#include "server/session/in_process.hpp"
+
+namespace cohort {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path experiments = COHORT_SOURCE_DIR "/worlds/experiments";
+
+/// An experiment that has been run with its controllers in this process.
+class Shipped {
+ public:
+  explicit Shipped(const std::string& name, double seconds = 0.0)
+      : experiment(description::read_experiment(
+            experiments / (name + ".yaml"), {},
+            seconds > 0.0 ? std::optional(std::chrono::nanoseconds(std::llround(seconds * 1e9))) : std::nullopt)),
+        simulation(experiment, 2) {
+    std::vector<std::unique_ptr<LoadedPlugin>> plugins;
+    std::vector<ControllerKind> kinds;
+    for (const description::Team& team : experiment.teams) {
+      plugins.push_back(std::make_unique<LoadedPlugin>(team.controller, default_plugin_directories()));
+      kinds.push_back(kind_of(plugins.back()->plugin()));
+    }
+    const session::RunListener listener = {.boundary = [&] { watch(); }};
+    result = session::run_in_process(experiment, simulation, kinds, {}, listener, std::atomic<bool>(false));
+    EXPECT_EQ(result.end, session::RunResult::End::finished) << result.error;
+    EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0].text();
+  }
+
+  Eigen::Vector3d position(const std::string& object) const { return pose(object).position; }
+  Pose pose(const std::string& object) const { return simulation.object_pose(*simulation.objects().find(object)); }
+  bool has_quarantined() const {
+    return std::ranges::any_of(result.events, [](const session::Event& e) { return e.kind == "quarantined"; });
+  }
+
+  description::Experiment experiment;
+  Simulation simulation;
+  session::RunResult result;
+  double lowest = 1e9;                               // of any robot's origin
+  double least_upright = 1.0;                        // z of any robot's up
+  std::set<std::pair<int, int>> cells_of_the_first;  // column and row, of a square of 2.5 m, where robot 0 was
+
+ private:
+  void watch() {
+    for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
+      const Pose X_WL = simulation.robot_pose(robot);
+      lowest = std::min(lowest, X_WL.position.z());
+      least_upright = std::min(least_upright, (X_WL.orientation * Eigen::Vector3d::UnitZ()).z());
+      constexpr double edge = 0.5;
+      if (robot == 0)
+        cells_of_the_first.insert({static_cast<int>(std::floor((X_WL.position.x() + 1.25) / edge)),
+                                   static_cast<int>(std::floor((X_WL.position.y() + 1.25) / edge))});
+    }
+  }
+};
+
+TEST(ShippedExperiments, AreAllReadAndStepped) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(experiments)) {
+    SCOPED_TRACE(entry.path().string());
+    const description::Experiment experiment = description::read_experiment(entry.path());
+    EXPECT_TRUE(experiment.world.warnings.empty());
+    Simulation simulation(experiment, 1);
+    for (int i = 0; i < 20; ++i) simulation.step();
+    EXPECT_TRUE(simulation.quarantined().empty());
+    names.insert(entry.path().stem());
+  }
+  EXPECT_GE(names.size(), 14u);
+}
+
+TEST(ShippedExperiments, ATroughOfThreeCentimetresIsCrossedAndOneOfFifteenIsNot) {
+  const Shipped run("trough");
+  EXPECT_EQ(run.result.stop_reason, "beyond: 'narrow'");
+  EXPECT_NEAR(run.position("narrow").z(), 0.2, 0.005);
+  EXPECT_LT(run.position("wide").x(), 0.75);
+  EXPECT_LT(run.position("wide").z(), 0.19);
+}
+
+TEST(ShippedExperiments, AHoleSwallowsWhoDrivesIntoIt) {
+  const Shipped run("hole");
+  EXPECT_EQ(run.result.stop_reason, "beyond: 'passes'");
+  EXPECT_LT(run.position("falls").z(), 0.2);
+  EXPECT_NEAR(run.position("passes").z(), 0.3, 0.005);
+}
+
+TEST(ShippedExperiments, AStepOfACentimetreIsClimbedAndOneOfSixIsNot) {
+  const Shipped run("step");
+  EXPECT_EQ(run.result.stop_reason, "beyond: 'climbs'");
+  EXPECT_NEAR(run.position("climbs").z(), 0.01, 0.003);
+  EXPECT_LT(run.position("stays").x(), 0.5);
+  EXPECT_LT(run.position("stays").z(), 0.03);
+}
+
+TEST(ShippedExperiments, OnRoughTerrainRobotsStayUprightOnTheGround) {
+  const Shipped run("rough_terrain", 20.0);
+  EXPECT_FALSE(run.has_quarantined());
+  EXPECT_GT(run.least_upright, 0.5);
+  EXPECT_GT(run.lowest, -0.02);
+  double moved = 0.0;
+  for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot)
+    moved = std::max(
+        moved, (run.simulation.robot_pose(robot).position - run.experiment.world.robot(robot).X_WM.position).norm());
+  EXPECT_GT(moved, 0.3);
+}
+
+TEST(ShippedExperiments, TwoRobotsPushTheBarIntoTheNest) {
+  const Shipped run("retrieval");
+  EXPECT_EQ(run.result.stop_reason, "inside: 1 object");
+  EXPECT_NEAR(run.position("things/bar").x(), 1.0, 0.01);
+  EXPECT_LT(std::abs(run.position("things/bar").y()), 0.1);
+  EXPECT_LT(run.result.sim_time, std::chrono::seconds(30));
+}
+
+TEST(ShippedExperiments, TheRoverDrivesTheCircleOfItsWheels) {
+  const Shipped run("rover");
+  // Wheels of 0.035 m, 0.16 m apart, at 4 and 5 rad/s.
+  const double speed = 0.035 * 4.5, rate = 0.035 * 1.0 / 0.16, radius = speed / rate;
+  const Eigen::Vector2d centre(0.0, radius);
+  EXPECT_NEAR((run.position("rover").head<2>() - centre).norm(), radius, 0.05 * radius);
+  EXPECT_NEAR(run.position("rover").z(), 0.0, 0.005);
+  EXPECT_GT(run.least_upright, 0.98);
+}
+
+TEST(ShippedExperiments, TheHexapodWalksAheadAndStaysUpright) {
+  const Shipped run("hexapod");
+  EXPECT_GT(run.position("hexapod").x(), 1.0);
+  EXPECT_LT(std::abs(run.position("hexapod").y()), 0.5);
+  EXPECT_GT(run.least_upright, 0.6);
+}
+
+TEST(ShippedExperiments, TheArmComesToItsAngles) {
+  const Shipped run("arm");
+  const std::uint32_t arm = *run.simulation.objects().find("arm");
+  const description::Model& model = run.experiment.world.robot_model(0);
+  const double expected[] = {0.6, 1.1, 1.0};
+  int joint = 0;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    if (model.joints[i].type != description::JointType::revolute) continue;
+    EXPECT_NEAR(run.simulation.world().joint_position(arm, i), expected[joint++], 0.05) << model.joints[i].name;
+  }
+  EXPECT_EQ(joint, 3);
+  EXPECT_NEAR(run.position("ball").z(), 0.03, 0.01) << "it fell from where the event put it";
+}
+
+TEST(ShippedExperiments, AFormationDrivesAheadAsOne) {
+  const Shipped run("formation", 5.0);
+  for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot) {
+    const Eigen::Vector3d way =
+        run.simulation.robot_pose(robot).position - run.experiment.world.robot(robot).X_WM.position;
+    EXPECT_NEAR(way.x(), 0.5, 0.05);
+    EXPECT_NEAR(way.y(), 0.0, 0.01);
+  }
+}
+
+TEST(ShippedExperiments, TheMouseFindsTheOneWayOut) {
+  const Shipped run("maze");
+  EXPECT_EQ(run.result.stop_reason, "beyond: 'mouse'");
+  EXPECT_GE(run.cells_of_the_first.size(), 5u);
+  for (const auto& [column, row] : run.cells_of_the_first) {
+    EXPECT_GE(std::min(column, row), 0);
+    EXPECT_LE(row, 4);
+    if (column > 4) {
+      EXPECT_EQ(row, 4) << "that is not the exit";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cohort

@@ -1,0 +1,169 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "server/description/write_world.hpp"
+#include "server/description/yaml_sdf.hpp"
+#include "server/simulation/simulation.hpp"
+#include "tests/support/written_worlds.hpp"
+
+namespace cohort::description {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ExportedWorlds : public Description {
+ protected:
+  fs::path write_back(const World& world, const std::string& name = "exported.sdf") const {
+    return write(name, xml_text(sdf_of(world, folder_)));
+  }
+  // Every number of it, as text.
+  std::string text_of(const World& world) const { return xml_text(sdf_of(world, folder_)); }
+
+  static std::uint64_t hash_after(const World& world, std::uint64_t seed, int ticks) {
+    Experiment experiment;
+    experiment.world = world;
+    experiment.seed = seed;
+    Simulation simulation(experiment, 1);
+    for (int tick = 0; tick < ticks; ++tick) {
+      for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
+        std::vector<double> values;
+        for (const Channel& channel : simulation.kinds()[simulation.kind_of(robot)].command)
+          for (std::uint32_t i = 0; i < channel.size; ++i)
+            values.push_back(0.4 * channel.upper * std::sin(0.05 * tick + robot + static_cast<double>(values.size())));
+        simulation.set_command(robot, values);
+      }
+      simulation.step();
+    }
+    return simulation.state_hash();
+  }
+  void expect_the_same_again(const World& world, std::uint64_t seed = 1) const {
+    const World again = read_world(write_back(world), seed);
+    EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);
+    EXPECT_EQ(text_of(again), text_of(world));
+    const World from_yaml = read_world(write("exported.yaml", yaml_of_sdf(sdf_of(world, folder_))), seed);
+    EXPECT_EQ(text_of(from_yaml), text_of(world));
+    // What an event brings is not in the world.
+    if (std::ranges::all_of(world.instances, &Instance::is_present)) {
+      EXPECT_EQ(hash_after(again, seed, 100), hash_after(world, seed, 100));
+    }
+  }
+};
+
+TEST_F(ExportedWorlds, OfEveryArenaThatShipsGiveTheSameHashAfterAHundredTicks) {
+  int arenas = 0;
+  for (const auto& entry : fs::directory_iterator(source / "worlds/arenas")) {
+    if (entry.path().extension() != ".sdf") continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    expect_the_same_again(read_world(entry.path(), 5), 5);
+    ++arenas;
+  }
+  EXPECT_GE(arenas, 12);
+}
+
+TEST_F(ExportedWorlds, OfEveryExperimentThatShipsHaveItsSeedItsStepAndItsPhysics) {
+  for (const auto& entry : fs::directory_iterator(source / "worlds/experiments")) {
+    if (entry.path().extension() != ".yaml") continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    const Experiment experiment = read_experiment(entry.path());
+    expect_the_same_again(experiment.world, experiment.seed);
+  }
+}
+
+// Rotations, axes and normals that no short number has, frames, every shape, every joint, materials.
+TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
+  write("t.obj", "v 0.1 0 0\nv 0 0.3 0\nv 0 0 0.7\nv 0 0 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
+  const std::string inertial =
+      "<inertial><pose>0.013 -0.0071 0.003 0.31 -0.7 "
+      "1.9</pose><mass>0.7300000000000001</mass><inertia><ixx>0.0123</ixx>"
+      "<iyy>0.0234</iyy><izz>0.0171</izz><ixy>0.0011</ixy><ixz>-0.0007</ixz><iyz>0.0003</iyz></inertia></inertial>";
+  const auto link = [&](const std::string& name, const std::string& pose, const std::string& shape) {
+    return "<link name=\"" + name + "\"><pose>" + pose + "</pose>" + inertial +
+           "<collision name=\"c\"><pose>0.01 0.02 0.03 0.1 0.2 0.3</pose><geometry>" + shape +
+           "</geometry><surface><friction><ode><mu>0.37</mu></ode><bullet><rolling_friction>0.0013</rolling_friction>"
+           "</bullet></friction><bounce><restitution_coefficient>0.21</restitution_coefficient></bounce></surface>"
+           "<cohort:material>m_" +
+           name + "</cohort:material></collision></link>";
+  };
+  const auto odd_joint = [](const std::string& name, const std::string& type, const std::string& parent,
+                            const std::string& child, const std::string& axes) {
+    return "<joint name=\"" + name + "\" type=\"" + type + "\"><pose>0.011 0.007 -0.005 0.4 0.5 0.6</pose><parent>" +
+           parent + "</parent><child>" + child + "</child>" + axes + "</joint>";
+  };
+  const std::string axis =
+      "<xyz>1 2 3</xyz><limit><lower>-0.7</lower><upper>1.3</upper></limit><dynamics><damping>0.013</damping>"
+      "<friction>0.0017</friction><spring_stiffness>0.31</spring_stiffness><spring_reference>0.2</spring_reference>"
+      "</dynamics>";
+  const std::string model =
+      "<model name=\"odd\"><self_collide>true</self_collide><pose>0.3 0.4 2.1 0.7 0.8 0.9</pose>" +
+      link("e", "0.1 0.9 0 0.2 0.1 0.7", "<ellipsoid><radii>0.11 0.13 0.17</radii></ellipsoid>") +
+      link("a", "0 0 0 0 0 0", "<box><size>0.31 0.17 0.13</size></box>") +
+      link("b", "0.5 0 0 0.1 0 0.3", "<cylinder><radius>0.07</radius><length>0.19</length></cylinder>") +
+      link("d", "0 0.5 0 0 0.1 0.5", "<capsule><radius>0.05</radius><length>0.23</length></capsule>") +
+      link("f", "-0.6 0.1 0 0.3 0.3 0.3", "<mesh><uri>t.obj</uri><scale>0.9 0.8 0.7</scale></mesh>") +
+      link("g", "-0.9 0.1 0.4 0.3 0.2 0.3", "<sphere><radius>0.09</radius></sphere>") +
+      odd_joint("one", "revolute", "a", "b", "<axis>" + axis + "</axis>") +
+      odd_joint("two", "universal", "a", "d",
+                "<axis>" + axis + "</axis><axis2><xyz expressed_in=\"a\">-1 0.3 0.2</xyz></axis2>") +
+      odd_joint("three", "ball", "a", "f",
+                "<axis><xyz>0 0 1</xyz><dynamics><damping>0.02</damping></dynamics></axis>") +
+      odd_joint("four", "prismatic", "d", "e", "<axis><xyz>0.3 -0.7 0.1</xyz></axis>") +
+      odd_joint("five", "fixed", "f", "g", "") +
+      "<cohort:velocity_motor name=\"m\"><cohort:joint>one</cohort:joint><cohort:max_velocity>1.7</cohort:max_velocity>"
+      "<cohort:max_effort>0.3</cohort:max_effort></cohort:velocity_motor>"
+      "<cohort:joint_encoder name=\"m\"><cohort:joint>four</cohort:joint></cohort:joint_encoder>"
+      "<cohort:proximity_ring name=\"r\"><cohort:link>b</cohort:link><cohort:pose>0 0.1 0.2 0.3 0.4 0.5</cohort:pose>"
+      "<cohort:count>5</cohort:count><cohort:first_bearing>0.1</cohort:first_bearing><cohort:spacing>1.1</"
+      "cohort:spacing>"
+      "<cohort:ring_radius>0.05</cohort:ring_radius><cohort:range>1.3</cohort:range><cohort:noise>0.07</cohort:noise>"
+      "</cohort:proximity_ring></model>";
+  const std::string content =
+      "<gravity>0.1 -0.2 -9.7</gravity><physics type=\"ode\"><max_step_size>0.003</max_step_size></physics>"
+      "<frame name=\"f\"><pose>0.1 0.2 0.3 0.4 0.5 0.6</pose></frame>" +
+      static_model("<pose relative_to=\"f\">0.7 -0.1 -0.9 -0.4 -0.5 0.1</pose>" +
+                       collision("<plane><normal>0.1 -0.2 0.97</normal></plane>"),
+                   "slope") +
+      static_model("<pose>5 5 0 0.1 0.2 0.3</pose>" + collision("<mesh><uri>t.obj</uri></mesh>"), "rock") + model +
+      "<cohort:material_pair><cohort:first>m_a</cohort:first><cohort:second>m_b</cohort:second><cohort:friction>0.77"
+      "</cohort:friction><cohort:restitution>0.1</cohort:restitution></cohort:material_pair>"
+      "<cohort:physics><cohort:solver>hybrid</cohort:solver><cohort:fidelity>articulated</cohort:fidelity>"
+      "<cohort:iterations>17</cohort:iterations><cohort:lowest>-33.3</cohort:lowest></cohort:physics>";
+  expect_the_same_again(read(content));
+}
+
+TEST_F(ExportedWorlds, HaveTheModelsInsideOfModelsAsOne) {
+  const World world =
+      read("<model name=\"outer\">" + links("a") + "<model name=\"inner\"><pose>0.3 0.2 0.1 0.1 0.2 0.3</pose>" +
+           links("b") + "<cohort:joint_encoder name=\"e\"><cohort:joint>k</cohort:joint></cohort:joint_encoder>" +
+           links("c") + joint("k", "b", "c") + "</model>" + joint("j", "a", "inner::b") + "</model>");
+  EXPECT_EQ(world.models[0].links[1].name, "inner::b");
+  const World again = read_world(write_back(world), 1);
+  EXPECT_EQ(again.models[0].links[1].name, "inner.b");
+  EXPECT_EQ(text_of(again), text_of(world));
+  EXPECT_EQ(hash_after(again, 1, 100), hash_after(world, 1, 100));
+}
+
+TEST_F(ExportedWorlds, WithAHeightMapNameItsFileFromWhereTheyAre) {
+  const World world = read_world(source / "worlds/arenas/rough_terrain.sdf", 1);
+  const std::string text = text_of(world);
+  EXPECT_NE(text.find("terrain/rough_terrain.png</uri>"), std::string::npos);
+  EXPECT_NE(text.find("<size>4 4 0.25</size>"), std::string::npos);
+}
+
+TEST_F(ExportedWorlds, EscapeNamesThatXmlWouldMisread) {
+  const World world = read(static_model(links("a"), "a&amp;b&lt;&quot;c"));
+  EXPECT_EQ(world.instances[0].name, "a&b<\"c");
+  expect_the_same_again(world);
+}
+
+TEST_F(ExportedWorlds, ReadAQuaternionThatIsNoUnitAsOne) {
+  const World world = read(static_model("<pose rotation_format=\"quat_xyzw\">1 2 3 0 0 2 2</pose>" + links("a")));
+  const Eigen::Quaterniond q = world.instances[0].X_WM.orientation;
+  EXPECT_NEAR(q.z(), std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(q.w(), std::sqrt(0.5), 1e-15);
+}
+
+}  // namespace
+}  // namespace cohort::description

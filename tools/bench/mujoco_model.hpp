@@ -1,0 +1,23 @@
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <string>
+
+namespace cohort::bench {
+
+struct MujocoDelete {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using MujocoModel = std::unique_ptr<mjModel, MujocoDelete>;
+using MujocoData = std::unique_ptr<mjData, MujocoDelete>;
+
+/// Of a text in MuJoCo's XML. Throws std::runtime_error for what is wrong with it.
+MujocoModel compile_mujoco(const std::string& text);
+
+/// Throws std::runtime_error if MuJoCo has warned: its results are then worth nothing.
+void step_mujoco(const mjModel& model, mjData& data);
+
+}  // namespace cohort::bench

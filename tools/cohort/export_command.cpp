@@ -1,0 +1,42 @@
+#include "server/description/experiment.hpp"
+#include "server/description/file_kind.hpp"
+#include "server/description/input_error.hpp"
+#include "server/description/write_world.hpp"
+#include "server/description/yaml_sdf.hpp"
+#include "tools/cohort/commands.hpp"
+#include "tools/cohort/installed_models.hpp"
+#include "tools/cohort/output_file.hpp"
+
+namespace cohort::tool {
+namespace {
+
+description::World read(const ExportCommand& command) {
+  if (description::kind_of_file(command.file) == description::FileKind::sdf)
+    return description::read_world_or_model(command.file, command.seed.value_or(1), installed_model_folders());
+  return description::read_experiment(command.file, command.seed, {}, installed_model_folders()).world;
+}
+
+}  // namespace
+
+int export_world(const ExportCommand& command, Log& log) {
+  try {
+    const bool as_yaml = description::is_yaml(command.output);
+    if (!as_yaml && command.output.extension() != ".sdf") {
+      log.error("a world is written as .sdf or .yaml, not as '" + command.output.extension().string() + "'");
+      return exit_usage;
+    }
+    check_writable("the world", command.output);
+    const description::World world = read(command);
+    for (const description::Problem& warning : world.warnings) log.problem(LogLevel::warning, warning);
+    const description::XmlNode sdf = description::sdf_of(world, command.output.parent_path());
+    write_file("the world", command.output, as_yaml ? description::yaml_of_sdf(sdf) : description::xml_text(sdf));
+    return exit_ok;
+  } catch (const description::InputError& error) {
+    log.problems(error);
+  } catch (const std::exception& error) {
+    log.error(error.what());
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort::tool

@@ -184,6 +184,7 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
       if (auto tree = converted(*std::move(source), opened)) {
         opened.tree = *std::move(tree);
         opened.size = size_of(opened.tree);
+        warn_of_repeated(opened.tree, ElementSchema::root(), "");
         name_terrains(opened.tree);
         if (replace_includes(opened.tree, "", opened)) load(opened);
       }
@@ -281,6 +282,17 @@ bool SdfFiles::names_are_simple(const XmlNode& node, const std::string& path) {
     are_simple = names_are_simple(child, child_path) && are_simple;
   }
   return are_simple;
+}
+
+void SdfFiles::warn_of_repeated(const XmlNode& node, const ElementSchema& schema, const std::string& path) {
+  for (const XmlNode& child : node.children) {
+    const ElementSchema of_child = schema.child(child.name);
+    if (of_child.is_free() || of_child.is_extension()) continue;
+    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    if (of_child.is_single() && node.child(child.name) != &child)
+      warnings_.push_back({child.file->shown, child.line, child_path, "is given twice; only the first counts"});
+    warn_of_repeated(child, of_child, child_path);
+  }
 }
 
 void SdfFiles::load(SdfFile& file) {

@@ -19,6 +19,8 @@
 
 namespace cohort::description {
 
+class ElementSchema;
+
 /// The name of the element, or the one that an <include> gives; empty if there is none.
 std::string name_of(const XmlNode& node);
 
@@ -113,6 +115,8 @@ class SdfFiles {
   std::optional<XmlNode> converted(XmlNode tree, SdfFile& file);
   /// Whether no name has '::' in it, as is the rule from SDF 1.8 on.
   bool names_are_simple(const XmlNode& node, const std::string& path);
+  /// Of an element that SDF has once, the first counts.
+  void warn_of_repeated(const XmlNode& node, const ElementSchema& schema, const std::string& path);
   void load(SdfFile& file);
   const SdfFile* find(const std::string& path) const;
   const XmlNode* node_of(const sdf::ElementPtr& element) const;

@@ -76,6 +76,10 @@ bool ElementSchema::has_attribute(const std::string& name) const {
   return std::find(known.begin(), known.end(), name) != known.end();
 }
 
+bool ElementSchema::is_single() const {
+  return element_ && (element_->GetRequired() == "0" || element_->GetRequired() == "1");
+}
+
 bool ElementSchema::has_value() const {
   if (element_) return static_cast<bool>(element_->GetValue());
   if (key_ != nullptr) return key_->value != ExtensionValue::group;

@@ -28,6 +28,8 @@ class ElementSchema {
   bool takes_anything() const;
   bool has_child(const std::string& name) const;
   bool has_attribute(const std::string& name) const;
+  /// SDF has it at most once in its parent.
+  bool is_single() const;
   bool has_value() const;
   /// Its value is several numbers.
   bool is_vector() const;

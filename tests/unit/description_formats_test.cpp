@@ -173,6 +173,16 @@ TEST_F(Formats, ErrorsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
   EXPECT_EQ(problems[0].line, 5) << problems[0].text();
 }
 
+TEST_F(Formats, OfAnElementThatIsGivenTwiceTheFirstCountsWithAWarning) {
+  const World world = read(
+      "<model name=\"m\"><link name=\"l\"><inertial><mass>3</mass>\n<mass>4</mass><inertia/>"
+      "</inertial></link></model>");
+  EXPECT_EQ(world.models[0].links[0].inertial.mass, 3.0);
+  ASSERT_EQ(world.warnings.size(), 1u);
+  EXPECT_EQ(world.warnings[0].line, 3);
+  EXPECT_EQ(world.warnings[0].element, "world/model[m]/link[l]/inertial/mass");
+}
+
 // ---- Mass from density ----
 
 TEST_F(Formats, DensityGivesALinkTheMassOfItsCollisions) {

@@ -1,6 +1,7 @@
 #include "tools/cohort/manual.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <regex>
@@ -94,11 +95,12 @@ std::vector<std::string> manual_topics() {
 std::string manual_contents() {
   std::string text = "Topics of 'cohort help':\n";
   for (const Group& group : groups) {
-    std::string names;
+    std::vector<std::string_view> names;  // one may stand in several elements
     for (const Extension* entry : all_entries())
-      if (entry->topic == group.name && entry->name != group.name)
-        names += (names.empty() ? "" : ", ") + std::string(entry->name);
-    text += fmt::format("  {:<12}{}{}\n", group.name, group.text, names.empty() ? "" : ": " + names);
+      if (entry->topic == group.name && entry->name != group.name &&
+          std::ranges::find(names, entry->name) == names.end())
+        names.push_back(entry->name);
+    text += fmt::format("  {:<12}{}{}{}\n", group.name, group.text, names.empty() ? "" : ": ", fmt::join(names, ", "));
   }
   return text + "Each of the names is a topic too. docs/worlds.md has all of it, and examples.\n";
 }

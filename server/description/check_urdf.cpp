@@ -159,6 +159,21 @@ void Checker::check_form(const XmlNode& node, const std::string& path) {
   }
 }
 
+std::optional<std::string> what_is_wrong(const std::string& value, const Attribute& attribute) {
+  const std::string name(attribute.name);
+  if (attribute.numbers == 0)
+    return value.empty() ? std::optional("expected a value for '" + name + "'") : std::nullopt;
+  const std::vector<std::string_view> parts = words(value);
+  const bool is_right = std::all_of(parts.begin(), parts.end(), [&](std::string_view part) {
+    const std::optional<double> number = parse_real(part);
+    return number && std::isfinite(*number) && (!attribute.positive || *number > 0.0);
+  });
+  if (parts.size() == attribute.numbers && is_right) return std::nullopt;
+  return "expected " +
+         (attribute.numbers == 1 ? std::string("a number") : std::to_string(attribute.numbers) + " numbers") +
+         (attribute.positive ? " > 0" : "") + " for '" + name + "', not '" + value + "'";
+}
+
 void Checker::check_attributes(const XmlNode& node, const Form& form, const std::string& path) {
   std::vector<std::string> known;
   for (const Attribute& attribute : form.attributes) known.emplace_back(attribute.name);
@@ -175,19 +190,7 @@ void Checker::check_attributes(const XmlNode& node, const Form& form, const std:
       if (attribute.required && !misspelt.contains(name)) problem(node, path, "missing: the attribute '" + name + "'");
       continue;
     }
-    const std::vector<std::string_view> parts = words(*value);
-    const bool is_right = std::all_of(parts.begin(), parts.end(), [&](std::string_view part) {
-      const std::optional<double> number = parse_real(part);
-      return number && std::isfinite(*number) && (!attribute.positive || *number > 0.0);
-    });
-    if (attribute.numbers == 0 ? value->empty() : parts.size() != attribute.numbers || !is_right)
-      problem(node, path,
-              attribute.numbers == 0
-                  ? "expected a value for '" + name + "'"
-                  : "expected " +
-                        (attribute.numbers == 1 ? std::string("a number")
-                                                : std::to_string(attribute.numbers) + " numbers") +
-                        (attribute.positive ? " > 0" : "") + " for '" + name + "', not '" + *value + "'");
+    if (const std::optional<std::string> wrong = what_is_wrong(*value, attribute)) problem(node, path, *wrong);
   }
 }
 

@@ -129,10 +129,10 @@ constexpr Extension table[] = {
 
 std::span<const Extension> experiment_parts() { return table; }
 
-const Extension& experiment_part(std::string_view part, std::string_view parent) {
+const Extension& experiment_part(std::string_view name, std::string_view parent) {
   const auto found = std::find_if(std::begin(table), std::end(table),
-                                  [&](const Extension& each) { return each.name == part && each.parent == parent; });
-  if (found == std::end(table)) throw std::logic_error("no part " + std::string(part) + " of an experiment");
+                                  [&](const Extension& each) { return each.name == name && each.parent == parent; });
+  if (found == std::end(table)) throw std::logic_error("no part " + std::string(name) + " of an experiment");
   return *found;
 }
 

@@ -55,6 +55,7 @@ void KeyValues::prefix_texts(std::string_view key, const std::string& prefix) {
     for (Value& value : values->second) std::get<std::string>(value).insert(0, prefix);
 }
 
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): one short case for each kind of value.
 std::optional<KeyValues::Value> parse_value(std::string_view text, const ExtensionKey& key) {
   using Value = KeyValues::Value;
   switch (key.value) {

@@ -50,7 +50,8 @@ Vector3d place_in(std::string_view pattern, std::uint64_t member, std::uint64_t 
   if (pattern == "column") return {-number, 0.0, 0.0};
   if (pattern == "row") return {0.0, 0.5 * static_cast<double>(count - 1) - number, 0.0};
   // A wedge: by turns to the left and to the right of the one in front.
-  const auto rank = static_cast<double>((member + 1) / 2);
+  const std::uint64_t side_by_side = (member + 1) / 2;
+  const auto rank = static_cast<double>(side_by_side);
   return {-rank, member % 2 == 1 ? rank : -rank, 0.0};
 }
 

@@ -38,6 +38,7 @@ std::string either_of(const std::vector<std::string>& kinds) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): assigning a YAML::Node may throw, and nothing here relies on it not to.
 struct CourseReader::Written {
   YAML::Node node;   // the whole entry
   std::string path;  // of the kind, such as `events[0].add`
@@ -197,6 +198,19 @@ auto named(const Named& entries, std::string_view name) {
 
 }  // namespace
 
+void CourseReader::choose_kind(const YamlMap& map, const std::vector<std::string>& kinds, Written& written) {
+  for (const std::string& kind : kinds) {
+    if (!map.has(kind)) continue;
+    if (!written.kind.empty()) {
+      map.problem(kind, "is a second one; every entry of the list has one");
+      continue;
+    }
+    written.kind = kind;
+    written.map = map.where(kind);
+    written.path = map.path_to(kind);
+  }
+}
+
 std::vector<CourseReader::Written> CourseReader::entries(const std::string& list, bool have_times) const {
   std::vector<Written> found;
   if (!top_.has(list)) return found;
@@ -221,16 +235,7 @@ std::vector<CourseReader::Written> CourseReader::entries(const std::string& list
         written.time = time.value_or(written.time);
       }
     }
-    for (const std::string& kind : kinds) {
-      if (!map.has(kind)) continue;
-      if (!written.kind.empty()) {
-        map.problem(kind, "is a second one; every entry of the list has one");
-        continue;
-      }
-      written.kind = kind;
-      written.map = map.where(kind);
-      written.path = map.path_to(kind);
-    }
+    choose_kind(map, kinds, written);
     if (!written.kind.empty())
       found.push_back(written);
     else if (std::all_of(nodes[i].begin(), nodes[i].end(),

@@ -26,6 +26,7 @@ class CourseReader {
   struct Written;    // one entry of a list: its kind and the map of its keys
   struct ReadEvent;  // and where it stands
   std::vector<Written> entries(const std::string& list, bool have_times) const;
+  static void choose_kind(const YamlMap& map, const std::vector<std::string>& kinds, Written& written);
   void read_events(Experiment& experiment) const;
   void read_event(const Written& written, const World& world, std::vector<ReadEvent>& events) const;
   void check_order(const World& world, const std::vector<ReadEvent>& events) const;

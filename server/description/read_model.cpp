@@ -84,16 +84,19 @@ class ModelFlattener {
   void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN);
   void add_joints(const sdf::Model& sdf_model, const std::string& scope);
 
-  std::vector<DeviceScope> scopes;
-  std::size_t joint_count = 0;  ///< also of those that could not be read
+  const std::vector<DeviceScope>& scopes() const { return scopes_; }
+  /// Also of those that could not be read.
+  std::size_t joint_count() const { return joint_count_; }
 
  private:
   Model& model_;
   const ModelReading& reading_;
+  std::vector<DeviceScope> scopes_;
+  std::size_t joint_count_ = 0;
 };
 
 void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN) {
-  scopes.push_back({sdf_model.Element(), scope});
+  scopes_.push_back({sdf_model.Element(), scope});
   for (std::uint64_t i = 0; i < sdf_model.LinkCount(); ++i) {
     Link link = read_link(*sdf_model.LinkByIndex(i), reading_);
     link.name = scope + link.name;
@@ -111,7 +114,7 @@ void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& s
 }
 
 void ModelFlattener::add_joints(const sdf::Model& sdf_model, const std::string& scope) {
-  joint_count += sdf_model.JointCount();
+  joint_count_ += sdf_model.JointCount();
   for (Joint& joint : read_joints(sdf_model, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
   for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i)
     add_joints(*sdf_model.ModelByIndex(i), scope + sdf_model.ModelByIndex(i)->Name() + "::");
@@ -132,17 +135,17 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   if (model.links.empty() && model.is_static) reading.report.problem(element, "expected at least one <link>");
 
   if (model.is_static) {
-    for (const DeviceScope& scope : parts.scopes)
+    for (const DeviceScope& scope : parts.scopes())
       if (!extensions_in(scope.model_element, reading.report).empty())
         reading.report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
     return model;
   }
   parts.add_joints(sdf_model, "");
-  const bool is_tree = reading.frames_resolve && model.joints.size() == parts.joint_count &&
+  const bool is_tree = reading.frames_resolve && model.joints.size() == parts.joint_count() &&
                        every_link_has_one_parent(sdf_model, model, reading.report) &&
                        order_links(sdf_model, model, reading.report);
   // Devices name links and joints: with some of those missing, each device would be reported for it.
-  if (is_tree) model.devices = read_devices(parts.scopes, model, reading.report);
+  if (is_tree) model.devices = read_devices(parts.scopes(), model, reading.report);
   return model;
 }
 

@@ -158,16 +158,15 @@ void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) 
     const auto frame = frames.find(name);
     const sdf::Model* const sdf_model = is_frame ? nullptr : sdf_world.ModelByName(name);
     const ModelReading how = reading(false, file);
-    if (is_frame && include != includes.end() && frame != frames.end()) {
+    const bool is_included = include != includes.end();
+    if (is_frame && is_included && frame != frames.end()) {
       add_included_model(*include->second, resolved_pose(*frame->second, how));
-    } else if (sdf_model != nullptr && include != includes.end()) {
+    } else if (sdf_model != nullptr && is_included) {
       add_included_model(*include->second, resolved_pose(*sdf_model, how));
-    } else if (sdf_model != nullptr) {
-      // libsdformat drops the second of two with the same name, and the first one is found here again.
-      if (names_.contains(name))
-        report_.problem(child, "another model has the name '" + name + "'");
-      else
-        read_inline_model(*sdf_model, file);
+    } else if (sdf_model != nullptr && !names_.contains(name)) {
+      read_inline_model(*sdf_model, file);
+    } else if (sdf_model != nullptr) {  // libsdformat drops the second of two, and the first one is found here again
+      report_.problem(child, "another model has the name '" + name + "'");
     }
   }
   add_placed_before(place);

@@ -274,7 +274,8 @@ bool SdfFiles::names_are_simple(const XmlNode& node, const std::string& path) {
   for (const XmlNode& child : node.children) {
     if (child.name == "plugin" || child.name.find(':') != std::string::npos) continue;
     const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
-    if (const std::string* const name = child.attribute("name"); name && name->find("::") != std::string::npos) {
+    if (const std::string* const name = child.attribute("name");
+        name != nullptr && name->find("::") != std::string::npos) {
       problems_.push_back({child.file->shown, child.line, child_path,
                            "a name cannot have '::' in it, which is between the name of a model and that of its part"});
       are_simple = false;

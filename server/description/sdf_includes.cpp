@@ -20,41 +20,52 @@ namespace {
 // An element costs libsdformat up to some 100 kB, since each carries the schema of all that it may hold.
 constexpr std::size_t most_elements = 50'000;
 
-// The child that cannot be, and what is wrong with it.
-std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlNode& include) {
-  const std::map<std::string, std::vector<std::string>> attributes_of = {
+// Of an element in an <include>: what is wrong with it, or nothing.
+std::optional<std::string> flaw_of_part(const XmlNode& part, const XmlNode& include) {
+  static const std::map<std::string, std::vector<std::string>> attributes_of = {
       {"uri", {}},
       {"name", {}},
       {"static", {}},
       {"placement_frame", {}},
       {"pose", {"relative_to", "degrees", "rotation_format"}},
       {"plugin", {"name", "filename"}}};
-  std::vector<std::string> names;
-  names.reserve(attributes_of.size());
-  for (const auto& [name, attributes] : attributes_of) names.push_back(name);
+  const auto known = attributes_of.find(part.name);
+  if (known == attributes_of.end()) {
+    std::vector<std::string> names;
+    for (const auto& [name, attributes] : attributes_of) names.push_back(name);
+    return "unknown element" + suggestion(part.name, names);
+  }
+  const bool is_plugin = part.name == "plugin";
+  if (!is_plugin && include.child(part.name) != &part) return "<" + part.name + "> is given twice";
+  for (const auto& [attribute, value] : part.attributes)
+    if (std::find(known->second.begin(), known->second.end(), attribute) == known->second.end())
+      return "unknown attribute '" + attribute + "'" + suggestion(attribute, known->second);
+  if (is_plugin) return part.text.empty() ? std::nullopt : std::optional<std::string>("unexpected text");
+  if (part.name != "pose" && part.text.empty()) return "expected a value";
+  constexpr std::string_view flags[] = {"true", "false", "1", "0"};
+  if (part.name == "static" && std::find(std::begin(flags), std::end(flags), part.text) == std::end(flags))
+    return "expected true or false, not '" + part.text + "'";
+  return std::nullopt;
+}
+
+// The element that cannot be, and what is wrong with it.
+std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlNode& include) {
   for (const auto& [name, value] : include.attributes)
     if (name != "merge" && name.find(':') == std::string::npos)
       return std::pair{&include, "unknown attribute '" + name + "'" + suggestion(name, {"merge"})};
-  for (const XmlNode& child : include.children) {
-    if (child.name == "experimental:params") return std::pair{&child, "parameters of an include are not supported"};
-    if (child.name.find(':') != std::string::npos) continue;
-    const auto known = attributes_of.find(child.name);
-    if (known == attributes_of.end()) return std::pair{&child, "unknown element" + suggestion(child.name, names)};
-    if (child.name != "plugin" && include.child(child.name) != &child)
-      return std::pair{&child, "<" + child.name + "> is given twice"};
-    for (const auto& [attribute, value] : child.attributes)
-      if (std::find(known->second.begin(), known->second.end(), attribute) == known->second.end())
-        return std::pair{&child, "unknown attribute '" + attribute + "'" + suggestion(attribute, known->second)};
-    if (child.name == "plugin" && !child.text.empty()) return std::pair{&child, "unexpected text"};
-    if (child.name != "plugin" && child.name != "pose" && child.text.empty())
-      return std::pair{&child, "expected a value"};
-    if (child.name == "static" && child.text != "true" && child.text != "false" && child.text != "1" &&
-        child.text != "0")
-      return std::pair{&child, "expected true or false, not '" + child.text + "'"};
+  for (const XmlNode& part : include.children) {
+    if (part.name == "experimental:params") return std::pair{&part, "parameters of an include are not supported"};
+    if (part.name.find(':') != std::string::npos) continue;
+    if (const std::optional<std::string> flaw = flaw_of_part(part, include)) return std::pair{&part, *flaw};
   }
   if (include.child("placement_frame") != nullptr && include.child("pose") == nullptr)
     return std::pair{&include, "a <placement_frame> needs a <pose>, which it is placed at"};
   return std::nullopt;
+}
+
+bool is_merged(const XmlNode& include) {
+  const std::string* const merge = include.attribute("merge");
+  return merge != nullptr && (*merge == "true" || *merge == "1");
 }
 
 bool is_true(const XmlNode* flag) { return flag != nullptr && (flag->text == "true" || flag->text == "1"); }
@@ -152,6 +163,20 @@ std::string text_of(const ignition::math::Pose3d& X) {
   return text.str();
 }
 
+// Of models and frames.
+std::set<std::string> names_in(const XmlNode& world) {
+  std::set<std::string> names;
+  for (const XmlNode& child : world.children)
+    if (child.name == "model" || child.name == "frame") names.insert(name_of(child));
+  return names;
+}
+
+XmlNode* child_of(XmlNode& parent, std::string_view name) {
+  const auto found = std::find_if(parent.children.begin(), parent.children.end(),
+                                  [&](const XmlNode& each) { return each.name == name; });
+  return found == parent.children.end() ? nullptr : &*found;
+}
+
 // Whatever refers to the merged model's own frame refers to `proxy` from now on.
 void refer_to_proxy(XmlNode& node, const std::string& proxy) {
   const auto redirect = [&](XmlNode* where, const std::string& attribute, bool also_if_absent) {
@@ -160,23 +185,18 @@ void refer_to_proxy(XmlNode& node, const std::string& proxy) {
     const bool is_absent = value == nullptr || value->empty();
     if (is_absent ? also_if_absent : *value == "__model__") set_attribute(*where, attribute, proxy);
   };
-  const auto child = [](XmlNode& parent, std::string_view name) {
-    const auto found = std::find_if(parent.children.begin(), parent.children.end(),
-                                    [&](const XmlNode& each) { return each.name == name; });
-    return found == parent.children.end() ? nullptr : &*found;
-  };
   if (node.name == "link" || node.name == "model") {
-    if (child(node, "pose") == nullptr) node.children.push_back({"pose", node.line, node.file, {}, "", {}});
-    redirect(child(node, "pose"), "relative_to", true);
+    if (child_of(node, "pose") == nullptr) node.children.push_back({"pose", node.line, node.file, {}, "", {}});
+    redirect(child_of(node, "pose"), "relative_to", true);
   } else if (node.name == "frame") {
     redirect(&node, "attached_to", true);
-    redirect(child(node, "pose"), "relative_to", false);
+    redirect(child_of(node, "pose"), "relative_to", false);
   } else if (node.name == "joint") {
-    redirect(child(node, "pose"), "relative_to", false);
+    redirect(child_of(node, "pose"), "relative_to", false);
     for (const char* const end : {"parent", "child"})
-      if (XmlNode* const link = child(node, end); link != nullptr && link->text == "__model__") link->text = proxy;
+      if (XmlNode* const link = child_of(node, end); link != nullptr && link->text == "__model__") link->text = proxy;
     for (const char* const axis : {"axis", "axis2"})
-      if (XmlNode* const each = child(node, axis)) redirect(child(*each, "xyz"), "expressed_in", false);
+      if (XmlNode* const each = child_of(node, axis)) redirect(child_of(*each, "xyz"), "expressed_in", false);
   }
 }
 
@@ -249,12 +269,8 @@ struct SdfFiles::Found {
 bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile& file) {
   const bool is_world = node.name == "world";
   Named named;
-  std::set<std::string> names;  // of models and frames, those of includes too
-  if (is_world) {
-    named.collect(node);
-    for (const XmlNode& child : node.children)
-      if (child.name == "model" || child.name == "frame") names.insert(name_of(child));
-  }
+  if (is_world) named.collect(node);
+  std::set<std::string> names = is_world ? names_in(node) : std::set<std::string>{};  // those of includes too
   bool usable = true;
   std::vector<XmlNode> children;
   children.reserve(node.children.size());
@@ -267,8 +283,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     }
     const std::optional<Found> found = follow(child, child_path, file);
     if (!found) continue;
-    const std::string* const merge = child.attribute("merge");
-    const bool merges = merge != nullptr && (*merge == "true" || *merge == "1");
+    const bool merges = is_merged(child);
     if (is_world && merges) {
       problems_.push_back({file.shown, child.line, child_path, "merge=\"true\" has a meaning in a <model> only"});
     } else if (is_world && !names.insert(found->name).second) {
@@ -278,14 +293,21 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
       replace_in_world(child, *found, named, children, file);
     } else if (!fits(child, child_path, found->file, file)) {
       return false;
-    } else if (merges) {
-      for (XmlNode& part : merged(found->model, *found->file.root.Model(), child)) children.push_back(std::move(part));
     } else {
-      children.push_back(as_included(found->model, child));
+      replace_in_model(child, *found, merges, children);
     }
   }
   node.children = std::move(children);
   return usable;
+}
+
+void SdfFiles::replace_in_model(const XmlNode& include, const Found& found, bool merges,
+                                std::vector<XmlNode>& children) {
+  if (!merges) {
+    children.push_back(as_included(found.model, include));
+    return;
+  }
+  for (XmlNode& part : merged(found.model, *found.file.root.Model(), include)) children.push_back(std::move(part));
 }
 
 bool SdfFiles::fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file) {

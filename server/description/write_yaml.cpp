@@ -95,18 +95,21 @@ bool are_in_groups(const std::vector<XmlNode>& children) {
   return true;
 }
 
-std::string lines_of_children(const XmlNode& node, const ElementSchema& schema) {
-  std::string text;
-  if (!are_in_groups(node.children)) {
-    text += schema.takes_anything() ? "\"=elements\":\n" : "elements:\n";
-    for (const XmlNode& child : node.children) {
-      std::istringstream lines(key_of_child(child.name, schema) + ":" + after_key(child, schema.child(child.name)));
-      bool is_first = true;
-      for (std::string line; std::getline(lines, line); is_first = false)
-        text += (is_first ? "  - " : "    ") + line + "\n";
-    }
-    return text;
+// Under one key, which keeps the order of elements of different names.
+std::string lines_of_mixed_children(const XmlNode& node, const ElementSchema& schema) {
+  std::string text = schema.takes_anything() ? "\"=elements\":\n" : "elements:\n";
+  for (const XmlNode& child : node.children) {
+    std::istringstream lines(key_of_child(child.name, schema) + ":" + after_key(child, schema.child(child.name)));
+    bool is_first = true;
+    for (std::string line; std::getline(lines, line); is_first = false)
+      text += (is_first ? "  - " : "    ") + line + "\n";
   }
+  return text;
+}
+
+std::string lines_of_children(const XmlNode& node, const ElementSchema& schema) {
+  if (!are_in_groups(node.children)) return lines_of_mixed_children(node, schema);
+  std::string text;
   for (std::size_t i = 0; i < node.children.size();) {
     const std::string& name = node.children[i].name;
     const ElementSchema child = schema.child(name);

@@ -1,6 +1,7 @@
 #include "server/geometry/grid.hpp"
 
 #include <cmath>
+#include <ranges>
 
 namespace cohort::geometry {
 
@@ -25,8 +26,8 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
   for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];
   entries_.resize(begin_[buckets]);
-  for (auto item = items.rbegin(); item != items.rend(); ++item)
-    for_each_cell(*item, [&](std::size_t bucket) { entries_[--begin_[bucket]] = *item; });
+  for (const std::uint32_t item : std::views::reverse(items))
+    for_each_cell(item, [&](std::size_t bucket) { entries_[--begin_[bucket]] = item; });
 }
 
 }  // namespace cohort::geometry

@@ -50,7 +50,9 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
                                    std::span<const std::shared_ptr<const BulletShape>> shapes) {
   const auto index = static_cast<std::uint32_t>(members.size());
   const Multibody& body = *multibody;
-  Member& member = members.emplace_back(body.body(), std::move(multibody));
+  Member& member = members.emplace_back();
+  member.body = body.body();
+  member.multibody = std::move(multibody);
   anchors.index_of_member.push_back(-1);
   const std::vector<description::Link>& links = body.mechanism().model().links;
   std::size_t shape = 0;
@@ -160,7 +162,7 @@ void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
   connection.add_rows(problem, anchors, pose_of(connection.a()), pose_of(connection.b()), step);
 }
 
-void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) {
+void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
   if (anchors.moves(pair.b) && anchors.of(pair.b).body < 0) return;
   const SurfacePair both = surfaces.of(scene.solid(pair.a).surface, scene.solid(pair.b).surface);
   physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, step);

@@ -58,9 +58,9 @@ struct Assembly {
   /// From then on nothing touches it. One thread alone.
   void take_out(std::uint32_t member);
   /// In the world again, as it was, but at rest if it broke or had left the world. One thread alone.
-  void put_back(std::uint32_t member);
+  void put_back(std::uint32_t index);
   /// At rest at X_WM, with its joints as they are. One thread alone.
-  void place(std::uint32_t member, const Pose& X_WM);
+  void place(std::uint32_t index, const Pose& X_WM);
   void place_solids_of(const Member& member);
 
   /// Finds what the member touches and stands on. The vectors are scratch memory.
@@ -104,12 +104,12 @@ struct Assembly {
   void set_up(std::uint32_t member, IslandBodies& bodies) const;
   void add_own_rows(std::uint32_t member, Problem& problem);
   void add_connection_rows(Connection& connection, Problem& problem);
-  void add_contact_rows(SolidPair& pair, Problem& problem);
+  void add_contact_rows(SolidPair& pair, Problem& problem) const;
 
   /// Whether its velocities are such that the step may go on; the member is told.
   bool check(std::uint32_t member, const IslandBodies& bodies);
   /// Moves the body by the velocities found. `problem`: the one that has its own rows.
-  void integrate(std::uint32_t member, const Problem& problem);
+  void integrate(std::uint32_t index, const Problem& problem);
 
  private:
   void add_solid(std::uint32_t body, const description::Collision& collision, const Pose& X_WC, Anchors::Part part,

@@ -185,6 +185,7 @@ void Equations::factorise() {
 // From the factors: inv(L) inv(D) inv(L)', row by row.
 void Equations::invert() {
   inverse_.assign(at(size_ * stride_), 0.0);
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): only its lower triangle is ever read.
   std::array<std::array<double, most_inverted>, most_inverted> inverse_l;
   for (int i = 0; i < size_; ++i) {
     const double* row = matrix_.data() + i * stride_;

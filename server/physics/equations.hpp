@@ -49,7 +49,7 @@ class Equations {
     Spatial force;
     Eigen::Matrix3d inertia;  // about the reference
     Eigen::Vector3d moment;   // mass times the centre's offset from the reference
-    double mass;
+    double mass = 0.0;
   };
 
   void move_outwards(const Eigen::Vector3d& gravity);

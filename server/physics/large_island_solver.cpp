@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <optional>
 
 #include "server/physics/island_solver.hpp"
 #include "server/physics/iterative_solver.hpp"
@@ -73,24 +72,27 @@ void LargeIslandSolver::cut(Assembly& assembly) {
   problem_of_.resize(sound_.size());
 }
 
+// Nothing if the other one is in the same part, or in none: it was left out, or is the world.
+std::optional<LargeIslandSolver::Parts> LargeIslandSolver::parts_across(const Assembly& assembly, std::uint32_t part,
+                                                                        std::uint32_t other) const {
+  if (other == Anchors::nobody || assembly.anchors.index_of_member[other] < 0) return std::nullopt;
+  const std::uint32_t other_part = parts_.part_of(static_cast<std::uint32_t>(assembly.anchors.index_of_member[other]));
+  if (other_part == part) return std::nullopt;
+  return Parts(std::min(part, other_part), std::max(part, other_part));
+}
+
 void LargeIslandSolver::add_rows_of_part(Assembly& assembly, std::uint32_t part) {
   Problem& problem = shares_[part].problem;
   std::vector<Crossing>& crossings = crossings_of_part_[part];
   problem.clear();
   crossings.clear();
-  const auto part_of = [&](std::uint32_t member) {
-    const int body = assembly.anchors.index_of_member[member];
-    return body < 0 ? no_part : parts_.part_of(static_cast<std::uint32_t>(body));
-  };
-  // Whether the member is in another part; one that was left out is in none.
-  const auto crosses = [&](std::uint32_t other) { return part_of(other) != part && part_of(other) != no_part; };
-  const auto parts_with = [&](std::uint32_t other) { return Parts(std::minmax(part, part_of(other))); };
+  const auto across = [&](std::uint32_t other) { return parts_across(assembly, part, other); };
 
   for (const std::uint32_t body : parts_.bodies(part)) {
     const std::uint32_t member = sound_[body];
     std::optional<Parts> parts;
     assembly.for_each_ground(member, [&](std::uint32_t under) {
-      if (crosses(under)) parts = parts.value_or(parts_with(under)) == parts_with(under) ? parts_with(under) : several;
+      if (const std::optional<Parts> two = across(under)) parts = parts.value_or(*two) == *two ? *two : several;
     });
     if (parts) {
       crossings.push_back({.parts = *parts, .member = member});
@@ -101,16 +103,16 @@ void LargeIslandSolver::add_rows_of_part(Assembly& assembly, std::uint32_t part)
   }
   for (const std::uint32_t body : parts_.bodies(part)) {
     assembly.connections.for_each_of(sound_[body], [&](Connection& connection) {
-      if (const std::uint32_t other = connection.b().member; other != Anchors::nobody && crosses(other))
-        crossings.push_back({.parts = parts_with(other), .connection = &connection});
+      if (const std::optional<Parts> two = across(connection.b().member))
+        crossings.push_back({.parts = *two, .connection = &connection});
       else
         assembly.add_connection_rows(connection, problem);
     });
   }
   for (const std::uint32_t body : parts_.bodies(part)) {
     assembly.for_each_pair(sound_[body], [&](SolidPair& pair) {
-      if (const std::uint32_t other = assembly.anchors.member(pair.b); other != Anchors::nobody && crosses(other))
-        crossings.push_back({.parts = parts_with(other), .pair = &pair});
+      if (const std::optional<Parts> two = across(assembly.anchors.member(pair.b)))
+        crossings.push_back({.parts = *two, .pair = &pair});
       else
         assembly.add_contact_rows(pair, problem);
     });
@@ -122,7 +124,9 @@ void LargeIslandSolver::find_seams() {
   crossings_.clear();
   for (std::uint32_t part = 0; part < parts_.count(); ++part)
     crossings_.insert(crossings_.end(), crossings_of_part_[part].begin(), crossings_of_part_[part].end());
-  const auto rank = [](const Crossing& crossing) { return crossing.connection != nullptr ? 1 : crossing.pair ? 2 : 0; };
+  const auto rank = [](const Crossing& crossing) {
+    return crossing.connection != nullptr ? 1 : crossing.pair != nullptr ? 2 : 0;
+  };
   std::stable_sort(crossings_.begin(), crossings_.end(), [&](const Crossing& a, const Crossing& b) {
     return a.parts != b.parts ? a.parts < b.parts : rank(a) < rank(b);
   });

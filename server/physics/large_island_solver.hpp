@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -56,6 +57,7 @@ class LargeIslandSolver {
 
   bool try_to_solve(Assembly& assembly);
   void cut(Assembly& assembly);
+  std::optional<Parts> parts_across(const Assembly& assembly, std::uint32_t part, std::uint32_t other) const;
   void add_rows_of_part(Assembly& assembly, std::uint32_t part);
   void find_seams();
   void colour_seams();

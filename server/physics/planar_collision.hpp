@@ -89,7 +89,7 @@ class PlanarCollision {
     std::vector<std::uint32_t> near;
     std::vector<PlanarPair> pairs;
   };
-  Outline outline_of_static(std::uint32_t solid) const;
+  Outline outline_of_static(std::uint32_t index) const;
   void find_near(std::uint32_t index, std::vector<std::uint32_t>& near) const;
   void find_pairs(std::uint32_t index, Memory& memory);
   void find_contact(std::uint32_t solid, std::uint32_t other, Memory& memory);

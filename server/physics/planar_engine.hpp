@@ -40,9 +40,9 @@ class PlanarEngine final : public Engine {
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   bool is_active(std::uint32_t body) const override;
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
-  void remove_body(std::uint32_t body) override;
-  void put_back_body(std::uint32_t body) override;
-  void place_body(std::uint32_t body, const Pose& X_WM) override;
+  void remove_body(std::uint32_t index) override;
+  void put_back_body(std::uint32_t index) override;
+  void place_body(std::uint32_t index, const Pose& X_WM) override;
   void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
 
   const geometry::Scene& scene() const override { return scene_; }

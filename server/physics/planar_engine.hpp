@@ -125,7 +125,7 @@ class PlanarEngine final : public Engine {
   void find_islands();
   void solve_island(std::span<const std::uint32_t> members, Memory& memory);
   bool try_island(const std::vector<std::uint32_t>& members, Memory& memory);
-  void add_rows_of(std::uint32_t index, PlanarSolver& solver);
+  void add_rows_of(std::uint32_t member, PlanarSolver& solver);
   void move(std::uint32_t index);
   void find_parts_in_body(const Member& member, std::uint32_t index);
   void place_solids(std::uint32_t index);

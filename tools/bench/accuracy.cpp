@@ -169,7 +169,9 @@ AccuracyResult measure_accuracy(const std::string& name, const std::vector<Engin
   AccuracyResult result{name, {}};
   for (const Case& of : cases) {
     surroundings.progress(fmt::format("{}: {}", name, of.name));
-    AccuracyCase& found = result.cases.emplace_back(of.name, of.unit);
+    AccuracyCase& found = result.cases.emplace_back();
+    found.name = of.name;
+    found.unit = of.unit;
     for (const EngineKind& engine : engines) {
       if (!engine.make_mechanism) continue;
       for (const double step : {0.01, 0.001}) {

@@ -40,7 +40,9 @@ struct Raft {
   Raft(int edge, unsigned threads) : small(world_with_floor(), threads) {
     for (int y = 0; y < edge; ++y)
       for (int x = 0; x < edge; ++x) robots.push_back(small.add(tracked_robot(), at(spacing * x, spacing * y, 0)));
-    const auto robot = [&](int x, int y) { return robots[static_cast<std::size_t>(y * edge + x)]; };
+    const auto robot = [&](int x, int y) {
+      return robots[static_cast<std::size_t>(y) * static_cast<std::size_t>(edge) + static_cast<std::size_t>(x)];
+    };
     for (int y = 0; y < edge; ++y) {
       for (int x = 0; x < edge; ++x) {
         if (x > 0) small.world().connect(robot(x, y), turret, {{-0.5 * spacing, 0, 0.02}}, robot(x - 1, y), turret);

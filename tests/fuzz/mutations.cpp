@@ -10,6 +10,7 @@
 
 #include "tests/fuzz/fuzz_file.hpp"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it so.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace {

@@ -2,6 +2,7 @@
 #include "tests/fuzz/fuzz_file.hpp"
 
 /// Any file named .sdf is read, or refused with InputError.
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it so.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const cohort::fuzz::FuzzFile file(".sdf");
   try {

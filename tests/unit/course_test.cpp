@@ -11,7 +11,6 @@ namespace {
 using namespace std::chrono_literals;
 using testing::at;
 using testing::place;
-using testing::solid_cylinder;
 using testing::static_shape;
 using testing::tracked_robot;
 using testing::world_with_floor;

@@ -46,8 +46,9 @@ TEST_F(Populations, OfAGridStandInRowsAroundItsCentre) {
       6, key("grid", key("center", "1 2") + key("spacing", "0.5") + key("columns", "3")) + key("yaw", "0.25")));
   ASSERT_EQ(world.robots.size(), 6u);
   for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t row = i / 3;
     EXPECT_NEAR(place_of(world, i).x(), 1.0 + 0.5 * (i % 3) - 0.5, 1e-12);
-    EXPECT_NEAR(place_of(world, i).y(), 2.0 + 0.5 * (i / 3) - 0.25, 1e-12);
+    EXPECT_NEAR(place_of(world, i).y(), 2.0 + 0.5 * row - 0.25, 1e-12);
     EXPECT_NEAR(heading(world.robot(i).X_WM), 0.25, 1e-12);
   }
 }

@@ -9,8 +9,7 @@
 namespace cohort::physics {
 
 /// Discs in the plane, in a hashed grid without an edge, each in the cell of its centre. The cells of a row lie side by
-/// side in memory, and so do the discs in them: a search reads three short stretches, which is what keeps it fast where
-/// geometry::Grid, which has solids in every cell that they touch, waits for memory. Built at once; queries may then
+/// side in memory, and so do the discs in them: a search reads three short stretches. Built at once; queries may then
 /// run from any thread.
 class PlanarGrid {
  public:

@@ -1,5 +1,7 @@
 #include "server/actuation/actuator.hpp"
 
+#include "server/actuation/led_ring.hpp"
+#include "server/actuation/loudspeaker.hpp"
 #include "server/actuation/treel_drive.hpp"
 #include "server/actuation/velocity_motor.hpp"
 
@@ -10,26 +12,30 @@ namespace {
 struct Make {
   const description::Model& model;
   std::size_t device;
-  physics::World& world;
-  std::uint32_t body;
+  Mount mount;
 
   template <class SensorOnly>
   std::unique_ptr<Actuator> operator()(const SensorOnly&) const {
     return nullptr;
   }
   std::unique_ptr<Actuator> operator()(const description::TreelDrive& d) const {
-    return std::make_unique<TreelDrive>(d, device, world, body);
+    return std::make_unique<TreelDrive>(d, device, mount);
   }
   std::unique_ptr<Actuator> operator()(const description::VelocityMotor& d) const {
-    return std::make_unique<VelocityMotor>(d, model.joints[d.joint], world, body);
+    return std::make_unique<VelocityMotor>(d, model.joints[d.joint], mount);
+  }
+  std::unique_ptr<Actuator> operator()(const description::LedRing& d) const {
+    return std::make_unique<LedRing>(d, device, mount);
+  }
+  std::unique_ptr<Actuator> operator()(const description::Loudspeaker& d) const {
+    return std::make_unique<Loudspeaker>(d, device, mount);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<Actuator> make_actuator(const description::Model& model, std::size_t device, physics::World& world,
-                                        std::uint32_t body) {
-  return std::visit(Make{model, device, world, body}, model.devices[device]);
+std::unique_ptr<Actuator> make_actuator(const description::Model& model, std::size_t device, Mount mount) {
+  return std::visit(Make{model, device, mount}, model.devices[device]);
 }
 
 }  // namespace cohort::actuation

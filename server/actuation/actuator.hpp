@@ -7,6 +7,7 @@
 
 #include "server/core/channel.hpp"
 #include "server/description/model.hpp"
+#include "server/emission/emitters.hpp"
 #include "server/physics/world.hpp"
 
 namespace cohort::actuation {
@@ -22,8 +23,15 @@ class Actuator {
   virtual void apply(std::span<const double> values) = 0;
 };
 
-/// The actuator of a device (`device`: its index in `model`), or null if it only senses. `world` must outlive it.
-std::unique_ptr<Actuator> make_actuator(const description::Model& model, std::size_t device, physics::World& world,
-                                        std::uint32_t body);
+/// What actuators act on, and the body of the robot that has them.
+struct Mount {
+  physics::World& world;
+  emission::Emitters& emitters;
+  std::uint32_t body;
+};
+
+/// The actuator of a device (`device`: its index in `model`), or null if it only senses. What `mount` refers to must
+/// outlive it.
+std::unique_ptr<Actuator> make_actuator(const description::Model& model, std::size_t device, Mount mount);
 
 }  // namespace cohort::actuation

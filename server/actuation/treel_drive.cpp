@@ -10,8 +10,8 @@ std::vector<Channel> TreelDrive::channels() const {
 }
 
 void TreelDrive::apply(std::span<const double> values) {
-  world_.set_track_velocity_target(body_, device_, physics::Side::left, values[0]);
-  world_.set_track_velocity_target(body_, device_, physics::Side::right, values[1]);
+  mount_.world.set_track_velocity_target(mount_.body, device_, physics::Side::left, values[0]);
+  mount_.world.set_track_velocity_target(mount_.body, device_, physics::Side::right, values[1]);
 }
 
 }  // namespace cohort::actuation

@@ -8,7 +8,7 @@ std::vector<Channel> VelocityMotor::channels() const {
 }
 
 void VelocityMotor::apply(std::span<const double> values) {
-  world_.set_joint_velocity_target(body_, motor_.joint, values[0]);
+  mount_.world.set_joint_velocity_target(mount_.body, motor_.joint, values[0]);
 }
 
 }  // namespace cohort::actuation

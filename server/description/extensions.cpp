@@ -2,48 +2,12 @@
 
 #include <algorithm>
 
+#include "server/description/device_keys.hpp"
+
 namespace cohort::description {
 namespace {
 
 using enum ExtensionValue;
-
-constexpr ExtensionKey treel_drive[] = {
-    {"link", name, "", "", "the body of the tracks; the root link"},
-    {"half_gauge", positive, "m", "", "distance of the ground points from the x axis of the link"},
-    {"half_contact_length", positive, "m", "", "distance of the ground points from the y axis of the link"},
-    {"ground_height", real, "m", "", "z of the ground points in the link"},
-    {"wheel_radius", positive, "m", "", "from the torque of a motor to traction"},
-    {"max_torque", positive, "N m", "", "of each side's motor"},
-    {"max_velocity", positive, "m/s", "", "of each track along the ground"},
-    {"friction", non_negative, "1", "", "Coulomb coefficient of the tracks; a pair of surfaces has the smaller one"},
-    {"left_wheel", name, "", no_value, "joint of a wheel that the left track stands for; any number", true},
-    {"right_wheel", name, "", no_value, "joint of a wheel that the right track stands for; any number", true},
-};
-
-constexpr ExtensionKey velocity_motor[] = {
-    {"joint", name, "", "", "the joint that it turns or slides; at most one motor each"},
-    {"max_velocity", positive, "rad/s or m/s", "", "greatest velocity that can be commanded"},
-    {"max_effort", positive, "N m or N", "", "greatest torque or force"},
-};
-
-constexpr ExtensionKey joint_encoder[] = {
-    {"joint", name, "", "", "the joint that is measured"},
-};
-
-constexpr ExtensionKey treel_encoder[] = {
-    {"drive", name, "", "", "the treel_drive that is measured"},
-};
-
-constexpr ExtensionKey proximity_ring[] = {
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the rays lie in its xy plane"},
-    {"count", count, "1", "", "number of sensors, numbered counter-clockwise"},
-    {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
-    {"spacing", real, "rad", "", "from one sensor to the next"},
-    {"ring_radius", non_negative, "m", "", "where the rays start"},
-    {"range", positive, "m", "", "length of the rays"},
-    {"noise", non_negative, "1", "0", "standard deviation of the Gaussian noise on a reading"},
-};
 
 constexpr ExtensionKey population[] = {
     {"uri", uri, "", "", "the model"},
@@ -120,6 +84,11 @@ constexpr ExtensionKey physics[] = {
     {"strict", flag, "", "false", "whether a body that breaks or leaves the world ends the run"},
 };
 
+constexpr ExtensionKey climate[] = {
+    {"temperature", non_negative, "K", "293.15", "of the air"},
+    {"humidity", fraction, "1", "0.5", "relative"},
+};
+
 constexpr ExtensionKey material_pair[] = {
     {"first", name, "", "", "a material"},
     {"second", name, "", "", "another, or the same"},
@@ -137,14 +106,7 @@ constexpr ExtensionKey terrain[] = {
     {"seed", whole, "1", "0", "of `hills` and `rough`: another value, another ground"},
 };
 
-constexpr Extension table[] = {
-    {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", treel_drive, "actuators"},
-    {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", velocity_motor, "actuators"},
-    {"joint_encoder", "model", true, "Measures position and velocity of one joint.", joint_encoder, "sensors"},
-    {"treel_encoder", "model", true, "Measures way and velocity of each track relative to the hull.", treel_encoder,
-     "sensors"},
-    {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", proximity_ring,
-     "sensors"},
+constexpr Extension of_worlds[] = {
     {"density",
      "collision",
      false,
@@ -159,6 +121,7 @@ constexpr Extension table[] = {
      {},
      "physics",
      positive},
+    {"climate", "world", false, "Temperature and humidity where no source is near.", climate, "emitters"},
     {"terrain", "heightmap", false, "Ground that a function describes, in place of an image.", terrain, "physics"},
     {"material", "collision", false, "The name of what a collision is made of.", {}, "physics", name},
     {"material_pair", "world", false, "What holds where two materials touch.", material_pair, "physics"},
@@ -173,15 +136,17 @@ constexpr Extension table[] = {
     {"formation", "placement", false, "In a pattern, or at places given one by one.", formation, "placement"},
 };
 
+constexpr auto table = joined(device_extensions, of_worlds);
+
 }  // namespace
 
 std::span<const Extension> extensions() { return table; }
 
 const Extension* find_extension(std::string_view extension_name, std::string_view parent) {
-  const auto found = std::find_if(std::begin(table), std::end(table), [&](const Extension& extension) {
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Extension& extension) {
     return extension.name == extension_name && extension.parent == parent;
   });
-  return found == std::end(table) ? nullptr : found;
+  return found == table.end() ? nullptr : found;
 }
 
 }  // namespace cohort::description

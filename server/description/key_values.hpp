@@ -35,6 +35,7 @@ class KeyValues {
 
   /// Of a key that repeats; none if it is absent.
   std::vector<std::string> texts(std::string_view key) const { return all<std::string>(key); }
+  std::vector<Eigen::Vector2d> points(std::string_view key) const { return all<Eigen::Vector2d>(key); }
   std::vector<Eigen::Vector3d> vectors(std::string_view key) const { return all<Eigen::Vector3d>(key); }
 
  private:

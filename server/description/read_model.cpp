@@ -72,6 +72,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
     if (joint.parent != Joint::world) joint.parent = place[joint.parent];
     joint.child = place[joint.child];
   }
+  for (Emitter& emitter : model.emitters) emitter.link = place[emitter.link];
   return true;
 }
 
@@ -101,6 +102,11 @@ void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& s
     Link link = read_link(*sdf_model.LinkByIndex(i), reading_);
     link.name = scope + link.name;
     link.X_ML = X_MN * link.X_ML;
+    for (Emitter& emitter : read_emitters(*sdf_model.LinkByIndex(i), reading_)) {
+      emitter.name = scope + emitter.name;
+      emitter.link = model_.links.size();
+      model_.emitters.push_back(std::move(emitter));
+    }
     model_.links.push_back(std::move(link));
   }
   for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {

@@ -35,6 +35,10 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
 /// A link with its inertial and its collisions.
 Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
 
+/// Its lights, and its `cohort:` elements that emit; of link 0.
+std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading& reading);
+Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading);
+
 /// The joints of a model between `links`, in document order. Of a model inside of the one that is read, `scope` is the
 /// prefix of all names in it, such as `arm::`.
 std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,

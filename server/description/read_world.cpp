@@ -43,6 +43,7 @@ class WorldReader {
   void read_model_alone(const SdfFile& file);
   void read_settings(const sdf::World& sdf_world);
   void read_models(const sdf::World& sdf_world, const SdfFile& file);
+  void read_lights(const sdf::World& sdf_world, const SdfFile& file);
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
   void add_included_model(const Include& include, const Pose& X_WM);
   void read_extensions(const sdf::World& sdf_world);
@@ -91,6 +92,7 @@ World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& lat
   const sdf::World& sdf_world = *file.root.WorldByIndex(0);
   read_settings(sdf_world);
   read_models(sdf_world, file);
+  read_lights(sdf_world, file);
   read_extensions(sdf_world);
   for (const LaterObject& object : later) add_later(object);
   return finished();
@@ -172,6 +174,25 @@ void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) 
   add_placed_before(place);
 }
 
+// A light of the world is an object with nothing but the light: events switch it off and move it as any other.
+void WorldReader::read_lights(const sdf::World& sdf_world, const SdfFile& file) {
+  const ModelReading how = reading(true, file);
+  for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
+    const sdf::Light& sdf_light = *sdf_world.LightByIndex(i);
+    Emitter light = read_light(sdf_light, how);
+    Model model;
+    model.name = light.name;
+    model.is_static = true;
+    model.links.push_back({"link", {}, {}, {}});
+    const Pose X_WM = light.X_LE;
+    light.X_LE = {};
+    model.emitters.push_back(std::move(light));
+    world_.models.push_back(std::move(model));
+    if (!add_instance(sdf_light.Name(), world_.models.size() - 1, X_WM))
+      report_.problem(sdf_light.Element(), "another object has the name '" + sdf_light.Name() + "'");
+  }
+}
+
 void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
   const ModelReading how = reading(sdf_model.Static(), file);
   world_.models.push_back(read_model(sdf_model, how));
@@ -202,6 +223,9 @@ void WorldReader::read_extensions(const sdf::World& sdf_world) {
       has_physics = true;
       if (const auto values = ExtensionValues::read(element, *extension, report_))
         world_.physics = with_values(world_.physics, *values);
+    } else if (extension->name == "climate") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.climate = {values->real("temperature"), values->real("humidity")};
     }
   }
   // Last, when all materials are known; what could not be read may have had more.

@@ -51,6 +51,12 @@ struct PhysicsSettings {
   bool strict = false;                                       ///< a body that breaks or leaves the world ends the run
 };
 
+/// The air where no source is near.
+struct Climate {
+  double temperature = 293.15;  ///< [K]
+  double humidity = 0.5;        ///< relative [1]
+};
+
 /// What holds between two materials in place of the surfaces' own coefficients. Either order; a material may be paired
 /// with itself.
 struct MaterialPair {
@@ -68,6 +74,7 @@ struct World {
   std::chrono::nanoseconds step{10'000'000};
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
   PhysicsSettings physics;
+  Climate climate;
   std::vector<std::string> materials{""};  ///< 0 is of all that names none
   std::vector<MaterialPair> material_pairs;
   std::vector<Model> models;

@@ -1,63 +1,13 @@
 #include "server/description/write_world.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <utility>
 
-#include "server/description/extensions.hpp"
 #include "server/description/physics_settings.hpp"
+#include "server/description/write_values.hpp"
 
 namespace cohort::description {
 namespace {
-
-// As few digits as give the same number again.
-std::string text_of(double number) {
-  char buffer[32];
-  const auto end = std::to_chars(std::begin(buffer), std::end(buffer), number).ptr;
-  return {std::begin(buffer), end};
-}
-std::string text_of(const std::string& text) { return text; }
-std::string text_of(bool flag) { return flag ? "true" : "false"; }
-std::string text_of(std::uint64_t number) { return std::to_string(number); }
-std::string text_of(const Eigen::Vector3d& v) { return text_of(v.x()) + " " + text_of(v.y()) + " " + text_of(v.z()); }
-std::string text_of(const Pose& X) {
-  const Eigen::Quaterniond& q = X.orientation;
-  return text_of(X.position) + " " + text_of(q.x()) + " " + text_of(q.y()) + " " + text_of(q.z()) + " " +
-         text_of(q.w());
-}
-
-std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
-
-XmlNode& add(XmlNode& parent, std::string name) {
-  XmlNode& child = parent.children.emplace_back();
-  child.name = std::move(name);
-  return child;
-}
-XmlNode& add_named(XmlNode& parent, std::string element, const std::string& name) {
-  XmlNode& child = add(parent, std::move(element));
-  child.attributes.emplace_back("name", name);
-  return child;
-}
-template <class Value>
-XmlNode& add_value(XmlNode& parent, std::string name, const Value& value) {
-  XmlNode& child = add(parent, std::move(name));
-  child.text = text_of(value);
-  return child;
-}
-template <class Value>
-void add_key(XmlNode& extension, std::string_view key, const Value& value) {
-  add_value(extension, prefixed(key), value);
-}
-
-// SDF keeps "::" for itself: it stands in the names of what was in a model inside of the model.
-std::string without_scope_marks(std::string name) {
-  for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at)) name.replace(at, 2, ".");
-  return name;
-}
-
-void add_pose(XmlNode& parent, const Pose& X) {
-  add_value(parent, "pose", X).attributes.emplace_back("rotation_format", "quat_xyzw");
-}
 
 struct ShapeWriter {
   XmlNode& geometry;
@@ -102,54 +52,6 @@ struct ShapeWriter {
   }
 };
 
-struct DeviceWriter {
-  XmlNode& parent;
-  const Model& model;
-
-  void operator()(const TreelDrive& drive) const {
-    XmlNode& element = add_named(parent, prefixed("treel_drive"), drive.name);
-    add_key(element, "link", link_name(drive.link));
-    add_key(element, "half_gauge", drive.half_gauge);
-    add_key(element, "half_contact_length", drive.half_contact_length);
-    add_key(element, "ground_height", drive.ground_height);
-    add_key(element, "wheel_radius", drive.wheel_radius);
-    add_key(element, "max_torque", drive.max_torque);
-    add_key(element, "max_velocity", drive.max_velocity);
-    add_key(element, "friction", drive.friction);
-    for (const std::size_t joint : drive.left_wheels) add_key(element, "left_wheel", joint_name(joint));
-    for (const std::size_t joint : drive.right_wheels) add_key(element, "right_wheel", joint_name(joint));
-  }
-  void operator()(const VelocityMotor& motor) const {
-    XmlNode& element = add_named(parent, prefixed("velocity_motor"), motor.name);
-    add_key(element, "joint", joint_name(motor.joint));
-    add_key(element, "max_velocity", motor.max_velocity);
-    add_key(element, "max_effort", motor.max_effort);
-  }
-  void operator()(const JointEncoder& encoder) const {
-    XmlNode& element = add_named(parent, prefixed("joint_encoder"), encoder.name);
-    add_key(element, "joint", joint_name(encoder.joint));
-  }
-  void operator()(const TreelEncoder& encoder) const {
-    XmlNode& element = add_named(parent, prefixed("treel_encoder"), encoder.name);
-    add_key(element, "drive", std::get<TreelDrive>(model.devices[encoder.drive]).name);
-  }
-  void operator()(const ProximityRing& ring) const {
-    XmlNode& element = add_named(parent, prefixed("proximity_ring"), ring.name);
-    add_key(element, "link", link_name(ring.link));
-    add_key(element, "pose", ring.X_LS);
-    add_key(element, "count", static_cast<std::uint64_t>(ring.count));
-    add_key(element, "first_bearing", ring.first_bearing);
-    add_key(element, "spacing", ring.spacing);
-    add_key(element, "ring_radius", ring.ring_radius);
-    add_key(element, "range", ring.range);
-    add_key(element, "noise", ring.noise);
-  }
-
- private:
-  std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
-  std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
-};
-
 class WorldWriter {
  public:
   WorldWriter(const World& world, const std::filesystem::path& folder) : world_(world), folder_(folder) {}
@@ -161,6 +63,9 @@ class WorldWriter {
     XmlNode& world = add_named(root, "world", world_.name);
     add_value(world, "gravity", world_.gravity);
     write_physics(world);
+    XmlNode& climate = add(world, prefixed("climate"));
+    add_key(climate, "temperature", world_.climate.temperature);
+    add_key(climate, "humidity", world_.climate.humidity);
     for (const Instance& instance : world_.instances)
       if (instance.is_present) write_model(world, instance);
     for (const MaterialPair& pair : world_.material_pairs) {
@@ -196,12 +101,14 @@ class WorldWriter {
     add_value(element, "static", model.is_static);
     add_value(element, "self_collide", model.self_collide);
     add_pose(element, instance.X_WM);
-    for (const Link& link : model.links) write_link(element, link, model.is_static);
+    for (std::size_t link = 0; link < model.links.size(); ++link) write_link(element, model, link);
     for (const Joint& joint : model.joints) write_joint(element, joint, model);
-    for (const Device& device : model.devices) std::visit(DeviceWriter{element, model}, device);
+    for (const Device& device : model.devices) write_device(element, model, device);
   }
 
-  void write_link(XmlNode& parent, const Link& link, bool is_static) const {
+  void write_link(XmlNode& parent, const Model& model, std::size_t index) const {
+    const Link& link = model.links[index];
+    const bool is_static = model.is_static;
     XmlNode& element = add_named(parent, "link", without_scope_marks(link.name));
     add_pose(element, link.X_ML);
     if (!is_static) {
@@ -225,6 +132,8 @@ class WorldWriter {
       add_value(add(surface, "bounce"), "restitution_coefficient", collision.surface.restitution);
       if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
     }
+    for (const Emitter& emitter : model.emitters)
+      if (emitter.link == index) write_emitter(element, emitter);
   }
 
   static void write_joint(XmlNode& parent, const Joint& joint, const Model& model) {

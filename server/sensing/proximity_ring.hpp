@@ -1,12 +1,11 @@
 #pragma once
 
-#include "server/core/random.hpp"
 #include "server/sensing/sensor.hpp"
 
 namespace cohort::sensing {
 
 /// Infrared proximity by one ray for each sensor. The reading is 1 - d / range for a surface at distance d along the
-/// sensor's axis, 0 if there is none within range, plus Gaussian noise, kept within [0, 1]. The real sensor sees a cone
+/// sensor's axis, 0 if there is none within range. The real sensor sees a cone
 /// of 40 degrees and 20 cm (thesis, section 3.2.1); one ray is the simplest of its ray-casting models.
 class ProximityRing final : public Sensor {
  public:
@@ -17,7 +16,6 @@ class ProximityRing final : public Sensor {
  private:
   description::ProximityRing ring_;
   Mount mount_;
-  RandomStream noise_;
   std::vector<Eigen::Vector3d> directions_S_;
 };
 

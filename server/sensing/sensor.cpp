@@ -1,6 +1,9 @@
 #include "server/sensing/sensor.hpp"
 
+#include "server/sensing/ground_sensors.hpp"
 #include "server/sensing/joint_encoder.hpp"
+#include "server/sensing/light_sensors.hpp"
+#include "server/sensing/microphones.hpp"
 #include "server/sensing/proximity_ring.hpp"
 #include "server/sensing/treel_encoder.hpp"
 
@@ -25,12 +28,21 @@ struct Make {
   std::unique_ptr<Sensor> operator()(const description::TreelEncoder& d) const {
     return std::make_unique<TreelEncoder>(d, std::move(mount));
   }
+  std::unique_ptr<Sensor> operator()(const description::GroundSensors& d) const {
+    return std::make_unique<GroundSensors>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::LightSensors& d) const {
+    return std::make_unique<LightSensors>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Microphones& d) const {
+    return std::make_unique<Microphones>(d, std::move(mount));
+  }
 };
 
 }  // namespace
 
-std::unique_ptr<Sensor> make_sensor(const description::Device& device, const description::Model& model, Mount mount) {
-  return std::visit(Make{model, mount}, device);
+std::unique_ptr<Sensor> make_sensor(const description::Model& model, std::size_t device, Mount mount) {
+  return std::visit(Make{model, mount}, model.devices[device]);
 }
 
 }  // namespace cohort::sensing

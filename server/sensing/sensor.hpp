@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -7,7 +8,10 @@
 #include <vector>
 
 #include "server/core/channel.hpp"
-#include "server/description/model.hpp"
+#include "server/core/hash.hpp"
+#include "server/core/snapshot.hpp"
+#include "server/description/world.hpp"
+#include "server/emission/emitters.hpp"
 #include "server/physics/world.hpp"
 
 namespace cohort::sensing {
@@ -15,6 +19,8 @@ namespace cohort::sensing {
 /// Where a sensor is mounted.
 struct Mount {
   const physics::World& world;
+  const emission::Emitters& emitters;
+  const description::World& description;
   std::uint32_t body;  ///< the robot's
   std::string robot;   ///< scoped name; with the seed it fixes the noise
   std::uint64_t seed;  ///< of the experiment
@@ -26,12 +32,22 @@ class Sensor {
   virtual ~Sensor() = default;
   /// The channels that `sense` fills, in order.
   virtual std::vector<Channel> channels() const = 0;
-  /// Writes one value for each float64 of the channels. A pure function of the world's state and the tick; runs at once
-  /// with other sensors, from any thread.
+  /// Writes one value for each float64 of the channels, as they are: what disturbs them comes after (readout.hpp). A
+  /// pure function of the state of the world and of the sensor, and of the tick; runs at once with other sensors, from
+  /// any thread.
   virtual void sense(std::uint64_t tick, std::span<double> values) const = 0;
+
+  /// Of a sensor with a memory: takes note of this tick, before it senses and whether it is asked or not.
+  virtual bool has_memory() const { return false; }
+  virtual void remember(std::uint64_t /*tick*/) {}
+  /// What it remembers.
+  virtual void hash(StateHash& /*hash*/) const {}
+  virtual void save(SnapshotWriter& /*writer*/) const {}
+  virtual void restore(SnapshotReader& /*reader*/) {}
 };
 
-/// The sensor of a device, or null if the device senses nothing. `mount.world` must outlive it.
-std::unique_ptr<Sensor> make_sensor(const description::Device& device, const description::Model& model, Mount mount);
+/// The sensor of a device (`device`: its index in `model`), or null if it senses nothing. What `mount` refers to must
+/// outlive it.
+std::unique_ptr<Sensor> make_sensor(const description::Model& model, std::size_t device, Mount mount);
 
 }  // namespace cohort::sensing

@@ -35,6 +35,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
     : experiment_(experiment),
       workers_(threads),
       world_(experiment.world, workers_),
+      emitters_(experiment.world, world_),
       objects_(experiment, world_),
       course_(experiment, world_, objects_) {
   const description::World& world = experiment.world;
@@ -49,6 +50,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
     for (const std::uint32_t robot : team.robots) robots_[robot].policy = team.policy;
   for (std::uint32_t robot = 0; robot < robots_.size(); ++robot) build_robot(robot);
   body_hashes_.resize(world.instances.size());
+  scratch_.resize(workers_.threads());
   begin_tick();
   sense();
 }
@@ -65,14 +67,18 @@ void Simulation::build_robot(std::uint32_t id) {
 
   RobotKind kind{model.name, {}, {}, 0, 0};
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    if (auto sensor =
-            sensing::make_sensor(model.devices[device], model, {world_, robot.body, instance.name, experiment_.seed})) {
+    if (auto sensor = sensing::make_sensor(model, device,
+                                           {world_, emitters_, world, robot.body, instance.name, experiment_.seed})) {
       const std::vector<Channel> channels = sensor->channels();
       kind.observation.insert(kind.observation.end(), channels.begin(), channels.end());
-      robot.sensors.push_back(std::move(sensor));
-      robot.sensor_sizes.push_back(total_size(channels));
+      const description::Readout* readout = description::readout_of(model.devices[device]);
+      robot.sensors.push_back(
+          {std::move(sensor),
+           sensing::Readout(readout != nullptr ? *readout : description::Readout{}, channels, experiment_.seed,
+                            instance.name, description::name_of(model.devices[device]), world.step),
+           total_size(channels)});
     }
-    if (auto actuator = actuation::make_actuator(model, device, world_, robot.body)) {
+    if (auto actuator = actuation::make_actuator(model, device, {world_, emitters_, robot.body})) {
       const std::vector<Channel> channels = actuator->channels();
       kind.command.insert(kind.command.end(), channels.begin(), channels.end());
       robot.actuators.push_back(std::move(actuator));
@@ -156,6 +162,7 @@ void Simulation::begin_tick() {
 
 std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM) {
   const std::uint32_t object = objects_.add(name, model, X_WM);
+  emitters_.add_body(object, model);
   note_added();
   return object;
 }
@@ -177,15 +184,38 @@ void Simulation::name_quarantined() {
   if (experiment_.world.physics.strict && !quarantined_.empty()) throw std::runtime_error(quarantined_[0]);
 }
 
+void Simulation::sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due, std::span<double> values,
+                           std::vector<double>& scratch) {
+  if (each.sensor->has_memory()) each.sensor->remember(tick);
+  if (each.readout.is_immediate()) {
+    if (!each.readout.measures_at(tick, is_due)) return;
+    // What wanders goes on between the ticks at which the robot is asked, whose readings stay.
+    scratch.resize(values.size());
+    const std::span<double> measured = is_due ? values : std::span<double>(scratch);
+    each.sensor->sense(tick, measured);
+    each.readout.disturb(tick, measured);
+    return;
+  }
+  if (each.readout.measures_at(tick, is_due)) {
+    scratch.resize(values.size());
+    each.sensor->sense(tick, scratch);
+    each.readout.disturb(tick, scratch);
+    each.readout.take(tick, scratch);
+  }
+  if (is_due) each.readout.report(tick, values);
+}
+
 void Simulation::sense() {
-  workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+  emitters_.update(workers_);
+  workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (std::size_t id = begin; id < end; ++id) {
-      if (!is_due(static_cast<std::uint32_t>(id), tick_) || !is_present(static_cast<std::uint32_t>(id))) continue;
-      const Robot& robot = robots_[id];
+      if (!is_present(static_cast<std::uint32_t>(id))) continue;
+      Robot& robot = robots_[id];
+      const bool is_asked = is_due(static_cast<std::uint32_t>(id), tick_);
       std::span<double> values(observations_.data() + robot.observation_offset, kinds_[robot.kind].observation_size);
-      for (std::size_t i = 0; i < robot.sensors.size(); ++i) {
-        robot.sensors[i]->sense(tick_, values.first(robot.sensor_sizes[i]));
-        values = values.subspan(robot.sensor_sizes[i]);
+      for (SensorOfRobot& each : robot.sensors) {
+        sense_one(each, tick_, is_asked, values.first(each.size), scratch_[worker]);
+        values = values.subspan(each.size);
       }
     }
   });
@@ -219,10 +249,15 @@ std::vector<std::byte> Simulation::save() const {
   world_.save(writer);
   objects_.save(writer);
   course_.save(writer);
+  emitters_.save(writer);
   writer.add_count(robots_.size());
   for (const Robot& robot : robots_) {
     writer.add_count(robot.command.size());
     writer.add_all(robot.command.data(), robot.command.size());
+    for (const SensorOfRobot& each : robot.sensors) {
+      each.sensor->save(writer);
+      each.readout.save(writer);
+    }
   }
   writer.add_count(observations_.size());
   writer.add_all(observations_.data(), observations_.size());
@@ -248,10 +283,16 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   objects_.restore(reader);
   course_.restore(reader, tick_);
   note_added();
+  emitters_.restore(reader);
+  emitters_.update(workers_);
   reader.expect_count(robots_.size(), "robots");
   for (Robot& robot : robots_) {
     reader.expect_count(robot.command.size(), "commanded values of a robot");
     reader.read_all(robot.command.data(), robot.command.size());
+    for (SensorOfRobot& each : robot.sensors) {
+      each.sensor->restore(reader);
+      each.readout.restore(reader);
+    }
   }
   reader.expect_count(observations_.size(), "observed values");
   reader.read_all(observations_.data(), observations_.size());
@@ -268,7 +309,12 @@ std::uint64_t Simulation::state_hash() const {
       world_.hash_body(static_cast<std::uint32_t>(body), hash);
       if (robot_of_body_[body] != none) {
         for (const double value : observation(robot_of_body_[body])) hash.add(value);
-        for (const double value : robots_[robot_of_body_[body]].command) hash.add(value);
+        const Robot& robot = robots_[robot_of_body_[body]];
+        for (const double value : robot.command) hash.add(value);
+        for (const SensorOfRobot& each : robot.sensors) {
+          each.sensor->hash(hash);
+          each.readout.hash(hash);
+        }
       }
       body_hashes_[body] = hash.value();
     }
@@ -279,6 +325,7 @@ std::uint64_t Simulation::state_hash() const {
   world_.hash_contacts(hash);
   objects_.hash(hash);
   course_.hash(hash);
+  emitters_.hash(hash);
   return hash.value();
 }
 

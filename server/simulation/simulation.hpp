@@ -13,7 +13,9 @@
 #include "server/core/channel.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/experiment.hpp"
+#include "server/emission/emitters.hpp"
 #include "server/physics/world.hpp"
+#include "server/sensing/readout.hpp"
 #include "server/sensing/sensor.hpp"
 #include "server/simulation/course.hpp"
 #include "server/simulation/objects.hpp"
@@ -115,15 +117,20 @@ class Simulation {
 
   Pose robot_pose(std::uint32_t robot) const;  ///< of its root link, X_WL
   const physics::World& world() const { return world_; }
+  const emission::Emitters& emitters() const { return emitters_; }
   const TouchCounts& touches() const { return touches_; }
 
  private:
+  struct SensorOfRobot {
+    std::unique_ptr<sensing::Sensor> sensor;
+    sensing::Readout readout;
+    std::size_t size = 0;  // of what it observes
+  };
   struct Robot {
     std::uint32_t kind = 0;
     std::uint32_t body = 0;
     description::Policy policy;
-    std::vector<std::unique_ptr<sensing::Sensor>> sensors;
-    std::vector<std::size_t> sensor_sizes;
+    std::vector<SensorOfRobot> sensors;
     std::vector<std::unique_ptr<actuation::Actuator>> actuators;
     std::vector<std::size_t> actuator_sizes;
     std::size_t observation_offset = 0;
@@ -132,6 +139,8 @@ class Simulation {
 
   void build_robot(std::uint32_t id);
   void sense();
+  static void sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due, std::span<double> values,
+                        std::vector<double>& scratch);
   void count_touches();
   void name_quarantined();
   void begin_tick();
@@ -140,12 +149,14 @@ class Simulation {
   const description::Experiment& experiment_;
   mutable WorkerPool workers_;
   physics::World world_;
+  emission::Emitters emitters_;
   Objects objects_;
   Course course_;
   std::vector<RobotKind> kinds_;
   std::vector<std::uint32_t> kind_of_model_;
   std::vector<Robot> robots_;
   std::vector<double> observations_;
+  std::vector<std::vector<double>> scratch_;  // of each worker
   std::vector<std::uint32_t> robot_of_body_;
   std::vector<char> is_ground_;  // by body
   std::uint64_t tick_ = 0;

@@ -38,7 +38,11 @@ inline description::Model tracked_robot(double noise = 0.0) {
   model.devices.push_back(VelocityMotor{"turret", 0, 1.5, 0.3});
   model.devices.push_back(JointEncoder{"turret", 0});
   model.devices.push_back(TreelEncoder{"treel", 0});
-  ProximityRing ring{"proximity", 1, {{0, 0, 0.02}}, 15, 0.20943951023931953, 0.41887902047863906, 0.058, 0.2, noise};
+  ProximityRing ring{"proximity", 1, {{0, 0, 0.02}}, 15, 0.20943951023931953, 0.41887902047863906, 0.058, 0.2};
+  if (noise > 0.0) {
+    ring.readout.noises.emplace_back();
+    ring.readout.noises[0].deviation = noise;
+  }
   model.devices.push_back(ring);
   return model;
 }

@@ -122,8 +122,11 @@ TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
 }
 
 TEST(ShippedWorlds, TheManualListsEveryKeyAsTheReaderKnowsIt) {
-  std::ifstream stream(source / "docs/worlds.md");
-  const std::string manual(std::istreambuf_iterator<char>(stream), {});
+  std::string manual;
+  for (const char* const file : {"docs/worlds.md", "docs/devices.md"}) {
+    std::ifstream stream(source / file);
+    manual.append(std::istreambuf_iterator<char>(stream), {});
+  }
   const auto expect_keys = [&](const Extension& extension) {
     for (const ExtensionKey& key : extension.keys) {
       const std::string row = "| `" + std::string(key.name) + "` | " + std::string(key.unit) + " | " +

@@ -21,6 +21,7 @@ struct Group {
 constexpr Group groups[] = {
     {"sensors", "what a robot can measure"},
     {"actuators", "what a robot can do"},
+    {"emitters", "what sensors perceive from afar"},
     {"physics", "how the world is simulated, and what it is made of"},
     {"placement", "populations and where they are put"},
     {"experiment", "world, duration, seed and teams"},

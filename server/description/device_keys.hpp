@@ -1,0 +1,161 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "server/description/extensions.hpp"
+
+/// The part of the table of extensions that is about what models do, measure and emit.
+namespace cohort::description {
+
+template <class Item, std::size_t first, std::size_t second>
+constexpr std::array<Item, first + second> joined(const Item (&a)[first], const Item (&b)[second]) {
+  std::array<Item, first + second> all{};
+  for (std::size_t i = 0; i < first; ++i) all[i] = a[i];
+  for (std::size_t i = 0; i < second; ++i) all[first + i] = b[i];
+  return all;
+}
+
+namespace keys {
+
+using enum ExtensionValue;
+
+/// Of every sensor.
+inline constexpr ExtensionKey readout[] = {
+    {"noise", non_negative, "the reading's", "0", "standard deviation of the Gaussian noise on each reading"},
+    {"uniform_noise", non_negative, "the reading's", "0", "greatest size of the uniform noise on each reading"},
+    {"bias", real, "the reading's", "0", "added to each reading"},
+    {"bias_noise", non_negative, "the reading's", "0",
+     "standard deviation of a bias that each reading draws once in a run"},
+    {"precision", non_negative, "the reading's", "0", "readings are whole multiples of it; 0: they have any value"},
+    {"drop_out", fraction, "1", "0", "probability that a report does not come; the one before it then holds"},
+    {"rate", positive, "Hz", no_value, "how often it measures, to the nearest tick; every tick if absent"},
+    {"latency", non_negative, "s", "0", "from measurement to report, to the nearest tick"},
+};
+
+template <std::size_t count>
+constexpr auto sensor(const ExtensionKey (&own)[count]) {
+  return joined(own, readout);
+}
+
+inline constexpr ExtensionKey treel_drive[] = {
+    {"link", name, "", "", "the body of the tracks; the root link"},
+    {"half_gauge", positive, "m", "", "distance of the ground points from the x axis of the link"},
+    {"half_contact_length", positive, "m", "", "distance of the ground points from the y axis of the link"},
+    {"ground_height", real, "m", "", "z of the ground points in the link"},
+    {"wheel_radius", positive, "m", "", "from the torque of a motor to traction"},
+    {"max_torque", positive, "N m", "", "of each side's motor"},
+    {"max_velocity", positive, "m/s", "", "of each track along the ground"},
+    {"friction", non_negative, "1", "", "Coulomb coefficient of the tracks; a pair of surfaces has the smaller one"},
+    {"left_wheel", name, "", no_value, "joint of a wheel that the left track stands for; any number", true},
+    {"right_wheel", name, "", no_value, "joint of a wheel that the right track stands for; any number", true},
+};
+
+inline constexpr ExtensionKey velocity_motor[] = {
+    {"joint", name, "", "", "the joint that it turns or slides; at most one motor each"},
+    {"max_velocity", positive, "rad/s or m/s", "", "greatest velocity that can be commanded"},
+    {"max_effort", positive, "N m or N", "", "greatest torque or force"},
+};
+
+inline constexpr ExtensionKey led_ring[] = {
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the LEDs stand in its xy plane"},
+    {"count", count, "1", "", "number of LEDs, numbered counter-clockwise"},
+    {"first_bearing", real, "rad", "0", "of LED 0, from the ring's x axis"},
+    {"spacing", real, "rad", "", "from one LED to the next"},
+    {"ring_radius", non_negative, "m", "", "where the LEDs are"},
+    {"intensity", non_negative, "1", "0",
+     "what arrives of a white one at 1 m, for light sensors; 0: cameras alone see it"},
+};
+
+inline constexpr ExtensionKey loudspeaker[] = {
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
+    {"max_frequency", positive, "Hz", "20000", "greatest frequency that can be commanded"},
+    {"max_intensity", positive, "1", "1", "greatest intensity that can be commanded: what arrives at 1 m"},
+};
+
+inline constexpr auto joint_encoder = sensor({
+    {"joint", name, "", "", "the joint that is measured"},
+});
+
+inline constexpr auto treel_encoder = sensor({
+    {"drive", name, "", "", "the treel_drive that is measured"},
+});
+
+inline constexpr auto proximity_ring = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the rays lie in its xy plane"},
+    {"count", count, "1", "", "number of sensors, numbered counter-clockwise"},
+    {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
+    {"spacing", real, "rad", "", "from one sensor to the next"},
+    {"ring_radius", non_negative, "m", "", "where the rays start"},
+    {"range", positive, "m", "", "length of the rays"},
+});
+
+inline constexpr auto ground_sensors = sensor({
+    {"link", name, "", "", "the link that carries them; the rays go along its -z axis"},
+    {"place", vector, "m", "", "where a ray starts, in the link; any number", true},
+    {"range", positive, "m", "", "length of the rays"},
+});
+
+inline constexpr auto light_sensors = sensor({
+    {"link", name, "", "", "the link that carries them"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the sensors look outwards in its xy plane"},
+    {"count", count, "1", "", "number of sensors, numbered counter-clockwise"},
+    {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
+    {"spacing", real, "rad", "", "from one sensor to the next"},
+    {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
+});
+
+inline constexpr auto microphones = sensor({
+    {"link", name, "", "", "the link that carries them"},
+    {"place", vector, "m", "", "of a microphone in the link; any number", true},
+    {"band", point, "Hz", "0 20000", "lowest and highest frequency of a band; any number", true},
+    {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
+});
+
+inline constexpr ExtensionKey sound[] = {
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
+    {"frequency", positive, "Hz", "", "of the tone"},
+    {"intensity", positive, "1", "", "what arrives at 1 m; it falls off with the square of the distance"},
+    {"range", positive, "m", no_value, "nothing is heard beyond; without end if absent"},
+    {"on", flag, "", "true", "whether it sounds at first"},
+};
+
+inline constexpr ExtensionKey marker[] = {
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
+    {"color", vector, "1", "", "red, green and blue, from 0 to 1"},
+    {"on", flag, "", "true", "whether it can be seen at first"},
+};
+
+inline constexpr ExtensionKey climate_source[] = {
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
+    {"temperature", real, "K", "0", "added in its middle"},
+    {"humidity", real, "1", "0", "relative, added in its middle"},
+    {"spread", positive, "m", "", "at a distance d it adds exp(-d^2 / (2 spread^2)) of that"},
+    {"on", flag, "", "true", "whether it acts at first"},
+};
+
+}  // namespace keys
+
+inline constexpr Extension device_extensions[] = {
+    {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", keys::treel_drive,
+     "actuators"},
+    {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", keys::velocity_motor, "actuators"},
+    {"led_ring", "model", true, "LEDs of any colour around a link.", keys::led_ring, "actuators"},
+    {"loudspeaker", "model", true, "A tone of any frequency and intensity.", keys::loudspeaker, "actuators"},
+    {"joint_encoder", "model", true, "Measures position and velocity of one joint.", keys::joint_encoder, "sensors"},
+    {"treel_encoder", "model", true, "Measures way and velocity of each track relative to the hull.",
+     keys::treel_encoder, "sensors"},
+    {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", keys::proximity_ring,
+     "sensors"},
+    {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
+    {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
+    {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
+    {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
+    {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
+    {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},
+};
+
+}  // namespace cohort::description

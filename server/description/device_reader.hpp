@@ -1,0 +1,78 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "server/description/extension_values.hpp"
+#include "server/description/model.hpp"
+#include "server/description/sdf_report.hpp"
+#include "server/description/text.hpp"
+
+namespace cohort::description {
+
+/// What the readers of devices share: the links and joints of the model by name, and what other devices have taken.
+class DeviceReader {
+ public:
+  /// `drives` are the treel drives of the model: name and index among the devices.
+  DeviceReader(const Model& model, std::map<std::string, std::size_t> drives, const SdfReport& report)
+      : model_(model), drives_(std::move(drives)), report_(report) {}
+
+  const Model& model() const { return model_; }
+  const std::map<std::string, std::size_t>& drives() const { return drives_; }
+  const SdfReport& report() const { return report_; }
+
+  /// The index of the link or joint that `key` names; reported if there is none.
+  template <class Named>
+  std::optional<std::size_t> find(const ExtensionValues& values, const char* key, const std::vector<Named>& named) {
+    return find(values.text(key), values.where(key), key, named);
+  }
+  template <class Named>
+  std::optional<std::size_t> find(const std::string& name, const sdf::ElementPtr& where, const char* kind,
+                                  const std::vector<Named>& named) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      if (named[i].name == name) return i;
+      names.push_back(named[i].name);
+    }
+    report_.problem(where, "the model has no " + std::string(kind) + " '" + name + "'" + suggestion(name, names));
+    return std::nullopt;
+  }
+  /// The link that the key `link` names.
+  std::optional<std::size_t> find_link(const ExtensionValues& values) { return find(values, "link", model_.links); }
+  /// The joint that the key `joint` names, one that has an angle or a way: its first axis is meant.
+  std::optional<std::size_t> find_moving_joint(const ExtensionValues& values);
+
+  /// False, and reported, if the joint is a wheel's or has a motor; then it has one.
+  bool takes_motor(std::size_t joint, const ExtensionValues& values);
+  /// The joints of the wheels of one side; reported if they cannot be.
+  std::vector<std::size_t> take_wheels(const ExtensionValues& values, const char* key, std::size_t hull);
+
+ private:
+  const Model& model_;
+  std::map<std::string, std::size_t> drives_;
+  const SdfReport& report_;
+  std::set<std::size_t> motorised_;  // joints
+  std::set<std::size_t> wheels_;     // joints
+};
+
+/// How a kind of device is read. Nothing if it cannot be; the report then has it.
+struct DeviceKind {
+  std::string_view name;  ///< of its extension
+  std::optional<Device> (*read)(const ExtensionValues& values, DeviceReader& reader);
+  bool commands = false;  ///< its channels are commands
+  bool observes = true;   ///< its channels are observations
+};
+
+std::span<const DeviceKind> actuator_kinds();
+std::span<const DeviceKind> sensor_kinds();
+
+/// The keys that every sensor has.
+Readout read_readout(const ExtensionValues& values);
+
+}  // namespace cohort::description

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/core/pose.hpp"
+#include "server/description/readout.hpp"
+
+/// What robots can do and measure, as plain data. Joints, links and devices are indices into those of the model.
+/// Frames: L a link, S a sensor.
+namespace cohort::description {
+
+/// Two tracks that share one rigid body ("treels", tracks and wheels of the s-bot): drawn as four ground points, two a
+/// side. Commands `NAME/left/velocity` and `NAME/right/velocity` [m/s].
+struct TreelDrive {
+  std::string name;
+  std::size_t link = 0;
+  double half_gauge = 0.0;           ///< |y| of the ground points in the link's frame [m]
+  double half_contact_length = 0.0;  ///< |x| of the ground points [m]
+  double ground_height = 0.0;        ///< z of the ground points [m]
+  double wheel_radius = 0.0;         ///< from motor torque to traction [m]
+  double max_torque = 0.0;           ///< per side [N m]
+  double max_velocity = 0.0;         ///< of the ground points [m/s]
+  double friction = 0.0;             ///< Coulomb coefficient of the tracks; a pair has the smaller of the two
+
+  /// The joints of the real wheels that this stands for. Where wheels are simulated (Fidelity::articulated) their
+  /// motors are the drive; elsewhere they are welded to the link, and their collisions are none.
+  std::vector<std::size_t> left_wheels{};
+  std::vector<std::size_t> right_wheels{};
+};
+
+/// A motor with a velocity loop on one joint, on the first axis of a universal one. Command `NAME/0/velocity` [rad/s]
+/// or [m/s].
+struct VelocityMotor {
+  std::string name;
+  std::size_t joint = 0;
+  double max_velocity = 0.0;
+  double max_effort = 0.0;  ///< [N m] or [N]
+};
+
+/// Position and velocity of one joint: observations `NAME/0/position` and `NAME/0/velocity`.
+struct JointEncoder {
+  std::string name;
+  std::size_t joint = 0;
+  Readout readout{};
+};
+
+/// Way and velocity of each track relative to the hull: observations `NAME/left/position` [m], `NAME/left/velocity`
+/// [m/s] and the same of the right.
+struct TreelEncoder {
+  std::string name;
+  std::size_t drive = 0;  ///< index into Model::devices of a TreelDrive
+  Readout readout{};
+};
+
+/// A ring of infrared proximity sensors in the xy plane of S, looking outwards, numbered counter-clockwise from
+/// `first_bearing`. Observations `NAME/I/reading`: 1 at contact, falling linearly to 0 at `range`.
+struct ProximityRing {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  std::size_t count = 0;
+  double first_bearing = 0.0;  ///< of sensor 0, from the x axis of S [rad]
+  double spacing = 0.0;        ///< between neighbours [rad]
+  double ring_radius = 0.0;    ///< where the rays start [m]
+  double range = 0.0;          ///< from there [m]
+  Readout readout{};
+};
+
+/// Rays down from places under a link, as a ring of proximity sensors has them outwards: they see where the ground
+/// ends. Observations `NAME/I/reading`: 1 at contact, falling linearly to 0 at `range`.
+struct GroundSensors {
+  std::string name;
+  std::size_t link = 0;
+  std::vector<Eigen::Vector3d> places_L;  ///< where the rays start [m]
+  double range = 0.0;                     ///< [m]
+  Readout readout{};
+};
+
+/// A ring of light sensors in the xy plane of S, looking outwards, numbered as those of a ProximityRing. Observations
+/// `NAME/I/reading`.
+struct LightSensors {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  std::size_t count = 0;
+  double first_bearing = 0.0;  ///< [rad]
+  double spacing = 0.0;        ///< [rad]
+  double gain = 1.0;           ///< from the sum of what arrives to the argument of the sigmoid [1]
+  Readout readout{};
+};
+
+/// Microphones that hear sounds within bands of frequency. Observations `NAME/I/intensity`, a value for each band.
+struct Microphones {
+  std::string name;
+  std::size_t link = 0;
+  std::vector<Eigen::Vector3d> places_L;
+  std::vector<Eigen::Vector2d> bands;  ///< lowest and highest frequency of each [Hz]
+  double gain = 1.0;
+  Readout readout{};
+};
+
+/// LEDs of any colour around a link, numbered as the sensors of a ProximityRing. Commands `NAME/I/color`, red, green
+/// and blue from 0 to 1.
+struct LedRing {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  std::size_t count = 0;
+  double first_bearing = 0.0;  ///< [rad]
+  double spacing = 0.0;        ///< [rad]
+  double ring_radius = 0.0;    ///< [m]
+  double intensity = 0.0;      ///< of each as a lamp for light sensors, at full brightness [1]
+};
+
+/// Commands `NAME/0/frequency` [Hz] and `NAME/0/intensity` [1].
+struct Loudspeaker {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LE;
+  double max_frequency = 0.0;  ///< [Hz]
+  double max_intensity = 0.0;  ///< what arrives at 1 m [1]
+};
+
+using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
+                            LightSensors, Microphones, LedRing, Loudspeaker>;
+
+/// How the readings of a device come out; null if it senses nothing.
+Readout* readout_of(Device& device);
+const Readout* readout_of(const Device& device);
+const std::string& name_of(const Device& device);
+
+}  // namespace cohort::description

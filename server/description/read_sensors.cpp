@@ -1,0 +1,104 @@
+#include <cmath>
+
+#include "server/description/device_reader.hpp"
+
+namespace cohort::description {
+namespace {
+
+constexpr double nanoseconds = 1e9;
+constexpr double longest = 9e9;  // 285 years, which fits into nanoseconds [s]
+
+std::chrono::nanoseconds to_time(double seconds) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::round(std::min(seconds, longest) * nanoseconds)));
+}
+
+std::optional<Device> read_joint_encoder(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> joint = reader.find_moving_joint(values);
+  if (!joint) return std::nullopt;
+  return JointEncoder{values.name(), *joint};
+}
+
+std::optional<Device> read_treel_encoder(const ExtensionValues& values, DeviceReader& reader) {
+  const auto drive = reader.drives().find(values.text("drive"));
+  if (drive != reader.drives().end()) return TreelEncoder{values.name(), drive->second};
+  std::vector<std::string> names;
+  for (const auto& [name, index] : reader.drives()) names.push_back(name);
+  reader.report().problem(values.where("drive"), "the model has no treel_drive '" + values.text("drive") + "'" +
+                                                     suggestion(values.text("drive"), names));
+  return std::nullopt;
+}
+
+std::optional<Device> read_proximity_ring(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  if (!link) return std::nullopt;
+  ProximityRing ring;
+  ring.name = values.name();
+  ring.link = *link;
+  ring.X_LS = values.pose("pose");
+  ring.count = values.whole("count");
+  ring.first_bearing = values.real("first_bearing");
+  ring.spacing = values.real("spacing");
+  ring.ring_radius = values.real("ring_radius");
+  ring.range = values.real("range");
+  return ring;
+}
+
+std::optional<Device> read_ground_sensors(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  if (!link) return std::nullopt;
+  return GroundSensors{values.name(), *link, values.vectors("place"), values.real("range")};
+}
+
+std::optional<Device> read_light_sensors(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  if (!link) return std::nullopt;
+  LightSensors sensors;
+  sensors.name = values.name();
+  sensors.link = *link;
+  sensors.X_LS = values.pose("pose");
+  sensors.count = values.whole("count");
+  sensors.first_bearing = values.real("first_bearing");
+  sensors.spacing = values.real("spacing");
+  sensors.gain = values.real("gain");
+  return sensors;
+}
+
+std::optional<Device> read_microphones(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  const std::vector<Eigen::Vector2d> bands = values.points("band");
+  for (std::size_t i = 0; i < bands.size(); ++i)
+    if (bands[i].x() > bands[i].y())
+      reader.report().problem(values.where("band", i), "the lowest frequency of the band exceeds the highest");
+  if (!link) return std::nullopt;
+  return Microphones{values.name(), *link, values.vectors("place"), bands, values.real("gain")};
+}
+
+// The register of sensors: a new kind is one more line here.
+constexpr DeviceKind kinds[] = {
+    {"joint_encoder", &read_joint_encoder},   {"treel_encoder", &read_treel_encoder},
+    {"proximity_ring", &read_proximity_ring}, {"ground_sensors", &read_ground_sensors},
+    {"light_sensors", &read_light_sensors},   {"microphones", &read_microphones},
+};
+
+}  // namespace
+
+std::span<const DeviceKind> sensor_kinds() { return kinds; }
+
+Readout read_readout(const ExtensionValues& values) {
+  Noise noise;
+  noise.deviation = values.real("noise");
+  noise.uniform = values.real("uniform_noise");
+  noise.bias = values.real("bias");
+  noise.bias_deviation = values.real("bias_noise");
+  noise.precision = values.real("precision");
+  Readout readout;
+  const bool is_exact = noise.deviation == 0.0 && noise.uniform == 0.0 && noise.bias == 0.0 &&
+                        noise.bias_deviation == 0.0 && noise.precision == 0.0;
+  if (!is_exact) readout.noises.push_back(noise);
+  readout.drop_out = values.real("drop_out");
+  if (values.has("rate")) readout.period = to_time(1.0 / values.real("rate"));
+  readout.latency = to_time(values.real("latency"));
+  return readout;
+}
+
+}  // namespace cohort::description

@@ -1,0 +1,195 @@
+#include <cmath>
+
+#include "server/description/write_values.hpp"
+
+namespace cohort::description {
+namespace {
+
+constexpr double nanoseconds = 1e9;
+
+template <class Value>
+void add_unless(XmlNode& element, const char* key, Value value, Value usual) {
+  if (value != usual) add_key(element, key, value);
+}
+
+void write_readout(XmlNode& element, const Readout& readout) {
+  for (const Noise& noise : readout.noises) {
+    add_unless(element, "noise", noise.deviation, 0.0);
+    add_unless(element, "uniform_noise", noise.uniform, 0.0);
+    add_unless(element, "bias", noise.bias, 0.0);
+    add_unless(element, "bias_noise", noise.bias_deviation, 0.0);
+    add_unless(element, "precision", noise.precision, 0.0);
+  }
+  add_unless(element, "drop_out", readout.drop_out, 0.0);
+  if (readout.period.count() > 0) add_key(element, "rate", nanoseconds / static_cast<double>(readout.period.count()));
+  add_unless(element, "latency", static_cast<double>(readout.latency.count()) / nanoseconds, 0.0);
+}
+
+struct DeviceWriter {
+  XmlNode& parent;  // the model
+  const Model& model;
+
+  void operator()(const TreelDrive& drive) const {
+    XmlNode& element = add_named(parent, prefixed("treel_drive"), drive.name);
+    add_key(element, "link", link_name(drive.link));
+    add_key(element, "half_gauge", drive.half_gauge);
+    add_key(element, "half_contact_length", drive.half_contact_length);
+    add_key(element, "ground_height", drive.ground_height);
+    add_key(element, "wheel_radius", drive.wheel_radius);
+    add_key(element, "max_torque", drive.max_torque);
+    add_key(element, "max_velocity", drive.max_velocity);
+    add_key(element, "friction", drive.friction);
+    for (const std::size_t joint : drive.left_wheels) add_key(element, "left_wheel", joint_name(joint));
+    for (const std::size_t joint : drive.right_wheels) add_key(element, "right_wheel", joint_name(joint));
+  }
+  void operator()(const VelocityMotor& motor) const {
+    XmlNode& element = add_named(parent, prefixed("velocity_motor"), motor.name);
+    add_key(element, "joint", joint_name(motor.joint));
+    add_key(element, "max_velocity", motor.max_velocity);
+    add_key(element, "max_effort", motor.max_effort);
+  }
+  void operator()(const JointEncoder& encoder) const {
+    XmlNode& element = add_named(parent, prefixed("joint_encoder"), encoder.name);
+    add_key(element, "joint", joint_name(encoder.joint));
+    write_readout(element, encoder.readout);
+  }
+  void operator()(const TreelEncoder& encoder) const {
+    XmlNode& element = add_named(parent, prefixed("treel_encoder"), encoder.name);
+    add_key(element, "drive", std::get<TreelDrive>(model.devices[encoder.drive]).name);
+    write_readout(element, encoder.readout);
+  }
+  void operator()(const ProximityRing& ring) const {
+    XmlNode& element = add_named(parent, prefixed("proximity_ring"), ring.name);
+    add_key(element, "link", link_name(ring.link));
+    add_key(element, "pose", ring.X_LS);
+    add_key(element, "count", static_cast<std::uint64_t>(ring.count));
+    add_key(element, "first_bearing", ring.first_bearing);
+    add_key(element, "spacing", ring.spacing);
+    add_key(element, "ring_radius", ring.ring_radius);
+    add_key(element, "range", ring.range);
+    write_readout(element, ring.readout);
+  }
+  void operator()(const GroundSensors& sensors) const {
+    XmlNode& element = add_named(parent, prefixed("ground_sensors"), sensors.name);
+    add_key(element, "link", link_name(sensors.link));
+    for (const Eigen::Vector3d& place : sensors.places_L) add_key(element, "place", place);
+    add_key(element, "range", sensors.range);
+    write_readout(element, sensors.readout);
+  }
+  void operator()(const LightSensors& sensors) const {
+    XmlNode& element = add_named(parent, prefixed("light_sensors"), sensors.name);
+    add_key(element, "link", link_name(sensors.link));
+    add_key(element, "pose", sensors.X_LS);
+    add_key(element, "count", static_cast<std::uint64_t>(sensors.count));
+    add_key(element, "first_bearing", sensors.first_bearing);
+    add_key(element, "spacing", sensors.spacing);
+    add_key(element, "gain", sensors.gain);
+    write_readout(element, sensors.readout);
+  }
+  void operator()(const Microphones& microphones) const {
+    XmlNode& element = add_named(parent, prefixed("microphones"), microphones.name);
+    add_key(element, "link", link_name(microphones.link));
+    for (const Eigen::Vector3d& place : microphones.places_L) add_key(element, "place", place);
+    for (const Eigen::Vector2d& band : microphones.bands) add_key(element, "band", band);
+    add_key(element, "gain", microphones.gain);
+    write_readout(element, microphones.readout);
+  }
+  void operator()(const LedRing& leds) const {
+    XmlNode& element = add_named(parent, prefixed("led_ring"), leds.name);
+    add_key(element, "link", link_name(leds.link));
+    add_key(element, "pose", leds.X_LS);
+    add_key(element, "count", static_cast<std::uint64_t>(leds.count));
+    add_key(element, "first_bearing", leds.first_bearing);
+    add_key(element, "spacing", leds.spacing);
+    add_key(element, "ring_radius", leds.ring_radius);
+    add_key(element, "intensity", leds.intensity);
+  }
+  void operator()(const Loudspeaker& speaker) const {
+    XmlNode& element = add_named(parent, prefixed("loudspeaker"), speaker.name);
+    add_key(element, "link", link_name(speaker.link));
+    add_key(element, "pose", speaker.X_LE);
+    add_key(element, "max_frequency", speaker.max_frequency);
+    add_key(element, "max_intensity", speaker.max_intensity);
+  }
+
+ private:
+  std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
+  std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
+};
+
+struct EmitterWriter {
+  XmlNode& parent;  // the link
+  const Emitter& emitter;
+
+  void operator()(const Light& light) const {
+    const char* const kinds[] = {"point", "spot", "directional"};
+    XmlNode& element = add_named(parent, "light", emitter.name);
+    element.attributes.emplace_back("type", kinds[static_cast<int>(light.kind)]);
+    add_pose(element, emitter.X_LE);
+    add_value(element, "light_on", emitter.is_on);
+    add_value(element, "intensity", light.intensity);
+    add_value(element, "diffuse", light.color).text += " 1";
+    add_value(element, "direction", light.direction_E);
+    XmlNode& attenuation = add(element, "attenuation");
+    add_value(attenuation, "range", light.range);
+    add_value(attenuation, "constant", light.constant);
+    add_value(attenuation, "linear", light.linear);
+    add_value(attenuation, "quadratic", light.quadratic);
+    if (light.kind != Light::Kind::spot) return;
+    XmlNode& spot = add(element, "spot");
+    add_value(spot, "inner_angle", 2.0 * light.inner_angle);
+    add_value(spot, "outer_angle", 2.0 * light.outer_angle);
+    add_value(spot, "falloff", light.falloff);
+  }
+  void operator()(const Sound& sound) const {
+    XmlNode& element = extension("sound");
+    add_key(element, "frequency", sound.frequency);
+    add_key(element, "intensity", sound.intensity);
+    if (std::isfinite(sound.range)) add_key(element, "range", sound.range);
+  }
+  void operator()(const Marker& marker) const { add_key(extension("marker"), "color", marker.color); }
+  void operator()(const ClimateSource& source) const {
+    XmlNode& element = extension("climate_source");
+    add_key(element, "temperature", source.temperature);
+    add_key(element, "humidity", source.humidity);
+    add_key(element, "spread", source.spread);
+  }
+
+ private:
+  XmlNode& extension(const char* name) const {
+    XmlNode& element = add_named(parent, prefixed(name), emitter.name);
+    add_key(element, "pose", emitter.X_LE);
+    add_key(element, "on", emitter.is_on);
+    return element;
+  }
+};
+
+}  // namespace
+
+std::string text_of(double number) {
+  char buffer[32];
+  const auto end = std::to_chars(std::begin(buffer), std::end(buffer), number).ptr;
+  return {std::begin(buffer), end};
+}
+std::string text_of(const Eigen::Vector2d& v) { return text_of(v.x()) + " " + text_of(v.y()); }
+std::string text_of(const Eigen::Vector3d& v) { return text_of(v.x()) + " " + text_of(v.y()) + " " + text_of(v.z()); }
+std::string text_of(const Pose& X) {
+  const Eigen::Quaterniond& q = X.orientation;
+  return text_of(X.position) + " " + text_of(q.x()) + " " + text_of(q.y()) + " " + text_of(q.z()) + " " +
+         text_of(q.w());
+}
+
+std::string without_scope_marks(std::string name) {
+  for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at)) name.replace(at, 2, ".");
+  return name;
+}
+
+void write_device(XmlNode& model_element, const Model& model, const Device& device) {
+  std::visit(DeviceWriter{model_element, model}, device);
+}
+
+void write_emitter(XmlNode& link_element, const Emitter& emitter) {
+  std::visit(EmitterWriter{link_element, emitter}, emitter.what);
+}
+
+}  // namespace cohort::description

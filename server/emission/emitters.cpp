@@ -1,0 +1,194 @@
+#include "server/emission/emitters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "server/physics/state_visitors.hpp"
+
+namespace cohort::emission {
+namespace {
+
+constexpr std::size_t emitters_a_chunk = 256;
+// Cameras look about so far, and a query reads few cells then [m].
+constexpr double marker_cell = 0.5;
+
+std::uint32_t count_of(const auto& emitters) { return static_cast<std::uint32_t>(emitters.size()); }
+
+Pose on_ring(const Pose& X_LS, double bearing, double radius) {
+  const Pose X_SE{{radius * std::cos(bearing), radius * std::sin(bearing), 0.0},
+                  Eigen::Quaterniond(Eigen::AngleAxisd(bearing, Eigen::Vector3d::UnitZ()))};
+  return X_LS * X_SE;
+}
+
+}  // namespace
+
+Emitters::Emitters(const description::World& description, const physics::World& world)
+    : description_(description), world_(world) {
+  marker_grid_.set_cell_size(marker_cell);
+  for (std::uint32_t body = 0; body < description.instances.size(); ++body) {
+    const description::Model& model = description.models[description.instances[body].model];
+    for (const description::Emitter& emitter : model.emitters) add({body, emitter.link, emitter.X_LE}, emitter);
+    add_devices(body, model);
+  }
+}
+
+void Emitters::add_body(std::uint32_t body, std::size_t model) {
+  added_.emplace_back(body, static_cast<std::uint32_t>(model));
+  for (const description::Emitter& emitter : description_.models[model].emitters)
+    add({body, emitter.link, emitter.X_LE}, emitter);
+}
+
+void Emitters::add(const Mount& mount, const description::Emitter& emitter) {
+  const bool is_on = emitter.is_on;
+  if (const auto* light = std::get_if<description::Light>(&emitter.what))
+    lamps_.push_back({mount, *light, is_on});
+  else if (const auto* sound = std::get_if<description::Sound>(&emitter.what))
+    tones_.push_back({mount, *sound, is_on});
+  else if (const auto* marker = std::get_if<description::Marker>(&emitter.what))
+    markers_.push_back({mount, marker->color, is_on});
+  else
+    climate_sources_.push_back({mount, std::get<description::ClimateSource>(emitter.what), is_on});
+}
+
+void Emitters::add_devices(std::uint32_t body, const description::Model& model) {
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    const OfDevice first{count_of(lamps_), count_of(tones_), count_of(markers_)};
+    if (const auto* leds = std::get_if<description::LedRing>(&model.devices[device])) {
+      for (std::size_t i = 0; i < leds->count; ++i) {
+        const double bearing = leds->first_bearing + static_cast<double>(i) * leds->spacing;
+        const Mount mount{body, leds->link, on_ring(leds->X_LS, bearing, leds->ring_radius)};
+        markers_.push_back({mount, Eigen::Vector3d::Zero()});
+        if (!(leds->intensity > 0.0)) continue;
+        description::Light light;
+        light.color.setZero();
+        light.intensity = leds->intensity;
+        lamps_.push_back({mount, light});
+      }
+    } else if (const auto* speaker = std::get_if<description::Loudspeaker>(&model.devices[device])) {
+      tones_.push_back({{body, speaker->link, speaker->X_LE}, {0.0, 0.0}});
+    } else {
+      continue;
+    }
+    devices_.push_back({body, device, first});
+  }
+}
+
+Emitters::OfDevice Emitters::of_device(std::uint32_t body, std::size_t device) const {
+  const auto found = std::lower_bound(devices_.begin(), devices_.end(), std::pair{body, device},
+                                      [](const DeviceEntry& entry, const std::pair<std::uint32_t, std::size_t>& key) {
+                                        return std::pair{entry.body, entry.device} < key;
+                                      });
+  if (found == devices_.end() || found->body != body || found->device != device)
+    throw std::logic_error("the device emits nothing");
+  return found->first;
+}
+
+void Emitters::set_tone(std::uint32_t tone, double frequency, double intensity) {
+  tones_[tone].sound.frequency = frequency;
+  tones_[tone].sound.intensity = intensity;
+}
+
+std::size_t Emitters::switch_emitters(std::uint32_t body, const std::string& name, bool on) {
+  std::size_t found = 0;
+  std::size_t next[4] = {0, 0, 0, 0};  // of each kind, among those of this body
+  const auto is_of_body = [&](const auto& emitter) { return emitter.mount.body == body; };
+  const auto set = [&](auto& emitters, std::size_t place) {
+    const auto first = std::find_if(emitters.begin(), emitters.end(), is_of_body);
+    (first + static_cast<std::ptrdiff_t>(place))->is_on = on;
+  };
+  std::size_t model = 0;
+  if (body < description_.instances.size()) model = description_.instances[body].model;
+  for (const auto& [added_body, added_model] : added_)
+    if (added_body == body) model = added_model;
+  for (const description::Emitter& emitter : description_.models[model].emitters) {
+    const std::size_t kind = emitter.what.index();
+    const std::size_t place = next[kind]++;
+    if (emitter.name != name) continue;
+    ++found;
+    switch (kind) {
+      case 0: set(lamps_, place); break;
+      case 1: set(tones_, place); break;
+      case 2: set(markers_, place); break;
+      default: set(climate_sources_, place);
+    }
+  }
+  return found;
+}
+
+void Emitters::update(WorkerPool& workers) {
+  const auto place = [&](auto& emitters, const auto& more) {
+    workers.for_each_chunk(emitters.size(), emitters_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!is_in_world(emitters[i].mount)) continue;
+        const Pose X_WE = world_.link_pose(emitters[i].mount.body, emitters[i].mount.link) * emitters[i].mount.X_LE;
+        emitters[i].p_W = X_WE.position;
+        more(emitters[i], X_WE);
+      }
+    });
+  };
+  const auto no_more = [](const auto&, const Pose&) {};
+  place(lamps_, [](Lamp& lamp, const Pose& X_WE) { lamp.direction_W = X_WE.orientation * lamp.light.direction_E; });
+  place(tones_, no_more);
+  place(markers_, no_more);
+  place(climate_sources_, no_more);
+
+  const auto collect = [&](std::vector<std::uint32_t>& found, const auto& emitters, const auto& emits) {
+    found.clear();
+    for (std::uint32_t i = 0; i < emitters.size(); ++i)
+      if (emitters[i].is_on && emits(emitters[i]) && is_in_world(emitters[i].mount)) found.push_back(i);
+  };
+  collect(lit_lamps_, lamps_,
+          [](const Lamp& lamp) { return lamp.light.intensity > 0.0 && (lamp.light.color.array() > 0.0).any(); });
+  collect(sounding_tones_, tones_, [](const Tone& tone) { return tone.sound.intensity > 0.0; });
+  collect(lit_markers_, markers_, [](const Marker& marker) { return (marker.color.array() > 0.0).any(); });
+  marker_bounds_.resize(markers_.size());
+  for (const std::uint32_t index : lit_markers_) marker_bounds_[index] = {markers_[index].p_W, markers_[index].p_W};
+  marker_grid_.build(lit_markers_, marker_bounds_);
+}
+
+template <class Self, class Visit>
+void Emitters::visit_state(Self& self, Visit&& visit) {
+  for (auto& lamp : self.lamps_) {
+    visit(lamp.is_on);
+    for (int i = 0; i < 3; ++i) visit(lamp.light.color[i]);
+  }
+  for (auto& tone : self.tones_) {
+    visit(tone.is_on);
+    visit(tone.sound.frequency);
+    visit(tone.sound.intensity);
+  }
+  for (auto& marker : self.markers_) {
+    visit(marker.is_on);
+    for (int i = 0; i < 3; ++i) visit(marker.color[i]);
+  }
+  for (auto& source : self.climate_sources_) visit(source.is_on);
+}
+
+void Emitters::hash(StateHash& hash) const { visit_state(*this, physics::StateHasher{hash}); }
+
+void Emitters::save(SnapshotWriter& writer) const {
+  writer.add_count(added_.size());
+  for (const auto& [body, model] : added_) {
+    writer.add(body);
+    writer.add(model);
+  }
+  writer.add_count(lamps_.size() + tones_.size() + markers_.size() + climate_sources_.size());
+  visit_state(*this, physics::StateSaver{writer});
+}
+
+void Emitters::restore(SnapshotReader& reader) {
+  for (std::size_t left = reader.read_count(2 * sizeof(std::uint32_t)); left > 0; --left) {
+    std::uint32_t body = 0;
+    std::uint32_t model = 0;
+    reader.read(body);
+    reader.read(model);
+    if (body >= world_.body_count() || model >= description_.models.size())
+      throw SnapshotError("the snapshot has a model that is not there");
+    add_body(body, model);
+  }
+  reader.expect_count(lamps_.size() + tones_.size() + markers_.size() + climate_sources_.size(), "emitters");
+  visit_state(*this, physics::StateRestorer{reader});
+}
+
+}  // namespace cohort::emission

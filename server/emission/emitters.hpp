@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "server/core/hash.hpp"
+#include "server/core/snapshot.hpp"
+#include "server/core/worker_pool.hpp"
+#include "server/description/world.hpp"
+#include "server/geometry/corner_grid.hpp"
+#include "server/physics/world.hpp"
+
+namespace cohort::emission {
+
+/// Where an emitter is.
+struct Mount {
+  std::uint32_t body = 0;
+  std::size_t link = 0;
+  Pose X_LE;
+};
+
+struct Lamp {
+  Mount mount;
+  description::Light light;  ///< colour and intensity as they are now
+  bool is_on = true;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction_W = Eigen::Vector3d::Zero();  ///< of a spot or directional light, unit
+};
+
+struct Tone {
+  Mount mount;
+  description::Sound sound;  ///< frequency and intensity as they are now
+  bool is_on = true;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+};
+
+struct Marker {
+  Mount mount;
+  Eigen::Vector3d color = Eigen::Vector3d::Zero();  ///< as it is now; black is not seen
+  bool is_on = true;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+};
+
+struct ClimateSource {
+  Mount mount;
+  description::ClimateSource source;
+  bool is_on = true;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+};
+
+/// What robots and objects let others perceive from afar. Actuators change emitters, sensors read them; in between
+/// `update` takes the poses of a new boundary. Emitters of a body that is not in the world are off. An emitter's index
+/// is its place among those of its kind and never another one's. Changes and `update` belong to one thread; all else
+/// may run from any thread in between.
+class Emitters {
+ public:
+  /// Those of all instances: of their models and of their devices. Keeps references to both.
+  Emitters(const description::World& description, const physics::World& world);
+
+  /// Those of a body that was added to the world, of one of the description's models.
+  void add_body(std::uint32_t body, std::size_t model);
+  /// Takes the poses of this boundary and what is on.
+  void update(WorkerPool& workers);
+
+  /// Those that are on, by index, as of the last `update`.
+  std::span<const std::uint32_t> lit_lamps() const { return lit_lamps_; }
+  std::span<const std::uint32_t> sounding_tones() const { return sounding_tones_; }
+  const Lamp& lamp(std::uint32_t index) const { return lamps_[index]; }
+  const Tone& tone(std::uint32_t index) const { return tones_[index]; }
+  const Marker& marker(std::uint32_t index) const { return markers_[index]; }
+  std::span<const ClimateSource> climate_sources() const { return climate_sources_; }
+  bool is_in_world(const Mount& mount) const { return world_.is_active(mount.body); }
+
+  /// Calls `visit(index)` for each lit marker that may be within `range` of a point, in an order that depends on the
+  /// state alone.
+  template <class Visit>
+  void for_each_marker_near(const Eigen::Vector3d& p_W, double range, Visit&& visit) const {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(range);
+    marker_grid_.for_each_overlap({p_W - reach, p_W + reach}, visit);
+  }
+
+  /// Of the emitters that a device of a body has, the first of each kind; they are in a row.
+  struct OfDevice {
+    std::uint32_t lamp = 0;
+    std::uint32_t tone = 0;
+    std::uint32_t marker = 0;
+  };
+  /// `device`: index in the body's model, of one that emits.
+  OfDevice of_device(std::uint32_t body, std::size_t device) const;
+  void set_lamp(std::uint32_t lamp, const Eigen::Vector3d& color) { lamps_[lamp].light.color = color; }
+  void set_tone(std::uint32_t tone, double frequency, double intensity);
+  void set_marker(std::uint32_t marker, const Eigen::Vector3d& color) { markers_[marker].color = color; }
+  /// Switches all emitters of a body that its model names so. Returns how many there are.
+  std::size_t switch_emitters(std::uint32_t body, const std::string& name, bool on);
+
+  /// Adds all that can change, but for poses.
+  void hash(StateHash& hash) const;
+  void save(SnapshotWriter& writer) const;
+  /// Into one as it is after its construction, after the world is restored; `update` comes next. Throws SnapshotError
+  /// if the snapshot is of something else.
+  void restore(SnapshotReader& reader);
+
+ private:
+  struct DeviceEntry {
+    std::uint32_t body = 0;
+    std::size_t device = 0;
+    OfDevice first;
+  };
+  void add(const Mount& mount, const description::Emitter& emitter);
+  void add_devices(std::uint32_t body, const description::Model& model);
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit);
+
+  const description::World& description_;
+  const physics::World& world_;
+  std::vector<Lamp> lamps_;
+  std::vector<Tone> tones_;
+  std::vector<Marker> markers_;
+  std::vector<ClimateSource> climate_sources_;
+  std::vector<DeviceEntry> devices_;                            // ascending by body, then device
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> added_;  // bodies and their models
+
+  std::vector<std::uint32_t> lit_lamps_;
+  std::vector<std::uint32_t> sounding_tones_;
+  std::vector<std::uint32_t> lit_markers_;
+  std::vector<geometry::Bounds> marker_bounds_;  // by index
+  geometry::CornerGrid marker_grid_;
+};
+
+}  // namespace cohort::emission

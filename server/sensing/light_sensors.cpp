@@ -1,0 +1,82 @@
+#include "server/sensing/light_sensors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/sensing/saturation.hpp"
+
+namespace cohort::sensing {
+namespace {
+
+using description::Light;
+
+// A lamp is no nearer than this [m]: at no distance it would be infinitely bright.
+constexpr double least_distance = 1e-3;
+// How far away what a directional light is cast by stands [m].
+constexpr double far_away = 1e3;
+
+double within_cone(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W) {
+  const double along = -direction_W.dot(lamp.direction_W);
+  const double inner = std::cos(lamp.light.inner_angle);
+  const double outer = std::cos(lamp.light.outer_angle);
+  if (along >= inner) return 1.0;
+  if (along <= outer) return 0.0;
+  return std::exp(lamp.light.falloff * std::log((along - outer) / (inner - outer)));
+}
+
+}  // namespace
+
+double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W, double distance) {
+  const Light& light = lamp.light;
+  const double brightness = light.intensity * light.color.sum() / 3.0;
+  if (light.kind == Light::Kind::directional) return brightness;
+  if (distance > light.range) return 0.0;
+  const double d = std::max(distance, least_distance);
+  const double arriving = brightness / (light.constant + d * (light.linear + d * light.quadratic));
+  return light.kind == Light::Kind::spot ? arriving * within_cone(lamp, direction_W) : arriving;
+}
+
+LightSensors::LightSensors(const description::LightSensors& sensors, Mount mount)
+    : sensors_(sensors), mount_(std::move(mount)) {
+  for (std::size_t i = 0; i < sensors.count; ++i) {
+    const double bearing = sensors.first_bearing + static_cast<double>(i) * sensors.spacing;
+    directions_S_.emplace_back(std::cos(bearing), std::sin(bearing), 0.0);
+  }
+}
+
+std::vector<Channel> LightSensors::channels() const {
+  std::vector<Channel> channels;
+  for (std::size_t i = 0; i < sensors_.count; ++i)
+    channels.push_back({sensors_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
+  return channels;
+}
+
+bool LightSensors::is_in_sight(const emission::Lamp& lamp, const Eigen::Vector3d& p_WS,
+                               const Eigen::Vector3d& direction_W, double distance) const {
+  const double range = lamp.light.kind == Light::Kind::directional ? far_away : distance;
+  const auto hit = mount_.world.scene().cast_ray(p_WS, direction_W, range, mount_.body);
+  return !hit || mount_.world.scene().solid(hit->solid).body == lamp.mount.body;
+}
+
+void LightSensors::sense(std::uint64_t, std::span<double> values) const {
+  const Pose X_WS = mount_.world.link_pose(mount_.body, sensors_.link) * sensors_.X_LS;
+  std::ranges::fill(values, 0.0);
+  for (const std::uint32_t index : mount_.emitters.lit_lamps()) {
+    const emission::Lamp& lamp = mount_.emitters.lamp(index);
+    if (lamp.mount.body == mount_.body) continue;
+    const Eigen::Vector3d offset_W = lamp.light.kind == Light::Kind::directional
+                                         ? Eigen::Vector3d(-lamp.direction_W)
+                                         : Eigen::Vector3d(lamp.p_W - X_WS.position);
+    const double distance = offset_W.norm();
+    if (!(distance > 0.0)) continue;
+    const Eigen::Vector3d direction_W = offset_W / distance;
+    const double arriving = arriving_light(lamp, direction_W, distance);
+    if (!(arriving > 0.0) || !is_in_sight(lamp, X_WS.position, direction_W, distance)) continue;
+    const Eigen::Vector3d direction_S = X_WS.orientation.conjugate() * direction_W;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] += arriving * std::max(0.0, direction_S.dot(directions_S_[i]));
+  }
+  for (double& value : values) value = saturated(sensors_.gain * value);
+}
+
+}  // namespace cohort::sensing

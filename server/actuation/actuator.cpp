@@ -2,6 +2,7 @@
 
 #include "server/actuation/led_ring.hpp"
 #include "server/actuation/loudspeaker.hpp"
+#include "server/actuation/message_sender.hpp"
 #include "server/actuation/treel_drive.hpp"
 #include "server/actuation/velocity_motor.hpp"
 
@@ -29,6 +30,9 @@ struct Make {
   }
   std::unique_ptr<Actuator> operator()(const description::Loudspeaker& d) const {
     return std::make_unique<Loudspeaker>(d, device, mount);
+  }
+  std::unique_ptr<Actuator> operator()(const description::RangeAndBearing& d) const {
+    return std::make_unique<MessageSender>(d, device, mount);
   }
 };
 

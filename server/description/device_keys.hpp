@@ -115,6 +115,23 @@ inline constexpr auto microphones = sensor({
     {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
 });
 
+inline constexpr auto range_and_bearing = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: bearings are from its x axis, elevations from its xy plane"},
+    {"range", positive, "m", "", "how far its messages reach"},
+    {"message_size", count, "1", "", "values of a message"},
+    {"capacity", count, "1", "16", "messages that are reported at a time, at the most"},
+    {"range_noise", non_negative, "m", "0", "standard deviation of the Gaussian noise on ranges"},
+    {"bearing_noise", non_negative, "rad", "0", "the same on bearings and elevations"},
+});
+
+inline constexpr auto climate_sensor = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"place", vector, "m", "0 0 0", "in the link"},
+    {"temperature_noise", non_negative, "K", "0", "standard deviation of the Gaussian noise on temperatures"},
+    {"humidity_noise", non_negative, "1", "0", "the same on humidities"},
+});
+
 inline constexpr ExtensionKey sound[] = {
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
     {"frequency", positive, "Hz", "", "of the tone"},
@@ -153,6 +170,9 @@ inline constexpr Extension device_extensions[] = {
     {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
     {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
     {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
+    {"range_and_bearing", "model", true, "Messages to the robots around, which know where they come from.",
+     keys::range_and_bearing, "sensors"},
+    {"climate_sensor", "model", true, "Temperature and humidity of the air.", keys::climate_sensor, "sensors"},
     {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
     {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
     {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},

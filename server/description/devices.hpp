@@ -124,8 +124,30 @@ struct Loudspeaker {
   double max_intensity = 0.0;  ///< what arrives at 1 m [1]
 };
 
+/// Messages to the robots around, as ARGoS's range-and-bearing system has them: whoever is near enough and in sight
+/// hears them and knows where they came from. Commands `NAME/0/sending` and `NAME/0/message`; observations
+/// `NAME/0/count` and, of as many as were heard, the nearest first, `NAME/I/range` [m], `NAME/I/bearing` and
+/// `NAME/I/elevation` [rad] in S, `NAME/I/message`.
+struct RangeAndBearing {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  double range = 0.0;            ///< that its messages reach [m]
+  std::size_t message_size = 0;  ///< values of a message
+  std::size_t capacity = 0;      ///< messages that are reported at a time
+  Readout readout{};
+};
+
+/// Temperature [K] and relative humidity [1] of the air: observations `NAME/0/temperature` and `NAME/0/humidity`.
+struct ClimateSensor {
+  std::string name;
+  std::size_t link = 0;
+  Eigen::Vector3d p_LS = Eigen::Vector3d::Zero();
+  Readout readout{};
+};
+
 using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
-                            LightSensors, Microphones, LedRing, Loudspeaker>;
+                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

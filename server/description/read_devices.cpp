@@ -93,7 +93,12 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const M
     if (!is_new) report.problem(element, "another device of the model has the name '" + values->name() + "'");
     std::optional<Device> device = kind.read(*values, reader);
     if (!device) continue;
-    if (Readout* const readout = readout_of(*device)) *readout = read_readout(*values);
+    if (Readout* const readout = readout_of(*device)) {
+      // What is said of a single quantity holds before what is said of all.
+      Readout common = read_readout(*values);
+      common.noises.insert(common.noises.end(), readout->noises.begin(), readout->noises.end());
+      *readout = std::move(common);
+    }
     devices.push_back(*std::move(device));
   }
   return devices;

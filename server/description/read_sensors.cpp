@@ -73,11 +73,48 @@ std::optional<Device> read_microphones(const ExtensionValues& values, DeviceRead
   return Microphones{values.name(), *link, values.vectors("place"), bands, values.real("gain")};
 }
 
+void add_noise(Readout& readout, const char* quantity, double deviation) {
+  if (!(deviation > 0.0)) return;
+  readout.noises.emplace_back();
+  readout.noises.back().quantity = quantity;
+  readout.noises.back().deviation = deviation;
+}
+
+std::optional<Device> read_range_and_bearing(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  if (!link) return std::nullopt;
+  RangeAndBearing device;
+  device.name = values.name();
+  device.link = *link;
+  device.X_LS = values.pose("pose");
+  device.range = values.real("range");
+  device.message_size = values.whole("message_size");
+  device.capacity = values.whole("capacity");
+  add_noise(device.readout, "range", values.real("range_noise"));
+  add_noise(device.readout, "bearing", values.real("bearing_noise"));
+  add_noise(device.readout, "elevation", values.real("bearing_noise"));
+  return device;
+}
+
+std::optional<Device> read_climate_sensor(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  if (!link) return std::nullopt;
+  ClimateSensor sensor{values.name(), *link, values.vector("place")};
+  add_noise(sensor.readout, "temperature", values.real("temperature_noise"));
+  add_noise(sensor.readout, "humidity", values.real("humidity_noise"));
+  return sensor;
+}
+
 // The register of sensors: a new kind is one more line here.
 constexpr DeviceKind kinds[] = {
-    {"joint_encoder", &read_joint_encoder},   {"treel_encoder", &read_treel_encoder},
-    {"proximity_ring", &read_proximity_ring}, {"ground_sensors", &read_ground_sensors},
-    {"light_sensors", &read_light_sensors},   {"microphones", &read_microphones},
+    {"joint_encoder", &read_joint_encoder},
+    {"treel_encoder", &read_treel_encoder},
+    {"proximity_ring", &read_proximity_ring},
+    {"ground_sensors", &read_ground_sensors},
+    {"light_sensors", &read_light_sensors},
+    {"microphones", &read_microphones},
+    {"range_and_bearing", &read_range_and_bearing, true, true},
+    {"climate_sensor", &read_climate_sensor},
 };
 
 }  // namespace

@@ -12,8 +12,16 @@ void add_unless(XmlNode& element, const char* key, Value value, Value usual) {
   if (value != usual) add_key(element, key, value);
 }
 
+// Of the noise on one quantity; 0 if it has none of its own.
+double deviation_of(const Readout& readout, const std::string& quantity) {
+  for (const Noise& noise : readout.noises)
+    if (noise.quantity == quantity) return noise.deviation;
+  return 0.0;
+}
+
 void write_readout(XmlNode& element, const Readout& readout) {
   for (const Noise& noise : readout.noises) {
+    if (!noise.quantity.empty()) continue;  // keys of the device's own
     add_unless(element, "noise", noise.deviation, 0.0);
     add_unless(element, "uniform_noise", noise.uniform, 0.0);
     add_unless(element, "bias", noise.bias, 0.0);
@@ -93,6 +101,25 @@ struct DeviceWriter {
     for (const Eigen::Vector2d& band : microphones.bands) add_key(element, "band", band);
     add_key(element, "gain", microphones.gain);
     write_readout(element, microphones.readout);
+  }
+  void operator()(const RangeAndBearing& device) const {
+    XmlNode& element = add_named(parent, prefixed("range_and_bearing"), device.name);
+    add_key(element, "link", link_name(device.link));
+    add_key(element, "pose", device.X_LS);
+    add_key(element, "range", device.range);
+    add_key(element, "message_size", static_cast<std::uint64_t>(device.message_size));
+    add_key(element, "capacity", static_cast<std::uint64_t>(device.capacity));
+    add_key(element, "range_noise", deviation_of(device.readout, "range"));
+    add_key(element, "bearing_noise", deviation_of(device.readout, "bearing"));
+    write_readout(element, device.readout);
+  }
+  void operator()(const ClimateSensor& sensor) const {
+    XmlNode& element = add_named(parent, prefixed("climate_sensor"), sensor.name);
+    add_key(element, "link", link_name(sensor.link));
+    add_key(element, "place", sensor.p_LS);
+    add_key(element, "temperature_noise", deviation_of(sensor.readout, "temperature"));
+    add_key(element, "humidity_noise", deviation_of(sensor.readout, "humidity"));
+    write_readout(element, sensor.readout);
   }
   void operator()(const LedRing& leds) const {
     XmlNode& element = add_named(parent, prefixed("led_ring"), leds.name);

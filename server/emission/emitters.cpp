@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t emitters_a_chunk = 256;
 // Cameras look about so far, and a query reads few cells then [m].
 constexpr double marker_cell = 0.5;
+constexpr double beacon_cell = 1.0;
 
 std::uint32_t count_of(const auto& emitters) { return static_cast<std::uint32_t>(emitters.size()); }
 
@@ -26,6 +27,7 @@ Pose on_ring(const Pose& X_LS, double bearing, double radius) {
 Emitters::Emitters(const description::World& description, const physics::World& world)
     : description_(description), world_(world) {
   marker_grid_.set_cell_size(marker_cell);
+  beacon_grid_.set_cell_size(beacon_cell);
   for (std::uint32_t body = 0; body < description.instances.size(); ++body) {
     const description::Model& model = description.models[description.instances[body].model];
     for (const description::Emitter& emitter : model.emitters) add({body, emitter.link, emitter.X_LE}, emitter);
@@ -53,7 +55,7 @@ void Emitters::add(const Mount& mount, const description::Emitter& emitter) {
 
 void Emitters::add_devices(std::uint32_t body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    const OfDevice first{count_of(lamps_), count_of(tones_), count_of(markers_)};
+    const OfDevice first{count_of(lamps_), count_of(tones_), count_of(markers_), count_of(beacons_)};
     if (const auto* leds = std::get_if<description::LedRing>(&model.devices[device])) {
       for (std::size_t i = 0; i < leds->count; ++i) {
         const double bearing = leds->first_bearing + static_cast<double>(i) * leds->spacing;
@@ -67,6 +69,9 @@ void Emitters::add_devices(std::uint32_t body, const description::Model& model) 
       }
     } else if (const auto* speaker = std::get_if<description::Loudspeaker>(&model.devices[device])) {
       tones_.push_back({{body, speaker->link, speaker->X_LE}, {0.0, 0.0}});
+    } else if (const auto* beacon = std::get_if<description::RangeAndBearing>(&model.devices[device])) {
+      beacons_.push_back(
+          {{body, beacon->link, beacon->X_LS}, beacon->range, false, std::vector<double>(beacon->message_size)});
     } else {
       continue;
     }
@@ -87,6 +92,11 @@ Emitters::OfDevice Emitters::of_device(std::uint32_t body, std::size_t device) c
 void Emitters::set_tone(std::uint32_t tone, double frequency, double intensity) {
   tones_[tone].sound.frequency = frequency;
   tones_[tone].sound.intensity = intensity;
+}
+
+void Emitters::set_beacon(std::uint32_t beacon, bool is_sending, std::span<const double> message) {
+  beacons_[beacon].is_sending = is_sending;
+  std::ranges::copy(message, beacons_[beacon].message.begin());
 }
 
 std::size_t Emitters::switch_emitters(std::uint32_t body, const std::string& name, bool on) {
@@ -132,19 +142,30 @@ void Emitters::update(WorkerPool& workers) {
   place(tones_, no_more);
   place(markers_, no_more);
   place(climate_sources_, no_more);
+  place(beacons_, no_more);
 
   const auto collect = [&](std::vector<std::uint32_t>& found, const auto& emitters, const auto& emits) {
     found.clear();
     for (std::uint32_t i = 0; i < emitters.size(); ++i)
-      if (emitters[i].is_on && emits(emitters[i]) && is_in_world(emitters[i].mount)) found.push_back(i);
+      if (emits(emitters[i]) && is_in_world(emitters[i].mount)) found.push_back(i);
   };
-  collect(lit_lamps_, lamps_,
-          [](const Lamp& lamp) { return lamp.light.intensity > 0.0 && (lamp.light.color.array() > 0.0).any(); });
-  collect(sounding_tones_, tones_, [](const Tone& tone) { return tone.sound.intensity > 0.0; });
-  collect(lit_markers_, markers_, [](const Marker& marker) { return (marker.color.array() > 0.0).any(); });
-  marker_bounds_.resize(markers_.size());
-  for (const std::uint32_t index : lit_markers_) marker_bounds_[index] = {markers_[index].p_W, markers_[index].p_W};
-  marker_grid_.build(lit_markers_, marker_bounds_);
+  collect(lit_lamps_, lamps_, [](const Lamp& lamp) {
+    return lamp.is_on && lamp.light.intensity > 0.0 && (lamp.light.color.array() > 0.0).any();
+  });
+  collect(sounding_tones_, tones_, [](const Tone& tone) { return tone.is_on && tone.sound.intensity > 0.0; });
+  collect(lit_markers_, markers_,
+          [](const Marker& marker) { return marker.is_on && (marker.color.array() > 0.0).any(); });
+  collect(sending_beacons_, beacons_, [](const Beacon& beacon) { return beacon.is_sending; });
+  const auto build = [](geometry::CornerGrid& grid, const std::vector<std::uint32_t>& those, const auto& emitters,
+                        std::vector<geometry::Bounds>& bounds) {
+    bounds.resize(emitters.size());
+    for (const std::uint32_t index : those) bounds[index] = {emitters[index].p_W, emitters[index].p_W};
+    grid.build(those, bounds);
+  };
+  build(marker_grid_, lit_markers_, markers_, marker_bounds_);
+  build(beacon_grid_, sending_beacons_, beacons_, beacon_bounds_);
+  longest_range_ = 0.0;
+  for (const std::uint32_t index : sending_beacons_) longest_range_ = std::max(longest_range_, beacons_[index].range);
 }
 
 template <class Self, class Visit>
@@ -163,6 +184,14 @@ void Emitters::visit_state(Self& self, Visit&& visit) {
     for (int i = 0; i < 3; ++i) visit(marker.color[i]);
   }
   for (auto& source : self.climate_sources_) visit(source.is_on);
+  for (auto& beacon : self.beacons_) {
+    visit(beacon.is_sending);
+    for (auto& value : beacon.message) visit(value);
+  }
+}
+
+std::size_t Emitters::emitter_count() const {
+  return lamps_.size() + tones_.size() + markers_.size() + climate_sources_.size() + beacons_.size();
 }
 
 void Emitters::hash(StateHash& hash) const { visit_state(*this, physics::StateHasher{hash}); }
@@ -173,7 +202,7 @@ void Emitters::save(SnapshotWriter& writer) const {
     writer.add(body);
     writer.add(model);
   }
-  writer.add_count(lamps_.size() + tones_.size() + markers_.size() + climate_sources_.size());
+  writer.add_count(emitter_count());
   visit_state(*this, physics::StateSaver{writer});
 }
 
@@ -187,7 +216,7 @@ void Emitters::restore(SnapshotReader& reader) {
       throw SnapshotError("the snapshot has a model that is not there");
     add_body(body, model);
   }
-  reader.expect_count(lamps_.size() + tones_.size() + markers_.size() + climate_sources_.size(), "emitters");
+  reader.expect_count(emitter_count(), "emitters");
   visit_state(*this, physics::StateRestorer{reader});
 }
 

@@ -50,6 +50,15 @@ struct ClimateSource {
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
 
+/// What sends messages to those around.
+struct Beacon {
+  Mount mount;
+  double range = 0.0;  ///< [m]
+  bool is_sending = false;
+  std::vector<double> message;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+};
+
 /// What robots and objects let others perceive from afar. Actuators change emitters, sensors read them; in between
 /// `update` takes the poses of a new boundary. Emitters of a body that is not in the world are off. An emitter's index
 /// is its place among those of its kind and never another one's. Changes and `update` belong to one thread; all else
@@ -81,17 +90,27 @@ class Emitters {
     marker_grid_.for_each_overlap({p_W - reach, p_W + reach}, visit);
   }
 
+  const Beacon& beacon(std::uint32_t index) const { return beacons_[index]; }
+  /// The same of the beacons that are sending and may reach a point.
+  template <class Visit>
+  void for_each_beacon_near(const Eigen::Vector3d& p_W, Visit&& visit) const {
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(longest_range_);
+    beacon_grid_.for_each_overlap({p_W - reach, p_W + reach}, visit);
+  }
+
   /// Of the emitters that a device of a body has, the first of each kind; they are in a row.
   struct OfDevice {
     std::uint32_t lamp = 0;
     std::uint32_t tone = 0;
     std::uint32_t marker = 0;
+    std::uint32_t beacon = 0;
   };
   /// `device`: index in the body's model, of one that emits.
   OfDevice of_device(std::uint32_t body, std::size_t device) const;
   void set_lamp(std::uint32_t lamp, const Eigen::Vector3d& color) { lamps_[lamp].light.color = color; }
   void set_tone(std::uint32_t tone, double frequency, double intensity);
   void set_marker(std::uint32_t marker, const Eigen::Vector3d& color) { markers_[marker].color = color; }
+  void set_beacon(std::uint32_t beacon, bool is_sending, std::span<const double> message);
   /// Switches all emitters of a body that its model names so. Returns how many there are.
   std::size_t switch_emitters(std::uint32_t body, const std::string& name, bool on);
 
@@ -110,6 +129,7 @@ class Emitters {
   };
   void add(const Mount& mount, const description::Emitter& emitter);
   void add_devices(std::uint32_t body, const description::Model& model);
+  std::size_t emitter_count() const;
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);
 
@@ -119,6 +139,7 @@ class Emitters {
   std::vector<Tone> tones_;
   std::vector<Marker> markers_;
   std::vector<ClimateSource> climate_sources_;
+  std::vector<Beacon> beacons_;
   std::vector<DeviceEntry> devices_;                            // ascending by body, then device
   std::vector<std::pair<std::uint32_t, std::uint32_t>> added_;  // bodies and their models
 
@@ -127,6 +148,10 @@ class Emitters {
   std::vector<std::uint32_t> lit_markers_;
   std::vector<geometry::Bounds> marker_bounds_;  // by index
   geometry::CornerGrid marker_grid_;
+  std::vector<std::uint32_t> sending_beacons_;
+  std::vector<geometry::Bounds> beacon_bounds_;  // by index
+  geometry::CornerGrid beacon_grid_;
+  double longest_range_ = 0.0;  // of the beacons that are sending [m]
 };
 
 }  // namespace cohort::emission

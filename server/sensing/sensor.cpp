@@ -1,8 +1,10 @@
 #include "server/sensing/sensor.hpp"
 
+#include "server/sensing/climate_sensor.hpp"
 #include "server/sensing/ground_sensors.hpp"
 #include "server/sensing/joint_encoder.hpp"
 #include "server/sensing/light_sensors.hpp"
+#include "server/sensing/message_receiver.hpp"
 #include "server/sensing/microphones.hpp"
 #include "server/sensing/proximity_ring.hpp"
 #include "server/sensing/treel_encoder.hpp"
@@ -36,6 +38,12 @@ struct Make {
   }
   std::unique_ptr<Sensor> operator()(const description::Microphones& d) const {
     return std::make_unique<Microphones>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::RangeAndBearing& d) const {
+    return std::make_unique<MessageReceiver>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::ClimateSensor& d) const {
+    return std::make_unique<ClimateSensor>(d, std::move(mount));
   }
 };
 

@@ -38,8 +38,9 @@ class Sensor {
   virtual void sense(std::uint64_t tick, std::span<double> values) const = 0;
 
   /// Of a sensor with a memory: takes note of this tick, before it senses and whether it is asked or not.
+  /// `was_delivered`: the robot was given what was sensed at the tick before.
   virtual bool has_memory() const { return false; }
-  virtual void remember(std::uint64_t /*tick*/) {}
+  virtual void remember(std::uint64_t /*tick*/, bool /*was_delivered*/) {}
   /// What it remembers.
   virtual void hash(StateHash& /*hash*/) const {}
   virtual void save(SnapshotWriter& /*writer*/) const {}

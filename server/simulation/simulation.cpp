@@ -186,7 +186,6 @@ void Simulation::name_quarantined() {
 
 void Simulation::sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due, std::span<double> values,
                            std::vector<double>& scratch) {
-  if (each.sensor->has_memory()) each.sensor->remember(tick);
   if (each.readout.is_immediate()) {
     if (!each.readout.measures_at(tick, is_due)) return;
     // What wanders goes on between the ticks at which the robot is asked, whose readings stay.
@@ -213,7 +212,9 @@ void Simulation::sense() {
       Robot& robot = robots_[id];
       const bool is_asked = is_due(static_cast<std::uint32_t>(id), tick_);
       std::span<double> values(observations_.data() + robot.observation_offset, kinds_[robot.kind].observation_size);
+      const bool was_asked = tick_ == 0 || is_due(static_cast<std::uint32_t>(id), tick_ - 1);
       for (SensorOfRobot& each : robot.sensors) {
+        if (each.sensor->has_memory()) each.sensor->remember(tick_, was_asked);
         sense_one(each, tick_, is_asked, values.first(each.size), scratch_[worker]);
         values = values.subspan(each.size);
       }

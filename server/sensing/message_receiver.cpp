@@ -1,0 +1,85 @@
+#include "server/sensing/message_receiver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace cohort::sensing {
+
+std::vector<Channel> MessageReceiver::channels() const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double pi = std::numbers::pi;
+  const auto size = static_cast<std::uint32_t>(device_.message_size);
+  const auto most = static_cast<double>(device_.capacity);
+  std::vector<Channel> channels{{device_.name + "/0/count", "1", 1, 0.0, most, 0.0, false}};
+  for (std::size_t i = 0; i < device_.capacity; ++i) {
+    const std::string name = device_.name + "/" + std::to_string(i);
+    channels.push_back({name + "/range", "m", 1, 0.0, infinity, 0.0});
+    channels.push_back({name + "/bearing", "rad", 1, -pi, pi, 0.0});
+    channels.push_back({name + "/elevation", "rad", 1, -pi / 2.0, pi / 2.0, 0.0});
+    channels.push_back({name + "/message", "1", size, -infinity, infinity, 0.0, false});
+  }
+  return channels;
+}
+
+void MessageReceiver::remember(std::uint64_t, bool was_delivered) {
+  if (was_delivered) heard_.clear();
+  const Pose X_WS = mount_.world.link_pose(mount_.body, device_.link) * device_.X_LS;
+  struct Near {
+    double distance;
+    std::uint32_t beacon;
+  };
+  std::vector<Near> near;
+  mount_.emitters.for_each_beacon_near(X_WS.position, [&](std::uint32_t index) {
+    const emission::Beacon& beacon = mount_.emitters.beacon(index);
+    const double distance = (beacon.p_W - X_WS.position).norm();
+    if (beacon.mount.body != mount_.body && beacon.message.size() == device_.message_size && distance <= beacon.range)
+      near.push_back({distance, index});
+  });
+  std::sort(near.begin(), near.end(), [](const Near& a, const Near& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.beacon < b.beacon;
+  });
+  std::vector<double> heard;
+  for (const Near& each : near) {
+    if (heard.size() >= device_.capacity * size_of_one()) break;
+    const emission::Beacon& beacon = mount_.emitters.beacon(each.beacon);
+    const Eigen::Vector3d offset_W = beacon.p_W - X_WS.position;
+    if (each.distance > 0.0) {
+      const auto hit =
+          mount_.world.scene().cast_ray(X_WS.position, offset_W / each.distance, each.distance, mount_.body);
+      if (hit && mount_.world.scene().solid(hit->solid).body != beacon.mount.body) continue;
+    }
+    const Eigen::Vector3d p_S = X_WS.orientation.conjugate() * offset_W;
+    heard.insert(heard.end(), {each.distance, std::atan2(p_S.y(), p_S.x()),
+                               std::atan2(p_S.z(), std::sqrt(p_S.x() * p_S.x() + p_S.y() * p_S.y()))});
+    heard.insert(heard.end(), beacon.message.begin(), beacon.message.end());
+  }
+  heard.insert(heard.end(), heard_.begin(), heard_.end());
+  heard.resize(std::min(heard.size(), device_.capacity * size_of_one()));
+  heard_ = std::move(heard);
+}
+
+void MessageReceiver::sense(std::uint64_t, std::span<double> values) const {
+  std::ranges::fill(values, 0.0);
+  values[0] = static_cast<double>(heard_.size() / size_of_one());
+  std::ranges::copy(heard_, values.begin() + 1);
+}
+
+void MessageReceiver::hash(StateHash& hash) const {
+  for (const double value : heard_) hash.add(value);
+}
+
+void MessageReceiver::save(SnapshotWriter& writer) const {
+  writer.add_count(heard_.size());
+  writer.add_all(heard_.data(), heard_.size());
+}
+
+void MessageReceiver::restore(SnapshotReader& reader) {
+  heard_.resize(reader.read_count(sizeof(double)));
+  if (heard_.size() > device_.capacity * size_of_one())
+    throw SnapshotError("the snapshot has more messages than a robot hears");
+  reader.read_all(heard_.data(), heard_.size());
+}
+
+}  // namespace cohort::sensing

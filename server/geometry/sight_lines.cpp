@@ -1,0 +1,252 @@
+#include "server/geometry/sight_lines.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace cohort::geometry {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double turns = 4.0;          // that turn_of has in a full one
+constexpr double negligible = 1e-100;  // squares of lengths below this lose digits [m]
+constexpr std::uint32_t least_bins = 16;
+constexpr std::uint32_t most_bins = 1024;
+constexpr std::size_t ranks = 256;  // that distances are sorted by
+
+// More than any rounding of lengths like this one. [m]
+double rounding_of(double length) { return 1e-7 + 1e-8 * length; }
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+bool both_above(double a, double b, double limit) { return a > limit && b > limit; }
+bool both_below(double a, double b, double limit) { return a < limit && b < limit; }
+
+}  // namespace
+
+/// From the source to a receiver.
+struct SightLines::Line {
+  Vector3d offset_W;
+  Vector3d direction_W;
+  double distance;
+  // Seen from above:
+  double length;
+  Vector2d along;  // unit; undefined if the length is 0
+  double slope;
+  std::uint32_t receiver_body;
+};
+
+// Grows with the azimuth, from 0 along x to 4 at the full turn: the length along a square that stands on its corner,
+// which needs neither root nor arc tangent.
+double SightLines::turn_of(const Vector2d& direction) {
+  const double across = direction.y() / (std::abs(direction.x()) + std::abs(direction.y()));
+  if (direction.x() < 0.0) return 2.0 - across;
+  return across < 0.0 ? turns + across : across;
+}
+
+void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double range, std::uint32_t source_body) {
+  scene_ = &outlines.scene();
+  p_WS_ = p_WS;
+  range_ = range;
+  planes_.clear();
+  unbounded_.clear();
+  around_.clear();
+  rectangles_.clear();
+  unsorted_.clear();
+  stretches_.clear();
+  outlines.for_each_near(p_WS, range, [&](const Outlines::Item& item) {
+    if (item.body != source_body) add(item);
+  });
+  sort_candidates();
+  fill_bins();
+}
+
+void SightLines::add(const Outlines::Item& item) {
+  if (!item.outline) {
+    const Solid& solid = scene_->solid(item.solid);
+    if (const auto* plane = std::get_if<description::Plane>(&solid.shape)) {
+      const Vector3d normal_W = solid.X_WC.orientation * plane->normal;
+      const Vector3d offset_W = p_WS_ - solid.X_WC.position;
+      planes_.push_back({normal_W, normal_W.dot(offset_W), rounding_of(offset_W.norm()), item.solid, item.body});
+    } else {
+      unbounded_.push_back({item.solid, item.body});
+    }
+    return;
+  }
+
+  const Outline& outline = *item.outline;
+  const Vector2d centre = outline.centre_W - p_WS_.head<2>();
+  const double squared = centre.squaredNorm();
+  const double most = range_ + outline.radius + rounding_of(range_ + outline.radius);
+  if (squared > most * most) return;
+  const double distance = std::sqrt(squared);
+  const double rounding = rounding_of(distance + outline.radius);
+  Candidate candidate;
+  candidate.centre = centre;
+  candidate.radius = outline.radius + rounding;
+  candidate.lowest = outline.lowest - p_WS_.z() - rounding;
+  candidate.highest = outline.highest - p_WS_.z() + rounding;
+  if (const double inner = outline.inner_radius - rounding; inner > 0.0) {
+    candidate.inner_radius_squared = inner * inner;
+    candidate.inner_lowest = outline.inner_lowest - p_WS_.z() + rounding;
+    candidate.inner_highest = outline.inner_highest - p_WS_.z() - rounding;
+  }
+  candidate.solid = item.solid;
+  candidate.body = item.body;
+
+  Vector2d rightmost, leftmost;  // directions between which it is seen
+  if (outline.is_round()) {
+    candidate.nearest = distance - candidate.radius;
+    const double tangent = std::sqrt(std::max(0.0, squared - candidate.radius * candidate.radius));
+    const Vector2d turned = candidate.radius * Vector2d(-centre.y(), centre.x());
+    rightmost = tangent * centre - turned;
+    leftmost = tangent * centre + turned;
+  } else {
+    const Vector2d& axis = outline.axis_W;
+    const Vector2d half = outline.half.array() + rounding;
+    const Vector2d source(-axis.dot(centre), -cross(axis, centre));
+    candidate.nearest = (source.cwiseAbs() - half).cwiseMax(0.0).norm();
+    candidate.rectangle = static_cast<std::uint32_t>(rectangles_.size());
+    rectangles_.push_back({axis, half, source});
+    const Vector2d edge = half.x() * axis;
+    const Vector2d side = half.y() * Vector2d(-axis.y(), axis.x());
+    rightmost = leftmost = centre - edge - side;
+    for (const Vector2d& corner :
+         {Vector2d(centre + edge - side), Vector2d(centre + edge + side), Vector2d(centre - edge + side)}) {
+      if (cross(rightmost, corner) < 0.0) rightmost = corner;
+      if (cross(leftmost, corner) > 0.0) leftmost = corner;
+    }
+  }
+  if (candidate.nearest <= rounding) {
+    around_.push_back(candidate);
+    return;
+  }
+  constexpr double slack = 1e-12;  // more than the rounding of turn_of
+  const double from = turn_of(rightmost);
+  double to = turn_of(leftmost);
+  if (to < from) to += turns;
+  // In units of the finest bins; fill_bins makes them coarser.
+  constexpr double fine = most_bins / turns;
+  const double first = std::max(0.0, (from - slack) * fine);
+  stretches_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>((to + slack) * fine), 0});
+  unsorted_.push_back(candidate);
+}
+
+// By counting, coarsely: `nearest` then becomes the least of those that share a rank.
+void SightLines::sort_candidates() {
+  const std::size_t count = unsorted_.size();
+  double farthest = 0.0;
+  for (const Candidate& candidate : unsorted_) farthest = std::max(farthest, candidate.nearest);
+  const double a_metre = farthest > 0.0 ? static_cast<double>(ranks - 1) / farthest : 0.0;
+  std::array<std::uint32_t, ranks + 1> begin{};
+  std::array<double, ranks> least;
+  least.fill(infinity);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto rank = static_cast<std::uint32_t>(unsorted_[i].nearest * a_metre);
+    stretches_[i].rank = rank;
+    ++begin[rank + 1];
+    least[rank] = std::min(least[rank], unsorted_[i].nearest);
+  }
+  for (std::size_t rank = 0; rank < ranks; ++rank) begin[rank + 1] += begin[rank];
+  order_.resize(count);
+  candidates_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t place = begin[stretches_[i].rank]++;
+    order_[place] = static_cast<std::uint32_t>(i);
+    candidates_[place] = unsorted_[i];
+    candidates_[place].nearest = least[stretches_[i].rank];
+  }
+}
+
+void SightLines::fill_bins() {
+  const auto count = static_cast<std::uint32_t>(candidates_.size());
+  bins_ = std::bit_ceil(std::clamp(count, least_bins, most_bins));
+  bins_a_turn_ = static_cast<double>(bins_) / turns;
+  const int coarser = std::countr_zero(most_bins / bins_);
+  const auto for_each_bin = [&](const Stretch& stretch, auto&& act) {
+    const std::uint32_t first = stretch.first >> coarser;
+    const std::uint32_t last = std::min(stretch.last >> coarser, first + bins_ - 1);
+    for (std::uint32_t bin = first; bin <= last; ++bin) act(bin & (bins_ - 1));
+  };
+  begin_.assign(bins_ + 2, 0);
+  for (const Stretch& stretch : stretches_) for_each_bin(stretch, [&](std::uint32_t bin) { ++begin_[bin + 2]; });
+  for (std::uint32_t bin = 0; bin < bins_; ++bin) begin_[bin + 2] += begin_[bin + 1];
+  entries_.resize(begin_[bins_ + 1]);
+  for (std::uint32_t i = 0; i < count; ++i)
+    for_each_bin(stretches_[order_[i]], [&](std::uint32_t bin) { entries_[begin_[bin + 1]++] = i; });
+}
+
+bool SightLines::is_hit(std::uint32_t solid, const Line& line) const {
+  if (scene_->ball(solid).is_missed(p_WS_, line.direction_W, line.distance)) return false;
+  std::optional<RayHit> hit;
+  scene_->improve(hit, solid, p_WS_, line.direction_W, line.distance);
+  return hit.has_value();
+}
+
+bool SightLines::is_blocked_by(const Candidate& candidate, const Line& line) const {
+  if (candidate.body == line.receiver_body) return false;
+  const double middle = line.along.dot(candidate.centre);
+  const double beside = cross(line.along, candidate.centre);
+  // Every test is written so that what is not a number decides nothing.
+  if (std::abs(beside) > candidate.radius || middle - candidate.radius > line.length || middle + candidate.radius < 0.0)
+    return false;
+  const double entry_z = line.slope * std::max(middle - candidate.radius, 0.0);
+  const double exit_z = line.slope * std::min(middle + candidate.radius, line.length);
+  if (both_above(entry_z, exit_z, candidate.highest) || both_below(entry_z, exit_z, candidate.lowest)) return false;
+
+  const double at = std::clamp(middle, 0.0, line.length);
+  const double z = line.slope * at;
+  if ((at - middle) * (at - middle) + beside * beside < candidate.inner_radius_squared && z > candidate.inner_lowest &&
+      z < candidate.inner_highest)
+    return true;
+
+  if (candidate.rectangle != Outlines::none) {
+    const Rectangle& rectangle = rectangles_[candidate.rectangle];
+    const Vector2d offset = line.offset_W.head<2>();
+    const Vector2d receiver = rectangle.source + Vector2d(rectangle.axis.dot(offset), cross(rectangle.axis, offset));
+    for (int i = 0; i < 2; ++i)
+      if (both_above(rectangle.source[i], receiver[i], rectangle.half[i]) ||
+          both_below(rectangle.source[i], receiver[i], -rectangle.half[i]))
+        return false;
+  }
+  return is_hit(candidate.solid, line);
+}
+
+bool SightLines::is_free(const Vector3d& p_WR, std::uint32_t receiver_body) const {
+  Line line;
+  line.offset_W = p_WR - p_WS_;
+  line.distance = line.offset_W.norm();
+  if (line.distance == 0.0) return true;
+  if (!(line.distance <= range_)) return false;
+  line.direction_W = line.offset_W / line.distance;
+  line.length = line.offset_W.head<2>().norm();
+  if (line.length < negligible) line.length = 0.0;
+  line.receiver_body = receiver_body;
+  line.along = line.offset_W.head<2>() / line.length;
+  line.slope = line.offset_W.z() / line.length;
+
+  for (const HalfSpace& plane : planes_)
+    if (!both_above(plane.height, plane.height + plane.normal_W.dot(line.offset_W), plane.rounding) &&
+        plane.body != receiver_body && is_hit(plane.solid, line))
+      return false;
+  for (const Candidate& candidate : around_)
+    if (is_blocked_by(candidate, line)) return false;
+  for (const Unbounded& unbounded : unbounded_)
+    if (unbounded.body != receiver_body && is_hit(unbounded.solid, line)) return false;
+  if (line.length == 0.0) return true;  // upright: all that it may meet is around
+
+  const auto bin = std::min(static_cast<std::uint32_t>(turn_of(line.offset_W.head<2>()) * bins_a_turn_), bins_ - 1);
+  for (std::uint32_t i = begin_[bin]; i < begin_[bin + 1]; ++i) {
+    const Candidate& candidate = candidates_[entries_[i]];
+    if (candidate.nearest > line.length) break;
+    if (is_blocked_by(candidate, line)) return false;
+  }
+  return true;
+}
+
+}  // namespace cohort::geometry

@@ -14,15 +14,23 @@ using Eigen::Vector3d;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double turns = 4.0;          // that turn_of has in a full one
-constexpr double negligible = 1e-100;  // squares of lengths below this lose digits [m]
+constexpr double negligible = 1e-200;  // squares of lengths below this lose digits [m^2]
 constexpr std::uint32_t least_bins = 16;
-constexpr std::uint32_t most_bins = 1024;
+constexpr std::uint32_t most_bins = 256;
 constexpr std::size_t ranks = 256;  // that distances are sorted by
 
 // More than any rounding of lengths like this one. [m]
 double rounding_of(double length) { return 1e-7 + 1e-8 * length; }
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// Grows with the azimuth, from 0 along x to 4 at the full turn: the length along a square that stands on its corner,
+// which needs neither root nor arc tangent.
+double turn_of(const Vector2d& direction) {
+  const double across = direction.y() / (std::abs(direction.x()) + std::abs(direction.y()));
+  if (direction.x() < 0.0) return 2.0 - across;
+  return across < 0.0 ? turns + across : across;
+}
 
 bool both_above(double a, double b, double limit) { return a > limit && b > limit; }
 bool both_below(double a, double b, double limit) { return a < limit && b < limit; }
@@ -32,22 +40,12 @@ bool both_below(double a, double b, double limit) { return a < limit && b < limi
 /// From the source to a receiver.
 struct SightLines::Line {
   Vector3d offset_W;
-  Vector3d direction_W;
-  double distance;
   // Seen from above:
   double length;
-  Vector2d along;  // unit; undefined if the length is 0
+  Vector2d along;  // unit, within rounding; not a number if the length is 0
   double slope;
   std::uint32_t receiver_body;
 };
-
-// Grows with the azimuth, from 0 along x to 4 at the full turn: the length along a square that stands on its corner,
-// which needs neither root nor arc tangent.
-double SightLines::turn_of(const Vector2d& direction) {
-  const double across = direction.y() / (std::abs(direction.x()) + std::abs(direction.y()));
-  if (direction.x() < 0.0) return 2.0 - across;
-  return across < 0.0 ? turns + across : across;
-}
 
 void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double range, std::uint32_t source_body) {
   scene_ = &outlines.scene();
@@ -57,7 +55,7 @@ void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double ra
   unbounded_.clear();
   around_.clear();
   rectangles_.clear();
-  unsorted_.clear();
+  candidates_.clear();
   stretches_.clear();
   outlines.for_each_near(p_WS, range, [&](const Outlines::Item& item) {
     if (item.body != source_body) add(item);
@@ -91,8 +89,9 @@ void SightLines::add(const Outlines::Item& item) {
   candidate.radius = outline.radius + rounding;
   candidate.lowest = outline.lowest - p_WS_.z() - rounding;
   candidate.highest = outline.highest - p_WS_.z() + rounding;
-  if (const double inner = outline.inner_radius - rounding; inner > 0.0) {
-    candidate.inner_radius_squared = inner * inner;
+  if (const double inner = outline.inner_radius - rounding;
+      inner > 0.0 && outline.inner_highest - outline.inner_lowest > 2.0 * rounding) {
+    candidate.inner_radius = inner;
     candidate.inner_lowest = outline.inner_lowest - p_WS_.z() + rounding;
     candidate.inner_highest = outline.inner_highest - p_WS_.z() - rounding;
   }
@@ -122,6 +121,7 @@ void SightLines::add(const Outlines::Item& item) {
       if (cross(leftmost, corner) > 0.0) leftmost = corner;
     }
   }
+  candidate.farthest = distance + candidate.radius;
   if (candidate.nearest <= rounding) {
     around_.push_back(candidate);
     return;
@@ -134,33 +134,43 @@ void SightLines::add(const Outlines::Item& item) {
   constexpr double fine = most_bins / turns;
   const double first = std::max(0.0, (from - slack) * fine);
   stretches_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>((to + slack) * fine), 0});
-  unsorted_.push_back(candidate);
+  candidates_.push_back(candidate);
 }
 
-// By counting, coarsely: `nearest` then becomes the least of those that share a rank.
+// By counting, coarsely: within a rank the order stays. `nearest` then becomes the least of those that share a rank.
 void SightLines::sort_candidates() {
-  const std::size_t count = unsorted_.size();
+  const std::size_t count = candidates_.size();
   double farthest = 0.0;
-  for (const Candidate& candidate : unsorted_) farthest = std::max(farthest, candidate.nearest);
+  for (const Candidate& candidate : candidates_) farthest = std::max(farthest, candidate.nearest);
   const double a_metre = farthest > 0.0 ? static_cast<double>(ranks - 1) / farthest : 0.0;
   std::array<std::uint32_t, ranks + 1> begin{};
   std::array<double, ranks> least;
   least.fill(infinity);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto rank = static_cast<std::uint32_t>(unsorted_[i].nearest * a_metre);
+    const auto rank = static_cast<std::uint32_t>(candidates_[i].nearest * a_metre);
     stretches_[i].rank = rank;
     ++begin[rank + 1];
-    least[rank] = std::min(least[rank], unsorted_[i].nearest);
+    least[rank] = std::min(least[rank], candidates_[i].nearest);
   }
   for (std::size_t rank = 0; rank < ranks; ++rank) begin[rank + 1] += begin[rank];
   order_.resize(count);
-  candidates_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t place = begin[stretches_[i].rank]++;
-    order_[place] = static_cast<std::uint32_t>(i);
-    candidates_[place] = unsorted_[i];
-    candidates_[place].nearest = least[stretches_[i].rank];
+    order_[begin[stretches_[i].rank]++] = static_cast<std::uint32_t>(i);
+    candidates_[i].nearest = least[stretches_[i].rank];
   }
+}
+
+SightLines::Entry SightLines::entry_of(const Candidate& candidate) {
+  constexpr float rounding = 1e-6F;  // some ulps of a float
+  const double least = candidate.lowest / (candidate.lowest < 0.0 ? candidate.nearest : candidate.farthest);
+  const double most = candidate.highest / (candidate.highest > 0.0 ? candidate.nearest : candidate.farthest);
+  Entry entry;
+  entry.nearest = static_cast<float>(candidate.nearest) * (1.0F - rounding);
+  entry.least_slope = static_cast<float>(least);
+  entry.least_slope -= rounding * std::abs(entry.least_slope);
+  entry.most_slope = static_cast<float>(most);
+  entry.most_slope += rounding * std::abs(entry.most_slope);
+  return entry;
 }
 
 void SightLines::fill_bins() {
@@ -177,34 +187,53 @@ void SightLines::fill_bins() {
   for (const Stretch& stretch : stretches_) for_each_bin(stretch, [&](std::uint32_t bin) { ++begin_[bin + 2]; });
   for (std::uint32_t bin = 0; bin < bins_; ++bin) begin_[bin + 2] += begin_[bin + 1];
   entries_.resize(begin_[bins_ + 1]);
-  for (std::uint32_t i = 0; i < count; ++i)
-    for_each_bin(stretches_[order_[i]], [&](std::uint32_t bin) { entries_[begin_[bin + 1]++] = i; });
+  for (const std::uint32_t candidate : order_) {
+    Entry entry = entry_of(candidates_[candidate]);
+    entry.candidate = candidate;
+    for_each_bin(stretches_[candidate], [&](std::uint32_t bin) { entries_[begin_[bin + 1]++] = entry; });
+  }
 }
 
 bool SightLines::is_hit(std::uint32_t solid, const Line& line) const {
-  if (scene_->ball(solid).is_missed(p_WS_, line.direction_W, line.distance)) return false;
+  const double distance = line.offset_W.norm();
+  const Vector3d direction_W = line.offset_W / distance;
+  if (scene_->ball(solid).is_missed(p_WS_, direction_W, distance)) return false;
   std::optional<RayHit> hit;
-  scene_->improve(hit, solid, p_WS_, line.direction_W, line.distance);
+  scene_->improve(hit, solid, p_WS_, direction_W, distance);
   return hit.has_value();
 }
 
-bool SightLines::is_blocked_by(const Candidate& candidate, const Line& line) const {
-  if (candidate.body == line.receiver_body) return false;
+inline bool SightLines::is_blocked_by(const Candidate& candidate, const Line& line) const {
+  // Every test is written so that what is not a number decides nothing.
   const double middle = line.along.dot(candidate.centre);
   const double beside = cross(line.along, candidate.centre);
-  // Every test is written so that what is not a number decides nothing.
-  if (std::abs(beside) > candidate.radius || middle - candidate.radius > line.length || middle + candidate.radius < 0.0)
-    return false;
-  const double entry_z = line.slope * std::max(middle - candidate.radius, 0.0);
-  const double exit_z = line.slope * std::min(middle + candidate.radius, line.length);
-  if (both_above(entry_z, exit_z, candidate.highest) || both_below(entry_z, exit_z, candidate.lowest)) return false;
-
+  const double squared = candidate.radius * candidate.radius - beside * beside;
+  if (squared < 0.0 || candidate.body == line.receiver_body) return false;
+  const double inner_squared = candidate.inner_radius * candidate.inner_radius - beside * beside;
+  const bool meets_inner = candidate.inner_radius > 0.0 && inner_squared > 0.0;
+  // The first test spares a root, and finds most of what is met.
   const double at = std::clamp(middle, 0.0, line.length);
-  const double z = line.slope * at;
-  if ((at - middle) * (at - middle) + beside * beside < candidate.inner_radius_squared && z > candidate.inner_lowest &&
-      z < candidate.inner_highest)
+  const double at_z = line.slope * at;
+  if (meets_inner && (at - middle) * (at - middle) < inner_squared && at_z > candidate.inner_lowest &&
+      at_z < candidate.inner_highest)
     return true;
-
+  const double half = std::sqrt(squared);
+  const double entry = std::max(middle - half, 0.0);
+  const double exit = std::min(middle + half, line.length);
+  if (entry > exit) return false;
+  if (both_above(line.slope * entry, line.slope * exit, candidate.highest) ||
+      both_below(line.slope * entry, line.slope * exit, candidate.lowest))
+    return false;
+  if (meets_inner) {
+    const double inner_half = std::sqrt(inner_squared);
+    const double first = std::max(middle - inner_half, 0.0);
+    const double last = std::min(middle + inner_half, line.length);
+    const double first_z = line.slope * first;
+    const double last_z = line.slope * last;
+    if (first <= last && std::min(first_z, last_z) <= candidate.inner_highest &&
+        std::max(first_z, last_z) >= candidate.inner_lowest)
+      return true;
+  }
   if (candidate.rectangle != Outlines::none) {
     const Rectangle& rectangle = rectangles_[candidate.rectangle];
     const Vector2d offset = line.offset_W.head<2>();
@@ -217,18 +246,26 @@ bool SightLines::is_blocked_by(const Candidate& candidate, const Line& line) con
   return is_hit(candidate.solid, line);
 }
 
+// Only a square that is this close to the range's leaves open which is the longer.
+bool SightLines::is_within_range(const Vector3d& offset_W, double squared) const {
+  constexpr double rounding = 1e-12;
+  const double limit = range_ * range_;
+  if (squared < limit * (1.0 - rounding)) return true;
+  return !(squared > limit * (1.0 + rounding)) && offset_W.norm() <= range_;
+}
+
 bool SightLines::is_free(const Vector3d& p_WR, std::uint32_t receiver_body) const {
   Line line;
   line.offset_W = p_WR - p_WS_;
-  line.distance = line.offset_W.norm();
-  if (line.distance == 0.0) return true;
-  if (!(line.distance <= range_)) return false;
-  line.direction_W = line.offset_W / line.distance;
-  line.length = line.offset_W.head<2>().norm();
-  if (line.length < negligible) line.length = 0.0;
+  const double level_squared = line.offset_W.head<2>().squaredNorm();
+  const double squared = level_squared + line.offset_W.z() * line.offset_W.z();
+  if (squared == 0.0) return true;
+  if (!is_within_range(line.offset_W, squared)) return false;
+  line.length = level_squared < negligible ? 0.0 : std::sqrt(level_squared);
   line.receiver_body = receiver_body;
-  line.along = line.offset_W.head<2>() / line.length;
-  line.slope = line.offset_W.z() / line.length;
+  const double inverse = 1.0 / line.length;
+  line.along = inverse * line.offset_W.head<2>();
+  line.slope = inverse * line.offset_W.z();
 
   for (const HalfSpace& plane : planes_)
     if (!both_above(plane.height, plane.height + plane.normal_W.dot(line.offset_W), plane.rounding) &&
@@ -241,10 +278,13 @@ bool SightLines::is_free(const Vector3d& p_WR, std::uint32_t receiver_body) cons
   if (line.length == 0.0) return true;  // upright: all that it may meet is around
 
   const auto bin = std::min(static_cast<std::uint32_t>(turn_of(line.offset_W.head<2>()) * bins_a_turn_), bins_ - 1);
+  const auto slope = static_cast<float>(line.slope);
+  const auto length = static_cast<float>(line.length);
   for (std::uint32_t i = begin_[bin]; i < begin_[bin + 1]; ++i) {
-    const Candidate& candidate = candidates_[entries_[i]];
-    if (candidate.nearest > line.length) break;
-    if (is_blocked_by(candidate, line)) return false;
+    const Entry& entry = entries_[i];
+    if (entry.nearest > length) break;
+    if (slope < entry.least_slope || slope > entry.most_slope) continue;
+    if (is_blocked_by(candidates_[entry.candidate], line)) return false;
   }
   return true;
 }

@@ -12,8 +12,9 @@ namespace cohort::geometry {
 /// number of receivers.
 ///
 /// The directions around the source, seen from above, are cut into bins. Each bin has the solids that reach into it,
-/// near ones first, so that a question goes through those between the two ends, and most of these are decided by their
-/// outline. The others are asked themselves, as Scene::cast_ray asks them; so the answers are the same.
+/// near ones first, each with the slopes at which a line may meet it. So a question goes through those between the two
+/// ends that are neither above nor below the line, and most of these are decided by their outline. The others are asked
+/// themselves, as Scene::cast_ray asks them; so the answers are the same.
 class SightLines {
  public:
   /// Takes the place of what was built before. `p_WS`: the source [m]. Beyond `range` [m], which may be infinite,
@@ -33,12 +34,13 @@ class SightLines {
   /// A solid as seen from the source: all lengths are relative to it. Outer bounds are a little too large and inner
   /// ones a little too small, against rounding.
   struct Candidate {
-    double nearest = 0.0;  // no point of it is nearer along x and y, within rounding [m]
+    double nearest = 0.0;  // no point of it is nearer along x and y [m]
+    double farthest = 0.0;
     Eigen::Vector2d centre;
     double radius = 0.0;
     double lowest = 0.0;
     double highest = 0.0;
-    double inner_radius_squared = -1.0;
+    double inner_radius = -1.0;
     double inner_lowest = 0.0;
     double inner_highest = 0.0;
     std::uint32_t solid = 0;
@@ -58,6 +60,13 @@ class SightLines {
     std::uint32_t solid = 0;
     std::uint32_t body = 0;
   };
+  /// A candidate in a bin, with what leaves it out: rounded outward.
+  struct Entry {
+    float nearest = 0.0F;      // as of the candidate
+    float least_slope = 0.0F;  // of lines that may meet it: metres up for each metre along
+    float most_slope = 0.0F;
+    std::uint32_t candidate = 0;
+  };
   /// Bins that a candidate reaches into; `last` may be beyond the number of bins and go on from the first.
   struct Stretch {
     std::uint32_t first = 0;
@@ -68,10 +77,11 @@ class SightLines {
 
   void add(const Outlines::Item& item);
   void sort_candidates();
+  static Entry entry_of(const Candidate& candidate);
   void fill_bins();
   bool is_blocked_by(const Candidate& candidate, const Line& line) const;
   bool is_hit(std::uint32_t solid, const Line& line) const;
-  static double turn_of(const Eigen::Vector2d& direction);
+  bool is_within_range(const Eigen::Vector3d& offset_W, double squared) const;
 
   const Scene* scene_ = nullptr;
   Eigen::Vector3d p_WS_ = Eigen::Vector3d::Zero();
@@ -85,14 +95,13 @@ class SightLines {
   };
   std::vector<Unbounded> unbounded_;   // that no outline holds
   std::vector<Candidate> around_;      // those that the source is in or below or above
-  std::vector<Candidate> candidates_;  // the others, near ones first
+  std::vector<Candidate> candidates_;  // the others
   std::vector<Rectangle> rectangles_;
   std::vector<std::uint32_t> begin_;  // of each bin in entries_, and one past the last
-  std::vector<std::uint32_t> entries_;
+  std::vector<Entry> entries_;
   // While it is built:
-  std::vector<Candidate> unsorted_;
   std::vector<Stretch> stretches_;
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> order_;  // of candidates_, near ones first
 };
 
 }  // namespace cohort::geometry

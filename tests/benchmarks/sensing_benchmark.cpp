@@ -1,9 +1,13 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <memory>
+#include <limits>
+#include <optional>
+#include <vector>
 
 #include "server/core/random.hpp"
+#include "server/geometry/panorama.hpp"
+#include "server/geometry/shadow_ring.hpp"
 #include "server/geometry/sight_lines.hpp"
 
 // What sensors ask of the scene: an arena of 10 m x 10 m with a floor, four walls and 1000 robots, discs with a radius
@@ -147,6 +151,66 @@ void hear_robots(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(pairs));
 }
 BENCHMARK(hear_robots)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
+
+// 360 directions round each robot, 20 cm from its rim.
+void cast_shadows(benchmark::State& state) {
+  const Arena arena(static_cast<std::uint32_t>(state.range(0)));
+  const ShadowRing ring(360);
+  std::vector<double> distances(ring.size());
+  for ([[maybe_unused]] auto iteration : state)
+    for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
+      ring.cast(arena.scene, arena.scene.solid(robot).X_WC.position, 0.1 * robot, radius + 0.2, robot, distances);
+      benchmark::DoNotOptimize(distances.data());
+    }
+  state.SetItemsProcessed(state.iterations() * arena.robots);  // rings
+}
+BENCHMARK(cast_shadows)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+constexpr std::size_t columns = 180;
+constexpr std::size_t rows = 32;
+constexpr double camera_range = 20.0;  // beyond the arena
+
+Panorama camera() {
+  std::vector<double> elevations;
+  for (std::size_t row = 0; row < rows; ++row) elevations.push_back(-0.6 + 0.03 * static_cast<double>(row));
+  return {columns, elevations};
+}
+Pose camera_of(const Arena& arena, std::uint32_t robot) {
+  Pose X_WS = arena.scene.solid(robot).X_WC;
+  X_WS.position.z() = 0.15;
+  return X_WS;
+}
+
+void see_panorama(benchmark::State& state) {
+  const Arena arena(100);
+  const Panorama panorama = camera();
+  std::vector<std::optional<RayHit>> image(columns * rows);
+  const Outlines outlines(arena.scene);
+  std::uint32_t robot = 0;
+  for ([[maybe_unused]] auto iteration : state) {
+    panorama.cast(outlines, camera_of(arena, robot), camera_range, robot, image);
+    benchmark::DoNotOptimize(image.data());
+    robot = (robot + 1) % arena.robots;
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(columns * rows));
+}
+BENCHMARK(see_panorama)->Unit(benchmark::kMicrosecond);
+
+// The same pixels by plain rays.
+void see_panorama_by_rays(benchmark::State& state) {
+  const Arena arena(100);
+  const Panorama panorama = camera();
+  std::uint32_t robot = 0;
+  for ([[maybe_unused]] auto iteration : state) {
+    const Pose X_WS = camera_of(arena, robot);
+    for (std::size_t i = 0; i < columns * rows; ++i)
+      benchmark::DoNotOptimize(
+          arena.scene.cast_ray(X_WS.position, X_WS.orientation * panorama.direction(i), camera_range, robot));
+    robot = (robot + 1) % arena.robots;
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(columns * rows));
+}
+BENCHMARK(see_panorama_by_rays)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace cohort::geometry

@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Scene scene_of(const Shape& shape, const Pose& X_WC) {
   Scene scene;
-  scene.add({shape, {}, 0, true, X_WC});
+  scene.add({shape, {}, 0, !is_ground(shape), X_WC});
   scene.build();
   return scene;
 }

@@ -50,6 +50,14 @@ struct Arena {
 
 constexpr std::uint32_t lamps = 24;
 
+// Where each robot has its light sensor.
+std::vector<Vector3d> sensors_of(const Arena& arena) {
+  std::vector<Vector3d> sensors;
+  for (std::uint32_t robot = 0; robot < arena.robots; ++robot)
+    sensors.push_back(arena.scene.solid(robot).X_WC * Vector3d(0.05, 0.0, 0.04));
+  return sensors;
+}
+
 Vector3d lamp_of(const Arena& arena, std::uint32_t lamp, double z) { return arena.place(1'000'000 + lamp, z); }
 
 // All that a tick takes: outlines, 24 lamps, and each robot's question about each lamp. The argument is the height of
@@ -60,11 +68,12 @@ void see_lamps(benchmark::State& state) {
   std::size_t seen = 0;
   for ([[maybe_unused]] auto iteration : state) {
     const Outlines outlines(arena.scene);
+    const std::vector<Vector3d> sensors = sensors_of(arena);
     for (std::uint32_t lamp = 0; lamp < lamps; ++lamp) {
       lines[lamp].build(outlines, lamp_of(arena, lamp, 0.01 * static_cast<double>(state.range(0))),
                         std::numeric_limits<double>::infinity());
       for (std::uint32_t robot = 0; robot < arena.robots; ++robot)
-        seen += lines[lamp].is_free(arena.scene.solid(robot).X_WC * Vector3d(0.05, 0.0, 0.04), robot) ? 1 : 0;
+        seen += lines[lamp].is_free(sensors[robot], robot) ? 1 : 0;
     }
   }
   state.SetItemsProcessed(state.iterations() * lamps * arena.robots);
@@ -79,12 +88,12 @@ void see_lamps_robot_by_robot(benchmark::State& state) {
   std::size_t seen = 0;
   for ([[maybe_unused]] auto iteration : state) {
     const Outlines outlines(arena.scene);
+    const std::vector<Vector3d> sensors = sensors_of(arena);
     for (std::uint32_t lamp = 0; lamp < lamps; ++lamp)
       lines[lamp].build(outlines, lamp_of(arena, lamp, 0.01 * static_cast<double>(state.range(0))),
                         std::numeric_limits<double>::infinity());
     for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
-      const Vector3d sensor = arena.scene.solid(robot).X_WC * Vector3d(0.05, 0.0, 0.04);
-      for (const SightLines& line : lines) seen += line.is_free(sensor, robot) ? 1 : 0;
+      for (const SightLines& line : lines) seen += line.is_free(sensors[robot], robot) ? 1 : 0;
     }
   }
   state.SetItemsProcessed(state.iterations() * lamps * arena.robots);
@@ -116,15 +125,17 @@ BENCHMARK(gather_outlines)->Unit(benchmark::kMicrosecond);
 void see_lamps_by_rays(benchmark::State& state) {
   const Arena arena(1000);
   std::size_t seen = 0;
-  for ([[maybe_unused]] auto iteration : state)
+  for ([[maybe_unused]] auto iteration : state) {
+    const std::vector<Vector3d> sensors = sensors_of(arena);
     for (std::uint32_t lamp = 0; lamp < lamps; ++lamp) {
       const Vector3d source = lamp_of(arena, lamp, 0.01 * static_cast<double>(state.range(0)));
       for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
-        const Vector3d offset = arena.scene.solid(robot).X_WC * Vector3d(0.05, 0.0, 0.04) - source;
+        const Vector3d offset = sensors[robot] - source;
         const double distance = offset.norm();
         seen += arena.scene.cast_ray(source, offset / distance, distance, robot) ? 0 : 1;
       }
     }
+  }
   state.SetItemsProcessed(state.iterations() * lamps * arena.robots);
   state.counters["seen"] = static_cast<double>(seen) / static_cast<double>(state.iterations() * lamps * arena.robots);
 }

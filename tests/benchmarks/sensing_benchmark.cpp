@@ -9,6 +9,7 @@
 #include "server/geometry/panorama.hpp"
 #include "server/geometry/shadow_ring.hpp"
 #include "server/geometry/sight_lines.hpp"
+#include "server/sensing/sample_table.hpp"
 
 // What sensors ask of the scene: an arena of 10 m x 10 m with a floor, four walls and 1000 robots, discs with a radius
 // of 6 cm.
@@ -222,6 +223,26 @@ void see_panorama_by_rays(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(columns * rows));
 }
 BENCHMARK(see_panorama_by_rays)->Unit(benchmark::kMicrosecond);
+
+// One object's 15 readings out of 20 distances and 72 angles.
+void look_up_samples(benchmark::State& state) {
+  const RandomStream random(2, "sensing_benchmark", "samples");
+  description::Samples samples;
+  for (std::uint64_t i = 0; i < 20; ++i) samples.distances.push_back(0.01 * static_cast<double>(i));
+  for (std::uint64_t i = 0; i < 72; ++i) samples.angles.push_back(0.087 * static_cast<double>(i));
+  samples.units.assign(15, "1");
+  for (std::uint64_t i = 0; i < 20 * 72 * 15; ++i) samples.readings.push_back(random.uniform(i, 0));
+  const sensing::SampleTable table(samples);
+  std::vector<double> values(table.count(), 0.0);
+  std::uint64_t n = 0;
+  for ([[maybe_unused]] auto iteration : state) {
+    table.keep_greatest(0.2 * static_cast<double>(n % 97) / 97.0, 0.1 * static_cast<double>(n % 131), values);
+    benchmark::DoNotOptimize(values.data());
+    ++n;
+  }
+  state.SetItemsProcessed(state.iterations());  // objects
+}
+BENCHMARK(look_up_samples);
 
 }  // namespace
 }  // namespace cohort::geometry

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+
+#include "server/description/sample_file.hpp"
+
+namespace cohort::sensing {
+
+/// Readings of a real sensor by where an object is (thesis, section 2.3.2), between the places that were sampled too.
+/// With several objects, proximity keeps the greatest reading of each sensor, light and sound their sum
+/// (sections 3.2.1, 3.2.3 and 3.2.4). Const, and callable from any thread.
+class SampleTable {
+ public:
+  /// Throws std::invalid_argument if the samples are not a full grid as `Samples` says.
+  explicit SampleTable(description::Samples samples);
+
+  std::size_t count() const { return samples_.count(); }  ///< of readings at each place
+
+  /// Reading number `index` of an object at this distance [m] and angle [rad] from the robot's front: bilinear between
+  /// the four places around it. Angles go round, whatever turns they have. Nearer than the first distance the reading
+  /// is as there; beyond the last one it is 0. Both must be finite.
+  double reading(double distance, double angle, std::size_t index) const;
+
+  /// Makes each of `count()` values the greater of itself and the object's reading.
+  void keep_greatest(double distance, double angle, std::span<double> values) const;
+  /// Adds the object's readings to `count()` values.
+  void add(double distance, double angle, std::span<double> values) const;
+
+ private:
+  /// Places around, and the share of the second and of the farther ones.
+  struct Cell {
+    std::size_t near_row = 0, far_row = 0;
+    std::size_t first = 0, second = 0;  // angles
+    double far_share = 0.0;
+    double second_share = 0.0;
+  };
+  Cell cell_of(double distance, double angle) const;
+  double interpolate(const Cell& cell, std::size_t index) const;
+  bool is_beyond(double distance) const { return distance > samples_.distances.back(); }
+
+  description::Samples samples_;
+};
+
+}  // namespace cohort::sensing

@@ -60,8 +60,9 @@ TEST(RangeAndBearing, ReportsTheNearestWhereMoreAreHeardThanFit) {
     const double angle = 1.0 * i, distance = 1.2 - 0.1 * i;
     world.add(talking_robot(2.0, 3), "talking" + std::to_string(i),
               at(distance * std::cos(angle), distance * std::sin(angle), 0));
-    world.command(static_cast<std::uint32_t>(i + 1), "rab/0/sending", {1.0, static_cast<double>(i), 0.0});
   }
+  for (int i = 0; i < 6; ++i)
+    world.command(static_cast<std::uint32_t>(i + 1), "rab/0/sending", {1.0, static_cast<double>(i), 0.0});
   world.step();
   EXPECT_EQ(world.read(0, "rab/0/count"), 3.0);
   for (std::size_t i = 0; i < 3; ++i)

@@ -69,6 +69,10 @@ struct Assembly {
   /// Tells the records what acted on their bodies in this step; after it, before anything is released or taken out. One
   /// thread alone.
   void record_outside();
+  /// Whether an end is on a light part of its body.
+  bool is_light(const Connection::End& end) const {
+    return end.member != Anchors::nobody && members[end.member].multibody->mechanism().is_light(end.segment);
+  }
   /// X_WS of the segment that an end is on; of the world's none.
   Pose pose_of(const Connection::End& end) const {
     return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->segment_pose(end.segment);

@@ -32,6 +32,8 @@ struct Row {
   int load_end = 0;
   Limits limits = Limits::fixed;
 
+  int body_a = -1;  ///< in the problem
+  int body_b = -1;  ///< -1: only one body
   double* velocity_a = nullptr;
   double* velocity_b = nullptr;  ///< null: only one body
   std::ptrdiff_t stride_a = 0;

@@ -6,7 +6,10 @@
 namespace cohort::physics {
 namespace {
 
-constexpr int most_guesses = 8;
+// Solutions, each with the friction limits that follow from the loads of the one before, and guesses for one of them.
+constexpr int most_solutions = 12;
+constexpr int most_guesses = 40;
+constexpr double limit_tolerance = 1e-7;  // [N s or N m s]
 // Multiplications of one factorisation, above which sequential impulses are cheaper.
 constexpr double most_work = 3e6;
 // Each row gives way by this share of its own response. Legs on the floor have no unique loads without; and where
@@ -26,21 +29,41 @@ bool GroupSolver::solve(Problem& problem) {
   if (!find_envelope(problem)) return false;
   gather(problem);
   place_by_last_impulses();
-  const bool has_cones =
-      std::any_of(rows_->begin(), rows_->end(), [](const Row& row) { return row.limits == Row::Limits::cone; });
-  for (int guess = 0; guess < most_guesses; ++guess) {
-    solve_between();
-    const bool limits_hold = set_limits();
-    if (!places_hold() || !limits_hold) continue;
-    if (has_cones) break;  // solved as pyramids
-    apply(problem);
-    return true;
+  is_factorised_ = false;
+  for (int solution = 0; solution < most_solutions; ++solution) {
+    if (!solve_within_limits()) return false;
+    if (set_limits() <= limit_tolerance) break;
   }
-  // A start that is within all limits.
-  for (int p = 0; p < count_; ++p) {
-    Row& row = problem.rows()[at(row_of_[at(p)])];
-    const double impulse = std::clamp(impulses_[at(p)], lower_[at(p)], upper_[at(p)]);
-    if (std::isfinite(impulse)) row.impulse = impulse;
+  apply(problem);
+  return true;
+}
+
+// With the limits as they are, which is a linear complementarity problem: all rows that disagree with their place move
+// at once while that mends something, and one at a time where it does not (Judice and Pires, "A block principal
+// pivoting algorithm for large-scale strictly monotone linear complementarity problems", Computers and Operations
+// Research 21, 1994).
+bool GroupSolver::solve_within_limits() {
+  constexpr int most_blocks_in_vain = 3;
+  int fewest = count_ + 1;
+  int blocks_left = most_blocks_in_vain;
+  for (int guess = 0; guess < most_guesses; ++guess) {
+    if (!is_factorised_) factorise();
+    solve_between();
+    const int wrong = find_wrong_places();
+    if (wrong == 0) return true;
+    if (wrong < fewest) {
+      fewest = wrong;
+      blocks_left = most_blocks_in_vain;
+    } else {
+      --blocks_left;
+    }
+    bool goes_on = true;
+    for (int p = count_ - 1; p >= 0 && goes_on; --p) {
+      if (places_[at(p)] == better_[at(p)]) continue;
+      places_[at(p)] = better_[at(p)];
+      goes_on = blocks_left >= 0;
+    }
+    is_factorised_ = false;
   }
   return false;
 }
@@ -168,9 +191,9 @@ void GroupSolver::place_by_last_impulses() {
   }
 }
 
-// From the impulses as they are. False if that moved the limit of a row that is at it.
-bool GroupSolver::set_limits() {
-  bool hold = true;
+// From the impulses as they are. The greatest change of the limit of a row that is at it.
+double GroupSolver::set_limits() {
+  double greatest = 0.0;
   for (int p = 0; p < count_; ++p) {
     const Row* row = &(*rows_)[at(row_of_[at(p)])];
     if (row->inverse == 0.0) continue;  // both limits are zero
@@ -183,28 +206,18 @@ bool GroupSolver::set_limits() {
     double load = 0.0;
     for (int j = row->load_begin; j < row->load_end; ++j) load += impulses_[at(position_of_[at(j)])];
     const double limit = std::max(0.0, std::min(row->cap, row->friction * load));
-    if (places_[at(p)] != Place::between && std::abs(limit - upper_[at(p)]) > impulse_tolerance) hold = false;
+    // What is between its limits may be beyond the new ones.
+    if (places_[at(p)] != Place::between || std::abs(impulses_[at(p)]) > limit)
+      greatest = std::max(greatest, std::abs(limit - upper_[at(p)]));
     lower_[at(p)] = -limit;
     upper_[at(p)] = limit;
   }
-  return hold;
+  return greatest;
 }
 
-// The impulses of the rows in between, with the others at their limits: L D L', without the rows at a limit.
-void GroupSolver::solve_between() {
-  x_ = wanted_;
+// L D L' of the rows in between.
+void GroupSolver::factorise() {
   inverse_.assign(at(count_), 0.0);
-  for (int p = 0; p < count_; ++p)
-    if (places_[at(p)] != Place::between)
-      impulses_[at(p)] = places_[at(p)] == Place::lower ? lower_[at(p)] : upper_[at(p)];
-  for (int p = 0; p < count_; ++p) {
-    const bool is_bound = places_[at(p)] != Place::between;
-    for (int q = start_[at(p)]; q < p; ++q) {
-      const bool other_is_bound = places_[at(q)] != Place::between;
-      if (other_is_bound && !is_bound) x_[at(p)] -= gain(p, q) * impulses_[at(q)];
-      if (is_bound && !other_is_bound) x_[at(q)] -= gain(p, q) * impulses_[at(p)];
-    }
-  }
   for (int p = 0; p < count_; ++p) {
     const int start = start_[at(p)];
     double* const factors = factors_.data() + begin_[at(p)];  // first L D, then L; of column q at q - start
@@ -225,17 +238,36 @@ void GroupSolver::solve_between() {
       factors[q - start] = value;
     }
     double diagonal = gain(p, p);
-    double right = x_[at(p)];
     for (int q = start; q < p; ++q) {
       const double factor = factors[q - start] * inverse_[at(q)];
       diagonal -= factor * factors[q - start];
-      right -= factor * x_[at(q)];
       factors[q - start] = factor;
     }
     inverse_[at(p)] = 1.0 / diagonal;
-    x_[at(p)] = right;
   }
-  for (int p = 0; p < count_; ++p) x_[at(p)] *= inverse_[at(p)];
+  is_factorised_ = true;
+}
+
+// The impulses of the rows in between, with the others at their limits.
+void GroupSolver::solve_between() {
+  x_ = wanted_;
+  for (int p = 0; p < count_; ++p)
+    if (places_[at(p)] != Place::between)
+      impulses_[at(p)] = places_[at(p)] == Place::lower ? lower_[at(p)] : upper_[at(p)];
+  for (int p = 0; p < count_; ++p) {
+    const bool is_bound = places_[at(p)] != Place::between;
+    for (int q = start_[at(p)]; q < p; ++q) {
+      const bool other_is_bound = places_[at(q)] != Place::between;
+      if (other_is_bound && !is_bound) x_[at(p)] -= gain(p, q) * impulses_[at(q)];
+      if (is_bound && !other_is_bound) x_[at(q)] -= gain(p, q) * impulses_[at(p)];
+    }
+  }
+  for (int p = 0; p < count_; ++p) {
+    if (places_[at(p)] != Place::between) continue;
+    const double* const factors = factors_.data() + begin_[at(p)];
+    for (int q = start_[at(p)]; q < p; ++q) x_[at(p)] -= factors[q - start_[at(p)]] * x_[at(q)];
+  }
+  for (int p = 0; p < count_; ++p) x_[at(p)] *= inverse_[at(p)];  // zero for what is at a limit
   for (int p = count_ - 1; p >= 0; --p) {
     if (places_[at(p)] != Place::between) continue;
     impulses_[at(p)] = x_[at(p)];
@@ -244,9 +276,8 @@ void GroupSolver::solve_between() {
   }
 }
 
-// Whether the impulses agree with the guess; if not, moves the rows that do not.
-bool GroupSolver::places_hold() {
-  bool hold = true;
+// How many rows disagree with their place, and where each is to be instead.
+int GroupSolver::find_wrong_places() {
   x_ = wanted_;  // what is missing
   for (int p = 0; p < count_; ++p) {
     x_[at(p)] -= gain(p, p) * impulses_[at(p)];
@@ -255,9 +286,10 @@ bool GroupSolver::places_hold() {
       x_[at(q)] -= gain(p, q) * impulses_[at(p)];
     }
   }
+  int wrong = 0;
+  better_ = places_;
   for (int p = 0; p < count_; ++p) {
-    Place& place = places_[at(p)];
-    const Place before = place;
+    Place& place = better_[at(p)];
     if (place == Place::between) {
       if (impulses_[at(p)] < lower_[at(p)] - impulse_tolerance) place = Place::lower;
       if (impulses_[at(p)] > upper_[at(p)] + impulse_tolerance) place = Place::upper;
@@ -265,9 +297,9 @@ bool GroupSolver::places_hold() {
       if (place == Place::lower && x_[at(p)] > velocity_tolerance) place = Place::between;
       if (place == Place::upper && x_[at(p)] < -velocity_tolerance) place = Place::between;
     }
-    hold = hold && place == before;
+    if (place != places_[at(p)]) ++wrong;
   }
-  return hold;
+  return wrong;
 }
 
 void GroupSolver::apply(Problem& problem) {

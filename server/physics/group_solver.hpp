@@ -8,18 +8,17 @@
 
 namespace cohort::physics {
 
-/// Solves the rows of a few bodies that hold each other at once: guesses which rows are at a limit, at first those that
-/// were so in the last step, solves the others as linear equations, and mends the guess, as solve_by_active_set does
-/// for one body. For connections at light links, such as an arm that lifts a robot, where sequential impulses need
-/// hundreds of passes. The equations are factorised within their envelope (George and Liu, "Computer solution of large
-/// sparse positive definite systems", 1981, chapter 4), with the bodies in the order of Cuthill and McKee: its cost
-/// grows with the number of rows where bodies form a chain or a tree.
+/// Solves the rows of bodies that hold each other at once: guesses which rows are at a limit, at first those that were
+/// so in the last step, solves the others as linear equations, and mends the guess until every row agrees with it, as
+/// solve_by_active_set does for one body. For connections at light links, such as an arm that lifts a robot, where
+/// sequential impulses need hundreds of passes. Friction in a disc is a pyramid here, as in solve_directly.
 ///
-/// Keeps its memory: one for each worker.
+/// The equations are factorised within their envelope (George and Liu, "Computer solution of large sparse positive
+/// definite systems", 1981, chapter 4), with the bodies in the order of Cuthill and McKee: the cost grows with the
+/// number of rows where bodies form a chain or a tree. Keeps its memory: one for each worker.
 class GroupSolver {
  public:
-  /// True if a guess held: it is solved. False: either nothing changed, as it would cost too much, or the rows have the
-  /// impulses of the last guess, a good start for sequential impulses.
+  /// False, and nothing changed, if it would cost too much or no guess held.
   bool solve(Problem& problem);
 
  private:
@@ -31,9 +30,11 @@ class GroupSolver {
   bool find_envelope(const Problem& problem);
   void gather(const Problem& problem);
   void place_by_last_impulses();
-  bool set_limits();
+  double set_limits();
+  bool solve_within_limits();
+  void factorise();
   void solve_between();
-  bool places_hold();
+  int find_wrong_places();
   void apply(Problem& problem);
   double& gain(int p, int q) { return gains_[begin_[at(p)] + at(q - start_[at(p)])]; }
 
@@ -58,6 +59,8 @@ class GroupSolver {
   std::vector<double> inverse_;
   std::vector<double> x_;
   std::vector<Place> places_;
+  std::vector<Place> better_;
+  bool is_factorised_ = false;
 };
 
 }  // namespace cohort::physics

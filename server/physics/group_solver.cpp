@@ -8,7 +8,7 @@ namespace {
 
 // Solutions, each with the friction limits that follow from the loads of the one before, and guesses for one of them.
 constexpr int most_solutions = 12;
-constexpr int most_guesses = 40;
+constexpr int most_guesses = 12;
 constexpr double limit_tolerance = 1e-7;  // [N s or N m s]
 // Multiplications of one factorisation, above which sequential impulses are cheaper.
 constexpr double most_work = 3e6;

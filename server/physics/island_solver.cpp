@@ -6,6 +6,13 @@
 
 namespace cohort::physics {
 
+namespace {
+
+// Where the group solver finds nothing; sequential impulses may not hold light links at all.
+constexpr int most_rows_solved_directly = 500;
+
+}  // namespace
+
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
   return settings.solver == description::Solver::direct ||
          (settings.solver == description::Solver::hybrid && bodies <= settings.direct_bodies);
@@ -60,9 +67,15 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_); });
 
   const bool directly = is_solved_directly(assembly.settings, sound_.size());
-  const bool is_solved = directly                ? solve_directly(problem_)
-                         : has_light_connections ? group_solver_.solve(problem_)
-                                                 : solve_by_active_set(problem_);
+  bool is_solved = false;
+  if (directly) {
+    is_solved = solve_directly(problem_);
+  } else if (has_light_connections) {
+    is_solved = group_solver_.solve(problem_) ||
+                (problem_.row_count() <= most_rows_solved_directly && solve_directly(problem_));
+  } else {
+    is_solved = solve_by_active_set(problem_);
+  }
   if (!is_solved) solve_iteratively(problem_, assembly.settings.iterations);
   if (!all_are_finite()) return false;
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdlib>
 #include "server/core/random.hpp"
 #include "tests/support/lifting.hpp"
 
@@ -25,7 +24,6 @@ struct GrippedSwarm {
   /// With arms, each robot grips with its arm, otherwise with its turret.
   GrippedSwarm(std::uint64_t seed, bool with_arms)
       : gripping_link(with_arms ? arm_link : turret), random(seed, "swarm", "drive") {
-    if (const char* m = getenv("SWARM_MODE")) { if (m[0]==0x31) small.description.physics.solver = description::Solver::direct; if (m[0]==0x32) small.description.physics.iterations = 2000; }
     const double spacing = with_arms ? 0.19 : 0.135;
     std::uint32_t draw = 0;
     const auto off = [&](double by) { return by * (2.0 * random.uniform(0, draw++) - 1.0); };
@@ -49,9 +47,9 @@ struct GrippedSwarm {
     const Pose X_WLa = world.link_pose(a, link);
     const Pose X_WLb = world.link_pose(b, turret);
     // At the jaw, or halfway between the turrets.
-    const Eigen::Vector3d p_W = link == turret
-                                    ? Eigen::Vector3d(0.5 * (X_WLa.position + X_WLb.position) + Eigen::Vector3d(0, 0, 0.02))
-                                    : Eigen::Vector3d(X_WLa * Eigen::Vector3d(arm_length, 0, 0));
+    const Eigen::Vector3d p_W =
+        link == turret ? Eigen::Vector3d(0.5 * (X_WLa.position + X_WLb.position) + Eigen::Vector3d(0, 0, 0.02))
+                       : Eigen::Vector3d(X_WLa * Eigen::Vector3d(arm_length, 0, 0));
     const Pose X_WP{p_W, X_WLa.orientation};
     const Pose X_LP = X_WLa.inverse() * X_WP;
     grips.push_back({world.connect(a, link, X_LP, b, turret), a, b, X_LP, X_WLb.inverse() * X_WP});

@@ -22,8 +22,9 @@ struct GrippedSwarm {
   RandomStream random;
 
   /// With arms, each robot grips with its arm, otherwise with its turret.
-  GrippedSwarm(std::uint64_t seed, bool with_arms)
+  GrippedSwarm(std::uint64_t seed, bool with_arms, std::uint32_t iterations = 10)
       : gripping_link(with_arms ? arm_link : turret), random(seed, "swarm", "drive") {
+    small.description.physics.iterations = iterations;
     const double spacing = with_arms ? 0.19 : 0.135;
     std::uint32_t draw = 0;
     const auto off = [&](double by) { return by * (2.0 * random.uniform(0, draw++) - 1.0); };

@@ -132,6 +132,13 @@ inline constexpr auto climate_sensor = sensor({
     {"humidity_noise", non_negative, "1", "0", "the same on humidities"},
 });
 
+inline constexpr auto battery = sensor({
+    {"capacity", positive, "J", "", "energy of a full one"},
+    {"charge", fraction, "1", "1", "at first, of the capacity"},
+    {"idle_power", non_negative, "W", "0", "of all that is not a motor"},
+    {"motor_efficiency", positive, "1", "1", "mechanical power to what motors take; at most 1"},
+});
+
 inline constexpr ExtensionKey sound[] = {
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
     {"frequency", positive, "Hz", "", "of the tone"},
@@ -173,6 +180,7 @@ inline constexpr Extension device_extensions[] = {
     {"range_and_bearing", "model", true, "Messages to the robots around, which know where they come from.",
      keys::range_and_bearing, "sensors"},
     {"climate_sensor", "model", true, "Temperature and humidity of the air.", keys::climate_sensor, "sensors"},
+    {"battery", "model", true, "Feeds the robot, which stops when it is empty.", keys::battery, "sensors"},
     {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
     {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
     {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},

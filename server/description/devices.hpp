@@ -146,8 +146,19 @@ struct ClimateSensor {
   Readout readout{};
 };
 
+/// What feeds the robot: observations `NAME/0/charge` [1] and `NAME/0/power` [W]. When it is empty, commands do nothing
+/// any more: every channel has its neutral value.
+struct Battery {
+  std::string name;
+  double capacity = 0.0;          ///< [J]
+  double charge = 1.0;            ///< at first, of the capacity [1]
+  double idle_power = 0.0;        ///< of all that is not a motor [W]
+  double motor_efficiency = 1.0;  ///< mechanical power to what motors take [1]
+  Readout readout{};
+};
+
 using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
-                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor>;
+                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor, Battery>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

@@ -93,7 +93,6 @@ Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading) {
   Emitter emitter;
   emitter.name = sdf_light.Name();
   emitter.X_LE = resolved_pose(sdf_light, reading);
-  if (const sdf::ElementPtr on = find(sdf_light.Element(), {"light_on"})) emitter.is_on = on->Get<bool>();
   emitter.what = read_light_values(sdf_light, reading.report);
   return emitter;
 }

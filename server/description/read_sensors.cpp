@@ -105,6 +105,13 @@ std::optional<Device> read_climate_sensor(const ExtensionValues& values, DeviceR
   return sensor;
 }
 
+std::optional<Device> read_battery(const ExtensionValues& values, DeviceReader& reader) {
+  Battery battery{values.name(), values.real("capacity"), values.real("charge"), values.real("idle_power"),
+                  values.real("motor_efficiency")};
+  if (battery.motor_efficiency > 1.0) reader.report().problem(values.where("motor_efficiency"), "expected at most 1");
+  return battery;
+}
+
 // The register of sensors: a new kind is one more line here.
 constexpr DeviceKind kinds[] = {
     {"joint_encoder", &read_joint_encoder},
@@ -115,6 +122,7 @@ constexpr DeviceKind kinds[] = {
     {"microphones", &read_microphones},
     {"range_and_bearing", &read_range_and_bearing, true, true},
     {"climate_sensor", &read_climate_sensor},
+    {"battery", &read_battery},
 };
 
 }  // namespace

@@ -121,6 +121,14 @@ struct DeviceWriter {
     add_key(element, "humidity_noise", deviation_of(sensor.readout, "humidity"));
     write_readout(element, sensor.readout);
   }
+  void operator()(const Battery& battery) const {
+    XmlNode& element = add_named(parent, prefixed("battery"), battery.name);
+    add_key(element, "capacity", battery.capacity);
+    add_key(element, "charge", battery.charge);
+    add_key(element, "idle_power", battery.idle_power);
+    add_key(element, "motor_efficiency", battery.motor_efficiency);
+    write_readout(element, battery.readout);
+  }
   void operator()(const LedRing& leds) const {
     XmlNode& element = add_named(parent, prefixed("led_ring"), leds.name);
     add_key(element, "link", link_name(leds.link));
@@ -153,7 +161,6 @@ struct EmitterWriter {
     XmlNode& element = add_named(parent, "light", emitter.name);
     element.attributes.emplace_back("type", kinds[static_cast<int>(light.kind)]);
     add_pose(element, emitter.X_LE);
-    add_value(element, "light_on", emitter.is_on);
     add_value(element, "intensity", light.intensity);
     add_value(element, "diffuse", light.color).text += " 1";
     add_value(element, "direction", light.direction_E);

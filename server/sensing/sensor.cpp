@@ -1,5 +1,6 @@
 #include "server/sensing/sensor.hpp"
 
+#include "server/sensing/battery.hpp"
 #include "server/sensing/climate_sensor.hpp"
 #include "server/sensing/ground_sensors.hpp"
 #include "server/sensing/joint_encoder.hpp"
@@ -44,6 +45,9 @@ struct Make {
   }
   std::unique_ptr<Sensor> operator()(const description::ClimateSensor& d) const {
     return std::make_unique<ClimateSensor>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Battery& d) const {
+    return std::make_unique<Battery>(d, model, std::move(mount));
   }
 };
 

@@ -29,6 +29,7 @@ class Guessing {
         gains_[i][j] = gains_[j][i] = dot(jacobian, problem.numbers() + other.numbers + other.stride_a, row.stride_a);
       }
       gains_[i][i] *= 1.0 + give;
+      gains_[i][i] += row.softness;
       impulses_[i] = row.impulse;
     }
     std::fill_n(places_.begin(), count_, Place::between);
@@ -68,7 +69,7 @@ class Guessing {
     bool hold = true;
     for (int i = 0; i < count_; ++i) {
       const Row& row = row_at(i);
-      if (row.limits == Row::Limits::fixed) {
+      if (row.has_fixed_limits()) {
         lower_[i] = row.lower;
         upper_[i] = row.upper;
         continue;

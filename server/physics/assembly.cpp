@@ -71,6 +71,7 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
 
 void Assembly::take_out(std::uint32_t member) {
   members[member].is_active = false;
+  if (members[member].record) members[member].record->forget();
   connections.release_of(member);
   for (const Part& part : members[member].parts) {
     scene.remove(part.solid);
@@ -90,6 +91,7 @@ void Assembly::place(std::uint32_t index, const Pose& X_WM) {
   const Member& member = members[index];
   connections.release_of(index);
   member.multibody->place(X_WM);
+  if (member.record) member.record->forget();
   for (const Part& part : member.parts) collision.remove(part.solid);
   place_solids_of(member);
   scene.update();
@@ -145,6 +147,7 @@ void Assembly::look_around(const Member& member, std::vector<std::uint32_t>& nea
 void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) const {
   Equations& equations = bodies[anchors.index_of_member[member]];
   equations.set_up(*members[member].multibody, gravity, step);
+  members[member].multibody->apply_efforts(equations, step);
   pushes.for_each_of(member, [&](const Pushes::Push& push) {
     equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
   });
@@ -155,9 +158,6 @@ void Assembly::add_own_rows(std::uint32_t member, Problem& problem) {
 }
 
 void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
-  const auto pose_of = [&](const Connection::End& end) {
-    return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->segment_pose(end.segment);
-  };
   if (connection.b().member != Anchors::nobody && anchors.index_of_member[connection.b().member] < 0) return;
   connection.add_rows(problem, anchors, pose_of(connection.a()), pose_of(connection.b()), step);
 }
@@ -177,7 +177,9 @@ void Assembly::integrate(std::uint32_t index, const Problem& problem) {
   Member& member = members[index];
   Multibody& multibody = *member.multibody;
   for (TreelDrive& treel : multibody.treels()) treel.read_rows(problem, step);
+  if (member.record) member.record->begin(multibody);
   multibody.integrate(problem.equations(anchors.index_of_member[index]).velocity(), step);
+  if (member.record) member.record->finish(multibody, gravity, step);
   const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
   member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest;
   place_solids_of(member);

@@ -8,6 +8,7 @@
 #include "server/physics/collision.hpp"
 #include "server/physics/connections.hpp"
 #include "server/physics/contact_rows.hpp"
+#include "server/physics/force_record.hpp"
 #include "server/physics/multibody.hpp"
 #include "server/physics/pushes.hpp"
 #include "server/physics/rows.hpp"
@@ -27,8 +28,9 @@ struct Member {
   std::unique_ptr<Multibody> multibody;
   std::vector<Part> parts;  ///< ascending solids
   bool is_active = true;
-  bool is_finite = true;  ///< of the last step: its velocities were
-  bool is_inside = true;  ///< of the last step: it is still in the world
+  bool is_finite = true;                  ///< of the last step: its velocities were
+  bool is_inside = true;                  ///< of the last step: it is still in the world
+  std::unique_ptr<ForceRecord> record{};  ///< null: nobody asked for it
 };
 
 /// The bodies of a world that move, and all that couples them to each other and to what stands still: what the rows of
@@ -62,6 +64,19 @@ struct Assembly {
   /// At rest at X_WM, with its joints as they are. One thread alone.
   void place(std::uint32_t index, const Pose& X_WM);
   void place_solids_of(const Member& member);
+  /// From the next step on keeps what goes through the member's joints. One thread alone.
+  void record(std::uint32_t index);
+  /// Tells the records what acted on their bodies in this step; after it, before anything is released or taken out. One
+  /// thread alone.
+  void record_outside();
+  /// Whether an end is on a light part of its body.
+  bool is_light(const Connection::End& end) const {
+    return end.member != Anchors::nobody && members[end.member].multibody->mechanism().is_light(end.segment);
+  }
+  /// X_WS of the segment that an end is on; of the world's none.
+  Pose pose_of(const Connection::End& end) const {
+    return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->segment_pose(end.segment);
+  }
 
   /// Finds what the member touches and stands on. The vectors are scratch memory.
   void look_around(const Member& member, std::vector<std::uint32_t>& near, std::vector<std::uint32_t>& candidates);
@@ -115,6 +130,13 @@ struct Assembly {
   void add_solid(std::uint32_t body, const description::Collision& collision, const Pose& X_WC, Anchors::Part part,
                  std::shared_ptr<const BulletShape> shape);
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;
+  ForceRecord* record_of(std::uint32_t member) const {
+    return member == Anchors::nobody ? nullptr : members[member].record.get();
+  }
+  void record_pair(const SolidPair& pair) const;
+  void record_connection(const Connection& connection) const;
+
+  bool has_records_ = false;
 };
 
 }  // namespace cohort::physics

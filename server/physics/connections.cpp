@@ -9,6 +9,7 @@ template <class End, class Visit>
 void visit_end(End& end, Visit&& visit) {
   visit(end.member);
   visit(end.segment);
+  visit(end.link);
   visit_pose(end.X_SP, visit);
 }
 
@@ -28,10 +29,11 @@ void Connections::release_of(std::uint32_t member) {
 }
 
 void Connections::break_overloaded(double step) {
+  for (const std::uint32_t index : broken_) connections_[index].forget_break();
   broken_.clear();
   for (std::uint32_t index = 0; index < connections_.size(); ++index) {
     if (!connections_[index].holds() || !connections_[index].is_overloaded(step)) continue;
-    connections_[index].release();
+    connections_[index].break_now();
     broken_.push_back(index);
   }
 }

@@ -16,6 +16,14 @@ class Connections {
   void release(std::uint32_t connection) { connections_[connection].release(); }
   /// Those at either end of a body that moves.
   void release_of(std::uint32_t member);
+  /// After a step, of all that hold and yield: `pose(end)` is X_WS of its segment.
+  template <class PoseOf>
+  void settle(PoseOf&& pose, double step) {
+    for (Connection& connection : connections_)
+      if (connection.holds() && connection.may_slip())
+        connection.settle(pose(connection.a()), pose(connection.b()), step);
+  }
+  void set_give(std::uint32_t connection, const ConnectionGive& give) { connections_[connection].set_give(give); }
   /// Releases those that the last step took beyond their limits.
   void break_overloaded(double step);
   /// By that, ascending.

@@ -108,6 +108,12 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
 
 }  // namespace
 
+ContactImpulse impulse_of(const ContactPoint& point) {
+  const Tangents tangents = tangents_of(point.normal_W);
+  return {point.impulse[0] * point.normal_W + point.impulse[1] * tangents.first + point.impulse[2] * tangents.second,
+          point.rolling_impulse[0] * tangents.first + point.rolling_impulse[1] * tangents.second};
+}
+
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
                       double step) {
   start_friction(contact, b.body < 0);

@@ -28,6 +28,13 @@ class SurfacePairs {
   std::vector<char> is_given_;
 };
 
+/// What a point did to the first of its two bodies over the last step, at its position [N s, N m s].
+struct ContactImpulse {
+  Eigen::Vector3d linear_W;
+  Eigen::Vector3d angular_W;
+};
+ContactImpulse impulse_of(const ContactPoint& point);
+
 /// Adds the rows of the points between `a`, a body, and `b`: for each along the normal, two along the surface with
 /// friction in a disc, and two against rolling where there is rolling resistance.
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,

@@ -61,7 +61,7 @@ class DirectSolver {
       for (int j = 0; j <= i; ++j)
         gains_[index(i) * size_ + index(j)] = gains_[index(j) * size_ + index(i)] = gain(row, row_at(j));
       double& own = gains_[index(i) * size_ + index(i)];
-      own += own * give;
+      own += own * give + row.softness;
     }
   }
 
@@ -74,7 +74,7 @@ class DirectSolver {
       double& upper = upper_[index(i)];
       if (row.inverse == 0.0) {
         lower = upper = 0.0;
-      } else if (row.limits == Row::Limits::fixed) {
+      } else if (row.has_fixed_limits()) {
         lower = row.lower;
         upper = row.upper;
       } else {

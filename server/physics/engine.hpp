@@ -26,15 +26,24 @@ class Engine {
   virtual double joint_position(std::uint32_t body, std::size_t joint) const = 0;
   virtual double joint_velocity(std::uint32_t body, std::size_t joint) const = 0;
   virtual TrackState track(std::uint32_t body, std::size_t drive, Side side) const = 0;
+  virtual void record(std::uint32_t body) = 0;
+  virtual Wrench joint_wrench(std::uint32_t body, std::size_t joint) const = 0;
+  virtual Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link,
+                                            const Eigen::Vector3d& p_LP) const = 0;
+  virtual double joint_effort(std::uint32_t body, std::size_t joint) const = 0;
 
   virtual std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                                 std::size_t link_b, const ConnectionLimits& limits) = 0;
   virtual void disconnect(std::uint32_t connection) = 0;
   virtual bool is_connected(std::uint32_t connection) const = 0;
+  virtual void set_connection_give(std::uint32_t connection, const ConnectionGive& give) = 0;
   virtual Wrench connection_wrench(std::uint32_t connection) const = 0;
+  virtual Wrench connection_reaction(std::uint32_t connection) const = 0;
   virtual std::span<const std::uint32_t> broken_connections() const = 0;
 
   virtual void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) = 0;
+  virtual void set_joint_position_target(std::uint32_t body, std::size_t joint, double position) = 0;
+  virtual void set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort) = 0;
   virtual void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) = 0;
   virtual void set_root_twist(std::uint32_t body, const Twist& twist) = 0;
   virtual void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,

@@ -259,4 +259,12 @@ void Equations::push(int segment, const Eigen::Vector3d& point_W, const Eigen::V
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += response[at(i)];
 }
 
+void Equations::push_dof(int dof, double impulse) {
+  std::vector<double> generalised(at(stride_), 0.0);
+  std::vector<double> response(at(stride_), 0.0);
+  generalised[at(dof)] = impulse;
+  respond(generalised.data(), response.data());
+  for (int i = 0; i < size_; ++i) velocity_[at(i)] += response[at(i)];
+}
+
 }  // namespace cohort::physics

@@ -35,6 +35,8 @@ class Equations {
   /// Changes the velocities by an impulse at `point_W` of a segment and an angular impulse on it [N s, N m s].
   void push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
             const Eigen::Vector3d& angular_impulse_W);
+  /// The same by an impulse along one dof of a joint.
+  void push_dof(int dof, double impulse);
   /// `response`: the change of the velocities by the generalised impulse `jacobian`.
   void respond(const double* jacobian, double* response) const;
 

@@ -6,6 +6,13 @@
 
 namespace cohort::physics {
 
+namespace {
+
+// Where the group solver finds nothing; sequential impulses may not hold light links at all.
+constexpr int most_rows_solved_directly = 500;
+
+}  // namespace
+
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
   return settings.solver == description::Solver::direct ||
          (settings.solver == description::Solver::hybrid && bodies <= settings.direct_bodies);
@@ -49,15 +56,27 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
 
   problem_.clear();
   for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
+  bool has_light_connections = false;
   for (const std::uint32_t member : sound_)
-    assembly.connections.for_each_of(
-        member, [&](Connection& connection) { assembly.add_connection_rows(connection, problem_); });
+    assembly.connections.for_each_of(member, [&](Connection& connection) {
+      assembly.add_connection_rows(connection, problem_);
+      has_light_connections =
+          has_light_connections || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
+    });
   for (const std::uint32_t member : sound_)
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_); });
 
   const bool directly = is_solved_directly(assembly.settings, sound_.size());
-  if (!(directly ? solve_directly(problem_) : solve_by_active_set(problem_)))
-    solve_iteratively(problem_, assembly.settings.iterations);
+  bool is_solved = false;
+  if (directly) {
+    is_solved = solve_directly(problem_);
+  } else if (has_light_connections) {
+    is_solved = group_solver_.solve(problem_) ||
+                (problem_.row_count() <= most_rows_solved_directly && solve_directly(problem_));
+  } else {
+    is_solved = solve_by_active_set(problem_);
+  }
+  if (!is_solved) solve_iteratively(problem_, assembly.settings.iterations);
   if (!all_are_finite()) return false;
 
   keep_impulses(problem_);

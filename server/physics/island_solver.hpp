@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "server/physics/assembly.hpp"
+#include "server/physics/group_solver.hpp"
 
 namespace cohort::physics {
 
@@ -18,6 +19,7 @@ class IslandSolver {
 
   IslandBodies bodies_;
   Problem problem_{bodies_};
+  GroupSolver group_solver_;
   std::vector<std::uint32_t> sound_;  // members
 };
 

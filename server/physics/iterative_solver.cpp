@@ -28,6 +28,8 @@ inline double SequentialImpulses::turn(std::size_t index) {
     }
     case Row::Limits::cone: return turn_cone(row, rows_[index + 1]);
     case Row::Limits::coned: return 0.0;
+    case Row::Limits::soft:
+      return change(row, std::clamp(wanted(row) - row.softness * row.impulse * row.inverse, row.lower, row.upper));
   }
   return change(row, std::clamp(wanted(row), row.lower, row.upper));
 }

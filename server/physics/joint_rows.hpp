@@ -7,21 +7,32 @@
 
 namespace cohort::physics {
 
+class Equations;
 class Multibody;
 class Problem;
+struct Row;
 
 /// Motors, limits and friction of the joints of one body.
 class JointRows {
  public:
   explicit JointRows(const Mechanism& mechanism);
 
-  /// A motor on one dof that drives it towards a velocity with a limited force or torque. At most one for each dof.
-  void add_motor(int dof, double max_effort);
+  /// What a motor is told.
+  enum class Control : std::uint8_t { velocity, position, effort };
+
+  /// A motor on one dof, with a limited force or torque; `max_velocity` is for going to a position. At most one for
+  /// each dof.
+  void add_motor(int dof, double max_effort, double max_velocity);
   bool has_motor(int dof) const { return motor_of_[static_cast<std::size_t>(dof)] >= 0; }
-  void set_target(int dof, double velocity) { motor(dof).target = velocity; }
+  void set_target(int dof, Control control, double target) {
+    motor(dof).control = control;
+    motor(dof).target = target;
+  }
   /// Impulse of the motor over the last step [N s] or [N m s].
   double motor_impulse(int dof) const { return motor(dof).impulse; }
 
+  /// Changes the velocities by what motors give that are told an effort; before the rows.
+  void apply_efforts(Equations& equations, double step);
   void add_rows(Problem& problem, int index, const Multibody& body, double step);
 
   /// Calls `visit` for each number of the state, always in the same order.
@@ -30,6 +41,7 @@ class JointRows {
     for (auto& motor : self.motors_) {
       visit(motor.target);
       visit(motor.impulse);
+      visit.unusual(motor.control, Control::velocity);
     }
     for (auto& limit : self.limits_) {
       visit(limit.lower_impulse);
@@ -42,6 +54,8 @@ class JointRows {
   struct Motor {
     int dof = 0;
     double max_effort = 0.0;
+    double max_velocity = 0.0;
+    Control control = Control::velocity;
     double target = 0.0;
     double impulse = 0.0;
   };
@@ -54,6 +68,8 @@ class JointRows {
     int dof = 0;
     double impulse = 0.0;
   };
+  static double velocity_towards_target(const Motor& motor, const Row& row, const Problem& problem,
+                                        const Multibody& body, double step);
   Motor& motor(int dof) { return motors_[static_cast<std::size_t>(motor_of_[static_cast<std::size_t>(dof)])]; }
   const Motor& motor(int dof) const {
     return motors_[static_cast<std::size_t>(motor_of_[static_cast<std::size_t>(dof)])];

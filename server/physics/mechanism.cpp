@@ -52,6 +52,16 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
     }
   }
   for (std::size_t link = 0; link < model.links.size(); ++link) add_link(link, welded);
+  find_light_segments();
+}
+
+void Mechanism::find_light_segments() {
+  constexpr double light_share = 0.25;
+  std::vector<double> masses;  // of each segment with all that hangs on it
+  for (const Segment& segment : segments_) masses.push_back(segment.mass);
+  for (std::size_t s = segments_.size(); s-- > 0;)
+    if (segments_[s].parent >= 0) masses[static_cast<std::size_t>(segments_[s].parent)] += masses[s];
+  for (const double mass : masses) is_light_.push_back(mass < light_share * masses[0] ? 1 : 0);
 }
 
 void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {

@@ -70,6 +70,10 @@ class Mechanism {
   /// Wheels are simulated: what drives is their joints' motors.
   bool has_wheels() const { return has_wheels_; }
 
+  /// Whether a segment with all that hangs on it has less than a quarter of the whole mass: what holds on there
+  /// moves it easily and the rest hardly.
+  bool is_light(int segment) const { return is_light_[static_cast<std::size_t>(segment)] != 0; }
+
   int dof_count() const { return static_cast<int>(dofs_.size()); }
   /// Doubles that a vector of velocities takes in the solver, padded with zeros.
   std::ptrdiff_t stride() const { return (dof_count() + lanes - 1) / lanes * lanes; }
@@ -82,6 +86,7 @@ class Mechanism {
   void add_link(std::size_t link, const std::vector<char>& welded);
   int add_segment(int parent, Motion motion, const Pose& X_PS, const Eigen::Vector3d& axis_S,
                   const description::JointAxis* axis);
+  void find_light_segments();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
 
   const description::Model* model_;
@@ -91,6 +96,7 @@ class Mechanism {
   std::vector<JointPlace> joints_;
   std::vector<double> zero_coordinates_;
   std::vector<int> parents_;
+  std::vector<char> is_light_;  // by segment
   bool is_chain_ = true;
   bool has_wheels_ = false;
 };

@@ -39,17 +39,17 @@ void Multibody::build_devices() {
       if (mechanism_->joint(motor->joint).dofs == 0)
         throw std::invalid_argument("motor '" + motor->name + "' drives the fixed joint '" +
                                     model.joints[motor->joint].name + "'");
-      add_motor(mechanism_->joint(motor->joint).first_dof, motor->max_effort, motor->name);
+      add_motor(mechanism_->joint(motor->joint).first_dof, motor->max_effort, motor->max_velocity, motor->name);
     } else if (const auto* drive = std::get_if<description::TreelDrive>(&model.devices[device])) {
       add_drive(device, *drive);
     }
   }
 }
 
-void Multibody::add_motor(int dof, double max_effort, const std::string& device) {
+void Multibody::add_motor(int dof, double max_effort, double max_velocity, const std::string& device) {
   if (joints_.has_motor(dof))
     throw std::invalid_argument("motor '" + device + "' drives a joint that has a motor already");
-  joints_.add_motor(dof, max_effort);
+  joints_.add_motor(dof, max_effort, max_velocity);
 }
 
 void Multibody::add_drive(std::size_t device, const description::TreelDrive& drive) {
@@ -72,7 +72,8 @@ void Multibody::add_drive(std::size_t device, const description::TreelDrive& dri
       const Mechanism::JointPlace& place = mechanism_->joint(joint);
       const Segment& wheel = mechanism_->segments()[static_cast<std::size_t>(place.segment)];
       const Eigen::Vector3d axis = wheel.X_PS.orientation * wheel.axis_S;
-      add_motor(place.first_dof, drive.max_torque / static_cast<double>(joints.size()), drive.name);
+      add_motor(place.first_dof, drive.max_torque / static_cast<double>(joints.size()),
+                drive.max_velocity / drive.wheel_radius, drive.name);
       wheels.dofs[s].push_back(place.first_dof);
       wheels.senses[s].push_back(axis.y() < 0.0 ? -1.0 : 1.0);
     }
@@ -162,8 +163,14 @@ void Multibody::set_joint_state(std::size_t joint, std::span<const double> coord
   update_poses();
 }
 
-void Multibody::set_joint_velocity_target(std::size_t joint, double velocity) {
-  joints_.set_target(mechanism_->joint(joint).first_dof, velocity);
+void Multibody::set_joint_target(std::size_t joint, JointRows::Control control, double target) {
+  joints_.set_target(mechanism_->joint(joint).first_dof, control, target);
+}
+
+double Multibody::joint_effort(std::size_t joint) const {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  if (place.dofs == 0 || !joints_.has_motor(place.first_dof) || last_step_ == 0.0) return 0.0;
+  return joints_.motor_impulse(place.first_dof) / last_step_;
 }
 
 void Multibody::set_track_velocity_target(std::size_t device, Side side, double velocity) {
@@ -175,7 +182,7 @@ void Multibody::set_track_velocity_target(std::size_t device, Side side, double 
   const WheelDrive& wheels = wheels_[static_cast<std::size_t>(drive.wheels)];
   const auto s = static_cast<std::size_t>(side);
   for (std::size_t i = 0; i < wheels.dofs[s].size(); ++i)
-    joints_.set_target(wheels.dofs[s][i], wheels.senses[s][i] * velocity / wheels.radius);
+    joints_.set_target(wheels.dofs[s][i], JointRows::Control::velocity, wheels.senses[s][i] * velocity / wheels.radius);
 }
 
 TrackState Multibody::track(std::size_t device, Side side) const {

@@ -48,7 +48,9 @@ class Multibody {
   void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
 
   /// The joint has to have a motor.
-  void set_joint_velocity_target(std::size_t joint, double velocity);
+  void set_joint_target(std::size_t joint, JointRows::Control control, double target);
+  /// Of the joint's motor over the last step [N m] or [N], 0 if it has none.
+  double joint_effort(std::size_t joint) const;
   /// The device has to be a treel drive.
   void set_track_velocity_target(std::size_t device, Side side, double velocity);
   TrackState track(std::size_t device, Side side) const;
@@ -57,6 +59,8 @@ class Multibody {
   std::vector<TreelDrive>& treels() { return treels_; }
   const std::vector<TreelDrive>& treels() const { return treels_; }
 
+  /// Changes the velocities by what motors give that are told an effort.
+  void apply_efforts(Equations& equations, double step) { joints_.apply_efforts(equations, step); }
   /// Adds the rows of joints and drives; `index`: of this body in the problem.
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
   /// Takes the velocities that the solver found and moves the body by them.
@@ -90,7 +94,7 @@ class Multibody {
   void turn_freely(double step);
   void build_devices();
   void add_drive(std::size_t device, const description::TreelDrive& drive);
-  void add_motor(int dof, double max_effort, const std::string& device);
+  void add_motor(int dof, double max_effort, double max_velocity, const std::string& device);
 
   const Mechanism* mechanism_;
   std::uint32_t body_;

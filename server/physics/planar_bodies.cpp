@@ -154,9 +154,12 @@ void PlanarBodies::set_joint_state(std::uint32_t member, std::size_t joint, std:
   update_segments(members_[member]);
 }
 
-void PlanarBodies::set_joint_velocity_target(std::uint32_t member, std::size_t joint, double velocity) {
-  const auto motor = static_cast<std::size_t>(model(member).motor_of_joint(joint));
-  motors_[members_[member].first_motor + motor].target = velocity;
+void PlanarBodies::set_joint_target(std::uint32_t member, std::size_t joint, JointRows::Control control,
+                                    double target) {
+  const auto index = static_cast<std::size_t>(model(member).motor_of_joint(joint));
+  Motor& motor = motors_[members_[member].first_motor + index];
+  motor.control = control;
+  motor.target = target;
 }
 
 void PlanarBodies::drive_joints(std::uint32_t index, double step) {
@@ -165,9 +168,16 @@ void PlanarBodies::drive_joints(std::uint32_t index, double step) {
   const std::vector<PlanarModel::Motor>& described = member.model->motors();
   for (std::size_t i = 0; i < described.size(); ++i) {
     Motor& motor = motors_[member.first_motor + i];
-    motor.velocity = motor.target;
-    if (motor.velocity == 0.0) continue;
     const double position = coordinates_[member.first_coordinate + described[i].coordinate];
+    switch (motor.control) {
+      case JointRows::Control::velocity: motor.velocity = motor.target; break;
+      case JointRows::Control::position:
+        motor.velocity =
+            std::clamp((motor.target - position) / step, -described[i].max_velocity, described[i].max_velocity);
+        break;
+      case JointRows::Control::effort: motor.velocity = 0.0; break;
+    }
+    if (motor.velocity == 0.0) continue;
     if (position + step * motor.velocity > described[i].upper)
       motor.velocity = std::max(0.0, (described[i].upper - position) / step);
     if (position + step * motor.velocity < described[i].lower)

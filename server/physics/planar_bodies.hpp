@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "server/physics/joint_rows.hpp"
 #include "server/physics/planar_model.hpp"
 #include "server/physics/world.hpp"
 
@@ -77,7 +78,7 @@ class PlanarBodies {
   void set_joint_state(std::uint32_t member, std::size_t joint, std::span<const double> coordinates,
                        std::span<const double> velocities);
   /// The joint has to have a motor.
-  void set_joint_velocity_target(std::uint32_t member, std::size_t joint, double velocity);
+  void set_joint_target(std::uint32_t member, std::size_t joint, JointRows::Control control, double target);
 
   /// Takes the commands of the motors: from here on they are the velocities of this step, as far as limits let them.
   void drive_joints(std::uint32_t index, double step);
@@ -108,6 +109,7 @@ class PlanarBodies {
     for (std::size_t i = 0; i < info.model->motors().size(); ++i) {
       visit(self.motors_[info.first_motor + i].target);
       visit(self.motors_[info.first_motor + i].velocity);
+      visit.unusual(self.motors_[info.first_motor + i].control, JointRows::Control::velocity);
     }
   }
   /// After the state was changed through `visit_state`.
@@ -124,6 +126,7 @@ class PlanarBodies {
   struct Motor {
     double target = 0.0;
     double velocity = 0.0;
+    JointRows::Control control = JointRows::Control::velocity;
   };
   void update_segments(const Member& member);
   void put(std::uint32_t index, const Pose& X_WM);

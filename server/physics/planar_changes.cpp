@@ -43,6 +43,7 @@ void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
   }
   connections_.release_of(body.member);
   planar_.place(body.member, X_WM);
+  if (members_[body.member].record) members_[body.member].record->forget();
   collision_.forget(body.member);
   find_parts_in_body(members_[body.member], body.member);
   place_solids(body.member);
@@ -53,7 +54,7 @@ void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
 void PlanarEngine::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {
   const std::uint32_t member = bodies_[body].member;
   const description::Inertial& inertial = description_.models[bodies_[body].model].links[link].inertial;
-  pushes_.add({member, planar_.model(member).mechanism().link(link).segment,
+  pushes_.add({member, planar_.model(member).mechanism().link(link).segment, link,
                link_pose(body, link) * inertial.X_LI.position, wrench});
 }
 

@@ -13,6 +13,18 @@ constexpr std::size_t islands_a_chunk = 32;
 // Further from the origin a body has left the world [m].
 constexpr double furthest = 1e6;
 
+// The links of one body, as a MotionRecord looks at them.
+struct LinksOf {
+  const PlanarBodies& bodies;
+  std::uint32_t member;
+  Pose link_pose(std::size_t link) const { return bodies.link_pose(member, link); }
+  Twist link_twist(std::size_t link) const { return bodies.link_twist(member, link); }
+};
+
+Wrench in_plane(const Wrench& wrench) {
+  return {{wrench.force_W.x(), wrench.force_W.y(), 0.0}, {0.0, 0.0, wrench.torque_W.z()}};
+}
+
 }  // namespace
 
 bool PlanarEngine::is_active(std::uint32_t body) const {
@@ -38,7 +50,39 @@ void PlanarEngine::set_joint_state(std::uint32_t body, std::size_t joint, std::s
   scene_.update();
 }
 
+void PlanarEngine::record(std::uint32_t body) {
+  if (bodies_[body].member == Anchors::nobody) return;
+  std::unique_ptr<MotionRecord>& record = members_[bodies_[body].member].record;
+  if (!record) record = std::make_unique<MotionRecord>();
+  has_records_ = true;
+}
+
+Eigen::Vector3d PlanarEngine::link_acceleration(std::uint32_t body, std::size_t link,
+                                                const Eigen::Vector3d& p_LP) const {
+  if (bodies_[body].member == Anchors::nobody) return Eigen::Vector3d::Zero();
+  const std::unique_ptr<MotionRecord>& record = members_[bodies_[body].member].record;
+  return record ? record->acceleration(link, p_LP, step_) : Eigen::Vector3d::Zero();
+}
+
+Pose PlanarEngine::pose_of(const Connection::End& end) const {
+  return end.member == Anchors::nobody ? Pose{} : planar_.segment_pose(end.member, end.segment);
+}
+
+Wrench PlanarEngine::connection_wrench(std::uint32_t index) const {
+  const Connection& connection = connections_[index];
+  return in_plane(connection.wrench_on_a(pose_of(connection.a()), pose_of(connection.b()), step_));
+}
+
+Wrench PlanarEngine::connection_reaction(std::uint32_t index) const {
+  const Connection& connection = connections_[index];
+  return in_plane(connection.wrench_on_b(pose_of(connection.a()), pose_of(connection.b()), step_));
+}
+
 void PlanarEngine::step() {
+  if (has_records_)
+    for (std::uint32_t index = 0; index < members_.size(); ++index)
+      if (members_[index].record)
+        members_[index].record->before(LinksOf{planar_, index}, planar_.model(index).link_count());
   collision_.detect(workers_);
   find_islands();
   workers_.for_each_chunk(islands_.count(), islands_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
@@ -130,6 +174,7 @@ void PlanarEngine::move(std::uint32_t index) {
   Member& member = members_[index];
   if (!member.is_active || !member.is_finite) return;
   if (planar_.integrate(index, step_)) find_parts_in_body(member, index);
+  if (member.record) member.record->after(LinksOf{planar_, index}, planar_.model(index).link_count());
   place_solids(index);
   const PlanarPlace& place = planar_.place(index);
   member.is_inside = std::abs(place.x) < furthest && std::abs(place.y) < furthest &&
@@ -187,12 +232,14 @@ std::uint32_t PlanarEngine::connect(std::uint32_t body_a, std::size_t link_a, co
     return planar_.model(bodies_[body].member).mechanism().link(link);
   };
   const Mechanism::LinkPlace& place_a = link_of(body_a, link_a);
-  const Connection::End end_a{bodies_[body_a].member, place_a.segment, place_a.X_SL * X_LP};
+  const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
+                              place_a.X_SL * X_LP};
   const Pose X_WP = planar_.segment_pose(end_a.member, end_a.segment) * end_a.X_SP;
-  Connection::End end_b{Anchors::nobody, 0, X_WP};
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP};
   if (const std::uint32_t member = bodies_[body_b].member; member != Anchors::nobody) {
     const int segment = link_of(body_b, link_b).segment;
-    end_b = {member, segment, planar_.segment_pose(member, segment).inverse() * X_WP};
+    end_b = {member, segment, static_cast<std::uint32_t>(link_b),
+             planar_.segment_pose(member, segment).inverse() * X_WP};
   }
   return connections_.add(end_a, end_b, limits);
 }
@@ -210,6 +257,7 @@ void PlanarEngine::quarantine() {
 
 void PlanarEngine::take_out(std::uint32_t index) {
   members_[index].is_active = false;
+  if (members_[index].record) members_[index].record->forget();
   connections_.release_of(index);
   for (std::uint32_t i = 0; i < members_[index].part_count; ++i)
     scene_.remove(parts_[members_[index].first_part + i].solid);

@@ -8,6 +8,7 @@
 #include "server/physics/contact_rows.hpp"
 #include "server/physics/engine.hpp"
 #include "server/physics/islands.hpp"
+#include "server/physics/motion_record.hpp"
 #include "server/physics/placed_body.hpp"
 #include "server/physics/planar_collision.hpp"
 #include "server/physics/planar_ground.hpp"
@@ -27,7 +28,9 @@ namespace cohort::physics {
 /// - The ground is what was under the centre of mass when the body was placed, for ever: it gives friction, by half the
 ///   weight to each track, or by all of it to the lowest collision of a body without a drive, and is no contact.
 ///   Nothing falls, tips or climbs; a ball slides and does not roll; rolling resistance has no meaning.
-/// - Connections hold in the plane: their wrench is a force in x and y and a torque about z.
+/// - Connections hold in the plane: their wrench is a force in x and y and a torque about z. They are rigid, whatever
+///   their ConnectionGive.
+/// - Joints and motors have no force to tell; a motor that is told an effort stays where it is.
 /// - The solver is always the iterative one.
 class PlanarEngine final : public Engine {
  public:
@@ -58,16 +61,30 @@ class PlanarEngine final : public Engine {
   TrackState track(std::uint32_t body, std::size_t, Side side) const override {
     return grounds_[bodies_[body].member].track(side);
   }
+  void record(std::uint32_t body) override;
+  Wrench joint_wrench(std::uint32_t, std::size_t) const override {
+    return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  }
+  Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const override;
+  double joint_effort(std::uint32_t, std::size_t) const override { return 0.0; }
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
   void disconnect(std::uint32_t connection) override { connections_.release(connection); }
   bool is_connected(std::uint32_t connection) const override { return connections_[connection].holds(); }
-  Wrench connection_wrench(std::uint32_t connection) const override { return connections_[connection].wrench(step_); }
+  void set_connection_give(std::uint32_t, const ConnectionGive&) override {}
+  Wrench connection_wrench(std::uint32_t connection) const override;
+  Wrench connection_reaction(std::uint32_t connection) const override;
   std::span<const std::uint32_t> broken_connections() const override { return connections_.broken(); }
 
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
-    planar_.set_joint_velocity_target(bodies_[body].member, joint, velocity);
+    planar_.set_joint_target(bodies_[body].member, joint, JointRows::Control::velocity, velocity);
+  }
+  void set_joint_position_target(std::uint32_t body, std::size_t joint, double position) override {
+    planar_.set_joint_target(bodies_[body].member, joint, JointRows::Control::position, position);
+  }
+  void set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort) override {
+    planar_.set_joint_target(bodies_[body].member, joint, JointRows::Control::effort, effort);
   }
   void set_track_velocity_target(std::uint32_t body, std::size_t, Side side, double velocity) override {
     grounds_[bodies_[body].member].set_target(side, velocity);
@@ -94,6 +111,7 @@ class PlanarEngine final : public Engine {
     // Of this step:
     bool is_finite = true;
     bool is_inside = true;
+    std::unique_ptr<MotionRecord> record{};  // null: nobody asked for it
   };
   struct Part {  // a solid of a body that moves
     std::uint32_t solid = 0;
@@ -129,6 +147,7 @@ class PlanarEngine final : public Engine {
   void move(std::uint32_t index);
   void find_parts_in_body(const Member& member, std::uint32_t index);
   void place_solids(std::uint32_t index);
+  Pose pose_of(const Connection::End& end) const;
   void report_contacts();
   void quarantine();
   void take_out(std::uint32_t index);
@@ -154,6 +173,7 @@ class PlanarEngine final : public Engine {
   std::vector<Quarantine> quarantined_;
   Pushes pushes_;
   std::vector<Memory> memory_;  // by worker
+  bool has_records_ = false;
 };
 
 }  // namespace cohort::physics

@@ -44,7 +44,8 @@ void PlanarModel::add_motor(const description::VelocityMotor& motor) {
     segment = mechanism_.segments()[static_cast<std::size_t>(segment)].parent;
   motor_of_joint_[motor.joint] = static_cast<int>(motors_.size());
   motor_of_segment_[static_cast<std::size_t>(segment)] = static_cast<int>(motors_.size());
-  motors_.push_back({segment, static_cast<std::size_t>(dof.coordinate), dof.axis.lower, dof.axis.upper});
+  motors_.push_back(
+      {segment, static_cast<std::size_t>(dof.coordinate), dof.axis.lower, dof.axis.upper, motor.max_velocity});
 }
 
 void PlanarModel::add_masses() {

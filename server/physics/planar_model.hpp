@@ -16,6 +16,7 @@ class PlanarModel {
     std::size_t coordinate = 0;
     double lower = 0.0;  ///< [rad] or [m]
     double upper = 0.0;
+    double max_velocity = 0.0;  ///< [rad/s] or [m/s]
   };
   static constexpr int no_motor = -1;
 
@@ -23,6 +24,7 @@ class PlanarModel {
   explicit PlanarModel(const description::Model& model);
 
   const Mechanism& mechanism() const { return mechanism_; }
+  std::size_t link_count() const { return mechanism_.model().links.size(); }
   /// Tied to the world.
   bool is_fixed() const { return !mechanism_.has_free_root(); }
   const std::vector<Motor>& motors() const { return motors_; }

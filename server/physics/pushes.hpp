@@ -14,6 +14,7 @@ class Pushes {
   struct Push {
     std::uint32_t member = 0;
     int segment = 0;
+    std::size_t link = 0;
     Eigen::Vector3d point_W;
     Wrench wrench;  ///< at the point
   };

@@ -18,10 +18,12 @@ Row& Problem::begin_row(Anchor a, Anchor b, double* kept) {
   row.impulse = kept == nullptr ? 0.0 : *kept;
   row.numbers = numbers_.size();
   Equations& body_a = (*bodies_)[a.body];
+  row.body_a = a.body;
   row.velocity_a = body_a.velocity();
   row.stride_a = body_a.stride();
   if (b.body >= 0 && b.body != a.body) {
     Equations& body_b = (*bodies_)[b.body];
+    row.body_b = b.body;
     row.velocity_b = body_b.velocity();
     row.stride_b = body_b.stride();
   }

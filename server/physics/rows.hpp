@@ -17,7 +17,8 @@ struct Row {
   /// How the limits come about. `friction`: ± the smaller of `cap` and `friction` times the sum of the impulses of the
   /// rows [load_begin, load_end). `cone`: this row and the next, which is `coned`, share such a limit as the radius of
   /// a disc.
-  enum class Limits : std::uint8_t { fixed, friction, cone, coned };
+  /// `soft`: fixed, and the velocity sought is less by `softness` times the impulse.
+  enum class Limits : std::uint8_t { fixed, friction, cone, coned, soft };
 
   double target = 0.0;   ///< [m/s] or [rad/s]
   double inverse = 0.0;  ///< 1 / velocity that a unit impulse gives; 0: none
@@ -26,10 +27,13 @@ struct Row {
   double impulse = 0.0;  ///< [N s] or [N m s]
   double friction = 0.0;
   double cap = unlimited;
+  double softness = 0.0;  ///< of a soft row [m/s / N s] or [rad/s / N m s]
   int load_begin = 0;
   int load_end = 0;
   Limits limits = Limits::fixed;
 
+  int body_a = -1;  ///< in the problem
+  int body_b = -1;  ///< -1: only one body
   double* velocity_a = nullptr;
   double* velocity_b = nullptr;  ///< null: only one body
   std::ptrdiff_t stride_a = 0;
@@ -40,6 +44,13 @@ struct Row {
   void set_limits(double least, double most) {
     lower = least;
     upper = most;
+  }
+  bool has_fixed_limits() const { return limits == Limits::fixed || limits == Limits::soft; }
+  /// Makes it soft; once.
+  void soften(double its_softness) {
+    limits = Limits::soft;
+    softness = its_softness;
+    if (inverse > 0.0) inverse = 1.0 / (1.0 / inverse + softness);
   }
 };
 

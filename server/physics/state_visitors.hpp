@@ -6,7 +6,8 @@
 #include "server/core/pose.hpp"
 #include "server/core/snapshot.hpp"
 
-/// What a `visit_state` calls for each number of a state, so that hash, snapshot and restoring see the same ones.
+/// What a `visit_state` calls for each number of a state, so that hash, snapshot and restoring see the same ones;
+/// `unusual` for what counts only where it is not as usual.
 namespace cohort::physics {
 
 /// Adds whatever number a state holds.
@@ -14,6 +15,10 @@ struct StateHasher {
   StateHash& hash;
   void operator()(const double& number) const { hash.add(number); }
   void operator()(const bool& flag) const { hash.add(static_cast<std::uint64_t>(flag)); }
+  template <class Choice>
+  void unusual(const Choice& choice, Choice usual) const {
+    if (choice != usual) hash.add(static_cast<std::uint64_t>(choice));
+  }
 };
 /// Writes it.
 struct StateSaver {
@@ -22,6 +27,10 @@ struct StateSaver {
   void operator()(const Number& number) const {
     writer.add(number);
   }
+  template <class Choice>
+  void unusual(const Choice& choice, Choice) const {
+    writer.add(choice);
+  }
 };
 /// Reads it back.
 struct StateRestorer {
@@ -29,6 +38,10 @@ struct StateRestorer {
   template <class Number>
   void operator()(Number& number) const {
     reader.read(number);
+  }
+  template <class Choice>
+  void unusual(Choice& choice, Choice) const {
+    reader.read(choice);
   }
 };
 

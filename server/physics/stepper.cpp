@@ -95,6 +95,26 @@ Twist Stepper::link_twist(std::uint32_t body, std::size_t link) const {
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 
+Wrench Stepper::joint_wrench(std::uint32_t body, std::size_t joint) const {
+  if (const ForceRecord* record = record_of(body)) return record->joint_wrench(joint);
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
+Eigen::Vector3d Stepper::link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const {
+  if (const ForceRecord* record = record_of(body)) return record->motion().acceleration(link, p_LP, assembly_.step);
+  return Eigen::Vector3d::Zero();
+}
+
+Wrench Stepper::connection_wrench(std::uint32_t index) const {
+  const Connection& connection = assembly_.connections[index];
+  return connection.wrench_on_a(assembly_.pose_of(connection.a()), assembly_.pose_of(connection.b()), assembly_.step);
+}
+
+Wrench Stepper::connection_reaction(std::uint32_t index) const {
+  const Connection& connection = assembly_.connections[index];
+  return connection.wrench_on_b(assembly_.pose_of(connection.a()), assembly_.pose_of(connection.b()), assembly_.step);
+}
+
 void Stepper::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
                               std::span<const double> velocities) {
   multibody(body).set_joint_state(joint, coordinates, velocities);
@@ -107,6 +127,8 @@ void Stepper::step() {
   find_islands();
   solve_islands();
   report_contacts();
+  assembly_.connections.settle([&](const Connection::End& end) { return assembly_.pose_of(end); }, assembly_.step);
+  assembly_.record_outside();
   assembly_.connections.break_overloaded(assembly_.step);
   quarantine();
   assembly_.pushes.clear();
@@ -160,13 +182,15 @@ std::uint32_t Stepper::connect(std::uint32_t body_a, std::size_t link_a, const P
                                std::size_t link_b, const ConnectionLimits& limits) {
   const Multibody& a = multibody(body_a);
   const Mechanism::LinkPlace& place_a = a.mechanism().link(link_a);
-  const Connection::End end_a{bodies_[body_a].member, place_a.segment, place_a.X_SL * X_LP};
+  const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
+                              place_a.X_SL * X_LP};
   const Pose X_WP = a.segment_pose(place_a.segment) * end_a.X_SP;
-  Connection::End end_b{Anchors::nobody, 0, X_WP};
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP};
   if (!is_static(body_b)) {
     const Multibody& b = multibody(body_b);
     const int segment = b.mechanism().link(link_b).segment;
-    end_b = {bodies_[body_b].member, segment, b.segment_pose(segment).inverse() * X_WP};
+    end_b = {bodies_[body_b].member, segment, static_cast<std::uint32_t>(link_b),
+             b.segment_pose(segment).inverse() * X_WP};
   }
   return assembly_.connections.add(end_a, end_b, limits);
 }

@@ -43,18 +43,34 @@ class Stepper final : public Engine {
   TrackState track(std::uint32_t body, std::size_t drive, Side side) const override {
     return multibody(body).track(drive, side);
   }
+  void record(std::uint32_t body) override {
+    if (!is_static(body)) assembly_.record(bodies_[body].member);
+  }
+  Wrench joint_wrench(std::uint32_t body, std::size_t joint) const override;
+  Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const override;
+  double joint_effort(std::uint32_t body, std::size_t joint) const override {
+    return is_static(body) ? 0.0 : multibody(body).joint_effort(joint);
+  }
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
   void disconnect(std::uint32_t connection) override { assembly_.connections.release(connection); }
   bool is_connected(std::uint32_t connection) const override { return assembly_.connections[connection].holds(); }
-  Wrench connection_wrench(std::uint32_t connection) const override {
-    return assembly_.connections[connection].wrench(assembly_.step);
+  void set_connection_give(std::uint32_t connection, const ConnectionGive& give) override {
+    assembly_.connections.set_give(connection, give);
   }
+  Wrench connection_wrench(std::uint32_t connection) const override;
+  Wrench connection_reaction(std::uint32_t connection) const override;
   std::span<const std::uint32_t> broken_connections() const override { return assembly_.connections.broken(); }
 
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
-    multibody(body).set_joint_velocity_target(joint, velocity);
+    multibody(body).set_joint_target(joint, JointRows::Control::velocity, velocity);
+  }
+  void set_joint_position_target(std::uint32_t body, std::size_t joint, double position) override {
+    multibody(body).set_joint_target(joint, JointRows::Control::position, position);
+  }
+  void set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort) override {
+    multibody(body).set_joint_target(joint, JointRows::Control::effort, effort);
   }
   void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) override {
     multibody(body).set_track_velocity_target(drive, side, velocity);
@@ -86,6 +102,9 @@ class Stepper final : public Engine {
   // Of a body that moves.
   Multibody& multibody(std::uint32_t body) { return *assembly_.members[bodies_[body].member].multibody; }
   const Multibody& multibody(std::uint32_t body) const { return *assembly_.members[bodies_[body].member].multibody; }
+  const ForceRecord* record_of(std::uint32_t body) const {
+    return is_static(body) ? nullptr : assembly_.members[bodies_[body].member].record.get();
+  }
   bool is_static(std::uint32_t body) const { return bodies_[body].member == Anchors::nobody; }
 
   const description::World& description_;

@@ -39,7 +39,7 @@ void Stepper::place_body(std::uint32_t index, const Pose& X_WM) {
 
 void Stepper::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {
   const description::Inertial& inertial = description_.models[bodies_[body].model].links[link].inertial;
-  assembly_.pushes.add({bodies_[body].member, multibody(body).mechanism().link(link).segment,
+  assembly_.pushes.add({bodies_[body].member, multibody(body).mechanism().link(link).segment, link,
                         link_pose(body, link) * inertial.X_LI.position, wrench});
 }
 

@@ -46,13 +46,31 @@ void TreelDrive::find_ground(const geometry::Scene& scene, const Pose& X_WS,
   }
 }
 
+std::optional<TreelDrive::Directions> TreelDrive::directions() const {
+  Eigen::Vector3d normal_sum = Eigen::Vector3d::Zero();
+  for (const Point& point : points_)
+    if (point.ground) normal_sum += point.ground->normal_W;
+  if (normal_sum.isZero()) return std::nullopt;
+  const Eigen::Vector3d normal_W = normal_sum.normalized();
+  const Eigen::Vector3d x_W = X_WL_.orientation * Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d forward_W = (x_W - normal_W.dot(x_W) * normal_W).normalized();
+  return Directions{forward_W, normal_W.cross(forward_W)};
+}
+
+std::optional<std::uint32_t> TreelDrive::solid_under(Side side) const {
+  const std::size_t front = 2 * static_cast<std::size_t>(side);
+  const std::optional<Ground>& rear = points_[front + 1].ground;
+  if (rear) return rear->solid;
+  if (points_[front].ground) return points_[front].ground->solid;
+  return std::nullopt;
+}
+
 void TreelDrive::add_rows(Problem& problem, int index, const Anchors& anchors, double step) {
   const Anchor hull{index, 0};
   const int first = problem.row_count();
   std::array<int, 3> begin{first, first, first};  // of the normal rows of each side, and one past the last
   std::array<double, 2> friction{drive_.friction, drive_.friction};
   std::array<Anchor, 2> under;  // what each track stands on: of two things the one under its rear
-  Eigen::Vector3d normal_sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::size_t side = i / 2;
     Point& point = points_[i];
@@ -62,7 +80,6 @@ void TreelDrive::add_rows(Problem& problem, int index, const Anchors& anchors, d
       const Ground& ground = *point.ground;
       under[side] = anchors.of(ground.solid);
       friction[side] = std::min(friction[side], ground.friction);
-      normal_sum += ground.normal_W;
       Row& row = problem.add_force_row(hull, under[side], point.position_W, ground.normal_W, &point.impulse);
       // Above the surface: may close the gap within the step. Below: pushed out gently.
       row.target = ground.gap > 0.0 ? -ground.gap / step
@@ -73,17 +90,13 @@ void TreelDrive::add_rows(Problem& problem, int index, const Anchors& anchors, d
   }
 
   for (Track& track : tracks_) track.row = -1;
-  if (problem.row_count() > first && !normal_sum.isZero()) {
-    const Eigen::Vector3d normal_W = normal_sum.normalized();
-    const Eigen::Vector3d x_W = X_WL_.orientation * Eigen::Vector3d::UnitX();
-    const Eigen::Vector3d forward_W = (x_W - normal_W.dot(x_W) * normal_W).normalized();
+  if (const std::optional<Directions> along = directions()) {
     for (const Side side : sides) {
       const auto s = static_cast<std::size_t>(side);
       if (begin[s] == begin[s + 1]) continue;
       Track& track = tracks_[s];
       track.row = problem.row_count();
-      const Eigen::Vector3d point_W = X_WL_ * Eigen::Vector3d(0.0, y_of(side), drive_.ground_height);
-      Row& row = problem.add_force_row(hull, under[s], point_W, forward_W, &track.impulse);
+      Row& row = problem.add_force_row(hull, under[s], point_of(side), along->forward_W, &track.impulse);
       row.target = track.target;
       row.limits = Row::Limits::friction;
       row.friction = friction[s];
@@ -91,9 +104,8 @@ void TreelDrive::add_rows(Problem& problem, int index, const Anchors& anchors, d
       row.load_begin = begin[s];
       row.load_end = begin[s + 1];
     }
-    const Eigen::Vector3d centre_W = X_WL_ * Eigen::Vector3d(0.0, 0.0, drive_.ground_height);
     const std::size_t stands = tracks_[0].row >= 0 ? 0 : 1;
-    Row& row = problem.add_force_row(hull, under[stands], centre_W, normal_W.cross(forward_W), &lateral_impulse_);
+    Row& row = problem.add_force_row(hull, under[stands], middle(), along->left_W, &lateral_impulse_);
     row.limits = Row::Limits::friction;
     row.friction = std::min(friction[0], friction[1]);
     row.load_begin = begin[0];

@@ -34,6 +34,12 @@ class TreelDrive {
       if (point.ground) visit(point.ground->solid);
   }
 
+  /// The link that the tracks are on.
+  std::size_t link() const { return drive_.link; }
+  /// Calls `visit(solid, point_W, impulse_W)` for what each solid under the tracks did to the link in the last step.
+  template <class Visit>
+  void for_each_impulse(Visit&& visit) const;
+
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
   /// Takes over what the tracks do from the solved rows.
   void read_rows(const Problem& problem, double step);
@@ -65,6 +71,17 @@ class TreelDrive {
     Eigen::Vector3d position_W = Eigen::Vector3d::Zero();
     std::optional<Ground> ground;
   };
+  /// Directions on the ground in this step, those of a track that rolls forwards and to its left; zero if nothing is
+  /// under the tracks.
+  struct Directions {
+    Eigen::Vector3d forward_W = Eigen::Vector3d::Zero();
+    Eigen::Vector3d left_W = Eigen::Vector3d::Zero();
+  };
+  std::optional<Directions> directions() const;
+  /// What a side stands on: of two things the one under its rear.
+  std::optional<std::uint32_t> solid_under(Side side) const;
+  Eigen::Vector3d point_of(Side side) const { return X_WL_ * Eigen::Vector3d(0.0, y_of(side), drive_.ground_height); }
+  Eigen::Vector3d middle() const { return X_WL_ * Eigen::Vector3d(0.0, 0.0, drive_.ground_height); }
   Track& side_of(Side side) { return tracks_[static_cast<std::size_t>(side)]; }
   const Track& side_of(Side side) const { return tracks_[static_cast<std::size_t>(side)]; }
   double y_of(Side side) const { return side == Side::left ? drive_.half_gauge : -drive_.half_gauge; }
@@ -76,5 +93,19 @@ class TreelDrive {
   double lateral_impulse_ = 0.0;
   Pose X_WL_;  // of this step
 };
+
+template <class Visit>
+void TreelDrive::for_each_impulse(Visit&& visit) const {
+  for (const Point& point : points_)
+    if (point.ground)
+      visit(point.ground->solid, point.position_W, Eigen::Vector3d(point.impulse * point.ground->normal_W));
+  const std::optional<Directions> along = directions();
+  if (!along) return;
+  for (const Side side : {Side::left, Side::right})
+    if (const std::optional<std::uint32_t> solid = solid_under(side))
+      visit(*solid, point_of(side), Eigen::Vector3d(side_of(side).impulse * along->forward_W));
+  const std::optional<std::uint32_t> left = solid_under(Side::left);
+  visit(left ? *left : *solid_under(Side::right), middle(), Eigen::Vector3d(lateral_impulse_ * along->left_W));
+}
 
 }  // namespace cohort::physics

@@ -40,7 +40,11 @@ std::uint32_t World::connect(std::uint32_t body_a, std::size_t link_a, const Pos
 }
 void World::disconnect(std::uint32_t connection) { engine_->disconnect(connection); }
 bool World::is_connected(std::uint32_t connection) const { return engine_->is_connected(connection); }
+void World::set_connection_give(std::uint32_t connection, const ConnectionGive& give) {
+  engine_->set_connection_give(connection, give);
+}
 Wrench World::connection_wrench(std::uint32_t connection) const { return engine_->connection_wrench(connection); }
+Wrench World::connection_reaction(std::uint32_t connection) const { return engine_->connection_reaction(connection); }
 std::span<const std::uint32_t> World::broken_connections() const { return engine_->broken_connections(); }
 
 double World::joint_position(std::uint32_t body, std::size_t joint) const {
@@ -49,11 +53,23 @@ double World::joint_position(std::uint32_t body, std::size_t joint) const {
 double World::joint_velocity(std::uint32_t body, std::size_t joint) const {
   return engine_->joint_velocity(body, joint);
 }
+void World::record(std::uint32_t body) { engine_->record(body); }
+Wrench World::joint_wrench(std::uint32_t body, std::size_t joint) const { return engine_->joint_wrench(body, joint); }
+Eigen::Vector3d World::link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const {
+  return engine_->link_acceleration(body, link, p_LP);
+}
+double World::joint_effort(std::uint32_t body, std::size_t joint) const { return engine_->joint_effort(body, joint); }
 TrackState World::track(std::uint32_t body, std::size_t drive, Side side) const {
   return engine_->track(body, drive, side);
 }
 void World::set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) {
   engine_->set_joint_velocity_target(body, joint, velocity);
+}
+void World::set_joint_position_target(std::uint32_t body, std::size_t joint, double position) {
+  engine_->set_joint_position_target(body, joint, position);
+}
+void World::set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort) {
+  engine_->set_joint_effort_target(body, joint, effort);
 }
 void World::set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) {
   engine_->set_track_velocity_target(body, drive, side, velocity);

@@ -48,6 +48,19 @@ struct ConnectionLimits {
   double torque = std::numeric_limits<double>::infinity();  ///< [N m]
 };
 
+/// How a connection yields; with the defaults not at all. Axes are those of P on body a. Springs and dampers are
+/// implicit, and so stable at any stiffness and step; what exceeds a limit slips: where it came to is its new rest.
+struct ConnectionGive {
+  static constexpr double rigid = std::numeric_limits<double>::infinity();
+
+  double linear_stiffness = rigid;  ///< [N/m]
+  double linear_damping = 0.0;      ///< beside a stiffness that is not rigid [N s/m]
+  double holding_force = rigid;     ///< along each axis [N]
+  Eigen::Vector3d angular_stiffness = Eigen::Vector3d::Constant(rigid);  ///< about each axis [N m/rad]
+  Eigen::Vector3d angular_damping = Eigen::Vector3d::Zero();             ///< [N m s/rad]
+  Eigen::Vector3d holding_torque = Eigen::Vector3d::Constant(rigid);     ///< 0: turns freely [N m]
+};
+
 /// A body that is no longer simulated: it stays where it was last, touches nothing and is seen by nobody.
 struct Quarantine {
   enum class Reason : std::uint8_t {
@@ -104,19 +117,43 @@ class World {
   double joint_velocity(std::uint32_t body, std::size_t joint) const;
   TrackState track(std::uint32_t body, std::size_t drive, Side side) const;
 
+  /// From the next step on keeps what `joint_wrench` and `link_acceleration` tell of a body that moves, which are zero
+  /// otherwise. Between steps. None of the three is part of the state: after `restore`, and where a body was put
+  /// elsewhere or is not in the world, both are zero until the end of the next step. A static body has neither.
+  void record(std::uint32_t body);
+  /// On the joint's child by its parent over the last step, about the joint's origin, both as they were when the step
+  /// began: all that goes through the joint, of motor, friction, damping, spring, limits and what the joint does not
+  /// let move; also of a fixed joint. Zero for a planar body.
+  Wrench joint_wrench(std::uint32_t body, std::size_t joint) const;
+  /// Mean acceleration over the last step of a point that is fixed to a link, in world axes, gravity not taken out
+  /// [m/s^2]: zero at rest, `gravity` in free fall.
+  Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const;
+  /// Of the joint's motor over the last step [N m] or [N]; 0 if it has none, and for a planar body.
+  double joint_effort(std::uint32_t body, std::size_t joint) const;
+
   /// Holds a link of `body_a`, which moves, to one of `body_b` as they are now, around the frame P of link a; from the
   /// next step on. Returns the connection's number, which counts up from 0. Between steps.
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits = {});
   void disconnect(std::uint32_t connection);
   bool is_connected(std::uint32_t connection) const;
-  /// On link a by link b, about the origin of P, over the last step; zero if it does not hold.
+  /// From the next step on; between steps.
+  void set_connection_give(std::uint32_t connection, const ConnectionGive& give);
+  /// On link a by link b, about the origin of P on a, over the last step; what broke it if that was in the last step,
+  /// otherwise zero if it does not hold.
   Wrench connection_wrench(std::uint32_t connection) const;
+  /// The same on link b by link a, about the origin of P as b carries it.
+  Wrench connection_reaction(std::uint32_t connection) const;
   /// The connections that broke in the last step, ascending.
   std::span<const std::uint32_t> broken_connections() const;
 
-  /// For a joint that a VelocityMotor drives.
+  /// For a joint that a motor drives, as the next two. The last of the three that was called is what the motor does.
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity);
+  /// Goes there, within the joint's limits, no faster than the motor may and so that it can brake in time with what
+  /// effort the motor has beside gravity, and stays. Not of a ball joint.
+  void set_joint_position_target(std::uint32_t body, std::size_t joint, double position);
+  /// A force or torque, no more than the motor may give [N m] or [N]. A planar joint stays where it is.
+  void set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort);
   /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
   void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity);
 

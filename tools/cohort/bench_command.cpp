@@ -19,12 +19,13 @@ int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop) 
   }
   try {
     std::cout << bench::missing_engines() << std::flush;
-    const auto results =
-        bench::measure_all(command.options, {[&](const std::string& message) { log.progress(message); }, stop},
-                           [&](const std::string& table) {
-                             log.clear_progress();
-                             std::cout << '\n' << table << std::flush;
-                           });
+    const bench::Surroundings surroundings{[&](const std::string& message) { log.progress(message); }, stop};
+    const auto print = [&](const std::string& table) {
+      log.clear_progress();
+      std::cout << '\n' << table << std::flush;
+    };
+    const auto results = command.thesis ? bench::measure_thesis(*command.thesis, surroundings, print)
+                                        : bench::measure_all(command.options, surroundings, print);
     if (!command.json.empty()) write_file(what, command.json, results.dump(2) + "\n");
     return exit_ok;
   } catch (const bench::Interrupted&) {

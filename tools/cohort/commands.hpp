@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tools/bench/measure.hpp"
+#include "tools/bench/thesis.hpp"
 #include "tools/cohort/log.hpp"
 
 /// The commands of `cohort`, one file each. Every command returns the process's exit code.
@@ -74,7 +75,8 @@ int help(const std::string& topic, Log& log);
 
 struct BenchCommand {
   bench::Options options;
-  std::filesystem::path json;  ///< file to write; empty: none
+  std::optional<bench::ThesisOptions> thesis;  ///< the thesis's tables, in place of the scenes
+  std::filesystem::path json;                  ///< file to write; empty: none
 };
 int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop);
 

@@ -187,6 +187,27 @@ void add_bench_options(CLI::App& app, BenchCommand& command) {
       "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
 }
 
+void add_thesis_options(CLI::App& app, cohort::bench::ThesisOptions& options, BenchCommand& command) {
+  app.add_option("--seconds", options.seconds, "Simulated seconds of each cell")
+      ->check(number_above_zero(1e6))
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_option("--budget", options.budget, "CPU seconds that a cell may take; the rest is extrapolated")
+      ->check(number_above_zero(1e6))
+      ->capture_default_str()
+      ->type_name("S");
+  app.add_option("--seed", options.seed, "Seed of places and commands")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
+  app.footer(
+      "Tables 5.1 (random movement) and 5.2 (connected robots): the thesis's own seconds, and beside them Cohort and\n"
+      "ODE, the thesis's engine, run here and now with steps of 10 ms; ODE also with the thesis's 100 ms, and what "
+      "its\n"
+      "robots then do. docs/bench.md says all of it.");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -271,6 +292,9 @@ int main(int argc, char** argv) {
   BenchCommand bench_command;
   CLI::App* bench_app = app.add_subcommand("bench", "Measure Cohort and other physics engines on the same scenes");
   add_bench_options(*bench_app, bench_command);
+  cohort::bench::ThesisOptions thesis_options;
+  CLI::App* thesis_app = bench_app->add_subcommand("thesis", "Run the tables of the thesis of 2005 again");
+  add_thesis_options(*thesis_app, thesis_options, bench_command);
   add_log_options(*bench_app, log_flags);
 
   std::optional<LogOptions> options;
@@ -303,6 +327,7 @@ int main(int argc, char** argv) {
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (help_app->parsed()) return help(help_topic, log);
+  if (thesis_app->parsed()) bench_command.thesis = thesis_options;
   if (bench_app->parsed()) return bench(bench_command, log, stop_requested);
   return check(checked_file, log);
 }

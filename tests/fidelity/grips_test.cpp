@@ -1,0 +1,234 @@
+// Connections that give, that lift, and many at once.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/gripped_swarm.hpp"
+
+namespace cohort::testing {
+namespace {
+
+using Eigen::Vector3d;
+using physics::ConnectionGive;
+using physics::Wrench;
+
+constexpr double g = 9.81;
+
+description::World empty_world() {
+  description::World world;
+  world.name = "empty";
+  return world;
+}
+
+// A box of 0.5 kg that a connection holds to the world at its middle, without gravity.
+struct HeldBox {
+  static constexpr double mass = 0.5;
+  static constexpr double size = 0.1;
+  static constexpr double inertia = mass * size * size / 6.0;
+  SmallWorld small{empty_world()};
+  std::uint32_t box;
+  std::uint32_t connection;
+
+  explicit HeldBox(const ConnectionGive& give, const physics::ConnectionLimits& limits = {}) {
+    small.description.gravity.setZero();
+    const auto wall = small.add(static_shape("wall", description::Box{{0.1, 0.1, 0.1}}), at(0, 0, -5));
+    box =
+        small.add(loose("box", description::Box{{size, size, size}}, solid_box(mass, {size, size, size})), at(0, 0, 0));
+    connection = small.world().connect(box, 0, {}, wall, 0, limits);
+    small.world().set_connection_give(connection, give);
+  }
+  void push(const Vector3d& force, const Vector3d& torque, double seconds) {
+    for (int i = 0; i < std::lround(seconds / 0.01); ++i) {
+      small.world().push_body(box, 0, {force, torque});
+      small.world().step();
+    }
+  }
+  double angle() {
+    const Eigen::Quaterniond q = small.world().link_pose(box, 0).orientation;
+    return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w()));
+  }
+};
+
+TEST(Give, ASpringYieldsByForceOverStiffness) {
+  ConnectionGive give;
+  give.linear_stiffness = 200.0;
+  give.linear_damping = 10.0;
+  give.angular_stiffness = Vector3d(2.0, 5.0, ConnectionGive::rigid);
+  give.angular_damping = Vector3d(0.02, 0.02, 0.0);
+  HeldBox held(give);
+  held.push({1.0, 0, 0}, {0, 0.1, 0}, 3.0);
+  EXPECT_NEAR(held.small.position(held.box).x(), 1.0 / 200.0, 1e-6);
+  EXPECT_NEAR(held.angle(), 0.1 / 5.0, 1e-5);
+  const Wrench wrench = held.small.world().connection_wrench(held.connection);
+  EXPECT_NEAR(wrench.force_W.x(), -1.0, 1e-4);
+  EXPECT_NEAR(wrench.torque_W.y(), -0.1, 1e-4);
+  held.push(Vector3d::Zero(), {0, 0, 0.1}, 3.0);
+  EXPECT_NEAR(held.angle(), 0.0, 1e-5) << "it came back, and is rigid about z";
+}
+
+TEST(Give, ASpringSwingsAtItsFrequencyAndLosesNoMoreThanItsDamperTakes) {
+  ConnectionGive give;
+  give.linear_stiffness = 20.0;  // 1 s for 0.5 kg
+  HeldBox held(give);
+  held.small.world().set_root_twist(held.box, {Vector3d::Zero(), {0.1, 0, 0}});
+  int crossings = 0;
+  double before = 0.0;
+  double at_last = 0.0;
+  double first = -1.0;
+  for (int i = 1; i <= 500; ++i) {
+    held.small.world().step();
+    const double x = held.small.position(held.box).x();
+    if (before < 0.0 && x >= 0.0) {
+      at_last = 0.01 * (i - x / (x - before));
+      if (first < 0.0) first = at_last;
+      ++crossings;
+    }
+    before = x;
+  }
+  ASSERT_GE(crossings, 3);
+  EXPECT_NEAR((at_last - first) / (crossings - 1), 2.0 * M_PI * std::sqrt(0.5 / 20.0), 0.01);
+}
+
+TEST(Give, IsStableAtAnyStiffnessAndDamping) {
+  for (const double stiffness : {1.0, 1e4, 1e8, 1e12}) {
+    for (const double damping : {0.0, 1.0, 1e6}) {
+      ConnectionGive give;
+      give.linear_stiffness = stiffness;
+      give.linear_damping = damping;
+      give.angular_stiffness = Vector3d::Constant(stiffness);
+      give.angular_damping = Vector3d::Constant(damping);
+      HeldBox held(give);
+      held.small.world().set_root_twist(held.box, {Vector3d(3, 2, 1), Vector3d(1, -1, 0.5)});
+      double greatest = 0.0;
+      for (int i = 0; i < 500; ++i) {
+        held.small.world().step();
+        greatest = std::max(greatest, held.small.velocity(held.box).norm());
+      }
+      EXPECT_LE(greatest, 1.5 + 1e-6) << stiffness << " N/m, " << damping << " N s/m";
+    }
+  }
+}
+
+TEST(Give, AboveItsHoldingForceItSlipsAndStaysWhereItCame) {
+  ConnectionGive give;
+  give.holding_force = 2.0;
+  HeldBox held(give);
+  held.push({1.5, 0, 0}, Vector3d::Zero(), 1.0);
+  EXPECT_NEAR(held.small.position(held.box).x(), 0.0, 1e-6) << "less than it holds";
+  held.push({3.0, 0, 0}, Vector3d::Zero(), 0.2);
+  // (3 - 2) N on 0.5 kg for 0.2 s; then 2 N brake it: 40 mm and 20 mm.
+  EXPECT_NEAR(held.small.velocity(held.box).x(), 0.4, 1e-6);
+  EXPECT_NEAR(held.small.world().connection_wrench(held.connection).force_W.x(), -2.0, 1e-6);
+  held.small.run(1.0);
+  EXPECT_NEAR(held.small.position(held.box).x(), 0.04 + 0.02, 3e-3);
+  EXPECT_NEAR(held.small.velocity(held.box).x(), 0.0, 1e-9);
+}
+
+TEST(Give, WithoutATorqueAboutAnAxisItTurnsFreelyAboutThatAlone) {
+  ConnectionGive give;
+  give.holding_torque.z() = 0.0;
+  HeldBox held(give);
+  held.push(Vector3d::Zero(), {0.01, 0, 0.01}, 0.5);
+  EXPECT_NEAR(held.small.world().link_twist(held.box, 0).angular_W.z(), 0.5 * 0.01 / HeldBox::inertia, 1e-3);
+  EXPECT_NEAR(held.small.world().link_twist(held.box, 0).angular_W.x(), 0.0, 1e-6);
+  EXPECT_GT(held.angle(), 1.0);
+  held.small.world().set_connection_give(held.connection, {});
+  held.small.run(0.1);
+  const double angle = held.angle();
+  held.small.run(1.0);
+  EXPECT_NEAR(held.angle(), angle, 1e-6) << "closed again it holds it as it is now";
+}
+
+TEST(Give, IsSavedAndRestored) {
+  ConnectionGive give;
+  give.linear_stiffness = 50.0;
+  give.holding_force = 2.0;
+  give.holding_torque.z() = 0.01;
+  HeldBox held(give);
+  held.push({3.0, 0, 0}, {0, 0, 0.02}, 0.1);
+  SnapshotWriter writer;
+  held.small.world().save(writer);
+  WorkerPool workers(1);
+  physics::World restored(held.small.description, workers);
+  SnapshotReader reader(writer.bytes());
+  restored.restore(reader);
+  const auto hash_of = [](const physics::World& world) {
+    StateHash hash;
+    world.hash_body(1, hash);
+    world.hash_contacts(hash);
+    return hash.value();
+  };
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_EQ(hash_of(restored), hash_of(held.small.world())) << "at step " << i;
+    restored.step();
+    held.small.world().step();
+  }
+}
+
+TEST(Connections, BothEndsFeelTheSameAboutTheirOwnFrames) {
+  HeldBox held({});
+  held.push({1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, 0.5);
+  const Wrench on_a = held.small.world().connection_wrench(held.connection);
+  const Wrench on_b = held.small.world().connection_reaction(held.connection);
+  EXPECT_LT((on_a.force_W + Vector3d(1, 2, 3)).norm(), 1e-4);
+  EXPECT_LT((on_b.force_W - Vector3d(1, 2, 3)).norm(), 1e-4);
+  EXPECT_LT((on_a.torque_W + Vector3d(0.1, 0.2, 0.3)).norm(), 1e-4);
+  EXPECT_LT((on_a.torque_W + on_b.torque_W).norm(), 1e-5);
+}
+
+TEST(Connections, TellWhatBrokeThemForOneStep) {
+  HeldBox held({}, {.force = 2.0});
+  held.push({3.0, 0, 0}, Vector3d::Zero(), 0.01);
+  ASSERT_EQ(held.small.world().broken_connections().size(), 1u);
+  EXPECT_NEAR(held.small.world().connection_wrench(held.connection).force_W.x(), -3.0, 1e-3);
+  EXPECT_NEAR(held.small.world().connection_reaction(held.connection).force_W.x(), 3.0, 1e-3);
+  held.small.world().step();
+  EXPECT_EQ(held.small.world().connection_wrench(held.connection).force_W, Vector3d::Zero());
+}
+
+// 0.7 kg at the end of an arm of 10 cm that weighs 50 g, at ten iterations.
+TEST(Lifting, AnArmLiftsARobotAndDoesNotSag) {
+  SmallWorld small;
+  const auto lifter = small.add(with_arm(), at(0, 0, 0));
+  const auto lifted = small.add(tracked_robot(), at(0.03 + arm_length + 0.058, 0, 0));
+  physics::World& world = small.world();
+  world.connect(lifter, 0, {}, 0, 0);
+  const auto grip = world.connect(lifter, arm_link, {{arm_length, 0, 0}}, lifted, 1);
+  world.set_joint_position_target(lifter, elevation_joint, -0.5);
+  double gap = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    world.step();
+    const Vector3d jaw = world.link_pose(lifter, arm_link) * Vector3d(arm_length, 0, 0);
+    gap = std::max(gap, (jaw - world.link_pose(lifted, 1) * Vector3d(-0.058, 0, 0.02)).norm());
+  }
+  EXPECT_LT(gap, 0.2e-3);
+  EXPECT_NEAR(world.joint_position(lifter, elevation_joint), -0.5, 1e-4);
+  EXPECT_NEAR(-world.connection_wrench(grip).force_W.z(), 0.7 * g, 1e-3);
+  // Both hang on the elevation joint: the arm at half its length, the robot with its centre of mass below the jaw.
+  const double arm = 0.05 * g * 0.5 * arm_length * std::cos(0.5);
+  const Vector3d joint = world.link_pose(lifter, arm_link).position;
+  const Vector3d chassis = world.link_pose(lifted, 0) * Vector3d(0, 0, 0.033);
+  const Vector3d turret = world.link_pose(lifted, 1) * Vector3d(0, 0, 0.02);
+  const double robot = g * (0.4 * (chassis - joint).x() + 0.3 * (turret - joint).x());
+  EXPECT_NEAR(world.joint_effort(lifter, elevation_joint), -(arm + robot), 1e-3);
+}
+
+TEST(Lifting, ARobotThatTwoOthersHoldBackLiftsAFourth) {
+  SmallWorld small;
+  const auto lifter = small.add(with_arm(), at(0, 0, 0));
+  const auto second = small.add(tracked_robot(), at(-0.13, 0, 0));
+  const auto third = small.add(tracked_robot(), at(-0.26, 0, 0));
+  const auto lifted = small.add(tracked_robot(), at(0.03 + arm_length + 0.058, 0, 0));
+  physics::World& world = small.world();
+  world.connect(lifter, 1, {{-0.065, 0, 0.02}}, second, 1);
+  world.connect(second, 1, {{-0.065, 0, 0.02}}, third, 1);
+  world.connect(lifter, arm_link, {{arm_length, 0, 0}}, lifted, 1);
+  world.set_joint_position_target(lifter, elevation_joint, -0.3);
+  for (int i = 0; i < 300; ++i) world.step();
+  EXPECT_NEAR(world.joint_position(lifter, elevation_joint), -0.3, 1e-3);
+  EXPECT_GT(small.position(lifted).z(), 0.02);
+  EXPECT_LT(small.velocity(lifted).norm(), 1e-3);
+  EXPECT_GT(small.up(lifter).z(), 0.99);
+}
+
+}  // namespace
+}  // namespace cohort::testing

@@ -1,0 +1,262 @@
+// What goes through joints, against statics and dynamics by hand.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/small_world.hpp"
+
+namespace cohort::testing {
+namespace {
+
+using description::Joint;
+using description::JointType;
+using Eigen::Vector3d;
+using physics::Wrench;
+
+constexpr double g = 9.81;
+
+description::World empty_world() {
+  description::World world;
+  world.name = "empty";
+  return world;
+}
+
+Joint joint(const std::string& name, JointType type, std::size_t parent, std::size_t child, const Vector3d& axis) {
+  Joint joint;
+  joint.name = name;
+  joint.type = type;
+  joint.parent = parent;
+  joint.child = child;
+  joint.axis.direction = axis;
+  return joint;
+}
+
+description::Inertial mass_at(double mass, const Vector3d& p_LI) {
+  description::Inertial inertial = solid_box(mass, {0.02, 0.03, 0.04});
+  inertial.X_LI.position = p_LI;
+  return inertial;
+}
+
+// A boom tied to the world at its origin by a hinge about y or a weld, and a weight welded to its end.
+constexpr double boom_mass = 0.2;
+constexpr double weight_mass = 0.5;
+constexpr double boom_length = 0.3;
+description::Model crane(JointType hinge) {
+  description::Model model;
+  model.name = "crane";
+  model.links.push_back({"boom", {}, mass_at(boom_mass, {0.5 * boom_length, 0, 0}), {}});
+  model.links.push_back({"weight", {{boom_length, 0, 0}}, mass_at(weight_mass, Vector3d::Zero()), {}});
+  model.joints.push_back(joint("hinge", hinge, Joint::world, 0, Vector3d::UnitY()));
+  model.joints.push_back(joint("weld", JointType::fixed, 0, 1, Vector3d::UnitZ()));
+  return model;
+}
+
+void expect_wrench(const Wrench& wrench, const Vector3d& force_W, const Vector3d& torque_W, double within) {
+  EXPECT_LT((wrench.force_W - force_W).norm(), within) << "force " << wrench.force_W.transpose();
+  EXPECT_LT((wrench.torque_W - torque_W).norm(), within) << "torque " << wrench.torque_W.transpose();
+}
+
+TEST(JointForces, AWeldedWeightIsHeldUpByItsWeightAndItsMoment) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(crane(JointType::fixed), at(1, 2, 3));
+  small.world().record(body);
+  small.run(0.05);
+  expect_wrench(small.world().joint_wrench(body, 1), {0, 0, weight_mass * g}, Vector3d::Zero(), 1e-9);
+  // The torque upwards at x = l against a weight that pulls down: about -y.
+  const double moment = (0.5 * boom_mass + weight_mass) * g * boom_length;
+  expect_wrench(small.world().joint_wrench(body, 0), {0, 0, (boom_mass + weight_mass) * g}, {0, -moment, 0}, 1e-9);
+}
+
+TEST(JointForces, AMotorThatHoldsAnArmGivesItsWeightTimesItsLength) {
+  SmallWorld small(empty_world());
+  description::Model model = crane(JointType::revolute);
+  model.devices.push_back(description::VelocityMotor{"motor", 0, 1.0, 10.0});
+  const auto body = small.add(model, at(0, 0, 0));
+  small.world().record(body);
+  small.run(0.05);
+  const double moment = (0.5 * boom_mass + weight_mass) * g * boom_length;
+  EXPECT_NEAR(small.world().joint_effort(body, 0), -moment, 1e-6);
+  expect_wrench(small.world().joint_wrench(body, 0), {0, 0, (boom_mass + weight_mass) * g}, {0, -moment, 0}, 1e-6);
+}
+
+TEST(JointForces, APushOnALinkGoesThroughTheJointsAboveIt) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(crane(JointType::fixed), at(0, 0, 0));
+  small.world().record(body);
+  const Vector3d push(1.0, 2.0, -3.0);
+  const Vector3d twist(0.1, -0.2, 0.3);
+  small.world().push_body(body, 1, {push, twist});
+  small.world().step();
+  const Vector3d weight(0, 0, -weight_mass * g);
+  expect_wrench(small.world().joint_wrench(body, 1), -push - weight, -twist, 1e-9);
+  const Vector3d boom(0, 0, -boom_mass * g);
+  const Vector3d end(boom_length, 0, 0);
+  expect_wrench(small.world().joint_wrench(body, 0), -push - weight - boom,
+                -twist - end.cross(push + weight) - (0.5 * end).cross(boom), 1e-9);
+  small.world().step();
+  expect_wrench(small.world().joint_wrench(body, 1), -weight, Vector3d::Zero(), 1e-9);
+}
+
+TEST(JointForces, AMassThatGoesRoundIsPulledInwards) {
+  SmallWorld small(empty_world());
+  small.description.gravity.setZero();
+  description::Model model = crane(JointType::revolute);
+  model.joints[0].axis.direction = Vector3d::UnitZ();
+  const auto body = small.add(model, at(0, 0, 0));
+  small.world().record(body);
+  const double rate = 5.0;
+  small.world().set_joint_state(body, 0, std::array{0.0}, std::array{rate});
+  small.run(0.3);
+  const Vector3d outwards = small.world().link_pose(body, 1).position.normalized();
+  const Wrench wrench = small.world().joint_wrench(body, 1);
+  EXPECT_NEAR(wrench.force_W.norm(), weight_mass * rate * rate * boom_length, 1e-9);
+  EXPECT_LT(wrench.force_W.normalized().dot(outwards), -0.998) << "within one step's turn";
+  EXPECT_NEAR(small.world().joint_wrench(body, 0).force_W.norm(),
+              (weight_mass + 0.5 * boom_mass) * rate * rate * boom_length, 1e-9);
+}
+
+// A tree of every kind of joint that swings, with motors, damping, springs and friction: what goes through a joint
+// along its axis is what these give, whatever else happens.
+TEST(JointForces, AlongItsAxisAJointPassesWhatItsMotorSpringAndDamperGive) {
+  SmallWorld small(empty_world());
+  description::Model model;
+  model.name = "tree";
+  model.links.push_back({"root", {}, mass_at(1.0, {0.01, 0.02, 0}), {}});
+  model.links.push_back({"turning", {{0.1, 0, 0}}, mass_at(0.4, {0.05, 0.02, 0.01}), {}});
+  model.links.push_back({"sliding", {{0.2, 0, 0}}, mass_at(0.3, {0.03, 0, 0.05}), {}});
+  model.links.push_back({"ball", {{-0.1, 0.1, 0}}, mass_at(0.2, {-0.05, 0.02, 0}), {}});
+  model.joints.push_back(joint("hinge", JointType::revolute, 0, 1, Vector3d(0, 1, 1).normalized()));
+  model.joints.push_back(joint("rail", JointType::prismatic, 1, 2, Vector3d::UnitX()));
+  model.joints.push_back(joint("socket", JointType::ball, 0, 3, Vector3d::UnitX()));
+  model.joints[0].axis.damping = 0.02;
+  model.joints[1].axis.damping = 0.5;
+  model.joints[1].axis.spring_stiffness = 30.0;
+  model.devices.push_back(description::VelocityMotor{"motor", 0, 5.0, 0.05});
+  const auto body = small.add(model, at(0, 0, 1));
+  physics::World& world = small.world();
+  world.record(body);
+  world.set_root_twist(body, {Vector3d(1, -2, 3), Vector3d(0.1, 0.2, 0.3)});
+  world.set_joint_state(body, 1, std::array{0.02}, std::array{0.3});
+  world.set_joint_state(body, 2, std::array{0.0, 0.0, 0.0, 1.0}, std::array{1.0, -2.0, 1.5});
+  world.set_joint_velocity_target(body, 0, 4.0);
+  constexpr double h = 0.01;
+  for (int i = 0; i < 50; ++i) {
+    const double slide = world.joint_position(body, 1);
+    const Vector3d hinge_W = world.link_pose(body, 1).orientation * model.joints[0].axis.direction;
+    const Vector3d rail_W = world.link_pose(body, 2).orientation * Vector3d::UnitX();
+    world.step();
+    const double turned_by = world.joint_effort(body, 0) - 0.02 * world.joint_velocity(body, 0);
+    EXPECT_NEAR(world.joint_wrench(body, 0).torque_W.dot(hinge_W), turned_by, 1e-9) << "at step " << i;
+    const double rate = world.joint_velocity(body, 1);
+    EXPECT_NEAR(world.joint_wrench(body, 1).force_W.dot(rail_W), -30.0 * (slide + h * rate) - 0.5 * rate, 1e-9);
+    EXPECT_LT(world.joint_wrench(body, 2).torque_W.norm(), 1e-9) << "a ball joint holds no torque";
+  }
+}
+
+TEST(JointForces, LegsOnTheFloorCarryWhatStandsOnThem) {
+  // A table of a top and two legs that are welded to it: each joint carries the leg's share less the leg's own weight.
+  SmallWorld small;
+  description::Model model;
+  model.name = "table";
+  model.links.push_back({"top", {{0, 0, 0.11}}, mass_at(1.0, Vector3d::Zero()), {}});
+  for (const double x : {0.1, -0.1}) {
+    model.links.push_back({"leg",
+                           {{x, 0, 0.05}},
+                           mass_at(0.1, Vector3d::Zero()),
+                           {{"foot", {}, description::Box{{0.001, 0.2, 0.1}}, {1.0, 0}}}});
+    model.joints.push_back(joint("weld", JointType::fixed, 0, model.links.size() - 1, Vector3d::UnitZ()));
+  }
+  const auto body = small.add(model, at(0, 0, 0));
+  small.world().record(body);
+  small.run(1.0);
+  const double left = small.world().joint_wrench(body, 0).force_W.z();
+  const double right = small.world().joint_wrench(body, 1).force_W.z();
+  EXPECT_NEAR(left + right, -g, 1e-3) << "the top presses down on the legs";
+  EXPECT_NEAR(left - right, 0.0, 0.1) << "on both alike, as far as their feet are thin";
+}
+
+TEST(JointForces, OneRobotOnAnotherRestsOnItsTurretJoint) {
+  SmallWorld small;
+  const auto below = small.add(tracked_robot(), at(0, 0, 0));
+  const auto above = small.add(loose("weight", description::Cylinder{0.04, 0.04}, solid_cylinder(0.5, 0.04, 0.04, 0.0)),
+                               at(0, 0, 0.115));
+  small.world().record(below);
+  small.run(1.0);
+  EXPECT_NEAR(small.position(above).z(), 0.115, 1e-3);
+  EXPECT_NEAR(small.world().joint_wrench(below, 0).force_W.z(), (0.3 + 0.5) * g, 0.01);
+}
+
+// What the turret's joint passes on when the robot pulls at a wall is what the tracks pull.
+TEST(JointForces, TheTurretsJointFeelsThePullOfTheTracks) {
+  for (const double turret_yaw : {0.0, 0.7}) {
+    SmallWorld small;
+    const auto robot = small.add(tracked_robot(), at(0, 0, 0, 0.4));
+    small.world().record(robot);
+    small.world().set_joint_state(robot, 0, std::array{turret_yaw}, std::array{0.0});
+    small.world().connect(robot, 1, {{0.06, 0, 0.02}}, 0, 0);
+    small.drive(robot, -0.2, -0.2);
+    small.run(1.0);
+    const double traction = small.world().track(robot, 0, physics::Side::left).traction +
+                            small.world().track(robot, 0, physics::Side::right).traction;
+    EXPECT_NEAR(traction, -2.0 * 0.02 / 0.022, 1e-6) << "both motors' torque over the radius of the wheels";
+    const Pose X_WL = small.world().link_pose(robot, 0);
+    const Vector3d on_turret_L = X_WL.orientation.conjugate() * small.world().joint_wrench(robot, 0).force_W;
+    EXPECT_NEAR(on_turret_L.x(), traction, 0.01) << "with the turret at " << turret_yaw;
+    EXPECT_NEAR(on_turret_L.y(), 0.0, 0.02);
+  }
+}
+
+TEST(JointForces, WhatNobodyAskedForAndWhatWasRestoredTellsNothing) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(crane(JointType::fixed), at(0, 0, 0));
+  small.run(0.02);
+  EXPECT_EQ(small.world().joint_wrench(body, 0).force_W, Vector3d::Zero());
+  small.world().record(body);
+  EXPECT_EQ(small.world().joint_wrench(body, 0).force_W, Vector3d::Zero()) << "before the next step";
+  small.run(0.01);
+  EXPECT_GT(small.world().joint_wrench(body, 0).force_W.z(), 1.0);
+
+  SnapshotWriter writer;
+  small.world().save(writer);
+  WorkerPool workers(1);
+  physics::World restored(small.description, workers);
+  restored.record(body);
+  SnapshotReader reader(writer.bytes());
+  restored.restore(reader);
+  EXPECT_EQ(restored.joint_wrench(body, 0).force_W, Vector3d::Zero());
+  restored.step();
+  small.world().step();
+  EXPECT_EQ(restored.joint_wrench(body, 0).force_W, small.world().joint_wrench(body, 0).force_W);
+  restored.remove_body(body);
+  EXPECT_EQ(restored.joint_wrench(body, 0).force_W, Vector3d::Zero());
+}
+
+TEST(Acceleration, IsGravityInFreeFallAndNothingAtRest) {
+  SmallWorld small;
+  const auto falling = small.add(loose("ball", description::Sphere{0.05}, solid_sphere(0.2, 0.05)), at(1, 0, 5));
+  const auto resting = small.add(tracked_robot(), at(0, 0, 0));
+  for (const auto body : {falling, resting}) small.world().record(body);
+  small.run(0.5);
+  EXPECT_LT((small.world().link_acceleration(falling, 0, {0.01, 0, 0}) - Vector3d(0, 0, -g)).norm(), 1e-9);
+  EXPECT_LT(small.world().link_acceleration(resting, 1, {0.01, 0, 0.03}).norm(), 1e-6);
+}
+
+TEST(Acceleration, OfAPointThatGoesRoundIsTowardsTheMiddle) {
+  for (const description::Fidelity fidelity : {description::Fidelity::treel, description::Fidelity::planar}) {
+    SmallWorld small;
+    small.description.physics.fidelity = fidelity;
+    const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+    small.world().record(robot);
+    small.drive(robot, -0.06, 0.06);
+    small.run(2.0);
+    const double rate = small.world().link_twist(robot, 0).angular_W.z();
+    EXPECT_NEAR(rate, 0.12 / 0.08, 0.02);
+    const Vector3d p_LP(0.1, 0, 0.02);
+    const Pose X_WL = small.world().link_pose(robot, 0);
+    const Vector3d acceleration = small.world().link_acceleration(robot, 0, p_LP);
+    EXPECT_NEAR(acceleration.norm(), rate * rate * 0.1, 1e-3);
+    EXPECT_LT((X_WL.orientation.conjugate() * acceleration).normalized().x(), -0.999);
+  }
+}
+
+}  // namespace
+}  // namespace cohort::testing

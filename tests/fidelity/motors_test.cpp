@@ -1,0 +1,207 @@
+// Motors that are told a position or an effort.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/small_world.hpp"
+
+namespace cohort::testing {
+namespace {
+
+using description::Joint;
+using description::JointType;
+using Eigen::Vector3d;
+
+constexpr double g = 9.81;
+constexpr double arm_mass = 0.4;
+constexpr double arm_length = 0.2;  // from the hinge to the centre of mass
+
+// A mass on a hinge about y, or on a rail along x, that a motor drives.
+description::Model driven(JointType type, double max_velocity, double max_effort) {
+  description::Model model;
+  model.name = "driven";
+  description::Inertial inertial = solid_box(arm_mass, {0.02, 0.02, 0.02});
+  if (type == JointType::revolute) inertial.X_LI.position.x() = arm_length;
+  model.links.push_back({"arm", {}, inertial, {}});
+  Joint joint;
+  joint.name = "joint";
+  joint.type = type;
+  joint.parent = Joint::world;
+  joint.child = 0;
+  joint.axis.direction = type == JointType::revolute ? Vector3d::UnitY() : Vector3d::UnitX();
+  model.joints.push_back(joint);
+  model.devices.push_back(description::VelocityMotor{"motor", 0, max_velocity, max_effort});
+  return model;
+}
+
+description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
+  description::World world;
+  world.name = "empty";
+  world.step = step;
+  return world;
+}
+
+TEST(Motors, GoToAPositionNoFasterThanTheyMayAndStay) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(driven(JointType::prismatic, 0.5, 100.0), at(0, 0, 0));
+  physics::World& world = small.world();
+  world.set_joint_position_target(body, 0, 0.123);
+  for (int i = 0; i < 100; ++i) {
+    world.step();
+    ASSERT_LE(world.joint_velocity(body, 0), 0.5 + 1e-9);
+    ASSERT_LE(world.joint_position(body, 0), 0.123 + 1e-6) << "at step " << i;
+  }
+  EXPECT_NEAR(world.joint_position(body, 0), 0.123, 1e-6);
+  EXPECT_NEAR(world.joint_velocity(body, 0), 0.0, 1e-6);
+  world.set_joint_position_target(body, 0, -0.1);
+  small.run(1.0);
+  EXPECT_NEAR(world.joint_position(body, 0), -0.1, 1e-6);
+}
+
+TEST(Motors, ThatAreWeakBrakeInTimeForTheirPosition) {
+  for (const auto step : {1, 10, 20}) {
+    SmallWorld small(empty_world(std::chrono::milliseconds(step)));
+    // 1 m/s^2 to speed up and to brake: it never gets to its greatest velocity.
+    const auto body = small.add(driven(JointType::prismatic, 5.0, arm_mass * 1.0), at(0, 0, 0));
+    physics::World& world = small.world();
+    world.set_joint_position_target(body, 0, 1.0);
+    double greatest = 0.0;
+    double seconds = 0.0;
+    while (std::abs(world.joint_position(body, 0) - 1.0) > 1e-3 && seconds < 5.0) {
+      world.step();
+      seconds += 1e-3 * step;
+      greatest = std::max(greatest, world.joint_velocity(body, 0));
+      ASSERT_LE(world.joint_position(body, 0), 1.0 + 1e-9) << "after " << seconds << " s";
+    }
+    // Half the way faster, half the way slower: t = 2 sqrt(s / a), v = sqrt(s a).
+    EXPECT_NEAR(seconds, 2.0, 0.1) << "steps of " << step << " ms";
+    EXPECT_NEAR(greatest, 1.0, 0.03);
+  }
+}
+
+TEST(Motors, HoldAnArmAgainstItsWeightWithoutSagging) {
+  const double moment = arm_mass * g * arm_length;
+  for (const double strength : {1.1, 10.0}) {
+    SmallWorld small(empty_world());
+    const auto body = small.add(driven(JointType::revolute, 2.0, strength * moment), at(0, 0, 0));
+    physics::World& world = small.world();
+    for (const double target : {0.0, -0.4, 0.3}) {  // level, above and below
+      world.set_joint_position_target(body, 0, target);
+      const double from = world.joint_position(body, 0);
+      double beyond = 0.0;
+      for (int i = 0; i < 400; ++i) {
+        world.step();
+        const double position = world.joint_position(body, 0);
+        beyond = std::max(beyond, target > from ? position - target : target - position);
+      }
+      EXPECT_NEAR(world.joint_position(body, 0), target, 1e-6) << strength << " times what holds it";
+      EXPECT_LT(beyond, 0.01) << strength << " times what holds it, to " << target;
+      EXPECT_NEAR(world.joint_effort(body, 0), -moment * std::cos(target), 1e-6);
+    }
+  }
+}
+
+TEST(Motors, ThatAreTooWeakForAPositionGiveAllTheyHave) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(driven(JointType::revolute, 2.0, 0.3), at(0, 0, 0));
+  small.world().set_joint_position_target(body, 0, 0.0);
+  small.run(0.1);
+  EXPECT_GT(small.world().joint_position(body, 0), 0.01) << "it sinks";
+  EXPECT_NEAR(small.world().joint_effort(body, 0), -0.3, 1e-9);
+}
+
+TEST(Motors, GoNoFurtherThanTheJointsLimits) {
+  SmallWorld small(empty_world());
+  description::Model model = driven(JointType::prismatic, 0.5, 10.0);
+  model.joints[0].axis.upper = 0.2;
+  const auto body = small.add(model, at(0, 0, 0));
+  small.world().set_joint_position_target(body, 0, 1.0);
+  small.run(2.0);
+  EXPECT_NEAR(small.world().joint_position(body, 0), 0.2, 1e-6);
+  EXPECT_NEAR(small.world().joint_effort(body, 0), 0.0, 1e-6) << "and do not push against them";
+}
+
+TEST(Motors, GiveAnEffortThatIsToldNoMoreThanTheyMay) {
+  SmallWorld small(empty_world());
+  const auto body = small.add(driven(JointType::prismatic, 0.5, 2.0), at(0, 0, 0));
+  physics::World& world = small.world();
+  world.set_joint_effort_target(body, 0, 1.5);
+  small.run(0.5);
+  EXPECT_NEAR(world.joint_velocity(body, 0), 0.5 * 1.5 / arm_mass, 1e-9) << "a = F / m";
+  EXPECT_NEAR(world.joint_effort(body, 0), 1.5, 1e-12);
+  world.set_joint_effort_target(body, 0, -7.0);
+  const double before = world.joint_velocity(body, 0);
+  small.run(0.1);
+  EXPECT_NEAR(world.joint_velocity(body, 0) - before, -0.1 * 2.0 / arm_mass, 1e-9);
+  EXPECT_NEAR(world.joint_effort(body, 0), -2.0, 1e-12);
+  world.set_joint_effort_target(body, 0, 0.0);
+  const double rolling = world.joint_velocity(body, 0);
+  small.run(0.1);
+  EXPECT_NEAR(world.joint_velocity(body, 0), rolling, 1e-12) << "it runs freely";
+  world.set_joint_velocity_target(body, 0, 0.0);
+  small.run(3.0);
+  EXPECT_NEAR(world.joint_velocity(body, 0), 0.0, 1e-9) << "told a velocity again, it brakes";
+}
+
+TEST(Motors, AnEffortHasTheSameEffectWithEverySolver) {
+  for (const description::Solver solver : {description::Solver::iterative, description::Solver::direct}) {
+    SmallWorld small;
+    small.description.physics.solver = solver;
+    const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+    small.world().set_joint_effort_target(robot, 0, 1e-4);
+    small.run(0.2);
+    // The turret against the chassis, which stands: its own moment of inertia about z.
+    EXPECT_NEAR(small.world().joint_velocity(robot, 0), 0.2 * 1e-4 / (0.3 * 0.058 * 0.058 / 2.0), 1e-3);
+  }
+}
+
+TEST(Motors, InThePlaneGoToTheirPositionAndStayWhereAnEffortIsTold) {
+  SmallWorld small;
+  small.description.physics.fidelity = description::Fidelity::planar;
+  const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+  small.world().set_joint_position_target(robot, 0, 0.5);
+  small.run(0.2);
+  EXPECT_NEAR(small.world().joint_position(robot, 0), 0.2 * 1.5, 1e-9) << "as fast as it may";
+  small.run(1.0);
+  EXPECT_NEAR(small.world().joint_position(robot, 0), 0.5, 1e-12);
+  small.world().set_joint_effort_target(robot, 0, 0.1);
+  small.run(0.2);
+  EXPECT_NEAR(small.world().joint_position(robot, 0), 0.5, 1e-12);
+}
+
+TEST(Motors, WhatTheyAreToldIsSavedAndIsPartOfTheHash) {
+  const auto hash_of = [](const physics::World& world, std::uint32_t body) {
+    StateHash hash;
+    world.hash_body(body, hash);
+    return hash.value();
+  };
+  for (const description::Fidelity fidelity : {description::Fidelity::treel, description::Fidelity::planar}) {
+    SmallWorld small;
+    small.description.physics.fidelity = fidelity;
+    const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+    small.world().set_joint_velocity_target(robot, 0, 0.3);
+    const auto velocity = hash_of(small.world(), robot);
+    small.world().set_joint_effort_target(robot, 0, 0.3);
+    const auto effort = hash_of(small.world(), robot);
+    small.world().set_joint_position_target(robot, 0, 0.3);
+    const auto position = hash_of(small.world(), robot);
+    EXPECT_NE(velocity, position);
+    EXPECT_NE(velocity, effort);
+    EXPECT_NE(position, effort);
+    small.run(0.05);
+    SnapshotWriter writer;
+    small.world().save(writer);
+    WorkerPool workers(1);
+    physics::World restored(small.description, workers);
+    SnapshotReader reader(writer.bytes());
+    restored.restore(reader);
+    for (int i = 0; i < 50; ++i) {
+      restored.step();
+      small.world().step();
+      ASSERT_EQ(hash_of(restored, robot), hash_of(small.world(), robot)) << "at step " << i;
+    }
+    EXPECT_NEAR(restored.joint_position(robot, 0), 0.3, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace cohort::testing

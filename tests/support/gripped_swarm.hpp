@@ -1,0 +1,97 @@
+#pragma once
+
+#include "server/core/random.hpp"
+#include "tests/support/lifting.hpp"
+
+namespace cohort::testing {
+
+/// Robots in a square, not quite where a grid would have them, each holding on to some of its neighbours as they stand.
+struct GrippedSwarm {
+  struct Grip {
+    std::uint32_t connection;
+    std::uint32_t a, b;
+    Pose X_Pa, X_Pb;  // the frame of the connection in the link of either end
+  };
+  static constexpr int side = 5;
+  static constexpr std::size_t turret = 1;
+
+  SmallWorld small;
+  std::size_t gripping_link;
+  std::vector<std::uint32_t> robots;
+  std::vector<Grip> grips;
+  RandomStream random;
+
+  /// With arms, each robot grips with its arm, otherwise with its turret.
+  GrippedSwarm(std::uint64_t seed, bool with_arms, std::uint32_t iterations = 10)
+      : gripping_link(with_arms ? arm_link : turret), random(seed, "swarm", "drive") {
+    small.description.physics.iterations = iterations;
+    const double spacing = with_arms ? 0.19 : 0.135;
+    std::uint32_t draw = 0;
+    const auto off = [&](double by) { return by * (2.0 * random.uniform(0, draw++) - 1.0); };
+    for (int i = 0; i < side * side; ++i)
+      robots.push_back(small.add(with_arms ? with_arm() : tracked_robot(),
+                                 at(spacing * (i % side) + off(0.005), spacing * (i / side) + off(0.005), 0,
+                                    with_arms ? off(0.05) : off(3.0))));
+    // With turrets to one or two of the neighbours at the right and behind; the arms reach only to the right.
+    for (int i = 0; i < side * side; ++i) {
+      const bool has_right = i % side + 1 < side;
+      const bool has_behind = i / side + 1 < side;
+      const double choice = random.uniform(0, draw++);
+      if (has_right && (with_arms || choice < 0.7)) grip(robots[i], robots[i + 1]);
+      if (has_behind && !with_arms && (choice > 0.4 || !has_right)) grip(robots[i], robots[i + side]);
+      if (has_behind && with_arms && choice < 0.3) grip(robots[i], robots[i + side], turret);
+    }
+  }
+  void grip(std::uint32_t a, std::uint32_t b) { grip(a, b, gripping_link); }
+  void grip(std::uint32_t a, std::uint32_t b, std::size_t link) {
+    physics::World& world = small.world();
+    const Pose X_WLa = world.link_pose(a, link);
+    const Pose X_WLb = world.link_pose(b, turret);
+    // At the jaw, or halfway between the turrets.
+    const Eigen::Vector3d p_W =
+        link == turret ? Eigen::Vector3d(0.5 * (X_WLa.position + X_WLb.position) + Eigen::Vector3d(0, 0, 0.02))
+                       : Eigen::Vector3d(X_WLa * Eigen::Vector3d(arm_length, 0, 0));
+    const Pose X_WP{p_W, X_WLa.orientation};
+    const Pose X_LP = X_WLa.inverse() * X_WP;
+    grips.push_back({world.connect(a, link, X_LP, b, turret), a, b, X_LP, X_WLb.inverse() * X_WP});
+    links.push_back(link);
+  }
+  std::vector<std::size_t> links;  // of the grips, at a
+
+  void drive(int tick) {
+    const int every = 200;
+    if (tick % every != 0) return;
+    for (std::size_t i = 0; i < robots.size(); ++i) {
+      const auto draw = static_cast<std::uint32_t>(4 * i);
+      const auto period = static_cast<std::uint64_t>(1 + tick / every);
+      small.drive(robots[i], 0.4 * random.uniform(period, draw) - 0.2, 0.4 * random.uniform(period, draw + 1) - 0.2);
+      small.world().set_joint_velocity_target(robots[i], 0, 3.0 * random.uniform(period, draw + 2) - 1.5);
+      if (gripping_link == arm_link)
+        small.world().set_joint_position_target(robots[i], elevation_joint,
+                                                0.4 * random.uniform(period, draw + 3) - 0.2);
+    }
+  }
+  /// The greatest distance between the two ends of a grip [m].
+  double gap() {
+    double greatest = 0.0;
+    for (std::size_t i = 0; i < grips.size(); ++i) {
+      const Grip& grip = grips[i];
+      const Eigen::Vector3d a = small.world().link_pose(grip.a, links[i]) * grip.X_Pa.position;
+      const Eigen::Vector3d b = small.world().link_pose(grip.b, turret) * grip.X_Pb.position;
+      greatest = std::max(greatest, (a - b).norm());
+    }
+    return greatest;
+  }
+  double greatest_speed() {
+    double greatest = 0.0;
+    for (const std::uint32_t robot : robots) greatest = std::max(greatest, small.velocity(robot, turret).norm());
+    return greatest;
+  }
+  double greatest_height() {
+    double greatest = 0.0;
+    for (const std::uint32_t robot : robots) greatest = std::max(greatest, small.position(robot).z());
+    return greatest;
+  }
+};
+
+}  // namespace cohort::testing

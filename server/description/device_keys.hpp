@@ -115,6 +115,11 @@ inline constexpr auto microphones = sensor({
     {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
 });
 
+inline constexpr auto inclinometer = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; level when its z axis points up"},
+});
+
 inline constexpr ExtensionKey sound[] = {
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
     {"frequency", positive, "Hz", "", "of the tone"},
@@ -153,6 +158,7 @@ inline constexpr Extension device_extensions[] = {
     {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
     {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
     {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
+    {"inclinometer", "model", true, "Measures roll and pitch against gravity.", keys::inclinometer, "sensors"},
     {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
     {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
     {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},

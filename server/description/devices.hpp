@@ -7,6 +7,7 @@
 
 #include "server/core/pose.hpp"
 #include "server/description/readout.hpp"
+#include "server/description/sdf_sensors.hpp"
 
 /// What robots can do and measure, as plain data. Joints, links and devices are indices into those of the model.
 /// Frames: L a link, S a sensor.
@@ -102,6 +103,14 @@ struct Microphones {
   Readout readout{};
 };
 
+/// How S leans, against gravity: observations `NAME/0/roll` and `NAME/0/pitch` [rad].
+struct Inclinometer {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  Readout readout{};
+};
+
 /// LEDs of any colour around a link, numbered as the sensors of a ProximityRing. Commands `NAME/I/color`, red, green
 /// and blue from 0 to 1.
 struct LedRing {
@@ -157,8 +166,10 @@ struct Battery {
   Readout readout{};
 };
 
-using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
-                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor, Battery>;
+using Device =
+    std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors, LightSensors,
+                 Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor, Battery, Inclinometer, Lidar, ContactSensor,
+                 Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

@@ -9,11 +9,6 @@
 namespace cohort::description {
 namespace {
 
-// What is not written has no value, even where libsdformat has added the element.
-bool is_written(const sdf::ElementPtr& element) {
-  return element && element->GetValue() && element->GetValue()->GetSet();
-}
-
 double number(const sdf::ElementPtr& element, double by_default, const SdfReport& report) {
   if (!is_written(element)) return by_default;
   const std::string text = element->GetValue()->GetAsString();

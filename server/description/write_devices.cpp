@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/description/write_sdf_sensors.hpp"
 #include "server/description/write_values.hpp"
 
 namespace cohort::description {
@@ -102,6 +103,12 @@ struct DeviceWriter {
     add_key(element, "gain", microphones.gain);
     write_readout(element, microphones.readout);
   }
+  void operator()(const Inclinometer& sensor) const { write_posed("inclinometer", sensor); }
+  /// SDF's own sensors.
+  template <class SdfSensor>
+  void operator()(const SdfSensor& sensor) const {
+    write_sdf_sensor(parent, model, sensor);
+  }
   void operator()(const RangeAndBearing& device) const {
     XmlNode& element = add_named(parent, prefixed("range_and_bearing"), device.name);
     add_key(element, "link", link_name(device.link));
@@ -148,6 +155,13 @@ struct DeviceWriter {
   }
 
  private:
+  template <class Posed>
+  void write_posed(const char* kind, const Posed& sensor) const {
+    XmlNode& element = add_named(parent, prefixed(kind), sensor.name);
+    add_key(element, "link", link_name(sensor.link));
+    add_key(element, "pose", sensor.X_LS);
+    write_readout(element, sensor.readout);
+  }
   std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
   std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
 };

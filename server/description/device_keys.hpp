@@ -115,6 +115,11 @@ inline constexpr auto microphones = sensor({
     {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
 });
 
+inline constexpr auto accelerometer = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; it measures along its axes"},
+});
+
 inline constexpr auto inclinometer = sensor({
     {"link", name, "", "", "the link that carries it"},
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; level when its z axis points up"},
@@ -182,6 +187,7 @@ inline constexpr Extension device_extensions[] = {
     {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
     {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
     {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
+    {"accelerometer", "model", true, "Measures acceleration less gravity.", keys::accelerometer, "sensors"},
     {"inclinometer", "model", true, "Measures roll and pitch against gravity.", keys::inclinometer, "sensors"},
     {"range_and_bearing", "model", true, "Messages to the robots around, which know where they come from.",
      keys::range_and_bearing, "sensors"},

@@ -103,6 +103,14 @@ struct Microphones {
   Readout readout{};
 };
 
+/// What a mass on springs measures: acceleration less gravity, observation `NAME/0/acceleration`, x y z in S [m/s^2].
+struct Accelerometer {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  Readout readout{};
+};
+
 /// How S leans, against gravity: observations `NAME/0/roll` and `NAME/0/pitch` [rad].
 struct Inclinometer {
   std::string name;
@@ -166,10 +174,10 @@ struct Battery {
   Readout readout{};
 };
 
-using Device =
-    std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors, LightSensors,
-                 Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor, Battery, Inclinometer, Lidar, ContactSensor,
-                 Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
+using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
+                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor, Battery,
+                            Accelerometer, Imu, ForceTorqueSensor, Inclinometer, Lidar, ContactSensor, Altimeter,
+                            Magnetometer, LogicalCamera, AirPressureSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

@@ -124,6 +124,7 @@ constexpr DeviceKind kinds[] = {
     {"range_and_bearing", &read_range_and_bearing, true, true},
     {"climate_sensor", &read_climate_sensor},
     {"battery", &read_battery},
+    {"accelerometer", &read_posed<Accelerometer>},
     {"inclinometer", &read_posed<Inclinometer>},
 };
 

@@ -103,6 +103,7 @@ struct DeviceWriter {
     add_key(element, "gain", microphones.gain);
     write_readout(element, microphones.readout);
   }
+  void operator()(const Accelerometer& sensor) const { write_posed("accelerometer", sensor); }
   void operator()(const Inclinometer& sensor) const { write_posed("inclinometer", sensor); }
   /// SDF's own sensors.
   template <class SdfSensor>

@@ -1,11 +1,14 @@
 #include "server/sensing/sensor.hpp"
 
+#include "server/sensing/accelerometer.hpp"
 #include "server/sensing/air_pressure.hpp"
 #include "server/sensing/altimeter.hpp"
 #include "server/sensing/battery.hpp"
 #include "server/sensing/climate_sensor.hpp"
 #include "server/sensing/contact_sensor.hpp"
+#include "server/sensing/force_torque_sensor.hpp"
 #include "server/sensing/ground_sensors.hpp"
+#include "server/sensing/imu.hpp"
 #include "server/sensing/inclinometer.hpp"
 #include "server/sensing/joint_encoder.hpp"
 #include "server/sensing/lidar.hpp"
@@ -46,6 +49,15 @@ struct Make {
   }
   std::unique_ptr<Sensor> operator()(const description::Microphones& d) const {
     return std::make_unique<Microphones>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Accelerometer& d) const {
+    return std::make_unique<Accelerometer>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Imu& d) const {
+    return std::make_unique<Imu>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::ForceTorqueSensor& d) const {
+    return std::make_unique<ForceTorqueSensor>(d, model.joints[d.joint], std::move(mount));
   }
   std::unique_ptr<Sensor> operator()(const description::Inclinometer& d) const {
     return std::make_unique<Inclinometer>(d, std::move(mount));

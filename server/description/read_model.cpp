@@ -151,7 +151,7 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
                        every_link_has_one_parent(sdf_model, model, reading.report) &&
                        order_links(sdf_model, model, reading.report);
   // Devices name links and joints: with some of those missing, each device would be reported for it.
-  if (is_tree) model.devices = read_devices(parts.scopes(), model, reading.report);
+  if (is_tree) model.devices = read_devices(parts.scopes(), model, reading.report, reading.shape_files);
   return model;
 }
 

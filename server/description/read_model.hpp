@@ -51,7 +51,8 @@ struct DeviceScope {
 };
 
 /// The devices of a model whose links and joints are read.
-std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report);
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report,
+                                 ShapeFiles& files);
 
 /// Whether the pose is given in the frame that it is to be in, and needs no resolving.
 inline bool is_in_frame_of_parent(const sdf::Model& model) {

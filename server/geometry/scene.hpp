@@ -23,6 +23,7 @@ struct Solid {
   std::uint32_t body = 0;  ///< whose it is; solids of one body do not see each other
   bool moves = false;
   Pose X_WC;
+  Eigen::Vector3d color = description::default_color();
 };
 
 struct RayHit {

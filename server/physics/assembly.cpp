@@ -28,8 +28,8 @@ Assembly::Assembly(const description::World& world)
       collision(scene, [this](std::uint32_t solid, std::uint32_t other) { return may_touch(solid, other); }) {}
 
 void Assembly::add_solid(std::uint32_t body, const description::Collision& part_collision, const Pose& X_WC,
-                         Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
-  scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC});
+                         const Eigen::Vector3d& color, Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
+  scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC, color});
   collision.add(std::move(shape));
   anchors.part_of_solid.push_back(part);
 }
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> Assembly::add_static(std::uint32_t body, const descri
     for (const description::Collision& part : link.collisions) {
       const std::shared_ptr<const BulletShape>& shape = shapes[solids.size()];
       solids.push_back(static_cast<std::uint32_t>(scene.size()));
-      add_solid(body, part, X_WM * link.X_ML * part.X_LC, {}, shape);
+      add_solid(body, part, X_WM * link.X_ML * part.X_LC, link.color, {}, shape);
     }
   return solids;
 }
@@ -63,7 +63,8 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
       if (!place.collides) continue;
       const Pose X_SC = place.X_SL * part.X_LC;
       member.parts.push_back({static_cast<std::uint32_t>(scene.size()), place.segment, X_SC});
-      add_solid(body.body(), part, body.segment_pose(place.segment) * X_SC, {index, place.segment}, shape_of_part);
+      add_solid(body.body(), part, body.segment_pose(place.segment) * X_SC, links[link].color, {index, place.segment},
+                shape_of_part);
     }
   }
   return index;

@@ -94,8 +94,8 @@ std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_W
 void PlanarEngine::add_static(std::uint32_t body) {
   for (const description::Link& link : description_.models[bodies_[body].model].links) {
     for (const description::Collision& collision : link.collisions) {
-      bodies_[body].solids.push_back(scene_.add(
-          {collision.shape, collision.surface, body, false, bodies_[body].X_WM * link.X_ML * collision.X_LC}));
+      bodies_[body].solids.push_back(scene_.add({collision.shape, collision.surface, body, false,
+                                                 bodies_[body].X_WM * link.X_ML * collision.X_LC, link.color}));
       collision_.add_static();
       part_of_solid_.emplace_back();
     }
@@ -118,7 +118,10 @@ void PlanarEngine::add_moving(std::uint32_t body) {
     for (const description::Collision& collision : links[link].collisions) {
       const Pose X_SC = place.X_SL * collision.X_LC;
       const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
-      parts_.push_back({scene_.add({collision.shape, collision.surface, body, true, X_WC}), place.segment, X_SC, {}});
+      parts_.push_back({scene_.add({collision.shape, collision.surface, body, true, X_WC, links[link].color}),
+                        place.segment,
+                        X_SC,
+                        {}});
       parts_in_body_.emplace_back();
       collision_.add_moving();
       part_of_solid_.push_back({index, place.segment});

@@ -125,6 +125,11 @@ inline constexpr auto microphones = sensor({
     {"samples", uri, "", no_value, "file of what each microphone reads of a sound that gives 1 at 1 m"},
 });
 
+inline constexpr auto inclinometer = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; level when its z axis points up"},
+});
+
 inline constexpr auto range_and_bearing = sensor({
     {"link", name, "", "", "the link that carries it"},
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: bearings are from its x axis, elevations from its xy plane"},
@@ -162,6 +167,13 @@ inline constexpr auto panorama = sensor({
     {"max_elevation", real, "rad", "0.7853981633974483", "upper edge of the image"},
     {"range", positive, "m", no_value, "nothing is seen beyond; without end if absent"},
     {"sky", vector, "1", "0.6 0.75 0.95", "colour where nothing is seen"},
+});
+
+inline constexpr auto battery = sensor({
+    {"capacity", positive, "J", "", "energy of a full one"},
+    {"charge", fraction, "1", "1", "at first, of the capacity"},
+    {"idle_power", non_negative, "W", "0", "of all that is not a motor"},
+    {"motor_efficiency", positive, "1", "1", "mechanical power to what motors take; at most 1"},
 });
 
 inline constexpr ExtensionKey sound[] = {
@@ -202,12 +214,14 @@ inline constexpr Extension device_extensions[] = {
     {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
     {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
     {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
+    {"inclinometer", "model", true, "Measures roll and pitch against gravity.", keys::inclinometer, "sensors"},
     {"range_and_bearing", "model", true, "Messages to the robots around, which know where they come from.",
      keys::range_and_bearing, "sensors"},
     {"omnidirectional_camera", "model", true, "A camera that looks all round and reports coloured spots.",
      keys::omnidirectional_camera, "sensors"},
     {"panorama", "model", true, "A camera that looks all round and gives an image.", keys::panorama, "sensors"},
     {"climate_sensor", "model", true, "Temperature and humidity of the air.", keys::climate_sensor, "sensors"},
+    {"battery", "model", true, "Feeds the robot, which stops when it is empty.", keys::battery, "sensors"},
     {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
     {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
     {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},

@@ -10,6 +10,7 @@
 #include "server/core/pose.hpp"
 #include "server/description/readout.hpp"
 #include "server/description/sample_file.hpp"
+#include "server/description/sdf_sensors.hpp"
 
 /// What robots can do and measure, as plain data. Joints, links and devices are indices into those of the model.
 /// Frames: L a link, S a sensor.
@@ -114,6 +115,14 @@ struct Microphones {
   std::shared_ptr<const Samples> samples{};  ///< of a sound that gives 1 at 1 m, in place of its square
 };
 
+/// How S leans, against gravity: observations `NAME/0/roll` and `NAME/0/pitch` [rad].
+struct Inclinometer {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  Readout readout{};
+};
+
 /// LEDs of any colour around a link, numbered as the sensors of a ProximityRing. Commands `NAME/I/color`, red, green
 /// and blue from 0 to 1.
 struct LedRing {
@@ -187,9 +196,21 @@ struct PanoramicCamera {
   Readout readout{};
 };
 
+/// What feeds the robot: observations `NAME/0/charge` [1] and `NAME/0/power` [W]. When it is empty, commands do nothing
+/// any more: every channel has its neutral value.
+struct Battery {
+  std::string name;
+  double capacity = 0.0;          ///< [J]
+  double charge = 1.0;            ///< at first, of the capacity [1]
+  double idle_power = 0.0;        ///< of all that is not a motor [W]
+  double motor_efficiency = 1.0;  ///< mechanical power to what motors take [1]
+  Readout readout{};
+};
+
 using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
-                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor,
-                            OmnidirectionalCamera, PanoramicCamera>;
+                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor, Battery,
+                            Inclinometer, Lidar, ContactSensor, Altimeter, Magnetometer, LogicalCamera,
+                            AirPressureSensor, OmnidirectionalCamera, PanoramicCamera>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "server/description/device_keys.hpp"
+#include "server/description/write_sdf_sensors.hpp"
 #include "server/description/write_values.hpp"
 
 namespace cohort::description {
@@ -111,6 +112,12 @@ struct DeviceWriter {
     write_samples(element, microphones.samples);
     write_readout(element, microphones.readout);
   }
+  void operator()(const Inclinometer& sensor) const { write_posed("inclinometer", sensor); }
+  /// SDF's own sensors.
+  template <class SdfSensor>
+  void operator()(const SdfSensor& sensor) const {
+    write_sdf_sensor(parent, model, sensor);
+  }
   void operator()(const RangeAndBearing& device) const {
     XmlNode& element = add_named(parent, prefixed("range_and_bearing"), device.name);
     add_key(element, "link", link_name(device.link));
@@ -154,6 +161,14 @@ struct DeviceWriter {
     add_key(element, "sky", camera.sky);
     write_readout(element, camera.readout);
   }
+  void operator()(const Battery& battery) const {
+    XmlNode& element = add_named(parent, prefixed("battery"), battery.name);
+    add_key(element, "capacity", battery.capacity);
+    add_key(element, "charge", battery.charge);
+    add_key(element, "idle_power", battery.idle_power);
+    add_key(element, "motor_efficiency", battery.motor_efficiency);
+    write_readout(element, battery.readout);
+  }
   void operator()(const LedRing& leds) const {
     XmlNode& element = add_named(parent, prefixed("led_ring"), leds.name);
     add_key(element, "link", link_name(leds.link));
@@ -176,6 +191,13 @@ struct DeviceWriter {
   void write_samples(XmlNode& element, const std::shared_ptr<const Samples>& samples) const {
     if (samples) add_key(element, "samples", relative_to(folder, samples->file));
   }
+  template <class Posed>
+  void write_posed(const char* kind, const Posed& sensor) const {
+    XmlNode& element = add_named(parent, prefixed(kind), sensor.name);
+    add_key(element, "link", link_name(sensor.link));
+    add_key(element, "pose", sensor.X_LS);
+    write_readout(element, sensor.readout);
+  }
   std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
   std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
 };
@@ -189,7 +211,6 @@ struct EmitterWriter {
     XmlNode& element = add_named(parent, "light", emitter.name);
     element.attributes.emplace_back("type", kinds[static_cast<int>(light.kind)]);
     add_pose(element, emitter.X_LE);
-    add_value(element, "light_on", emitter.is_on);
     add_value(element, "intensity", light.intensity);
     add_value(element, "diffuse", light.color).text += " 1";
     add_value(element, "direction", light.direction_E);

@@ -56,7 +56,7 @@ std::string without_scope_marks(std::string name);
 /// How to get to a file from a folder.
 std::string relative_to(const std::filesystem::path& folder, const std::filesystem::path& file);
 
-/// `folder`: where the world will stand.
+/// In the element of its model, which has those of its links and joints. `folder`: where the world will stand.
 void write_device(XmlNode& model_element, const Model& model, const Device& device,
                   const std::filesystem::path& folder);
 /// In its link.

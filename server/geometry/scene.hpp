@@ -23,6 +23,8 @@ struct Solid {
   std::uint32_t body = 0;  ///< whose it is; solids of one body do not see each other
   bool moves = false;
   Pose X_WC;
+  std::uint32_t link = 0;       ///< of the body's model
+  std::uint32_t collision = 0;  ///< of the link
   Eigen::Vector3d color = description::default_color();
 };
 

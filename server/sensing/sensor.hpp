@@ -43,6 +43,8 @@ class Sensor {
   /// `was_delivered`: the robot was given what was sensed at the tick before.
   virtual bool has_memory() const { return false; }
   virtual void remember(std::uint64_t /*tick*/, bool /*was_delivered*/) {}
+  /// Whether the robot has no energy left.
+  virtual bool is_exhausted() const { return false; }
   /// What it remembers.
   virtual void hash(StateHash& /*hash*/) const {}
   virtual void save(SnapshotWriter& /*writer*/) const {}

@@ -141,6 +141,9 @@ void Simulation::set_neutral_command(std::uint32_t robot) {
 
 void Simulation::step() {
   for (Robot& robot : robots_) {
+    const bool is_exhausted = std::any_of(robot.sensors.begin(), robot.sensors.end(),
+                                          [](const SensorOfRobot& each) { return each.sensor->is_exhausted(); });
+    if (is_exhausted) robot.command = neutral_values(kinds_[robot.kind]);
     std::span<const double> values = robot.command;
     for (std::size_t i = 0; i < robot.actuators.size(); ++i) {
       robot.actuators[i]->apply(values.first(robot.actuator_sizes[i]));

@@ -17,6 +17,8 @@
 #include "server/sensing/magnetometer.hpp"
 #include "server/sensing/message_receiver.hpp"
 #include "server/sensing/microphones.hpp"
+#include "server/sensing/omnidirectional_camera.hpp"
+#include "server/sensing/panoramic_camera.hpp"
 #include "server/sensing/proximity_ring.hpp"
 #include "server/sensing/treel_encoder.hpp"
 
@@ -85,6 +87,12 @@ struct Make {
   }
   std::unique_ptr<Sensor> operator()(const description::ClimateSensor& d) const {
     return std::make_unique<ClimateSensor>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::OmnidirectionalCamera& d) const {
+    return std::make_unique<OmnidirectionalCamera>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::PanoramicCamera& d) const {
+    return std::make_unique<PanoramicCamera>(d, std::move(mount));
   }
   std::unique_ptr<Sensor> operator()(const description::Battery& d) const {
     return std::make_unique<Battery>(d, model, std::move(mount));

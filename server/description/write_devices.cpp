@@ -50,12 +50,9 @@ struct DeviceWriter {
     for (const std::size_t joint : drive.left_wheels) add_key(element, "left_wheel", joint_name(joint));
     for (const std::size_t joint : drive.right_wheels) add_key(element, "right_wheel", joint_name(joint));
   }
-  void operator()(const VelocityMotor& motor) const {
-    XmlNode& element = add_named(parent, prefixed("velocity_motor"), motor.name);
-    add_key(element, "joint", joint_name(motor.joint));
-    add_key(element, "max_velocity", motor.max_velocity);
-    add_key(element, "max_effort", motor.max_effort);
-  }
+  void operator()(const VelocityMotor& motor) const { write_motor("velocity_motor", motor); }
+  void operator()(const PositionMotor& motor) const { write_motor("position_motor", motor); }
+  void operator()(const EffortMotor& motor) const { write_motor("effort_motor", motor); }
   void operator()(const JointEncoder& encoder) const {
     XmlNode& element = add_named(parent, prefixed("joint_encoder"), encoder.name);
     add_key(element, "joint", joint_name(encoder.joint));
@@ -140,6 +137,14 @@ struct DeviceWriter {
   }
 
  private:
+  template <class Motor>
+  void write_motor(const char* kind, const Motor& motor) const {
+    XmlNode& element = add_named(parent, prefixed(kind), motor.name);
+    add_key(element, "joint", joint_name(motor.joint));
+    if constexpr (requires { motor.max_velocity; }) add_key(element, "max_velocity", motor.max_velocity);
+    add_key(element, "max_effort", motor.max_effort);
+    add_unless(element, "rotor_inertia", motor.rotor_inertia, 0.0);
+  }
   std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
   std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
 };

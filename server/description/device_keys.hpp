@@ -123,6 +123,11 @@ inline constexpr auto microphones = sensor({
     {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
 });
 
+inline constexpr auto inclinometer = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; level when its z axis points up"},
+});
+
 inline constexpr auto range_and_bearing = sensor({
     {"link", name, "", "", "the link that carries it"},
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: bearings are from its x axis, elevations from its xy plane"},
@@ -138,6 +143,13 @@ inline constexpr auto climate_sensor = sensor({
     {"place", vector, "m", "0 0 0", "in the link"},
     {"temperature_noise", non_negative, "K", "0", "standard deviation of the Gaussian noise on temperatures"},
     {"humidity_noise", non_negative, "1", "0", "the same on humidities"},
+});
+
+inline constexpr auto battery = sensor({
+    {"capacity", positive, "J", "", "energy of a full one"},
+    {"charge", fraction, "1", "1", "at first, of the capacity"},
+    {"idle_power", non_negative, "W", "0", "of all that is not a motor"},
+    {"motor_efficiency", positive, "1", "1", "mechanical power to what motors take; at most 1"},
 });
 
 inline constexpr ExtensionKey sound[] = {
@@ -182,9 +194,11 @@ inline constexpr Extension device_extensions[] = {
     {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
     {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
     {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
+    {"inclinometer", "model", true, "Measures roll and pitch against gravity.", keys::inclinometer, "sensors"},
     {"range_and_bearing", "model", true, "Messages to the robots around, which know where they come from.",
      keys::range_and_bearing, "sensors"},
     {"climate_sensor", "model", true, "Temperature and humidity of the air.", keys::climate_sensor, "sensors"},
+    {"battery", "model", true, "Feeds the robot, which stops when it is empty.", keys::battery, "sensors"},
     {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
     {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
     {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},

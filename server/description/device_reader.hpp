@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <optional>
 #include <set>
@@ -71,6 +72,9 @@ struct DeviceKind {
 
 std::span<const DeviceKind> actuator_kinds();
 std::span<const DeviceKind> sensor_kinds();
+
+/// To the nearest nanosecond; what is too long for those is 285 years.
+std::chrono::nanoseconds to_time(double seconds);
 
 /// The keys that every sensor has.
 Readout read_readout(const ExtensionValues& values);

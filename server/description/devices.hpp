@@ -8,6 +8,7 @@
 
 #include "server/core/pose.hpp"
 #include "server/description/readout.hpp"
+#include "server/description/sdf_sensors.hpp"
 
 /// What robots can do and measure, as plain data. Joints, links and devices are indices into those of the model.
 /// Frames: L a link, S a sensor.
@@ -121,6 +122,14 @@ struct Microphones {
   Readout readout{};
 };
 
+/// How S leans, against gravity: observations `NAME/0/roll` and `NAME/0/pitch` [rad].
+struct Inclinometer {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  Readout readout{};
+};
+
 /// LEDs of any colour around a link, numbered as the sensors of a ProximityRing. Commands `NAME/I/color`, red, green
 /// and blue from 0 to 1.
 struct LedRing {
@@ -165,9 +174,21 @@ struct ClimateSensor {
   Readout readout{};
 };
 
-using Device =
-    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder, ProximityRing,
-                 GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor>;
+/// What feeds the robot: observations `NAME/0/charge` [1] and `NAME/0/power` [W]. When it is empty, commands do nothing
+/// any more: every channel has its neutral value.
+struct Battery {
+  std::string name;
+  double capacity = 0.0;          ///< [J]
+  double charge = 1.0;            ///< at first, of the capacity [1]
+  double idle_power = 0.0;        ///< of all that is not a motor [W]
+  double motor_efficiency = 1.0;  ///< mechanical power to what motors take [1]
+  Readout readout{};
+};
+
+using Device = std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder,
+                            ProximityRing, GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker,
+                            RangeAndBearing, ClimateSensor, Battery, Inclinometer, Lidar, ContactSensor, Altimeter,
+                            Magnetometer, LogicalCamera, AirPressureSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "server/description/read_model.hpp"
 #include "server/description/text.hpp"
 
 namespace cohort::description {
@@ -29,12 +30,10 @@ constexpr Unsupported table[] = {
     {"link", "self_collide", "; <self_collide> of the model is for all of its links"},
     {"link", "kinematic"},
     {"link", "velocity_decay"},
-    {"link", "sensor", "; sensors are cohort: elements of the model"},
     {"link", "projector"},
     {"link", "battery"},
     {"link", "audio_sink"},
     {"link", "audio_source"},
-    {"joint", "sensor", "; sensors are cohort: elements of the model"},
     {"joint", "physics"},
     {"limit", "effort", "; the effort of a motor is the <cohort:max_effort> of its <cohort:velocity_motor>"},
     {"limit", "velocity", "; the velocity of a motor is the <cohort:max_velocity> of its <cohort:velocity_motor>"},
@@ -90,6 +89,9 @@ bool is_second_friction(const sdf::ElementPtr& element) {
 void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report) {
   for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
     if (!child->GetExplicitlySetInFile()) continue;
+    if (child->GetName() == "sensor" && !is_sensor(child))
+      report.warning(child, "a sensor of the type '" + child->Get<std::string>("type") + "' in a <" +
+                                element->GetName() + "> is not supported and is ignored");
     if (is_second_friction(child))
       report.warning(child, "<mu2> is not supported and is ignored; friction is the same in every direction");
     for (const Unsupported& entry : table)

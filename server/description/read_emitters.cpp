@@ -9,11 +9,6 @@
 namespace cohort::description {
 namespace {
 
-// What is not written has no value, even where libsdformat has added the element.
-bool is_written(const sdf::ElementPtr& element) {
-  return element && element->GetValue() && element->GetValue()->GetSet();
-}
-
 double number(const sdf::ElementPtr& element, double by_default, const SdfReport& report) {
   if (!is_written(element)) return by_default;
   const std::string text = element->GetValue()->GetAsString();
@@ -93,7 +88,6 @@ Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading) {
   Emitter emitter;
   emitter.name = sdf_light.Name();
   emitter.X_LE = resolved_pose(sdf_light, reading);
-  if (const sdf::ElementPtr on = find(sdf_light.Element(), {"light_on"})) emitter.is_on = on->Get<bool>();
   emitter.what = read_light_values(sdf_light, reading.report);
   return emitter;
 }

@@ -86,13 +86,22 @@ class ModelFlattener {
   void add_joints(const sdf::Model& sdf_model, const std::string& scope);
 
   const std::vector<DeviceScope>& scopes() const { return scopes_; }
+  const std::vector<SensorPlace>& sensors() const { return sensors_; }
   /// Also of those that could not be read.
   std::size_t joint_count() const { return joint_count_; }
 
  private:
   Model& model_;
   const ModelReading& reading_;
+  template <class Owner>
+  void note_sensors(const Owner& owner, bool is_joint, const std::string& scope) {
+    for (std::uint64_t i = 0; i < owner.SensorCount(); ++i)
+      if (is_sensor(owner.SensorByIndex(i)->Element()))
+        sensors_.push_back({owner.SensorByIndex(i), is_joint, scope + owner.Name(), scope});
+  }
+
   std::vector<DeviceScope> scopes_;
+  std::vector<SensorPlace> sensors_;
   std::size_t joint_count_ = 0;
 };
 
@@ -108,7 +117,9 @@ void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& s
       model_.emitters.push_back(std::move(emitter));
     }
     model_.links.push_back(std::move(link));
+    note_sensors(*sdf_model.LinkByIndex(i), false, scope);
   }
+  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) note_sensors(*sdf_model.JointByIndex(i), true, scope);
   for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
     const sdf::Model& inner = *sdf_model.ModelByIndex(i);
     warn_of_unsupported(inner.Element(), reading_.report);
@@ -141,9 +152,12 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   if (model.links.empty() && model.is_static) reading.report.problem(element, "expected at least one <link>");
 
   if (model.is_static) {
-    for (const DeviceScope& scope : parts.scopes())
-      if (!extensions_in(scope.model_element, reading.report).empty())
+    for (const DeviceScope& scope : parts.scopes()) {
+      const bool has_sensor = std::ranges::any_of(
+          parts.sensors(), [&](const SensorPlace& sensor) { return sensor.prefix == scope.prefix; });
+      if (!extensions_in(scope.model_element, reading.report).empty() || has_sensor)
         reading.report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
+    }
     return model;
   }
   parts.add_joints(sdf_model, "");
@@ -151,7 +165,9 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
                        every_link_has_one_parent(sdf_model, model, reading.report) &&
                        order_links(sdf_model, model, reading.report);
   // Devices name links and joints: with some of those missing, each device would be reported for it.
-  if (is_tree) model.devices = read_devices(parts.scopes(), model, reading.report);
+  if (!is_tree) return model;
+  model.devices = read_devices(parts.scopes(), model, reading.report);
+  for (Device& sensor : read_sdf_sensors(parts.sensors(), model, reading)) model.devices.push_back(std::move(sensor));
   return model;
 }
 

@@ -7,6 +7,7 @@
 #include <sdf/Link.hh>
 #include <sdf/Model.hh>
 #include <sdf/SemanticPose.hh>
+#include <sdf/Sensor.hh>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,22 @@ struct DeviceScope {
 
 /// The devices of a model whose links and joints are read.
 std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report);
+
+/// Where one of SDF's own sensors stands.
+struct SensorPlace {
+  const sdf::Sensor* sensor = nullptr;
+  bool is_on_joint = false;
+  std::string owner;   ///< scoped name of the link or joint
+  std::string prefix;  ///< of all names in its model
+};
+
+/// Whether a <sensor> is of a type that is simulated where it stands.
+bool is_sensor(const sdf::ElementPtr& element);
+
+/// Those that are simulated, of a model whose links, joints and other devices are read: in the order of the links, then
+/// of the joints.
+std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, const Model& model,
+                                     const ModelReading& reading);
 
 /// Whether the pose is given in the frame that it is to be in, and needs no resolving.
 inline bool is_in_frame_of_parent(const sdf::Model& model) {

@@ -5,13 +5,6 @@
 namespace cohort::description {
 namespace {
 
-constexpr double nanoseconds = 1e9;
-constexpr double longest = 9e9;  // 285 years, which fits into nanoseconds [s]
-
-std::chrono::nanoseconds to_time(double seconds) {
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::round(std::min(seconds, longest) * nanoseconds)));
-}
-
 std::optional<Device> read_joint_encoder(const ExtensionValues& values, DeviceReader& reader) {
   const std::optional<std::size_t> joint = reader.find_moving_joint(values);
   if (!joint) return std::nullopt;
@@ -73,6 +66,14 @@ std::optional<Device> read_microphones(const ExtensionValues& values, DeviceRead
   return Microphones{values.name(), *link, values.vectors("place"), bands, values.real("gain")};
 }
 
+// Of a sensor that has a place on a link and nothing else.
+template <class Posed>
+std::optional<Device> read_posed(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  if (!link) return std::nullopt;
+  return Posed{values.name(), *link, values.pose("pose")};
+}
+
 void add_noise(Readout& readout, const char* quantity, double deviation) {
   if (!(deviation > 0.0)) return;
   readout.noises.emplace_back();
@@ -105,6 +106,13 @@ std::optional<Device> read_climate_sensor(const ExtensionValues& values, DeviceR
   return sensor;
 }
 
+std::optional<Device> read_battery(const ExtensionValues& values, DeviceReader& reader) {
+  Battery battery{values.name(), values.real("capacity"), values.real("charge"), values.real("idle_power"),
+                  values.real("motor_efficiency")};
+  if (battery.motor_efficiency > 1.0) reader.report().problem(values.where("motor_efficiency"), "expected at most 1");
+  return battery;
+}
+
 // The register of sensors: a new kind is one more line here.
 constexpr DeviceKind kinds[] = {
     {"joint_encoder", &read_joint_encoder},
@@ -115,11 +123,19 @@ constexpr DeviceKind kinds[] = {
     {"microphones", &read_microphones},
     {"range_and_bearing", &read_range_and_bearing, true, true},
     {"climate_sensor", &read_climate_sensor},
+    {"battery", &read_battery},
+    {"inclinometer", &read_posed<Inclinometer>},
 };
 
 }  // namespace
 
 std::span<const DeviceKind> sensor_kinds() { return kinds; }
+
+std::chrono::nanoseconds to_time(double seconds) {
+  constexpr double nanoseconds = 1e9;
+  constexpr double longest = 9e9;  // 285 years, which fits into nanoseconds [s]
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::round(std::min(seconds, longest) * nanoseconds)));
+}
 
 Readout read_readout(const ExtensionValues& values) {
   Noise noise;
@@ -129,9 +145,7 @@ Readout read_readout(const ExtensionValues& values) {
   noise.bias_deviation = values.real("bias_noise");
   noise.precision = values.real("precision");
   Readout readout;
-  const bool is_exact = noise.deviation == 0.0 && noise.uniform == 0.0 && noise.bias == 0.0 &&
-                        noise.bias_deviation == 0.0 && noise.precision == 0.0;
-  if (!is_exact) readout.noises.push_back(noise);
+  if (!is_exact(noise)) readout.noises.push_back(noise);
   readout.drop_out = values.real("drop_out");
   if (values.has("rate")) readout.period = to_time(1.0 / values.real("rate"));
   readout.latency = to_time(values.real("latency"));

@@ -115,6 +115,9 @@ void WorldReader::read_model_alone(const SdfFile& file) {
 void WorldReader::read_settings(const sdf::World& sdf_world) {
   world_.name = sdf_world.Name();
   world_.gravity = to_eigen(sdf_world.Gravity());
+  // SDF's default is World's, which libsdformat rounds.
+  if (const sdf::ElementPtr field = find(sdf_world.Element(), {"magnetic_field"}); is_written(field))
+    world_.magnetic_field = to_eigen(field->Get<ignition::math::Vector3d>());
   check_numbers(sdf_world.Element(), report_);
   warn_of_unsupported(sdf_world.Element(), report_);
 

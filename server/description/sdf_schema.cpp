@@ -77,6 +77,8 @@ bool ElementSchema::has_attribute(const std::string& name) const {
 }
 
 bool ElementSchema::is_single() const {
+  // What SDF says of these where they are included is lost in libsdformat: any number.
+  if (name_ == "sensor" || name_ == "projector") return false;
   return element_ && (element_->GetRequired() == "0" || element_->GetRequired() == "1");
 }
 

@@ -21,9 +21,9 @@ std::size_t numbers_in(std::string_view type) {
 }
 
 bool is_simulated(const std::string& name) {
-  constexpr std::string_view ignored[] = {"visual", "light",      "sensor",         "plugin",           "scene",
-                                          "gui",    "atmosphere", "actor",          "particle_emitter", "state",
-                                          "audio",  "road",       "magnetic_field", "projector",        "population"};
+  constexpr std::string_view ignored[] = {"visual", "light",      "sensor",    "plugin",           "scene",
+                                          "gui",    "atmosphere", "actor",     "particle_emitter", "state",
+                                          "audio",  "road",       "projector", "population"};
   return std::find(std::begin(ignored), std::end(ignored), name) == std::end(ignored) &&
          name.find(':') == std::string::npos;
 }
@@ -86,6 +86,10 @@ sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*>
     element = element->FindElement(name);
   }
   return element;
+}
+
+bool is_written(const sdf::ElementPtr& element) {
+  return element && element->GetValue() && element->GetValue()->GetSet();
 }
 
 void check_numbers(const sdf::ElementPtr& element, const SdfReport& report) {

@@ -24,6 +24,10 @@ std::optional<Eigen::Vector3d> written_unit_vector(const sdf::ElementPtr& elemen
 /// The descendant at this path, nullptr if it is not there. (Element::GetElement would add it.)
 sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*> path);
 
+/// Whether the element is there with a value: what is not written has none, even where libsdformat has added the
+/// element.
+bool is_written(const sdf::ElementPtr& element);
+
 /// Checks that every number below `element`, except in what is not simulated, is a number and
 /// nothing else: libsdformat reads "1,5" as 1, "3 m" as 3 and an empty element as its default.
 void check_numbers(const sdf::ElementPtr& element, const SdfReport& report);

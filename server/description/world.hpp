@@ -72,7 +72,8 @@ struct World {
   std::string name;
   std::filesystem::path file;
   std::chrono::nanoseconds step{10'000'000};
-  Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< [m/s^2]
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};                            ///< [m/s^2]
+  Eigen::Vector3d magnetic_field{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< the same everywhere; SDF's default [T]
   PhysicsSettings physics;
   Climate climate;
   std::vector<std::string> materials{""};  ///< 0 is of all that names none

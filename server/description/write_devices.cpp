@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/description/write_sdf_sensors.hpp"
 #include "server/description/write_values.hpp"
 
 namespace cohort::description {
@@ -99,6 +100,12 @@ struct DeviceWriter {
     add_key(element, "gain", microphones.gain);
     write_readout(element, microphones.readout);
   }
+  void operator()(const Inclinometer& sensor) const { write_posed("inclinometer", sensor); }
+  /// SDF's own sensors.
+  template <class SdfSensor>
+  void operator()(const SdfSensor& sensor) const {
+    write_sdf_sensor(parent, model, sensor);
+  }
   void operator()(const RangeAndBearing& device) const {
     XmlNode& element = add_named(parent, prefixed("range_and_bearing"), device.name);
     add_key(element, "link", link_name(device.link));
@@ -117,6 +124,14 @@ struct DeviceWriter {
     add_key(element, "temperature_noise", deviation_of(sensor.readout, "temperature"));
     add_key(element, "humidity_noise", deviation_of(sensor.readout, "humidity"));
     write_readout(element, sensor.readout);
+  }
+  void operator()(const Battery& battery) const {
+    XmlNode& element = add_named(parent, prefixed("battery"), battery.name);
+    add_key(element, "capacity", battery.capacity);
+    add_key(element, "charge", battery.charge);
+    add_key(element, "idle_power", battery.idle_power);
+    add_key(element, "motor_efficiency", battery.motor_efficiency);
+    write_readout(element, battery.readout);
   }
   void operator()(const LedRing& leds) const {
     XmlNode& element = add_named(parent, prefixed("led_ring"), leds.name);
@@ -145,6 +160,13 @@ struct DeviceWriter {
     add_key(element, "max_effort", motor.max_effort);
     add_unless(element, "rotor_inertia", motor.rotor_inertia, 0.0);
   }
+  template <class Posed>
+  void write_posed(const char* kind, const Posed& sensor) const {
+    XmlNode& element = add_named(parent, prefixed(kind), sensor.name);
+    add_key(element, "link", link_name(sensor.link));
+    add_key(element, "pose", sensor.X_LS);
+    write_readout(element, sensor.readout);
+  }
   std::string link_name(std::size_t link) const { return without_scope_marks(model.links[link].name); }
   std::string joint_name(std::size_t joint) const { return without_scope_marks(model.joints[joint].name); }
 };
@@ -158,7 +180,6 @@ struct EmitterWriter {
     XmlNode& element = add_named(parent, "light", emitter.name);
     element.attributes.emplace_back("type", kinds[static_cast<int>(light.kind)]);
     add_pose(element, emitter.X_LE);
-    add_value(element, "light_on", emitter.is_on);
     add_value(element, "intensity", light.intensity);
     add_value(element, "diffuse", light.color).text += " 1";
     add_value(element, "direction", light.direction_E);

@@ -52,6 +52,7 @@ inline void add_pose(XmlNode& parent, const Pose& X) {
 /// SDF keeps "::" for itself: it stands in the names of what was in a model inside of the model.
 std::string without_scope_marks(std::string name);
 
+/// In the element of its model, which has those of its links and joints.
 void write_device(XmlNode& model_element, const Model& model, const Device& device);
 /// In its link.
 void write_emitter(XmlNode& link_element, const Emitter& emitter);

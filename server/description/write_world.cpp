@@ -62,6 +62,7 @@ class WorldWriter {
     root.attributes = {{"version", "1.9"}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
     XmlNode& world = add_named(root, "world", world_.name);
     add_value(world, "gravity", world_.gravity);
+    add_value(world, "magnetic_field", world_.magnetic_field);
     write_physics(world);
     XmlNode& climate = add(world, prefixed("climate"));
     add_key(climate, "temperature", world_.climate.temperature);

@@ -235,7 +235,7 @@ void Converter::add_child(XmlNode& node, const std::string& name, int line, cons
   child.name = name;
   child.line = line;
   fill(child, value, schema, extended(path, step_to(name, value)));
-  if (may_lack_name(name) && !schema.is_free() && child.attribute("name") == nullptr) {
+  if (may_lack_name(name) && schema.has_attribute("name") && child.attribute("name") == nullptr) {
     const auto before = std::count_if(node.children.begin(), node.children.end(),
                                       [&](const XmlNode& other) { return other.name == name; });
     const std::string first = name == "world" ? "default" : name;  // "world" is reserved

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "server/core/floor.hpp"
+#include "server/geometry/shapes.hpp"
 
 namespace cohort::geometry {
 
@@ -38,6 +39,14 @@ class Cells {
     const auto y = static_cast<std::uint64_t>(row);
     const std::uint64_t hash = (x >> 3) * 0x9e3779b97f4a7c15u ^ (y >> 3) * 0xc2b2ae3d27d4eb4fu;
     return static_cast<std::size_t>(((hash ^ hash >> 29) & mask_) << 6 | (y & 7) << 3 | (x & 7));
+  }
+
+  /// How far along a ray of length `range` there is anything of what lies within `extent`. Short rays are taken as they
+  /// are: they cross so few cells that asking costs more.
+  double end_of(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
+                const Bounds& extent) const {
+    constexpr double few = 8.0;
+    return range > few * edge_ ? std::min(range, extent.last_along(origin, direction)) : range;
   }
 
   /// Calls `visit(column, row)` for the cells along a ray of unit direction, near ones first. `visit` returns how far

@@ -41,15 +41,17 @@ class CornerGrid {
   }
 
   /// Calls `visit(item)` for all items that may be on a ray of unit direction, near ones first, some more than once.
-  /// `visit` returns how far along the ray the search may end, which may shrink from call to call.
+  /// `visit` returns how far along the ray the search may end, which may shrink from call to call. `range` may be
+  /// infinite.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
     if (entries_.empty()) return;
-    double end = range;
+    double end = cells_.end_of(origin, direction, range, extent_);
     cells_.for_each_along(origin, direction, [&](std::int64_t column, std::int64_t row) {
       for (const std::int64_t of_corners : {row - 1, row})
-        for_each_in_row(column - 1, column, of_corners, [&](const Entry& entry) { end = visit(entry.item); });
+        for_each_in_row(column - 1, column, of_corners,
+                        [&](const Entry& entry) { end = std::min(end, visit(entry.item)); });
       return end;
     });
   }
@@ -75,7 +77,8 @@ class CornerGrid {
   Cells cells_;
   std::vector<std::uint32_t> begin_;  // of each bucket in entries_, and one past the last
   std::vector<Entry> entries_;
-  std::vector<std::uint32_t> buckets_;  // of the items, while the grid is built
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of all items
+  std::vector<std::uint32_t> buckets_;                               // of the items, while the grid is built
 };
 
 }  // namespace cohort::geometry

@@ -48,14 +48,15 @@ class Grid {
   }
 
   /// Calls `visit(item)` for the items of the cells along a ray, near cells first, some items more than once.
-  /// `visit` returns how far along the ray the search may end, which may shrink from call to call.
+  /// `visit` returns how far along the ray the search may end, which may shrink from call to call. `range` may be
+  /// infinite.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
     if (entries_.empty()) return;
-    double end = range;
+    double end = cells_.end_of(origin, direction, range, extent_);
     cells_.for_each_along(origin, direction, [&](std::int64_t column, std::int64_t row) {
-      for (const std::uint32_t item : bucket(column, row)) end = visit(item);
+      for (const std::uint32_t item : bucket(column, row)) end = std::min(end, visit(item));
       return end;
     });
   }
@@ -69,6 +70,7 @@ class Grid {
   Cells cells_;
   std::vector<std::uint32_t> begin_;    // of each bucket in entries_, and one past the last
   std::vector<std::uint32_t> entries_;  // items, ascending within a bucket
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of all items
 };
 
 }  // namespace cohort::geometry

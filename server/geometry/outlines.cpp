@@ -113,29 +113,6 @@ struct Circumscribe {
   std::optional<Outline> operator()(const Plane&) const { return std::nullopt; }
 };
 
-// A point within its bounds; of a plane, below its surface.
-Vector3d point_of(const Solid& solid, const Bounds& bounds) {
-  if (const auto* plane = std::get_if<Plane>(&solid.shape))
-    return solid.X_WC.position - solid.X_WC.orientation * plane->normal;
-  Vector3d point = Vector3d::Zero();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double lower = bounds.lower[axis], upper = bounds.upper[axis];
-    if (lower > -infinity && upper < infinity)
-      point[axis] = lower + 0.5 * (upper - lower);
-    else if (lower > -infinity || upper < infinity)
-      point[axis] = lower > -infinity ? lower : upper;
-  }
-  return point;
-}
-
-// The scene leaves removed solids out of its queries, and answers nothing else about them.
-bool is_present(const Scene& scene, std::uint32_t index) {
-  const Vector3d point = point_of(scene.solid(index), scene.bounds(index));
-  bool found = false;
-  scene.for_each_overlap({point, point}, [&](std::uint32_t solid) { found = found || solid == index; });
-  return found;
-}
-
 }  // namespace
 
 std::optional<Outline> outline_of(const Solid& solid, const Bounds& bounds) {
@@ -145,7 +122,7 @@ std::optional<Outline> outline_of(const Solid& solid, const Bounds& bounds) {
 Outlines::Outlines(const Scene& scene) : scene_(&scene), item_of_(scene.size(), none) {
   std::vector<double> widths;
   for (std::uint32_t index = 0; index < scene.size(); ++index) {
-    if (!is_present(scene, index)) continue;
+    if (scene.is_removed(index)) continue;
     const Solid& solid = scene.solid(index);
     item_of_[index] = static_cast<std::uint32_t>(items_.size());
     items_.push_back({outline_of(solid, scene.bounds(index)), index, solid.body});

@@ -200,7 +200,6 @@ std::optional<Panorama::Window> Panorama::window_of(const Scene& scene, std::uin
 void Panorama::cast(const Outlines& outlines, const Pose& X_WS, double range, std::uint32_t ignored_body,
                     std::span<std::optional<RayHit>> pixels) const {
   const Scene& scene = outlines.scene();
-  range = std::min(range, std::numeric_limits<double>::max());  // an infinite one would count a miss, at infinity
   const View view{X_WS, X_WS.inverse(), range};
   std::vector<Window> windows;
   outlines.for_each_near(X_WS.position, range, [&](const Outlines::Item& item) {

@@ -31,7 +31,7 @@ class Panorama {
   /// Writes what each pixel sees from X_WS within `range` [m], which may be infinite; nothing for those that see no
   /// solid. Those of `ignored_body` are left out. `pixels` has columns() * rows() elements.
   ///
-  /// The same, bit for bit, as Scene::cast_ray along X_WS.orientation * direction(pixel), which needs a finite range.
+  /// The same, bit for bit, as Scene::cast_ray along X_WS.orientation * direction(pixel), with this range.
   /// Const, callable from any thread.
   void cast(const Outlines& outlines, const Pose& X_WS, double range, std::uint32_t ignored_body,
             std::span<std::optional<RayHit>> pixels) const;

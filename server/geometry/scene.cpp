@@ -1,12 +1,14 @@
 #include "server/geometry/scene.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace cohort::geometry {
 namespace {
 
 // A solid that touches more cells than this is kept in a list of its own: walls, floors, planes.
 constexpr double most_cells = 64.0;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -93,7 +95,8 @@ double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Ei
   const Eigen::Vector3d direction_C = X_CW_[index].orientation * direction_W;
   const RayEntry entry = surfaces_[index] ? surfaces_[index]->cast_ray(origin_C, direction_C, reach)
                                           : geometry::cast_ray(solids_[index].shape, origin_C, direction_C, reach);
-  if (!(entry.distance < reach || (entry.distance == reach && (!best || index < best->solid)))) return reach;
+  const bool is_nearer = entry.distance < reach || (entry.distance == reach && (!best || index < best->solid));
+  if (!is_nearer || !(entry.distance < infinity)) return reach;
   best = RayHit{entry.distance, index, solids_[index].X_WC.orientation * entry.normal};
   return entry.distance;
 }
@@ -112,6 +115,26 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eig
   wide_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
   moving_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
   return best;
+}
+
+bool Scene::is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+                    std::uint32_t ignored_body, std::uint32_t other_ignored_body) const {
+  constexpr double no_further = -1.0;
+  std::optional<RayHit> hit;
+  const auto test = [&](std::uint32_t index) {
+    const std::uint32_t body = solids_[index].body;
+    if (hit || body == ignored_body || body == other_ignored_body ||
+        balls_[index].is_missed(origin_W, direction_W, range))
+      return hit ? no_further : range;
+    improve(hit, index, origin_W, direction_W, range);
+    return hit ? no_further : range;
+  };
+  for (const std::uint32_t index : large_) test(index);
+  for (const std::uint32_t index : large_moving_) test(index);
+  if (!hit) static_grid_.for_each_along(origin_W, direction_W, range, test);
+  if (!hit) wide_grid_.for_each_along(origin_W, direction_W, range, test);
+  if (!hit) moving_grid_.for_each_along(origin_W, direction_W, range, test);
+  return !hit;
 }
 
 std::optional<RayHit> Scene::cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,

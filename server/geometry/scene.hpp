@@ -23,6 +23,8 @@ struct Solid {
   std::uint32_t body = 0;  ///< whose it is; solids of one body do not see each other
   bool moves = false;
   Pose X_WC;
+  std::uint32_t link = 0;       ///< of the body's model
+  std::uint32_t collision = 0;  ///< of the link
 };
 
 struct RayHit {
@@ -44,6 +46,7 @@ class Scene {
   /// Takes a solid out of all further queries, until `put_back`. Its index is never another one's.
   void remove(std::uint32_t index);
   void put_back(std::uint32_t index);
+  bool is_removed(std::uint32_t index) const { return is_removed_[index] != 0; }
 
   std::size_t size() const { return solids_.size(); }
   const Solid& solid(std::uint32_t index) const { return solids_[index]; }
@@ -54,10 +57,15 @@ class Scene {
   /// Takes the new poses into the grid.
   void update();
 
-  /// The first solid along a ray of unit direction and length `range`, those of `ignored_body` left out. Of two at the
+  /// The first solid along a ray of unit direction and length `range`, which may be infinite, those of `ignored_body`
+  /// left out. Of two at the
   /// very same distance the one with the lower index, so the answer depends on the scene alone.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
                                  std::uint32_t ignored_body = no_body) const;
+
+  /// Whether such a ray meets nothing but these two bodies.
+  bool is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+               std::uint32_t ignored_body, std::uint32_t other_ignored_body = no_body) const;
 
   /// As `cast_ray`, among `candidates` only.
   std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,

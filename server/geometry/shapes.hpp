@@ -29,6 +29,8 @@ struct Bounds {
     lower = lower.cwiseMin(other.lower);
     upper = upper.cwiseMax(other.upper);
   }
+  /// No point within is further along a ray of unit direction than this [m].
+  double last_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
   Bounds grown_by(double margin) const { return {lower.array() - margin, upper.array() + margin}; }
 };
 

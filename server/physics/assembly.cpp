@@ -27,9 +27,11 @@ Assembly::Assembly(const description::World& world)
       surfaces(world),
       collision(scene, [this](std::uint32_t solid, std::uint32_t other) { return may_touch(solid, other); }) {}
 
-void Assembly::add_solid(std::uint32_t body, const description::Collision& part_collision, const Pose& X_WC,
-                         Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
-  scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC});
+void Assembly::add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
+                         const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
+  const description::Collision& part_collision = model.links[link].collisions[number];
+  scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC,
+             static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(number)});
   collision.add(std::move(shape));
   anchors.part_of_solid.push_back(part);
 }
@@ -37,12 +39,14 @@ void Assembly::add_solid(std::uint32_t body, const description::Collision& part_
 std::vector<std::uint32_t> Assembly::add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
                                                 std::span<const std::shared_ptr<const BulletShape>> shapes) {
   std::vector<std::uint32_t> solids;
-  for (const description::Link& link : model.links)
-    for (const description::Collision& part : link.collisions) {
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    const std::vector<description::Collision>& parts = model.links[link].collisions;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
       const std::shared_ptr<const BulletShape>& shape = shapes[solids.size()];
       solids.push_back(static_cast<std::uint32_t>(scene.size()));
-      add_solid(body, part, X_WM * link.X_ML * part.X_LC, {}, shape);
+      add_solid(body, model, link, part, X_WM * model.links[link].X_ML * parts[part].X_LC, {}, shape);
     }
+  }
   return solids;
 }
 
@@ -54,16 +58,18 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
   member.body = body.body();
   member.multibody = std::move(multibody);
   anchors.index_of_member.push_back(-1);
-  const std::vector<description::Link>& links = body.mechanism().model().links;
+  const description::Model& model = body.mechanism().model();
+  const std::vector<description::Link>& links = model.links;
   std::size_t shape = 0;
   for (std::size_t link = 0; link < links.size(); ++link) {
     const Mechanism::LinkPlace& place = body.mechanism().link(link);
-    for (const description::Collision& part : links[link].collisions) {
+    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
       const std::shared_ptr<const BulletShape>& shape_of_part = shapes[shape++];
       if (!place.collides) continue;
-      const Pose X_SC = place.X_SL * part.X_LC;
+      const Pose X_SC = place.X_SL * links[link].collisions[part].X_LC;
       member.parts.push_back({static_cast<std::uint32_t>(scene.size()), place.segment, X_SC});
-      add_solid(body.body(), part, body.segment_pose(place.segment) * X_SC, {index, place.segment}, shape_of_part);
+      add_solid(body.body(), model, link, part, body.segment_pose(place.segment) * X_SC, {index, place.segment},
+                shape_of_part);
     }
   }
   return index;

@@ -220,7 +220,7 @@ void PlanarEngine::report_contacts() {
         contacts_.push_back({scene_.solid(pair.a).body, scene_.solid(pair.b).body,
                              Eigen::Vector3d(point.position_W.x(), point.position_W.y(), pair.z),
                              Eigen::Vector3d(point.normal_W.x(), point.normal_W.y(), 0.0), point.gap,
-                             point.normal_impulse});
+                             point.normal_impulse, pair.a, pair.b});
       }
     }
   }

@@ -92,10 +92,13 @@ std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_W
 }
 
 void PlanarEngine::add_static(std::uint32_t body) {
-  for (const description::Link& link : description_.models[bodies_[body].model].links) {
-    for (const description::Collision& collision : link.collisions) {
-      bodies_[body].solids.push_back(scene_.add(
-          {collision.shape, collision.surface, body, false, bodies_[body].X_WM * link.X_ML * collision.X_LC}));
+  const std::vector<description::Link>& links = description_.models[bodies_[body].model].links;
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
+      const description::Collision& collision = links[link].collisions[part];
+      const Pose X_WC = bodies_[body].X_WM * links[link].X_ML * collision.X_LC;
+      bodies_[body].solids.push_back(scene_.add({collision.shape, collision.surface, body, false, X_WC,
+                                                 static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(part)}));
       collision_.add_static();
       part_of_solid_.emplace_back();
     }
@@ -115,10 +118,13 @@ void PlanarEngine::add_moving(std::uint32_t body) {
   for (std::size_t link = 0; link < links.size(); ++link) {
     const Mechanism::LinkPlace& place = model.mechanism().link(link);
     if (!place.collides) continue;
-    for (const description::Collision& collision : links[link].collisions) {
+    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
+      const description::Collision& collision = links[link].collisions[part];
       const Pose X_SC = place.X_SL * collision.X_LC;
       const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
-      parts_.push_back({scene_.add({collision.shape, collision.surface, body, true, X_WC}), place.segment, X_SC, {}});
+      const std::uint32_t solid = scene_.add({collision.shape, collision.surface, body, true, X_WC,
+                                              static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(part)});
+      parts_.push_back({solid, place.segment, X_SC, {}});
       parts_in_body_.emplace_back();
       collision_.add_moving();
       part_of_solid_.push_back({index, place.segment});

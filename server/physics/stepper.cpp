@@ -203,7 +203,7 @@ void Stepper::report_contacts() {
       for (const ContactPoint& point : pair.contact) {
         if (point.gap > 0.0 && point.impulse[0] == 0.0) continue;  // near, but it did not touch
         contacts_.push_back({scene.solid(pair.a).body, scene.solid(pair.b).body, point.position_W, point.normal_W,
-                             point.gap, point.impulse[0]});
+                             point.gap, point.impulse[0], pair.a, pair.b});
       }
     });
   }

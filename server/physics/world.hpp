@@ -19,9 +19,11 @@ struct Contact {
   std::uint32_t body_a = 0;
   std::uint32_t body_b = 0;
   Eigen::Vector3d position_W;
-  Eigen::Vector3d normal_W;  ///< unit, from b towards a
-  double distance = 0.0;     ///< [m], negative: they overlap
-  double impulse = 0.0;      ///< along the normal over the step [N s]
+  Eigen::Vector3d normal_W;   ///< unit, from b towards a
+  double distance = 0.0;      ///< [m], negative: they overlap
+  double impulse = 0.0;       ///< along the normal over the step [N s]
+  std::uint32_t solid_a = 0;  ///< of body a, in the scene
+  std::uint32_t solid_b = 0;
 };
 
 struct Twist {

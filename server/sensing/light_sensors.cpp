@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "server/sensing/saturation.hpp"
 
@@ -12,8 +13,8 @@ using description::Light;
 
 // A lamp is no nearer than this [m]: at no distance it would be infinitely bright.
 constexpr double least_distance = 1e-3;
-// How far away what a directional light is cast by stands [m].
-constexpr double far_away = 1e3;
+// From where a directional light comes [m].
+constexpr double far_away = std::numeric_limits<double>::infinity();
 
 double within_cone(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W) {
   const double along = -direction_W.dot(lamp.direction_W);
@@ -37,7 +38,9 @@ double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& directi
 }
 
 LightSensors::LightSensors(const description::LightSensors& sensors, Mount mount)
-    : sensors_(sensors), mount_(std::move(mount)) {
+    : sensors_(sensors),
+      mount_(std::move(mount)),
+      ring_(mount_.lamp_view.add_ring(mount_.body, sensors.link, sensors.X_LS.position)) {
   for (std::size_t i = 0; i < sensors.count; ++i) {
     const double bearing = sensors.first_bearing + static_cast<double>(i) * sensors.spacing;
     directions_S_.emplace_back(std::cos(bearing), std::sin(bearing), 0.0);
@@ -51,27 +54,24 @@ std::vector<Channel> LightSensors::channels() const {
   return channels;
 }
 
-bool LightSensors::is_in_sight(const emission::Lamp& lamp, const Eigen::Vector3d& p_WS,
-                               const Eigen::Vector3d& direction_W, double distance) const {
-  const double range = lamp.light.kind == Light::Kind::directional ? far_away : distance;
-  const auto hit = mount_.world.scene().cast_ray(p_WS, direction_W, range, mount_.body);
-  return !hit || mount_.world.scene().solid(hit->solid).body == lamp.mount.body;
-}
-
 void LightSensors::sense(std::uint64_t, std::span<double> values) const {
   const Pose X_WS = mount_.world.link_pose(mount_.body, sensors_.link) * sensors_.X_LS;
   std::ranges::fill(values, 0.0);
-  for (const std::uint32_t index : mount_.emitters.lit_lamps()) {
-    const emission::Lamp& lamp = mount_.emitters.lamp(index);
+  const std::span<const std::uint32_t> lamps = mount_.emitters.lit_lamps();
+  for (std::uint32_t place = 0; place < lamps.size(); ++place) {
+    const emission::Lamp& lamp = mount_.emitters.lamp(lamps[place]);
     if (lamp.mount.body == mount_.body) continue;
-    const Eigen::Vector3d offset_W = lamp.light.kind == Light::Kind::directional
-                                         ? Eigen::Vector3d(-lamp.direction_W)
-                                         : Eigen::Vector3d(lamp.p_W - X_WS.position);
+    const bool is_far_away = lamp.light.kind == Light::Kind::directional;
+    const Eigen::Vector3d offset_W =
+        is_far_away ? Eigen::Vector3d(-lamp.direction_W) : Eigen::Vector3d(lamp.p_W - X_WS.position);
     const double distance = offset_W.norm();
     if (!(distance > 0.0)) continue;
     const Eigen::Vector3d direction_W = offset_W / distance;
     const double arriving = arriving_light(lamp, direction_W, distance);
-    if (!(arriving > 0.0) || !is_in_sight(lamp, X_WS.position, direction_W, distance)) continue;
+    if (!(arriving > 0.0)) continue;
+    if (is_far_away ? !mount_.world.scene().is_free(X_WS.position, direction_W, far_away, mount_.body)
+                    : !mount_.lamp_view.is_in_sight(place, ring_))
+      continue;
     const Eigen::Vector3d direction_S = X_WS.orientation.conjugate() * direction_W;
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] += arriving * std::max(0.0, direction_S.dot(directions_S_[i]));

@@ -4,10 +4,10 @@
 
 namespace cohort::sensing {
 
-/// Light from all lamps that are on and in sight, as one ray from the middle of the ring to the lamp decides (thesis,
-/// section 3.2.3). Of what arrives there (description::Light; a colour counts by the mean of its three parts) a sensor
-/// gets the share of the cosine of the angle between its axis and the lamp (Lambert's law), nothing from behind. The
-/// reading is the sum over the lamps times the gain, saturated.
+/// Light from all lamps that are on and in sight, as one ray between the lamp and the middle of the ring decides
+/// (LampView; thesis, section 3.2.3). Of what arrives there (description::Light; a colour counts by the mean of its
+/// three parts) a sensor gets the share of the cosine of the angle between its axis and the lamp (Lambert's law),
+/// nothing from behind. The reading is the sum over the lamps times the gain, saturated.
 class LightSensors final : public Sensor {
  public:
   LightSensors(const description::LightSensors& sensors, Mount mount);
@@ -15,11 +15,9 @@ class LightSensors final : public Sensor {
   void sense(std::uint64_t tick, std::span<double> values) const override;
 
  private:
-  bool is_in_sight(const emission::Lamp& lamp, const Eigen::Vector3d& p_WS, const Eigen::Vector3d& direction_W,
-                   double distance) const;
-
   description::LightSensors sensors_;
   Mount mount_;
+  std::uint32_t ring_;  // number in the lamp view
   std::vector<Eigen::Vector3d> directions_S_;
 };
 

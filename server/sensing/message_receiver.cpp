@@ -45,11 +45,9 @@ void MessageReceiver::remember(std::uint64_t, bool was_delivered) {
     if (heard.size() >= device_.capacity * size_of_one()) break;
     const emission::Beacon& beacon = mount_.emitters.beacon(each.beacon);
     const Eigen::Vector3d offset_W = beacon.p_W - X_WS.position;
-    if (each.distance > 0.0) {
-      const auto hit =
-          mount_.world.scene().cast_ray(X_WS.position, offset_W / each.distance, each.distance, mount_.body);
-      if (hit && mount_.world.scene().solid(hit->solid).body != beacon.mount.body) continue;
-    }
+    if (each.distance > 0.0 && !mount_.world.scene().is_free(X_WS.position, offset_W / each.distance, each.distance,
+                                                             mount_.body, beacon.mount.body))
+      continue;
     const Eigen::Vector3d p_S = X_WS.orientation.conjugate() * offset_W;
     heard.insert(heard.end(), {each.distance, std::atan2(p_S.y(), p_S.x()),
                                std::atan2(p_S.z(), std::sqrt(p_S.x() * p_S.x() + p_S.y() * p_S.y()))});

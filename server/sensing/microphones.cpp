@@ -15,20 +15,23 @@ std::vector<Channel> Microphones::channels() const {
 }
 
 void Microphones::sense(std::uint64_t, std::span<double> values) const {
-  constexpr double least_distance = 1e-3;  // [m]: at no distance a source would be infinitely loud
+  constexpr double least_squared = 1e-6;  // [m^2]: at no distance a source would be infinitely loud
   const Pose X_WL = mount_.world.link_pose(mount_.body, microphones_.link);
+  std::vector<Eigen::Vector3d> places_W;
+  places_W.reserve(microphones_.places_L.size());
+  for (const Eigen::Vector3d& p_L : microphones_.places_L) places_W.push_back(X_WL * p_L);
   const std::size_t bands = microphones_.bands.size();
   std::ranges::fill(values, 0.0);
   for (const std::uint32_t index : mount_.emitters.sounding_tones()) {
     const emission::Tone& tone = mount_.emitters.tone(index);
     if (tone.mount.body == mount_.body) continue;
-    const Eigen::Vector3d p_L = X_WL.orientation.conjugate() * (tone.p_W - X_WL.position);
+    const double frequency = tone.sound.frequency;
+    const double range_squared = tone.sound.range * tone.sound.range;
     for (std::size_t band = 0; band < bands; ++band) {
-      const double frequency = tone.sound.frequency;
       if (frequency < microphones_.bands[band].x() || frequency > microphones_.bands[band].y()) continue;
-      for (std::size_t i = 0; i < microphones_.places_L.size(); ++i) {
-        const double distance = std::max((p_L - microphones_.places_L[i]).norm(), least_distance);
-        if (distance <= tone.sound.range) values[i * bands + band] += tone.sound.intensity / (distance * distance);
+      for (std::size_t i = 0; i < places_W.size(); ++i) {
+        const double squared = std::max((tone.p_W - places_W[i]).squaredNorm(), least_squared);
+        if (squared <= range_squared) values[i * bands + band] += tone.sound.intensity / squared;
       }
     }
   }

@@ -30,12 +30,11 @@ Readout::Readout(const description::Readout& readout, std::vector<Channel> chann
                  const std::string& robot, const std::string& device, std::chrono::nanoseconds step)
     : readout_(readout), random_(seed, robot, device) {
   for (const Channel& channel : channels) {
-    const int place = channel.is_measured ? noise_on(channel) : -1;
     for (std::uint32_t i = 0; i < channel.size; ++i) {
+      const int place = channel.is_measured ? noise_on(channel, i) : -1;
       Value value{place, 0.0, channel.lower, channel.upper};
       if (place >= 0) {
         const description::Noise& noise = readout_.noises[static_cast<std::size_t>(place)];
-        is_noisy_ = true;
         wanders_ = wanders_ || noise.drift_deviation > 0.0;
         value.constant = noise.mean + noise.bias;
         if (noise.bias_deviation > 0.0)
@@ -53,11 +52,14 @@ Readout::Readout(const description::Readout& readout, std::vector<Channel> chann
   if (wanders_) drift_.assign(values_.size(), 0.0);
 }
 
-int Readout::noise_on(const Channel& channel) const {
+int Readout::noise_on(const Channel& channel, std::uint32_t element) const {
   int place = -1;
-  for (std::size_t i = 0; i < readout_.noises.size(); ++i)
-    if (readout_.noises[i].quantity.empty() || readout_.noises[i].quantity == quantity_of(channel))
+  for (std::size_t i = 0; i < readout_.noises.size(); ++i) {
+    const description::Noise& noise = readout_.noises[i];
+    if ((noise.quantity.empty() || noise.quantity == quantity_of(channel)) &&
+        (noise.element < 0 || noise.element == static_cast<int>(element)))
       place = static_cast<int>(i);
+  }
   return place;
 }
 
@@ -65,10 +67,13 @@ int Readout::noise_on(const Channel& channel) const {
 // times but the first ones, and it forgets itself by 1/e in `drift_time` (Gelb, "Applied Optimal Estimation", 1974,
 // section 3.6).
 void Readout::disturb(std::uint64_t tick, std::span<double> values) {
-  if (!is_noisy_) return;
+  if (readout_.noises.empty()) return;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Value& value = values_[i];
-    if (value.noise < 0) continue;
+    if (value.noise < 0) {
+      if (std::isinf(values[i])) values[i] = std::clamp(values[i], value.lower, value.upper);
+      continue;
+    }
     const description::Noise& noise = readout_.noises[static_cast<std::size_t>(value.noise)];
     double reading = values[i] + value.constant;
     if (noise.deviation > 0.0) reading += noise.deviation * random_.normal(tick, draw_of(gaussian, i));

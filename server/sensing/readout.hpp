@@ -28,7 +28,8 @@ class Readout {
   bool measures_at(std::uint64_t tick, bool is_due) const {
     return is_immediate_ ? is_due || wanders_ : tick % period_ == 0;
   }
-  /// Adds all errors to what has been measured at this tick.
+  /// Adds all errors to what has been measured at this tick. What is infinite, where nothing was there to be measured,
+  /// becomes the bound of its channel, if there is noise on the device at all.
   void disturb(std::uint64_t tick, std::span<double> values);
   /// Takes what was measured at this tick, with its errors.
   void take(std::uint64_t tick, std::span<const double> values);
@@ -51,14 +52,13 @@ class Readout {
     std::uint64_t due = 0;  // the tick at which it arrives
     std::vector<double> values;
   };
-  int noise_on(const Channel& channel) const;
+  int noise_on(const Channel& channel, std::uint32_t element) const;
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);
 
   description::Readout readout_;
   RandomStream random_;
   std::vector<Value> values_;
-  bool is_noisy_ = false;
   bool wanders_ = false;
   bool is_immediate_ = true;
   std::uint64_t period_ = 1;   // in ticks

@@ -1,9 +1,17 @@
 #include "server/sensing/sensor.hpp"
 
+#include "server/sensing/air_pressure.hpp"
+#include "server/sensing/altimeter.hpp"
+#include "server/sensing/battery.hpp"
 #include "server/sensing/climate_sensor.hpp"
+#include "server/sensing/contact_sensor.hpp"
 #include "server/sensing/ground_sensors.hpp"
+#include "server/sensing/inclinometer.hpp"
 #include "server/sensing/joint_encoder.hpp"
+#include "server/sensing/lidar.hpp"
 #include "server/sensing/light_sensors.hpp"
+#include "server/sensing/logical_camera.hpp"
+#include "server/sensing/magnetometer.hpp"
 #include "server/sensing/message_receiver.hpp"
 #include "server/sensing/microphones.hpp"
 #include "server/sensing/proximity_ring.hpp"
@@ -39,11 +47,35 @@ struct Make {
   std::unique_ptr<Sensor> operator()(const description::Microphones& d) const {
     return std::make_unique<Microphones>(d, std::move(mount));
   }
+  std::unique_ptr<Sensor> operator()(const description::Inclinometer& d) const {
+    return std::make_unique<Inclinometer>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Lidar& d) const {
+    return std::make_unique<Lidar>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::ContactSensor& d) const {
+    return std::make_unique<ContactSensor>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Altimeter& d) const {
+    return std::make_unique<Altimeter>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Magnetometer& d) const {
+    return std::make_unique<Magnetometer>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::LogicalCamera& d) const {
+    return std::make_unique<LogicalCamera>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::AirPressureSensor& d) const {
+    return std::make_unique<AirPressureSensor>(d, std::move(mount));
+  }
   std::unique_ptr<Sensor> operator()(const description::RangeAndBearing& d) const {
     return std::make_unique<MessageReceiver>(d, std::move(mount));
   }
   std::unique_ptr<Sensor> operator()(const description::ClimateSensor& d) const {
     return std::make_unique<ClimateSensor>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Battery& d) const {
+    return std::make_unique<Battery>(d, model, std::move(mount));
   }
 };
 

@@ -13,6 +13,7 @@
 #include "server/description/world.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/physics/world.hpp"
+#include "server/sensing/lamp_view.hpp"
 
 namespace cohort::sensing {
 
@@ -21,9 +22,10 @@ struct Mount {
   const physics::World& world;
   const emission::Emitters& emitters;
   const description::World& description;
-  std::uint32_t body;  ///< the robot's
-  std::string robot;   ///< scoped name; with the seed it fixes the noise
-  std::uint64_t seed;  ///< of the experiment
+  LampView& lamp_view;  ///< light sensors make themselves known to it
+  std::uint32_t body;   ///< the robot's
+  std::string robot;    ///< scoped name; with the seed it fixes the noise
+  std::uint64_t seed;   ///< of the experiment
 };
 
 /// Reads the world. One object for each device of each robot.
@@ -41,6 +43,8 @@ class Sensor {
   /// `was_delivered`: the robot was given what was sensed at the tick before.
   virtual bool has_memory() const { return false; }
   virtual void remember(std::uint64_t /*tick*/, bool /*was_delivered*/) {}
+  /// Whether the robot has no energy left.
+  virtual bool is_exhausted() const { return false; }
   /// What it remembers.
   virtual void hash(StateHash& /*hash*/) const {}
   virtual void save(SnapshotWriter& /*writer*/) const {}

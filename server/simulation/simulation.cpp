@@ -36,6 +36,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
       workers_(threads),
       world_(experiment.world, workers_),
       emitters_(experiment.world, world_),
+      lamp_view_(world_, emitters_),
       objects_(experiment, world_),
       course_(experiment, world_, objects_) {
   const description::World& world = experiment.world;
@@ -67,8 +68,9 @@ void Simulation::build_robot(std::uint32_t id) {
 
   RobotKind kind{model.name, {}, {}, 0, 0};
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    if (auto sensor = sensing::make_sensor(model, device,
-                                           {world_, emitters_, world, robot.body, instance.name, experiment_.seed})) {
+    if (auto sensor = sensing::make_sensor(
+            model, device, {world_, emitters_, world, lamp_view_, robot.body, instance.name, experiment_.seed})) {
+      rings_.resize(lamp_view_.ring_count(), {id, robot.sensors.size()});
       const std::vector<Channel> channels = sensor->channels();
       kind.observation.insert(kind.observation.end(), channels.begin(), channels.end());
       const description::Readout* readout = description::readout_of(model.devices[device]);
@@ -139,6 +141,9 @@ void Simulation::set_neutral_command(std::uint32_t robot) {
 
 void Simulation::step() {
   for (Robot& robot : robots_) {
+    const bool is_exhausted = std::any_of(robot.sensors.begin(), robot.sensors.end(),
+                                          [](const SensorOfRobot& each) { return each.sensor->is_exhausted(); });
+    if (is_exhausted) robot.command = neutral_values(kinds_[robot.kind]);
     std::span<const double> values = robot.command;
     for (std::size_t i = 0; i < robot.actuators.size(); ++i) {
       robot.actuators[i]->apply(values.first(robot.actuator_sizes[i]));
@@ -204,8 +209,19 @@ void Simulation::sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due,
   if (is_due) each.readout.report(tick, values);
 }
 
+void Simulation::look_at_lamps() {
+  asking_rings_.assign(rings_.size(), 0);
+  for (std::size_t ring = 0; ring < rings_.size(); ++ring) {
+    const auto& [robot, sensor] = rings_[ring];
+    if (is_present(robot) && robots_[robot].sensors[sensor].readout.measures_at(tick_, is_due(robot, tick_)))
+      asking_rings_[ring] = 1;
+  }
+  lamp_view_.update(asking_rings_, workers_);
+}
+
 void Simulation::sense() {
   emitters_.update(workers_);
+  look_at_lamps();
   workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (std::size_t id = begin; id < end; ++id) {
       if (!is_present(static_cast<std::uint32_t>(id))) continue;

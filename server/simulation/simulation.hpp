@@ -139,6 +139,7 @@ class Simulation {
 
   void build_robot(std::uint32_t id);
   void sense();
+  void look_at_lamps();
   static void sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due, std::span<double> values,
                         std::vector<double>& scratch);
   void count_touches();
@@ -150,6 +151,7 @@ class Simulation {
   mutable WorkerPool workers_;
   physics::World world_;
   emission::Emitters emitters_;
+  sensing::LampView lamp_view_;
   Objects objects_;
   Course course_;
   std::vector<RobotKind> kinds_;
@@ -157,6 +159,12 @@ class Simulation {
   std::vector<Robot> robots_;
   std::vector<double> observations_;
   std::vector<std::vector<double>> scratch_;  // of each worker
+  struct RingOfRobot {
+    std::uint32_t robot = 0;
+    std::size_t sensor = 0;
+  };
+  std::vector<RingOfRobot> rings_;  // of light sensors, by their numbers in the lamp view
+  std::vector<char> asking_rings_;
   std::vector<std::uint32_t> robot_of_body_;
   std::vector<char> is_ground_;  // by body
   std::uint64_t tick_ = 0;

@@ -164,6 +164,28 @@ void hear_robots(benchmark::State& state) {
 }
 BENCHMARK(hear_robots)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
 
+// The same by rays.
+void hear_robots_by_rays(benchmark::State& state) {
+  const Arena arena(static_cast<std::uint32_t>(state.range(0)));
+  std::size_t pairs = 0;
+  for ([[maybe_unused]] auto iteration : state) {
+    for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
+      const Vector3d source = arena.scene.solid(robot).X_WC.position;
+      const Bounds near = Bounds{source, source}.grown_by(1.0);
+      arena.scene.for_each_overlap(near, [&](std::uint32_t other) {
+        if (other >= arena.robots || other == robot) return;
+        const Vector3d offset = arena.scene.solid(other).X_WC.position - source;
+        const double distance = offset.norm();
+        if (distance <= 1.0)
+          benchmark::DoNotOptimize(arena.scene.is_free(source, offset / distance, distance, robot, other));
+        ++pairs;
+      });
+    }
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(pairs));
+}
+BENCHMARK(hear_robots_by_rays)->Arg(1000)->Arg(4000)->Unit(benchmark::kMicrosecond);
+
 // 360 directions round each robot, 20 cm from its rim.
 void cast_shadows(benchmark::State& state) {
   const Arena arena(static_cast<std::uint32_t>(state.range(0)));

@@ -3,61 +3,36 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <utility>
 #include <vector>
 
-#include "client_sdk/src/plugin_loader.hpp"
-#include "server/session/in_process.hpp"
+#include "tests/support/shipped_experiment.hpp"
 
 namespace cohort {
 namespace {
 
-namespace fs = std::filesystem;
-const fs::path experiments = COHORT_SOURCE_DIR "/worlds/experiments";
-
-/// An experiment that has been run with its controllers in this process.
+/// An experiment that has been run, and what was seen on the way.
 class Shipped {
  public:
   explicit Shipped(const std::string& name, double seconds = 0.0)
-      : experiment(description::read_experiment(
-            experiments / (name + ".yaml"), {},
-            seconds > 0.0 ? std::optional(std::chrono::nanoseconds(std::llround(seconds * 1e9))) : std::nullopt)),
-        simulation(experiment, 2) {
-    std::vector<std::unique_ptr<LoadedPlugin>> plugins;
-    std::vector<ControllerKind> kinds;
-    for (const description::Team& team : experiment.teams) {
-      plugins.push_back(std::make_unique<LoadedPlugin>(team.controller, default_plugin_directories()));
-      kinds.push_back(kind_of(plugins.back()->plugin()));
-    }
-    const session::RunListener listener = {.boundary = [&] { watch(); }};
-    result = session::run_in_process(experiment, simulation, kinds, {}, listener, std::atomic<bool>(false));
-    EXPECT_EQ(result.end, session::RunResult::End::finished) << result.error;
-    EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0].text();
-  }
+      : run_(name, {}, seconds, [this](const testing::ShippedExperiment& run) { watch(run.simulation); }) {}
 
-  Eigen::Vector3d position(const std::string& object) const { return pose(object).position; }
-  Pose pose(const std::string& object) const { return simulation.object_pose(*simulation.objects().find(object)); }
-  bool has_quarantined() const {
-    return std::ranges::any_of(result.events, [](const session::Event& e) { return e.kind == "quarantined"; });
-  }
+  Eigen::Vector3d position(const std::string& object) const { return run_.position(object); }
+  Pose pose(const std::string& object) const { return run_.pose(object); }
+  bool has_quarantined() const { return run_.has_quarantined(); }
 
-  description::Experiment experiment;
-  Simulation simulation;
-  session::RunResult result;
   double lowest = 1e9;                               // of any robot's origin
   double least_upright = 1.0;                        // z of any robot's up
   std::vector<Eigen::Vector2d> path_of_the_first;    // of robot 0, tick by tick
   std::set<std::pair<int, int>> cells_of_the_first;  // column and row, of a square of 2.5 m, where robot 0 was
 
  private:
-  void watch() {
-    for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
-      const Pose X_WL = simulation.robot_pose(robot);
+  void watch(const Simulation& its) {
+    for (std::uint32_t robot = 0; robot < its.robot_count(); ++robot) {
+      const Pose X_WL = its.robot_pose(robot);
       lowest = std::min(lowest, X_WL.position.z());
       least_upright = std::min(least_upright, (X_WL.orientation * Eigen::Vector3d::UnitZ()).z());
       constexpr double edge = 0.5;
@@ -67,11 +42,17 @@ class Shipped {
                                    static_cast<int>(std::floor((X_WL.position.y() + 1.25) / edge))});
     }
   }
+  testing::ShippedExperiment run_;
+
+ public:
+  const description::Experiment& experiment = run_.experiment;
+  const Simulation& simulation = run_.simulation;
+  const session::RunResult& result = run_.result;
 };
 
 TEST(ShippedExperiments, AreAllReadAndStepped) {
   std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(experiments)) {
+  for (const auto& entry : std::filesystem::directory_iterator(testing::shipped_experiments)) {
     SCOPED_TRACE(entry.path().string());
     const description::Experiment experiment = description::read_experiment(entry.path());
     EXPECT_TRUE(experiment.world.warnings.empty());

@@ -341,7 +341,7 @@ TEST_F(Description, WhatIsNotSimulatedIsSaidOnceEach) {
   const World world = read(
       "<wind><linear_velocity>1 0 0</linear_velocity></wind>\n"
       "<model name=\"m\"><enable_wind>true</enable_wind><link name=\"l\"><gravity>true</gravity>\n"
-      "<sensor name=\"s\" type=\"imu\"/></link></model>");
+      "<sensor name=\"s\" type=\"camera\"/></link></model>");
   std::string all;
   for (const Problem& warning : world.warnings) all += warning.text() + "\n";
   EXPECT_EQ(world.warnings.size(), 5u) << all;  // and that the link has neither mass nor inertia

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "server/core/random.hpp"
@@ -216,6 +217,68 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
     EXPECT_EQ(of_fan->normal_W, hit->normal_W) << n;
   }
   EXPECT_GT(hits, 100);
+}
+
+TEST_F(RandomScene, CastsRaysWithoutEndAsLongOnes) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  int hits = 0, misses = 0;
+  for (std::uint64_t n = 0; n < 300; ++n) {
+    const Vector3d origin = random_vector(random, n + 30'000, 3.0);
+    const Vector3d direction =
+        n % 3 == 0 ? Vector3d(0, 0, 1 - 2 * static_cast<double>(n % 2)) : random_vector(random, n, 1.0).normalized();
+    const auto hit = scene.cast_ray(origin, direction, infinity);
+    const auto expected = scene.cast_ray(origin, direction, 100.0);
+    ASSERT_EQ(hit.has_value(), expected.has_value()) << n;
+    ++(hit ? hits : misses);
+    if (!hit) continue;
+    EXPECT_EQ(hit->solid, expected->solid) << n;
+    EXPECT_EQ(hit->distance, expected->distance) << n;
+  }
+  EXPECT_GT(hits, 50);
+  EXPECT_GT(misses, 50);
+}
+
+TEST_F(RandomScene, IsFreeWhereARayMeetsNothingButTwoBodies) {
+  int free = 0;
+  for (std::uint64_t n = 0; n < 1000; ++n) {
+    const Vector3d origin = random_vector(random, n + 50'000, 1.6);
+    const Vector3d direction = random_vector(random, n + 60'000, 1.0).normalized();
+    const double range = 0.2 + 2.0 * random.uniform(n, 4);
+    const auto first = scene.cast_ray(origin, direction, range);
+    const std::uint32_t one = first ? scene.solid(first->solid).body : Scene::no_body;
+    EXPECT_EQ(scene.is_free(origin, direction, range, Scene::no_body), !first) << n;
+    const auto second = scene.cast_ray(origin, direction, range, one);
+    EXPECT_EQ(scene.is_free(origin, direction, range, one), !second) << n;
+    if (!second) continue;
+    // Without the first two, what is left?
+    const std::uint32_t two = scene.solid(second->solid).body;
+    bool expected = true;
+    for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
+      const std::uint32_t those[] = {solid};
+      if (scene.solid(solid).body != one && scene.solid(solid).body != two)
+        expected = expected && !scene.cast_ray_among(those, origin, direction, range);
+    }
+    EXPECT_EQ(scene.is_free(origin, direction, range, one, two), expected) << n;
+    free += expected ? 1 : 0;
+  }
+  EXPECT_GT(free, 30);
+}
+
+TEST(Scene, SaysWhatIsRemoved) {
+  Scene scene;
+  const std::uint32_t ball = scene.add({description::Sphere{0.1}, {}, 0, true, {{1, 0, 0}}});
+  const std::uint32_t wall = scene.add({description::Box{{0.1, 1, 1}}, {}, 1, false, {{2, 0, 0}}});
+  scene.build();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t solid : {ball, wall}) {
+    scene.remove(solid);
+    EXPECT_TRUE(scene.is_removed(solid));
+  }
+  EXPECT_FALSE(scene.cast_ray({0, 0, 0}, {1, 0, 0}, infinity));
+  scene.put_back(wall);
+  EXPECT_TRUE(scene.is_removed(ball));
+  EXPECT_FALSE(scene.is_removed(wall));
+  EXPECT_DOUBLE_EQ(scene.cast_ray({0, 0, 0}, {1, 0, 0}, infinity)->distance, 1.95);
 }
 
 }  // namespace

@@ -232,6 +232,27 @@ TEST(Plot, ShowsRobotsWhereTheyStartAndEndInTheirRealSize) {
   EXPECT_NEAR(done.trace.robots[1].end_heading, 2.0, 0.05);
 }
 
+TEST(Plot, ShowsWhichLampsShineAtTheEnd) {
+  description::World world = arena();
+  const auto add_lamp = [&](const std::string& name, double x, bool is_on) {
+    description::Model lamp;
+    lamp.name = name;
+    lamp.is_static = true;
+    lamp.links.push_back({"link", {}, {}, {}});
+    lamp.emitters.push_back({name, 0, {}, is_on, description::Light{}});
+    testing::place(world, lamp, name, testing::at(x, 0, 0.3));
+  };
+  EXPECT_EQ(count(run(world, 1).plot(), "lamp, o"), 0u);
+  add_lamp("shining", -0.5, true);
+  add_lamp("dark", 0.5, false);
+  const std::string plot = run(world, 1).plot();
+  EXPECT_EQ(count(plot, "lamp, on at the end"), 1u);
+  EXPECT_EQ(count(plot, "lamp, off at the end"), 1u);
+  const std::size_t lamps = plot.find("<g id=\"lamps\">");
+  ASSERT_NE(lamps, std::string::npos);
+  EXPECT_EQ(count(plot.substr(lamps, plot.find("</g>", lamps) - lamps), "<circle"), 2u);
+}
+
 TEST(Plot, IsTheSameBytesForTheSameRun) { EXPECT_EQ(run(arena(), 100).plot(), run(arena(), 100).plot()); }
 
 TEST(Plot, ChangesNothingInTheRun) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -42,6 +43,9 @@ constexpr std::string_view obstacle_style = R"(fill="#b4bac2" stroke="#7d8690" s
 constexpr std::string_view object_style = R"(fill="#e8d9b8" stroke="#a08a55" stroke-width=".8")";
 constexpr std::string_view obstacle_contact_colour = "#c4001d";
 constexpr std::string_view robot_contact_colour = "#1f2328";
+constexpr std::string_view lamp_colour = "#a06a00";
+constexpr std::string_view lamp_light = "#ffd54a";
+constexpr int lamp_rays = 8;
 
 class Drawing {
  public:
@@ -72,6 +76,7 @@ class Drawing {
     draw_starts();
     draw_ends();
     draw_contacts();
+    draw_lamps();
     text_ += "</g>\n";
     draw_frame();
     draw_legend();
@@ -243,6 +248,31 @@ class Drawing {
                    kind == ContactMark::Kind::obstacle ? "obstacle" : "robot", number(at.x()), number(at.y()));
   }
 
+  void draw_lamps() {
+    text_ += "<g id=\"lamps\">\n";
+    for (const TracedLamp& lamp : trace_.lamps) draw_lamp(view_(lamp.position_W), lamp.is_on);
+    text_ += "</g>\n";
+  }
+
+  // A sun, filled if it shines.
+  void draw_lamp(const Vector2d& at, bool is_on) {
+    fmt::format_to(out_, "<path d=\"");
+    for (int ray = 0; ray < lamp_rays; ++ray) {
+      const double angle = 2.0 * std::numbers::pi * ray / lamp_rays;
+      fmt::format_to(out_, "M{} {}l{} {}", number(at.x() + 8.0 * std::cos(angle)),
+                     number(at.y() + 8.0 * std::sin(angle)), number(4.0 * std::cos(angle)),
+                     number(4.0 * std::sin(angle)));
+    }
+    fmt::format_to(out_,
+                   "\" stroke=\"{0}\" stroke-width=\"1.6\"/><circle cx=\"{1}\" cy=\"{2}\" r=\"5.5\" fill=\"{3}\" "
+                   "stroke=\"{0}\" stroke-width=\"1.6\"/>\n",
+                   lamp_colour, number(at.x()), number(at.y()), is_on ? lamp_light : "#ffffff");
+  }
+
+  bool has_lamp(bool is_on) const {
+    return std::any_of(trace_.lamps.begin(), trace_.lamps.end(),
+                       [&](const TracedLamp& lamp) { return lamp.is_on == is_on; });
+  }
   bool has_object() const {
     return std::any_of(trace_.solids.begin(), trace_.solids.end(),
                        [](const TracedSolid& solid) { return solid.kind == TracedSolid::Kind::object; });
@@ -278,6 +308,11 @@ class Drawing {
     };
     add_box(obstacle_style, "obstacle");
     if (has_object()) add_box(object_style, "object, at the end");
+    for (const bool is_on : {true, false}) {
+      if (!has_lamp(is_on)) continue;
+      draw_lamp(at, is_on);
+      add(is_on ? "lamp, on at the end" : "lamp, off at the end");
+    }
     for (const ContactMark::Kind kind : {ContactMark::Kind::obstacle, ContactMark::Kind::robot}) {
       draw_mark(kind, at);
       add(fmt::format("contact with {}{}", kind == ContactMark::Kind::obstacle ? "obstacle" : "robot",

@@ -148,6 +148,11 @@ RunTrace TraceRecorder::finish() {
     const Kind kind = solid.moves ? Kind::object : is_floor_[solid.body] ? Kind::floor : Kind::obstacle;
     trace_.solids.push_back({kind, solid.shape, solid.X_WC});
   }
+  for (const emission::Lamp& lamp : simulation_.emitters().lamps()) {
+    const bool of_robot = lamp.mount.body < robot_of_body_.size() && robot_of_body_[lamp.mount.body] != none;
+    if (of_robot || lamp.light.kind == description::Light::Kind::directional || !lamp.p_W.allFinite()) continue;
+    trace_.lamps.push_back({lamp.p_W.head<2>(), lamp.is_on && simulation_.emitters().is_in_world(lamp.mount)});
+  }
   return std::move(trace_);
 }
 

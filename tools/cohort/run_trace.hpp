@@ -41,10 +41,17 @@ struct ContactMark {
   Eigen::Vector2d position_W;
 };
 
+/// A lamp that belongs to no robot, as it is at the end.
+struct TracedLamp {
+  Eigen::Vector2d position_W;
+  bool is_on = false;
+};
+
 struct RunTrace {
   std::vector<TracedSolid> solids;  ///< the lowest first; planes and height maps are not among them
   std::vector<RobotTrace> robots;   ///< by id
   std::vector<ContactMark> contacts;
+  std::vector<TracedLamp> lamps;  ///< directional ones, which are nowhere, are not among them
 };
 
 /// Watches a run. Reads from the simulation and changes nothing, so the run's hash is the same without it. Keeps 160

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "server/core/pose.hpp"
+#include "server/description/readout.hpp"
+
+/// SDF's own sensors, as plain data: `<sensor>` of a link or a joint. They look along the x axis of S, with y to the
+/// left and z up.
+namespace cohort::description {
+
+/// Types `lidar`, `gpu_lidar`, `ray` and `gpu_ray`. Rays from the origin of S in rows, the lowest row first; in a row
+/// from the least bearing to the greatest. Observation `NAME/0/ranges`, of one row after the other [m].
+struct Lidar {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  std::size_t columns = 1;     ///< rays in a row
+  std::size_t rows = 1;        ///< >= 1
+  double min_bearing = 0.0;    ///< of a ray about the z axis of S, from its x axis [rad]
+  double max_bearing = 0.0;    ///< one column alone is in the middle between the two
+  double min_elevation = 0.0;  ///< of a row above the xy plane of S [rad]
+  double max_elevation = 0.0;
+  double min_range = 0.0;  ///< what is nearer reads as this [m]
+  double max_range = 0.0;  ///< what is further away, or nothing, reads as this [m]
+  Readout readout{};
+};
+
+/// Type `contact`. Observations `NAME/0/touching`, 0 or 1, and `NAME/0/force` [N] of one collision.
+struct ContactSensor {
+  std::string name;
+  std::size_t link = 0;
+  std::size_t collision = 0;  ///< of the link
+  Readout readout{};
+};
+
+/// Type `altimeter`. Observations `NAME/0/vertical_position`, along the world's z axis from where S was at first [m],
+/// and `NAME/0/vertical_velocity` [m/s].
+struct Altimeter {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  Readout readout{};
+};
+
+/// Type `magnetometer`. Observation `NAME/0/magnetic_field`, the world's in S [T].
+struct Magnetometer {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  Readout readout{};
+};
+
+/// Type `logical_camera`: which objects have their origin in a frustum. Observations `NAME/0/count`, and of the nearest
+/// ones `NAME/0/object`, `NAME/0/position` [m] and `NAME/0/orientation` in S.
+struct LogicalCamera {
+  static constexpr std::size_t capacity = 16;
+
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  double near = 0.0;            ///< along the x axis of S [m]
+  double far = 0.0;             ///< [m]
+  double horizontal_fov = 0.0;  ///< whole angle [rad]
+  double aspect_ratio = 1.0;    ///< width / height of what is seen at a distance
+  Readout readout{};
+};
+
+/// Type `air_pressure`. Observation `NAME/0/pressure` [Pa].
+struct AirPressureSensor {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  double reference_altitude = 0.0;  ///< of the world's origin above the sea [m]
+  Readout readout{};
+};
+
+}  // namespace cohort::description

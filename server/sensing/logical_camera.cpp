@@ -1,0 +1,68 @@
+#include "server/sensing/logical_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+
+#include "server/sensing/placed.hpp"
+
+namespace cohort::sensing {
+
+namespace {
+
+constexpr std::size_t capacity = description::LogicalCamera::capacity;
+
+struct Seen {
+  double squared_distance = 0.0;
+  std::uint32_t object = 0;
+  friend auto operator<=>(const Seen&, const Seen&) = default;
+};
+
+}  // namespace
+
+LogicalCamera::LogicalCamera(const description::LogicalCamera& camera, Mount mount)
+    : camera_(camera),
+      mount_(std::move(mount)),
+      width_(std::sin(0.5 * camera.horizontal_fov) / std::cos(0.5 * camera.horizontal_fov)),
+      height_(width_ / camera.aspect_ratio) {}
+
+std::vector<Channel> LogicalCamera::channels() const {
+  constexpr auto size = static_cast<std::uint32_t>(capacity);
+  const std::string prefix = camera_.name + "/0/";
+  return {{prefix + "count", "1", 1, 0.0, static_cast<double>(capacity), 0.0, false},
+          {prefix + "object", "1", size, -1.0, 4294967295.0, -1.0, false},
+          {prefix + "position", "m", 3 * size, -infinity, infinity, 0.0, false},
+          {prefix + "orientation", "1", 4 * size, -1.0, 1.0, 0.0, false}};
+}
+
+bool LogicalCamera::is_seen(const Eigen::Vector3d& p_S) const {
+  return p_S.x() >= camera_.near && p_S.x() <= camera_.far && std::abs(p_S.y()) <= width_ * p_S.x() &&
+         std::abs(p_S.z()) <= height_ * p_S.x();
+}
+
+void LogicalCamera::sense(std::uint64_t, std::span<double> values) const {
+  const physics::World& world = mount_.world;
+  const Pose X_SW = pose_of(camera_, mount_).inverse();
+  std::vector<Seen> seen;
+  for (std::uint32_t body = 0; body < world.body_count(); ++body) {
+    if (body == mount_.body || !world.is_active(body)) continue;
+    const Eigen::Vector3d p_S = X_SW * world.link_pose(body, 0).position;
+    if (is_seen(p_S)) seen.push_back({p_S.squaredNorm(), body});
+  }
+  std::ranges::sort(seen);
+  const std::size_t count = std::min(seen.size(), capacity);
+  std::ranges::fill(values, 0.0);
+  values[0] = static_cast<double>(count);
+  const std::span<double> objects = values.subspan(1, capacity);
+  const std::span<double> positions = values.subspan(1 + capacity, 3 * capacity);
+  const std::span<double> orientations = values.subspan(1 + 4 * capacity, 4 * capacity);
+  std::ranges::fill(objects, -1.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pose X_SO = X_SW * world.link_pose(seen[i].object, 0);
+    objects[i] = static_cast<double>(seen[i].object);
+    write(X_SO.position, positions.subspan(3 * i));
+    write(X_SO.orientation, orientations.subspan(4 * i));
+  }
+}
+
+}  // namespace cohort::sensing

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <limits>
+
+#include "server/sensing/sensor.hpp"
+
+/// What sensors that have a place S on a link share.
+namespace cohort::sensing {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <class Posed>
+Pose pose_of(const Posed& sensor, const Mount& mount) {
+  return mount.world.link_pose(mount.body, sensor.link) * sensor.X_LS;
+}
+
+/// Velocity of the origin of S in world axes [m/s].
+template <class Posed>
+Eigen::Vector3d velocity_of(const Posed& sensor, const Mount& mount) {
+  const physics::Twist twist = mount.world.link_twist(mount.body, sensor.link);
+  const Eigen::Vector3d p_LS_W = mount.world.link_pose(mount.body, sensor.link).orientation * sensor.X_LS.position;
+  return twist.linear_W + twist.angular_W.cross(p_LS_W);
+}
+
+inline void write(const Eigen::Vector3d& v, std::span<double> values) {
+  for (std::size_t i = 0; i < 3; ++i) values[i] = v[static_cast<Eigen::Index>(i)];
+}
+
+/// x y z w, of the two quaternions of a rotation the one with w >= 0.
+inline void write(const Eigen::Quaterniond& q, std::span<double> values) {
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  for (std::size_t i = 0; i < 4; ++i) values[i] = sign * q.coeffs()[static_cast<Eigen::Index>(i)];
+}
+
+}  // namespace cohort::sensing

@@ -1,0 +1,116 @@
+#include <benchmark/benchmark.h>
+
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "server/core/random.hpp"
+#include "server/sensing/sensor.hpp"
+#include "tests/support/robots.hpp"
+
+// What sensors cost with all that is around: the whole of a tick's sensing, for robots at rest in an arena of
+// 10 m x 10 m with four walls, on one thread.
+namespace cohort::sensing {
+namespace {
+
+constexpr double half_width = 5.0;
+constexpr std::uint32_t sources = 24;
+constexpr double pi = std::numbers::pi;
+
+class Swarm {
+ public:
+  Swarm(std::uint32_t robots, const std::vector<description::Device>& devices, std::uint32_t lamps,
+        std::uint32_t tones) {
+    description::Model robot = testing::tracked_robot();
+    robot.devices = devices;
+    for (std::uint32_t n = 0; n < robots; ++n)
+      testing::place(description_, robot, "robot" + std::to_string(n), place(n, 0.0));
+    for (const double side : {-half_width, half_width}) {
+      const description::Shape wall = description::Box{{0.02, 2.0 * half_width, 0.3}};
+      testing::place(description_, testing::static_shape("wall", wall), "wall", testing::at(side, 0, 0.15));
+      testing::place(description_, testing::static_shape("wall", wall), "wall", testing::at(0, side, 0.15, pi / 2.0));
+    }
+    for (std::uint32_t n = 0; n < lamps; ++n) add_emitter(description::Light{}, place(100'000 + n, 0.2));
+    for (std::uint32_t n = 0; n < tones; ++n) add_emitter(description::Sound{400.0, 1.0}, place(200'000 + n, 0.2));
+
+    world_ = std::make_unique<physics::World>(description_, workers_);
+    emitters_ = std::make_unique<emission::Emitters>(description_, *world_);
+    lamp_view_ = std::make_unique<LampView>(*world_, *emitters_);
+    for (const std::size_t body : description_.robots)
+      for (std::size_t device = 0; device < devices.size(); ++device) {
+        sensors_.push_back(make_sensor(robot, device,
+                                       {*world_, *emitters_, description_, *lamp_view_,
+                                        static_cast<std::uint32_t>(body), description_.instances[body].name, 1}));
+        std::size_t size = 0;
+        for (const Channel& channel : sensors_.back()->channels()) size += channel.size;
+        values_.emplace_back(size);
+      }
+    asks_.assign(lamp_view_->ring_count(), 1);
+  }
+
+  void sense(std::uint64_t tick) {
+    emitters_->update(workers_);
+    lamp_view_->update(asks_, workers_);
+    for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i]->sense(tick, values_[i]);
+    benchmark::DoNotOptimize(values_.data());
+  }
+
+ private:
+  Pose place(std::uint64_t n, double z) const {
+    const double reach = half_width - 0.12;
+    return testing::at(reach * (2.0 * random_.uniform(n, 0) - 1.0), reach * (2.0 * random_.uniform(n, 1) - 1.0), z,
+                       6.0 * random_.uniform(n, 2));
+  }
+  void add_emitter(const decltype(description::Emitter::what)& what, const Pose& X_WM) {
+    description::Model model;
+    model.name = "emitter";
+    model.is_static = true;
+    model.links.push_back({"link", {}, {}, {}});
+    model.emitters.push_back({"emitter", 0, {}, true, what});
+    testing::place(description_, model, "emitter", X_WM);
+  }
+
+  RandomStream random_{1, "devices_benchmark", "places"};
+  WorkerPool workers_{1};
+  description::World description_ = testing::world_with_floor();
+  std::unique_ptr<physics::World> world_;
+  std::unique_ptr<emission::Emitters> emitters_;
+  std::unique_ptr<LampView> lamp_view_;
+  std::vector<std::unique_ptr<Sensor>> sensors_;
+  std::vector<std::vector<double>> values_;
+  std::vector<char> asks_;
+};
+
+// Of a robot and tick: time / robots.
+void run(benchmark::State& state, Swarm& swarm) {
+  std::uint64_t tick = 0;
+  for ([[maybe_unused]] auto iteration : state) swarm.sense(++tick);
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+  state.counters["a robot and tick"] = benchmark::Counter(
+      static_cast<double>(state.range(0)), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+const description::Device light = description::LightSensors{"light", 1, {{0, 0, 0.03}}, 8, 0.0, pi / 4.0, 0.5, {}};
+const description::Device ears = description::Microphones{
+    "microphones", 1, {{0.03, 0, 0.03}, {0, 0.03, 0.03}, {-0.03, 0, 0.03}, {0, -0.03, 0.03}}, {{0, 20000}}, 1.0, {}};
+
+void see_24_lights(benchmark::State& state) {
+  Swarm swarm(static_cast<std::uint32_t>(state.range(0)), {light}, sources, 0);
+  run(state, swarm);
+}
+BENCHMARK(see_24_lights)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+void hear_24_sounds(benchmark::State& state) {
+  Swarm swarm(static_cast<std::uint32_t>(state.range(0)), {ears}, 0, sources);
+  run(state, swarm);
+}
+BENCHMARK(hear_24_sounds)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+void see_and_hear_24_of_each(benchmark::State& state) {
+  Swarm swarm(static_cast<std::uint32_t>(state.range(0)), {light, ears}, sources, sources);
+  run(state, swarm);
+}
+BENCHMARK(see_and_hear_24_of_each)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace cohort::sensing

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client_sdk/src/plugin_loader.hpp"
+#include "server/session/in_process.hpp"
+
+namespace cohort::testing {
+
+inline const std::filesystem::path shipped_experiments = COHORT_SOURCE_DIR "/worlds/experiments";
+
+/// One of worlds/experiments, run to its end with its controllers in this process.
+class ShippedExperiment {
+ public:
+  /// `watch` is called at every boundary, when all robots have sensed.
+  explicit ShippedExperiment(const std::string& name, std::optional<std::uint64_t> seed = {}, double seconds = 0.0,
+                             std::function<void(const ShippedExperiment&)> watch = {})
+      : experiment(description::read_experiment(
+            shipped_experiments / (name + ".yaml"), seed,
+            seconds > 0.0 ? std::optional(std::chrono::nanoseconds(std::llround(seconds * 1e9))) : std::nullopt)),
+        simulation(experiment, 2) {
+    std::vector<std::unique_ptr<LoadedPlugin>> plugins;
+    std::vector<ControllerKind> kinds;
+    for (const description::Team& team : experiment.teams) {
+      plugins.push_back(std::make_unique<LoadedPlugin>(team.controller, default_plugin_directories()));
+      kinds.push_back(kind_of(plugins.back()->plugin()));
+    }
+    const session::RunListener listener = {.boundary = [&] {
+      if (watch) watch(*this);
+    }};
+    result = session::run_in_process(experiment, simulation, kinds, {}, listener, std::atomic<bool>(false));
+    EXPECT_EQ(result.end, session::RunResult::End::finished) << result.error;
+    EXPECT_TRUE(experiment.world.warnings.empty()) << experiment.world.warnings[0].text();
+  }
+
+  Eigen::Vector3d position(const std::string& object) const { return pose(object).position; }
+  Pose pose(const std::string& object) const { return simulation.object_pose(*simulation.objects().find(object)); }
+  bool has_quarantined() const {
+    return std::any_of(result.events.begin(), result.events.end(),
+                       [](const session::Event& event) { return event.kind == "quarantined"; });
+  }
+  double seconds() const { return std::chrono::duration<double>(simulation.time()).count(); }
+  /// Of the robots, how many are no further than `radius` from a point of the plane.
+  int robots_near(double x, double y, double radius) const {
+    int count = 0;
+    for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
+      const Eigen::Vector3d at = simulation.robot_pose(robot).position;
+      if (std::hypot(at.x() - x, at.y() - y) <= radius) ++count;
+    }
+    return count;
+  }
+  /// How many robots are in the largest group, if those are in one whose origins are no further apart than `reach`.
+  int largest_group(double reach) const {
+    std::vector<int> group(simulation.robot_count(), -1);
+    int largest = 0;
+    for (std::uint32_t first = 0; first < group.size(); ++first) {
+      if (group[first] >= 0) continue;
+      std::vector<std::uint32_t> to_visit{first};
+      group[first] = static_cast<int>(first);
+      int size = 0;
+      while (!to_visit.empty()) {
+        const std::uint32_t robot = to_visit.back();
+        to_visit.pop_back();
+        ++size;
+        for (std::uint32_t other = 0; other < group.size(); ++other) {
+          if (group[other] >= 0) continue;
+          const Eigen::Vector3d apart = simulation.robot_pose(robot).position - simulation.robot_pose(other).position;
+          if (apart.norm() > reach) continue;
+          group[other] = static_cast<int>(first);
+          to_visit.push_back(other);
+        }
+      }
+      largest = std::max(largest, size);
+    }
+    return largest;
+  }
+
+  description::Experiment experiment;
+  Simulation simulation;
+  session::RunResult result;
+};
+
+}  // namespace cohort::testing

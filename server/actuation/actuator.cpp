@@ -1,8 +1,10 @@
 #include "server/actuation/actuator.hpp"
 
+#include "server/actuation/effort_motor.hpp"
 #include "server/actuation/led_ring.hpp"
 #include "server/actuation/loudspeaker.hpp"
 #include "server/actuation/message_sender.hpp"
+#include "server/actuation/position_motor.hpp"
 #include "server/actuation/treel_drive.hpp"
 #include "server/actuation/velocity_motor.hpp"
 
@@ -24,6 +26,12 @@ struct Make {
   }
   std::unique_ptr<Actuator> operator()(const description::VelocityMotor& d) const {
     return std::make_unique<VelocityMotor>(d, model.joints[d.joint], mount);
+  }
+  std::unique_ptr<Actuator> operator()(const description::PositionMotor& d) const {
+    return std::make_unique<PositionMotor>(d, model.joints[d.joint], mount);
+  }
+  std::unique_ptr<Actuator> operator()(const description::EffortMotor& d) const {
+    return std::make_unique<EffortMotor>(d, model.joints[d.joint], mount);
   }
   std::unique_ptr<Actuator> operator()(const description::LedRing& d) const {
     return std::make_unique<LedRing>(d, device, mount);

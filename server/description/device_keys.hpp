@@ -51,10 +51,18 @@ inline constexpr ExtensionKey treel_drive[] = {
     {"right_wheel", name, "", no_value, "joint of a wheel that the right track stands for; any number", true},
 };
 
+/// Also of a position_motor.
 inline constexpr ExtensionKey velocity_motor[] = {
     {"joint", name, "", "", "the joint that it turns or slides; at most one motor each"},
-    {"max_velocity", positive, "rad/s or m/s", "", "greatest velocity that can be commanded"},
+    {"max_velocity", positive, "rad/s or m/s", "", "greatest velocity"},
     {"max_effort", positive, "N m or N", "", "greatest torque or force"},
+    {"rotor_inertia", non_negative, "kg m^2 or kg", "0", "of what turns in the motor, as the joint feels it"},
+};
+
+inline constexpr ExtensionKey effort_motor[] = {
+    {"joint", name, "", "", "the joint that it turns or slides; at most one motor each"},
+    {"max_effort", positive, "N m or N", "", "greatest torque or force"},
+    {"rotor_inertia", non_negative, "kg m^2 or kg", "0", "of what turns in the motor, as the joint feels it"},
 };
 
 inline constexpr ExtensionKey led_ring[] = {
@@ -209,6 +217,10 @@ inline constexpr Extension device_extensions[] = {
     {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", keys::treel_drive,
      "actuators"},
     {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", keys::velocity_motor, "actuators"},
+    {"position_motor", "model", true, "A motor that takes one joint to a position and holds it there.",
+     keys::velocity_motor, "actuators"},
+    {"effort_motor", "model", true, "A motor that gives a torque or a force on one joint.", keys::effort_motor,
+     "actuators"},
     {"led_ring", "model", true, "LEDs of any colour around a link.", keys::led_ring, "actuators"},
     {"loudspeaker", "model", true, "A tone of any frequency and intensity.", keys::loudspeaker, "actuators"},
     {"joint_encoder", "model", true, "Measures position and velocity of one joint.", keys::joint_encoder, "sensors"},

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,7 +42,25 @@ struct VelocityMotor {
   std::string name;
   std::size_t joint = 0;
   double max_velocity = 0.0;
-  double max_effort = 0.0;  ///< [N m] or [N]
+  double max_effort = 0.0;     ///< [N m] or [N]
+  double rotor_inertia = 0.0;  ///< of what turns in the motor, as the joint feels it [kg m^2] or [kg]
+};
+
+/// A motor that takes a joint to a position and holds it there. Command `NAME/0/position` [rad] or [m].
+struct PositionMotor {
+  std::string name;
+  std::size_t joint = 0;
+  double max_velocity = 0.0;
+  double max_effort = 0.0;
+  double rotor_inertia = 0.0;
+};
+
+/// A motor that gives a torque or a force. Command `NAME/0/effort` [N m] or [N].
+struct EffortMotor {
+  std::string name;
+  std::size_t joint = 0;
+  double max_effort = 0.0;
+  double rotor_inertia = 0.0;
 };
 
 /// Position and velocity of one joint: observations `NAME/0/position` and `NAME/0/velocity`.
@@ -215,14 +234,25 @@ struct Battery {
   Readout readout{};
 };
 
-using Device = std::variant<TreelDrive, VelocityMotor, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
-                            LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor, Battery,
-                            Accelerometer, Imu, ForceTorqueSensor, Inclinometer, Lidar, ContactSensor, Altimeter,
-                            Magnetometer, LogicalCamera, AirPressureSensor, OmnidirectionalCamera, PanoramicCamera>;
+using Device =
+    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder, ProximityRing,
+                 GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor,
+                 Battery, Accelerometer, Imu, ForceTorqueSensor, Inclinometer, Lidar, ContactSensor, Altimeter,
+                 Magnetometer, LogicalCamera, AirPressureSensor, OmnidirectionalCamera, PanoramicCamera>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);
 const Readout* readout_of(const Device& device);
 const std::string& name_of(const Device& device);
+
+/// What every kind of motor on a joint has.
+struct MotorLimits {
+  std::size_t joint = 0;
+  double max_velocity = 0.0;  ///< infinite of a motor that does not limit it
+  double max_effort = 0.0;
+  double rotor_inertia = 0.0;
+};
+/// Nothing if the device is no motor of a joint.
+std::optional<MotorLimits> motor_limits(const Device& device);
 
 }  // namespace cohort::description

@@ -25,10 +25,18 @@ std::optional<Device> read_treel_drive(const ExtensionValues& values, DeviceRead
   return drive;
 }
 
-std::optional<Device> read_velocity_motor(const ExtensionValues& values, DeviceReader& reader) {
+template <class Motor>
+std::optional<Device> read_motor(const ExtensionValues& values, DeviceReader& reader) {
   const std::optional<std::size_t> joint = reader.find_moving_joint(values);
   if (!joint || !reader.takes_motor(*joint, values)) return std::nullopt;
-  return VelocityMotor{values.name(), *joint, values.real("max_velocity"), values.real("max_effort")};
+  return Motor{values.name(), *joint, values.real("max_velocity"), values.real("max_effort"),
+               values.real("rotor_inertia")};
+}
+
+std::optional<Device> read_effort_motor(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> joint = reader.find_moving_joint(values);
+  if (!joint || !reader.takes_motor(*joint, values)) return std::nullopt;
+  return EffortMotor{values.name(), *joint, values.real("max_effort"), values.real("rotor_inertia")};
 }
 
 std::optional<Device> read_led_ring(const ExtensionValues& values, DeviceReader& reader) {
@@ -54,7 +62,9 @@ std::optional<Device> read_loudspeaker(const ExtensionValues& values, DeviceRead
 // The register of actuators: a new kind is one more line here.
 constexpr DeviceKind kinds[] = {
     {"treel_drive", &read_treel_drive, true, false},
-    {"velocity_motor", &read_velocity_motor, true, false},
+    {"velocity_motor", &read_motor<VelocityMotor>, true, false},
+    {"position_motor", &read_motor<PositionMotor>, true, false},
+    {"effort_motor", &read_effort_motor, true, false},
     {"led_ring", &read_led_ring, true, false},
     {"loudspeaker", &read_loudspeaker, true, false},
 };

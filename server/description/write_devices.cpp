@@ -53,12 +53,9 @@ struct DeviceWriter {
     for (const std::size_t joint : drive.left_wheels) add_key(element, "left_wheel", joint_name(joint));
     for (const std::size_t joint : drive.right_wheels) add_key(element, "right_wheel", joint_name(joint));
   }
-  void operator()(const VelocityMotor& motor) const {
-    XmlNode& element = add_named(parent, prefixed("velocity_motor"), motor.name);
-    add_key(element, "joint", joint_name(motor.joint));
-    add_key(element, "max_velocity", motor.max_velocity);
-    add_key(element, "max_effort", motor.max_effort);
-  }
+  void operator()(const VelocityMotor& motor) const { write_motor("velocity_motor", motor); }
+  void operator()(const PositionMotor& motor) const { write_motor("position_motor", motor); }
+  void operator()(const EffortMotor& motor) const { write_motor("effort_motor", motor); }
   void operator()(const JointEncoder& encoder) const {
     XmlNode& element = add_named(parent, prefixed("joint_encoder"), encoder.name);
     add_key(element, "joint", joint_name(encoder.joint));
@@ -191,6 +188,14 @@ struct DeviceWriter {
  private:
   void write_samples(XmlNode& element, const std::shared_ptr<const Samples>& samples) const {
     if (samples) add_key(element, "samples", relative_to(folder, samples->file));
+  }
+  template <class Motor>
+  void write_motor(const char* kind, const Motor& motor) const {
+    XmlNode& element = add_named(parent, prefixed(kind), motor.name);
+    add_key(element, "joint", joint_name(motor.joint));
+    if constexpr (requires { motor.max_velocity; }) add_key(element, "max_velocity", motor.max_velocity);
+    add_key(element, "max_effort", motor.max_effort);
+    add_unless(element, "rotor_inertia", motor.rotor_inertia, 0.0);
   }
   template <class Posed>
   void write_posed(const char* kind, const Posed& sensor) const {

@@ -9,6 +9,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double correction_share = 0.2;  // of a gap or a twist, taken away by one step
+// Nothing is pulled together with more than this, however far apart it came.
+constexpr double most_linear_correction = 0.5;   // [m/s]
+constexpr double most_angular_correction = 5.0;  // [rad/s]
+
+double correction(double off, double most, double step) {
+  return std::clamp(-correction_share * off / step, -most, most);
+}
 
 // The rotation vector of a small rotation.
 Vector3d rotation_vector(const Eigen::Quaterniond& q) { return (q.w() < 0.0 ? -2.0 : 2.0) * q.vec(); }
@@ -76,11 +83,13 @@ void Connection::add_rows(Problem& problem, const Anchors& anchors, const Pose& 
   const Vector3d twist_W = twist(X_WPa, X_WPb);
   for (int axis = 0; axis < 3; ++axis) {
     double* kept = &impulses_[static_cast<std::size_t>(axis)];
-    problem.add_force_row(a, b, point_W_, Vector3d::Unit(axis), kept).target = -correction_share * gap_W[axis] / step;
+    problem.add_force_row(a, b, point_W_, Vector3d::Unit(axis), kept).target =
+        correction(gap_W[axis], most_linear_correction, step);
   }
   for (int axis = 0; axis < 3; ++axis) {
     double* kept = &impulses_[3 + static_cast<std::size_t>(axis)];
-    problem.add_torque_row(a, b, Vector3d::Unit(axis), kept).target = -correction_share * twist_W[axis] / step;
+    problem.add_torque_row(a, b, Vector3d::Unit(axis), kept).target =
+        correction(twist_W[axis], most_angular_correction, step);
   }
 }
 
@@ -107,7 +116,7 @@ void Connection::add_yielding_rows(Problem& problem, Anchor a, Anchor b, const P
     const double off = axis < 3 ? gap_P[axis] : twist_P[axis - 3];
     row.set_limits(-limit * step, limit * step);
     if (std::isinf(stiffness)) {
-      row.target = -correction_share * off / step;
+      row.target = correction(off, axis < 3 ? most_linear_correction : most_angular_correction, step);
     } else {
       row.target = -stiffness * off / (step * stiffness + damping);
       row.soften(1.0 / (step * (step * stiffness + damping)));

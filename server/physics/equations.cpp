@@ -34,7 +34,7 @@ void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, do
     const Dof& dof = mechanism_->dofs()[at(i)];
     const double stiffness = dof.axis.spring_stiffness;
     double force = -bias_[at(i)] - dof.axis.damping * velocities[i];
-    matrix_[at(i * stride_ + i)] += step * dof.axis.damping;
+    matrix_[at(i * stride_ + i)] += dof.rotor_inertia + step * dof.axis.damping;
     if (stiffness != 0.0 && dof.coordinate >= 0) {
       const double stretch = body.coordinates()[dof.coordinate] - dof.axis.spring_reference;
       force -= stiffness * (stretch + step * velocities[i]);

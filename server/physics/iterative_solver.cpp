@@ -5,9 +5,12 @@
 
 namespace cohort::physics {
 
-void SequentialImpulses::start() {
-  for (Row& row : rows_)
-    if (row.impulse != 0.0) apply(row, row.impulse);
+void SequentialImpulses::start(double share) {
+  for (Row& row : rows_) {
+    if (row.impulse == 0.0) continue;
+    row.impulse *= share;
+    apply(row, row.impulse);
+  }
 }
 
 double SequentialImpulses::pass(bool forwards) {
@@ -83,9 +86,9 @@ double SequentialImpulses::turn_cone(Row& first, Row& second) {
   return std::max(change(first, wanted_first), change(second, wanted_second));
 }
 
-void solve_iteratively(Problem& problem, std::uint32_t iterations) {
+void solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last) {
   SequentialImpulses impulses(problem);
-  impulses.start();
+  impulses.start(share_of_last);
   for (std::uint32_t i = 0; i < iterations; ++i)
     if (impulses.pass(i % 2 == 0) <= negligible_change) return;
 }

@@ -14,8 +14,8 @@ class SequentialImpulses {
   /// For the rows that the problem has now; it must outlive this.
   explicit SequentialImpulses(Problem& problem) : rows_(problem.rows()), numbers_(problem.numbers()) {}
 
-  /// Once, before the first pass.
-  void start();
+  /// Once, before the first pass: from this share of the last step's impulses.
+  void start(double share);
   /// One pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
   double pass(bool forwards);
 
@@ -32,7 +32,11 @@ class SequentialImpulses {
   const double* numbers_;
 };
 
+/// What an island with connections starts from. Where passes end before the impulses are right, what is wrong with them
+/// would otherwise add up from step to step: light links between heavy ones then gain energy without end.
+inline constexpr double start_of_connected = 0.9;
+
 /// At most `iterations` passes, there and back.
-void solve_iteratively(Problem& problem, std::uint32_t iterations);
+void solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last);
 
 }  // namespace cohort::physics

@@ -41,7 +41,12 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
   workers_.for_each_chunk(seams_.size(), 1, [&](std::size_t seam, std::size_t, unsigned) {
     add_rows_of_seam(assembly, seams_[seam], shares_[parts_.count() + seam].problem);
   });
-  run_passes(assembly.settings.iterations);
+  const bool has_connections = std::any_of(sound_.begin(), sound_.end(), [&](std::uint32_t member) {
+    bool any = false;
+    assembly.connections.for_each_of(member, [&](const Connection&) { any = true; });
+    return any;
+  });
+  run_passes(assembly.settings.iterations, has_connections ? start_of_connected : 1.0);
   if (!all_are_finite(assembly)) return false;
 
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
@@ -182,10 +187,10 @@ void LargeIslandSolver::for_each_share(std::size_t phase, Work&& work) {
   });
 }
 
-void LargeIslandSolver::run_passes(std::uint32_t iterations) {
+void LargeIslandSolver::run_passes(std::uint32_t iterations, double share_of_last) {
   const std::size_t phases = phases_.size() - 1;
   for (std::size_t phase = 0; phase < phases; ++phase)
-    for_each_share(phase, [](Share& share) { SequentialImpulses(share.problem).start(); });
+    for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(share_of_last); });
   for (std::uint32_t i = 0; i < iterations; ++i) {
     const bool forwards = i % 2 == 0;
     for (std::size_t phase = 0; phase < phases; ++phase)

@@ -63,7 +63,7 @@ class LargeIslandSolver {
   void colour_seams();
   void add_rows_of_seam(Assembly& assembly, const Seam& seam, Problem& problem);
   bool all_are_finite(Assembly& assembly);
-  void run_passes(std::uint32_t iterations);
+  void run_passes(std::uint32_t iterations, double share_of_last);
   template <class Work>
   void for_each_share(std::size_t phase, Work&& work);
 

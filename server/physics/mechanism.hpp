@@ -34,6 +34,7 @@ Pose moved_by_joint(const Segment& segment, const Pose& X_WS, const double* coor
 struct Dof {
   int coordinate = -1;  ///< of a revolute or prismatic joint
   description::JointAxis axis;
+  double rotor_inertia = 0.0;  ///< of its motor, as the joint feels it [kg m^2] or [kg]
 };
 
 /// A model as the dynamics sees it: a tree of segments. Constant; shared by all bodies of the model.

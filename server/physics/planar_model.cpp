@@ -14,8 +14,8 @@ PlanarModel::PlanarModel(const description::Model& model)
         (s > 0 || (segments[s].motion != Motion::free && segments[s].motion != Motion::anchored)))
       throw std::invalid_argument("a joint that moves against the world cannot be planar");
   for (const description::Device& device : model.devices) {
-    if (const auto* motor = std::get_if<description::VelocityMotor>(&device)) {
-      add_motor(*motor);
+    if (const auto motor = description::motor_limits(device)) {
+      add_motor(*motor, description::name_of(device));
     } else if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
       if (drive_ != nullptr) throw std::invalid_argument("more than one treel drive cannot be planar");
       if (mechanism_.link(drive->link).segment != 0)
@@ -27,17 +27,17 @@ PlanarModel::PlanarModel(const description::Model& model)
   add_masses();
 }
 
-void PlanarModel::add_motor(const description::VelocityMotor& motor) {
+void PlanarModel::add_motor(const description::MotorLimits& motor, const std::string& name) {
   const description::Joint& joint = mechanism_.model().joints[motor.joint];
   const Mechanism::JointPlace& place = mechanism_.joint(motor.joint);
   if (place.dofs == 0)
-    throw std::invalid_argument("motor '" + motor.name + "' drives the fixed joint '" + joint.name + "'");
+    throw std::invalid_argument("motor '" + name + "' drives the fixed joint '" + joint.name + "'");
   const Dof& dof = mechanism_.dofs()[static_cast<std::size_t>(place.first_dof)];
   if (dof.coordinate < 0)
-    throw std::invalid_argument("motor '" + motor.name + "' drives the ball joint '" + joint.name +
+    throw std::invalid_argument("motor '" + name + "' drives the ball joint '" + joint.name +
                                 "', which cannot be planar");
   if (motor_of_joint_[motor.joint] != no_motor)
-    throw std::invalid_argument("motor '" + motor.name + "' drives a joint that has a motor already");
+    throw std::invalid_argument("motor '" + name + "' drives a joint that has a motor already");
   // The first axis of a universal joint is that of the segment in its middle.
   int segment = place.segment;
   while (mechanism_.segments()[static_cast<std::size_t>(segment)].first_coordinate != dof.coordinate)

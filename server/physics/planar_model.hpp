@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "server/physics/mechanism.hpp"
@@ -10,7 +11,7 @@ namespace cohort::physics {
 /// by all bodies of the model.
 class PlanarModel {
  public:
-  /// A joint that a VelocityMotor drives.
+  /// A joint that a motor drives.
   struct Motor {
     int segment = 0;
     std::size_t coordinate = 0;
@@ -39,7 +40,7 @@ class PlanarModel {
   const Eigen::Matrix3d& inertia() const { return inertia_M_; }  ///< about the centre of mass, in M
 
  private:
-  void add_motor(const description::VelocityMotor& motor);
+  void add_motor(const description::MotorLimits& motor, const std::string& name);
   void add_masses();
 
   Mechanism mechanism_;

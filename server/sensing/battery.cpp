@@ -11,7 +11,7 @@ Battery::Battery(const description::Battery& battery, const description::Model& 
       step_(std::chrono::duration<double>(mount_.description.step).count()),
       energy_(battery.capacity * battery.charge) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    if (const auto* motor = std::get_if<description::VelocityMotor>(&model.devices[device]))
+    if (const auto motor = description::motor_limits(model.devices[device]))
       motor_joints_.push_back(motor->joint);
     else if (std::holds_alternative<description::TreelDrive>(model.devices[device]))
       drives_.push_back(device);

@@ -22,14 +22,14 @@ struct GrippedSwarm {
   RandomStream random;
 
   /// With arms, each robot grips with its arm, otherwise with its turret.
-  GrippedSwarm(std::uint64_t seed, bool with_arms, std::uint32_t iterations = 10)
+  GrippedSwarm(std::uint64_t seed, bool with_arms, std::uint32_t iterations = 10, double rotor_inertia = 0.0)
       : gripping_link(with_arms ? arm_link : turret), random(seed, "swarm", "drive") {
     small.description.physics.iterations = iterations;
     const double spacing = with_arms ? 0.19 : 0.135;
     std::uint32_t draw = 0;
     const auto off = [&](double by) { return by * (2.0 * random.uniform(0, draw++) - 1.0); };
     for (int i = 0; i < side * side; ++i)
-      robots.push_back(small.add(with_arms ? with_arm() : tracked_robot(),
+      robots.push_back(small.add(with_arms ? with_arm(2.0, 0.05, rotor_inertia) : tracked_robot(),
                                  at(spacing * (i % side) + off(0.005), spacing * (i / side) + off(0.005), 0,
                                     with_arms ? off(0.05) : off(3.0))));
     // With turrets to one or two of the neighbours at the right and behind; the arms reach only to the right.

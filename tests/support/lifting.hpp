@@ -10,7 +10,7 @@ inline constexpr std::size_t elevation_joint = 1;
 inline constexpr double arm_length = 0.1;  // from the elevation joint to the jaw [m]
 
 /// The tracked robot with an arm at the front of its turret, level at 0, that a motor lifts by a negative angle.
-inline description::Model with_arm(double max_effort = 2.0, double arm_mass = 0.05) {
+inline description::Model with_arm(double max_effort = 2.0, double arm_mass = 0.05, double rotor_inertia = 0.0) {
   description::Model model = tracked_robot();
   model.name = "lifter";
   description::Inertial inertial = solid_box(arm_mass, {arm_length, 0.02, 0.02});
@@ -25,7 +25,7 @@ inline description::Model with_arm(double max_effort = 2.0, double arm_mass = 0.
   joint.axis.lower = -1.6;
   joint.axis.upper = 0.8;
   model.joints.push_back(joint);
-  model.devices.push_back(description::VelocityMotor{"elevation", elevation_joint, 1.0, max_effort});
+  model.devices.push_back(description::VelocityMotor{"elevation", elevation_joint, 1.0, max_effort, rotor_inertia});
   return model;
 }
 

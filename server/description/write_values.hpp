@@ -55,6 +55,8 @@ std::string without_scope_marks(std::string name);
 /// In the element of its model, which has those of its links and joints.
 void write_device(XmlNode& model_element, const Model& model, const Device& device);
 /// In its link.
+/// Of a link.
+void write_grip_ring(XmlNode& link_element, const GripRing& ring);
 void write_emitter(XmlNode& link_element, const Emitter& emitter);
 
 }  // namespace cohort::description

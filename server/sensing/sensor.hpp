@@ -12,6 +12,7 @@
 #include "server/core/snapshot.hpp"
 #include "server/description/world.hpp"
 #include "server/emission/emitters.hpp"
+#include "server/gripping/grippers.hpp"
 #include "server/physics/world.hpp"
 #include "server/sensing/lamp_view.hpp"
 
@@ -22,6 +23,7 @@ struct Mount {
   const physics::World& world;
   const emission::Emitters& emitters;
   const description::World& description;
+  const gripping::Grippers& grippers;
   LampView& lamp_view;  ///< light sensors make themselves known to it
   std::uint32_t body;   ///< the robot's
   std::string robot;    ///< scoped name; with the seed it fixes the noise
@@ -38,6 +40,9 @@ class Sensor {
   /// pure function of the state of the world and of the sensor, and of the tick; runs at once with other sensors, from
   /// any thread.
   virtual void sense(std::uint64_t tick, std::span<double> values) const = 0;
+
+  /// Whether the world has to record what goes through the robot's joints.
+  virtual bool needs_forces() const { return false; }
 
   /// Of a sensor with a memory: takes note of this tick, before it senses and whether it is asked or not.
   /// `was_delivered`: the robot was given what was sensed at the tick before.

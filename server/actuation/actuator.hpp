@@ -8,6 +8,7 @@
 #include "server/core/channel.hpp"
 #include "server/description/model.hpp"
 #include "server/emission/emitters.hpp"
+#include "server/gripping/grippers.hpp"
 #include "server/physics/world.hpp"
 
 namespace cohort::actuation {
@@ -27,6 +28,7 @@ class Actuator {
 struct Mount {
   physics::World& world;
   emission::Emitters& emitters;
+  gripping::Grippers& grippers;
   std::uint32_t body;
 };
 

@@ -189,6 +189,38 @@ inline constexpr auto battery = sensor({
     {"motor_efficiency", positive, "1", "1", "mechanical power to what motors take; at most 1"},
 });
 
+inline constexpr std::string_view light_barriers[] = {"simple", "beam"};
+
+inline constexpr auto gripper = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the jaw in the link; x outwards, its sides open along y"},
+    {"depth", positive, "m", "", "how far from there something may be to be grasped"},
+    {"half_angle", positive, "rad", "", "how far aside of x"},
+    {"height", positive, "m", "", "how far above or below"},
+    {"closing_time", positive, "s", "0.5", "from open to closed"},
+    {"holding_force", positive, "N", "60", "along each axis; above it slips"},
+    {"holding_torque", positive, "N m", "3", "the same about each axis"},
+    {"breaking_force", positive, "N", no_value, "above it lets go; never if absent"},
+    {"breaking_torque", positive, "N m", no_value, "above it lets go; never if absent"},
+    {"light_barrier", choice, "", "simple",
+     "`simple`: whether something could be grasped; `beam`: whether a ray between the sides meets anything", false,
+     light_barriers},
+    {"jaw_width", positive, "m", "0.03", "length of the beam, through the middle of the depth"},
+});
+
+inline constexpr auto torque_sensor = sensor({
+    {"joint", name, "", "", "the joint whose motor is measured"},
+});
+
+inline constexpr auto traction_sensor = sensor({
+    {"joint", name, "", "", "the joint between the two links"},
+});
+
+inline constexpr ExtensionKey grip_ring[] = {
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the circle in the link; it lies in its xy plane"},
+    {"radius", positive, "m", "", "of the circle"},
+};
+
 inline constexpr ExtensionKey sound[] = {
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
     {"frequency", positive, "Hz", "", "of the tone"},
@@ -240,6 +272,18 @@ inline constexpr Extension device_extensions[] = {
     {"panorama", "model", true, "A camera that looks all round and gives an image.", keys::panorama, "sensors"},
     {"climate_sensor", "model", true, "Temperature and humidity of the air.", keys::climate_sensor, "sensors"},
     {"battery", "model", true, "Feeds the robot, which stops when it is empty.", keys::battery, "sensors"},
+    {"gripper", "model", true, "Grasps what is grippable, and holds it.", keys::gripper, "actuators"},
+    {"torque_sensor", "model", true, "Measures what a joint's motor gives.", keys::torque_sensor, "sensors"},
+    {"traction_sensor", "model", true, "Measures the force between two links, in the plane of the parent.",
+     keys::traction_sensor, "sensors"},
+    {"grip_ring", "link", true, "A circle that grippers hold on to.", keys::grip_ring, "actuators"},
+    {"grippable",
+     "collision",
+     false,
+     "Whether grippers can hold on to it, anywhere.",
+     {},
+     "actuators",
+     ExtensionValue::flag},
     {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
     {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
     {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},

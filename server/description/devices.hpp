@@ -234,11 +234,52 @@ struct Battery {
   Readout readout{};
 };
 
+/// A jaw that grasps what is grippable: a GripRing, or a collision that is. G is between its open sides, x outwards.
+/// Command `NAME/0/opening`, from 0, closed, to 1; observations `NAME/0/opening` as it is, `NAME/0/gripping` and
+/// `NAME/0/grippable` (0 or 1), `NAME/0/force` [N].
+struct Gripper {
+  /// How it is found out that there is something between the sides: a ray from one to the other, or whether something
+  /// could be grasped.
+  enum class LightBarrier { beam, simple };
+
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LG;
+  // What is accepted, from the origin of G:
+  double depth = 0.0;           ///< how far [m]
+  double half_angle = 0.0;      ///< how far aside of x it may be [rad]
+  double height = 0.0;          ///< how far above or below [m]
+  double closing_time = 0.5;    ///< from open to closed [s]
+  double holding_force = 60.0;  ///< along each axis; above it slips [N]
+  double holding_torque = 3.0;  ///< of the closed gripper; about the ring's axis it falls to 0 half open [N m]
+  double breaking_force = std::numeric_limits<double>::infinity();   ///< above it lets go [N]
+  double breaking_torque = std::numeric_limits<double>::infinity();  ///< [N m]
+  LightBarrier light_barrier = LightBarrier::simple;
+  double jaw_width = 0.03;  ///< length of the beam, through the middle of the depth [m]
+  Readout readout{};
+};
+
+/// Of a joint's motor: observation `NAME/0/torque` [N m], or of a sliding one `NAME/0/force` [N].
+struct TorqueSensor {
+  std::string name;
+  std::size_t joint = 0;
+  Readout readout{};
+};
+
+/// What the child of a joint exerts on its parent, in the xy plane of the parent: observations `NAME/0/direction`
+/// [rad], `NAME/0/intensity` [N] and `NAME/0/force`, x and y.
+struct TractionSensor {
+  std::string name;
+  std::size_t joint = 0;
+  Readout readout{};
+};
+
 using Device =
     std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder, ProximityRing,
                  GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor,
                  Battery, Accelerometer, Imu, ForceTorqueSensor, Inclinometer, Lidar, ContactSensor, Altimeter,
-                 Magnetometer, LogicalCamera, AirPressureSensor, OmnidirectionalCamera, PanoramicCamera>;
+                 Magnetometer, LogicalCamera, AirPressureSensor, OmnidirectionalCamera, PanoramicCamera, Gripper,
+                 TorqueSensor, TractionSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

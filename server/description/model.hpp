@@ -21,6 +21,7 @@ struct Surface {
   double restitution = 0.0;         ///< share of the normal velocity that comes back [1]
   double rolling_resistance = 0.0;  ///< torque against rolling for each newton of normal force [m]
   std::uint32_t material = 0;       ///< index into World::materials
+  bool is_grippable = false;        ///< by a gripper, anywhere
 };
 
 struct Collision {
@@ -45,6 +46,14 @@ struct Link {
   Inertial inertial;
   std::vector<Collision> collisions;
   Eigen::Vector3d color = default_color();  ///< for cameras: that of the first visual; red, green, blue from 0 to 1
+};
+
+/// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.
+struct GripRing {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LR;
+  double radius = 0.0;  ///< [m]
 };
 
 enum class JointType { fixed, revolute, prismatic, ball, universal };
@@ -85,6 +94,7 @@ struct Model {
   std::vector<Joint> joints;
   std::vector<Device> devices;
   std::vector<Emitter> emitters;
+  std::vector<GripRing> grip_rings{};
 
   /// A robot is a model that can be observed or commanded.
   bool is_robot() const { return !devices.empty(); }

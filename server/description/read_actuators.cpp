@@ -59,6 +59,26 @@ std::optional<Device> read_loudspeaker(const ExtensionValues& values, DeviceRead
                      values.real("max_intensity")};
 }
 
+std::optional<Device> read_gripper(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  if (!link) return std::nullopt;
+  Gripper gripper;
+  gripper.name = values.name();
+  gripper.link = *link;
+  gripper.X_LG = values.pose("pose");
+  gripper.depth = values.real("depth");
+  gripper.half_angle = values.real("half_angle");
+  gripper.height = values.real("height");
+  gripper.closing_time = values.real("closing_time");
+  gripper.holding_force = values.real("holding_force");
+  gripper.holding_torque = values.real("holding_torque");
+  if (values.has("breaking_force")) gripper.breaking_force = values.real("breaking_force");
+  if (values.has("breaking_torque")) gripper.breaking_torque = values.real("breaking_torque");
+  if (values.text("light_barrier") == "beam") gripper.light_barrier = Gripper::LightBarrier::beam;
+  gripper.jaw_width = values.real("jaw_width");
+  return gripper;
+}
+
 // The register of actuators: a new kind is one more line here.
 constexpr DeviceKind kinds[] = {
     {"treel_drive", &read_treel_drive, true, false},
@@ -67,6 +87,7 @@ constexpr DeviceKind kinds[] = {
     {"effort_motor", &read_effort_motor, true, false},
     {"led_ring", &read_led_ring, true, false},
     {"loudspeaker", &read_loudspeaker, true, false},
+    {"gripper", &read_gripper, true, true},
 };
 
 }  // namespace

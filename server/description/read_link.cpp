@@ -106,6 +106,13 @@ std::uint32_t read_material(const sdf::ElementPtr& collision, const ModelReading
   return index;
 }
 
+bool read_grippable(const sdf::ElementPtr& collision, const SdfReport& report) {
+  const sdf::ElementPtr element = collision->FindElement("cohort:grippable");
+  if (!element) return false;
+  const auto values = ExtensionValues::read(element, *find_extension("grippable", "collision"), report);
+  return values && values->flag("grippable");
+}
+
 Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& reading) {
   const Surface by_default;
   const SdfReport& report = reading.report;
@@ -119,6 +126,7 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
       read_coefficient(find(collision, {"surface", "friction", "bullet", "rolling_friction"}),
                        by_default.rolling_resistance, most, "expected a rolling resistance >= 0 m", report);
   surface.material = read_material(collision, reading);
+  surface.is_grippable = read_grippable(collision, report);
   return surface;
 }
 

@@ -73,6 +73,7 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
     joint.child = place[joint.child];
   }
   for (Emitter& emitter : model.emitters) emitter.link = place[emitter.link];
+  for (GripRing& ring : model.grip_rings) ring.link = place[ring.link];
   return true;
 }
 
@@ -115,6 +116,11 @@ void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& s
       emitter.name = scope + emitter.name;
       emitter.link = model_.links.size();
       model_.emitters.push_back(std::move(emitter));
+    }
+    for (GripRing& ring : read_grip_rings(*sdf_model.LinkByIndex(i), reading_)) {
+      ring.name = scope + ring.name;
+      ring.link = model_.links.size();
+      model_.grip_rings.push_back(std::move(ring));
     }
     model_.links.push_back(std::move(link));
     note_sensors(*sdf_model.LinkByIndex(i), false, scope);

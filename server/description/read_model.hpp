@@ -40,6 +40,9 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
 std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading& reading);
 Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading);
 
+/// Its `cohort:grip_ring` elements; of link 0.
+std::vector<GripRing> read_grip_rings(const sdf::Link& sdf_link, const ModelReading& reading);
+
 /// The joints of a model between `links`, in document order. Of a model inside of the one that is read, `scope` is the
 /// prefix of all names in it, such as `arm::`.
 std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,

@@ -184,6 +184,18 @@ std::optional<Device> read_battery(const ExtensionValues& values, DeviceReader& 
   return battery;
 }
 
+std::optional<Device> read_torque_sensor(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> joint = reader.find_moving_joint(values);
+  if (!joint) return std::nullopt;
+  return TorqueSensor{values.name(), *joint};
+}
+
+std::optional<Device> read_traction_sensor(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> joint = reader.find(values, "joint", reader.model().joints);
+  if (!joint) return std::nullopt;
+  return TractionSensor{values.name(), *joint};
+}
+
 // The register of sensors: a new kind is one more line here.
 constexpr DeviceKind kinds[] = {
     {"joint_encoder", &read_joint_encoder},
@@ -196,6 +208,8 @@ constexpr DeviceKind kinds[] = {
     {"climate_sensor", &read_climate_sensor},
     {"omnidirectional_camera", &read_omnidirectional_camera},
     {"panorama", &read_panorama},
+    {"torque_sensor", &read_torque_sensor},
+    {"traction_sensor", &read_traction_sensor},
     {"battery", &read_battery},
     {"accelerometer", &read_posed<Accelerometer>},
     {"inclinometer", &read_posed<Inclinometer>},

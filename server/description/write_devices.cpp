@@ -185,9 +185,35 @@ struct DeviceWriter {
     add_key(element, "max_intensity", speaker.max_intensity);
   }
 
+  void operator()(const Gripper& gripper) const {
+    XmlNode& element = add_named(parent, prefixed("gripper"), gripper.name);
+    add_key(element, "link", link_name(gripper.link));
+    add_key(element, "pose", gripper.X_LG);
+    add_key(element, "depth", gripper.depth);
+    add_key(element, "half_angle", gripper.half_angle);
+    add_key(element, "height", gripper.height);
+    add_key(element, "closing_time", gripper.closing_time);
+    add_key(element, "holding_force", gripper.holding_force);
+    add_key(element, "holding_torque", gripper.holding_torque);
+    if (std::isfinite(gripper.breaking_force)) add_key(element, "breaking_force", gripper.breaking_force);
+    if (std::isfinite(gripper.breaking_torque)) add_key(element, "breaking_torque", gripper.breaking_torque);
+    const bool is_beam = gripper.light_barrier == Gripper::LightBarrier::beam;
+    add_key(element, "light_barrier", std::string(is_beam ? "beam" : "simple"));
+    add_key(element, "jaw_width", gripper.jaw_width);
+    write_readout(element, gripper.readout);
+  }
+  void operator()(const TorqueSensor& sensor) const { write_joint_sensor("torque_sensor", sensor); }
+  void operator()(const TractionSensor& sensor) const { write_joint_sensor("traction_sensor", sensor); }
+
  private:
   void write_samples(XmlNode& element, const std::shared_ptr<const Samples>& samples) const {
     if (samples) add_key(element, "samples", relative_to(folder, samples->file));
+  }
+  template <class OnJoint>
+  void write_joint_sensor(const char* kind, const OnJoint& sensor) const {
+    XmlNode& element = add_named(parent, prefixed(kind), sensor.name);
+    add_key(element, "joint", joint_name(sensor.joint));
+    write_readout(element, sensor.readout);
   }
   template <class Motor>
   void write_motor(const char* kind, const Motor& motor) const {
@@ -282,6 +308,12 @@ std::string relative_to(const std::filesystem::path& folder, const std::filesyst
 void write_device(XmlNode& model_element, const Model& model, const Device& device,
                   const std::filesystem::path& folder) {
   std::visit(DeviceWriter{model_element, model, folder}, device);
+}
+
+void write_grip_ring(XmlNode& link_element, const GripRing& ring) {
+  XmlNode& element = add_named(link_element, prefixed("grip_ring"), ring.name);
+  add_key(element, "pose", ring.X_LR);
+  add_key(element, "radius", ring.radius);
 }
 
 void write_emitter(XmlNode& link_element, const Emitter& emitter) {

@@ -60,6 +60,8 @@ std::string relative_to(const std::filesystem::path& folder, const std::filesyst
 void write_device(XmlNode& model_element, const Model& model, const Device& device,
                   const std::filesystem::path& folder);
 /// In its link.
+/// Of a link.
+void write_grip_ring(XmlNode& link_element, const GripRing& ring);
 void write_emitter(XmlNode& link_element, const Emitter& emitter);
 
 }  // namespace cohort::description

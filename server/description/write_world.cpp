@@ -133,8 +133,11 @@ class WorldWriter {
       add_value(add(friction, "ode"), "mu", collision.surface.friction);
       add_value(add(friction, "bullet"), "rolling_friction", collision.surface.rolling_resistance);
       add_value(add(surface, "bounce"), "restitution_coefficient", collision.surface.restitution);
+      if (collision.surface.is_grippable) add_key(shape, "grippable", true);
       if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
     }
+    for (const GripRing& ring : model.grip_rings)
+      if (ring.link == index) write_grip_ring(element, ring);
     for (const Emitter& emitter : model.emitters)
       if (emitter.link == index) write_emitter(element, emitter);
   }

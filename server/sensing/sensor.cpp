@@ -7,6 +7,7 @@
 #include "server/sensing/climate_sensor.hpp"
 #include "server/sensing/contact_sensor.hpp"
 #include "server/sensing/force_torque_sensor.hpp"
+#include "server/sensing/gripper.hpp"
 #include "server/sensing/ground_sensors.hpp"
 #include "server/sensing/imu.hpp"
 #include "server/sensing/inclinometer.hpp"
@@ -20,6 +21,8 @@
 #include "server/sensing/omnidirectional_camera.hpp"
 #include "server/sensing/panoramic_camera.hpp"
 #include "server/sensing/proximity_ring.hpp"
+#include "server/sensing/torque_sensor.hpp"
+#include "server/sensing/traction_sensor.hpp"
 #include "server/sensing/treel_encoder.hpp"
 
 namespace cohort::sensing {
@@ -28,6 +31,7 @@ namespace {
 // The register of sensors: a new kind is one more line here.
 struct Make {
   const description::Model& model;
+  std::size_t device;
   Mount& mount;
 
   template <class ActuatorOnly>
@@ -36,6 +40,15 @@ struct Make {
   }
   std::unique_ptr<Sensor> operator()(const description::ProximityRing& d) const {
     return std::make_unique<ProximityRing>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Gripper& d) const {
+    return std::make_unique<Gripper>(d, device, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::TorqueSensor& d) const {
+    return std::make_unique<TorqueSensor>(d, model.joints[d.joint], std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::TractionSensor& d) const {
+    return std::make_unique<TractionSensor>(d, model.joints[d.joint], std::move(mount));
   }
   std::unique_ptr<Sensor> operator()(const description::JointEncoder& d) const {
     return std::make_unique<JointEncoder>(d, model.joints[d.joint], std::move(mount));
@@ -102,7 +115,7 @@ struct Make {
 }  // namespace
 
 std::unique_ptr<Sensor> make_sensor(const description::Model& model, std::size_t device, Mount mount) {
-  return std::visit(Make{model, mount}, model.devices[device]);
+  return std::visit(Make{model, device, mount}, model.devices[device]);
 }
 
 }  // namespace cohort::sensing

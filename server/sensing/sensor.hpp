@@ -12,6 +12,7 @@
 #include "server/core/snapshot.hpp"
 #include "server/description/world.hpp"
 #include "server/emission/emitters.hpp"
+#include "server/gripping/grippers.hpp"
 #include "server/physics/world.hpp"
 #include "server/sensing/lamp_view.hpp"
 
@@ -22,6 +23,7 @@ struct Mount {
   const physics::World& world;
   const emission::Emitters& emitters;
   const description::World& description;
+  const gripping::Grippers& grippers;
   LampView& lamp_view;  ///< light sensors make themselves known to it
   std::uint32_t body;   ///< the robot's
   std::string robot;    ///< scoped name; with the seed it fixes the noise

@@ -36,6 +36,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
       workers_(threads),
       world_(experiment.world, workers_),
       emitters_(experiment.world, world_),
+      grippers_(experiment.world, world_),
       lamp_view_(world_, emitters_),
       objects_(experiment, world_),
       course_(experiment, world_, objects_) {
@@ -69,7 +70,8 @@ void Simulation::build_robot(std::uint32_t id) {
   RobotKind kind{model.name, {}, {}, 0, 0};
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     if (auto sensor = sensing::make_sensor(
-            model, device, {world_, emitters_, world, lamp_view_, robot.body, instance.name, experiment_.seed})) {
+            model, device,
+            {world_, emitters_, world, grippers_, lamp_view_, robot.body, instance.name, experiment_.seed})) {
       if (sensor->needs_record()) world_.record(robot.body);
       rings_.resize(lamp_view_.ring_count(), {id, robot.sensors.size()});
       const std::vector<Channel> channels = sensor->channels();
@@ -81,7 +83,7 @@ void Simulation::build_robot(std::uint32_t id) {
                             instance.name, description::name_of(model.devices[device]), world.step),
            total_size(channels)});
     }
-    if (auto actuator = actuation::make_actuator(model, device, {world_, emitters_, robot.body})) {
+    if (auto actuator = actuation::make_actuator(model, device, {world_, emitters_, grippers_, robot.body})) {
       const std::vector<Channel> channels = actuator->channels();
       kind.command.insert(kind.command.end(), channels.begin(), channels.end());
       robot.actuators.push_back(std::move(actuator));
@@ -268,6 +270,7 @@ std::vector<std::byte> Simulation::save() const {
   objects_.save(writer);
   course_.save(writer);
   emitters_.save(writer);
+  grippers_.save(writer);
   writer.add_count(robots_.size());
   for (const Robot& robot : robots_) {
     writer.add_count(robot.command.size());
@@ -303,6 +306,7 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   note_added();
   emitters_.restore(reader);
   emitters_.update(workers_);
+  grippers_.restore(reader);
   reader.expect_count(robots_.size(), "robots");
   for (Robot& robot : robots_) {
     reader.expect_count(robot.command.size(), "commanded values of a robot");
@@ -344,6 +348,7 @@ std::uint64_t Simulation::state_hash() const {
   objects_.hash(hash);
   course_.hash(hash);
   emitters_.hash(hash);
+  grippers_.hash(hash);
   return hash.value();
 }
 

@@ -14,6 +14,7 @@
 #include "server/core/worker_pool.hpp"
 #include "server/description/experiment.hpp"
 #include "server/emission/emitters.hpp"
+#include "server/gripping/grippers.hpp"
 #include "server/physics/world.hpp"
 #include "server/sensing/readout.hpp"
 #include "server/sensing/sensor.hpp"
@@ -151,6 +152,7 @@ class Simulation {
   mutable WorkerPool workers_;
   physics::World world_;
   emission::Emitters emitters_;
+  gripping::Grippers grippers_;
   sensing::LampView lamp_view_;
   Objects objects_;
   Course course_;

@@ -91,14 +91,22 @@ inline constexpr auto treel_encoder = sensor({
     {"drive", name, "", "", "the treel_drive that is measured"},
 });
 
+/// In the order of ProximityTechnique.
+inline constexpr std::string_view proximity_techniques[] = {"ray", "random_ray", "five_rays", "shadow", "samples"};
+
 inline constexpr auto proximity_ring = sensor({
     {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the rays lie in its xy plane"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the sensors look outwards in its xy plane"},
     {"count", count, "1", "", "number of sensors, numbered counter-clockwise"},
     {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
     {"spacing", real, "rad", "", "from one sensor to the next"},
     {"ring_radius", non_negative, "m", "", "where the rays start"},
     {"range", positive, "m", "", "length of the rays"},
+    {"technique", choice, "", "ray", "`ray`, `random_ray`, `five_rays`, `shadow` or `samples`", false,
+     proximity_techniques},
+    {"cone", positive, "rad", "0.6981317007977318",
+     "full angle that a sensor sees, less than half a turn; of `random_ray`, `five_rays` and `shadow`"},
+    {"samples", uri, "", no_value, "file of the technique `samples`: a reading for each sensor"},
 });
 
 inline constexpr auto ground_sensors = sensor({
@@ -114,6 +122,7 @@ inline constexpr auto light_sensors = sensor({
     {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
     {"spacing", real, "rad", "", "from one sensor to the next"},
     {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
+    {"samples", uri, "", no_value, "file of what each sensor reads of a lamp that gives 1 at 1 m"},
 });
 
 inline constexpr auto microphones = sensor({
@@ -121,6 +130,12 @@ inline constexpr auto microphones = sensor({
     {"place", vector, "m", "", "of a microphone in the link; any number", true},
     {"band", point, "Hz", "0 20000", "lowest and highest frequency of a band; any number", true},
     {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
+    {"samples", uri, "", no_value, "file of what each microphone reads of a sound that gives 1 at 1 m"},
+});
+
+inline constexpr auto accelerometer = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; it measures along its axes"},
 });
 
 inline constexpr auto inclinometer = sensor({
@@ -143,6 +158,28 @@ inline constexpr auto climate_sensor = sensor({
     {"place", vector, "m", "0 0 0", "in the link"},
     {"temperature_noise", non_negative, "K", "0", "standard deviation of the Gaussian noise on temperatures"},
     {"humidity_noise", non_negative, "1", "0", "the same on humidities"},
+});
+
+inline constexpr auto omnidirectional_camera = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: bearings are from its x axis, elevations from its xy plane"},
+    {"range", positive, "m", "", "how far it sees"},
+    {"min_elevation", real, "rad", "-1.5707963267948966", "lowest elevation that it sees"},
+    {"max_elevation", real, "rad", "1.5707963267948966", "highest elevation that it sees"},
+    {"capacity", count, "1", "32", "spots that are reported at a time, at the most"},
+    {"distance_noise", non_negative, "m", "0", "standard deviation of the Gaussian noise on distances"},
+    {"bearing_noise", non_negative, "rad", "0", "the same on bearings and elevations"},
+});
+
+inline constexpr auto panorama = sensor({
+    {"link", name, "", "", "the link that carries it"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: columns start at its x axis, elevations at its xy plane"},
+    {"width", count, "1", "", "columns, evenly all round; at least 4"},
+    {"height", count, "1", "", "rows, evenly from one elevation to the other"},
+    {"min_elevation", real, "rad", "-0.7853981633974483", "lower edge of the image"},
+    {"max_elevation", real, "rad", "0.7853981633974483", "upper edge of the image"},
+    {"range", positive, "m", no_value, "nothing is seen beyond; without end if absent"},
+    {"sky", vector, "1", "0.6 0.75 0.95", "colour where nothing is seen"},
 });
 
 inline constexpr auto battery = sensor({
@@ -226,9 +263,13 @@ inline constexpr Extension device_extensions[] = {
     {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
     {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
     {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
+    {"accelerometer", "model", true, "Measures acceleration less gravity.", keys::accelerometer, "sensors"},
     {"inclinometer", "model", true, "Measures roll and pitch against gravity.", keys::inclinometer, "sensors"},
     {"range_and_bearing", "model", true, "Messages to the robots around, which know where they come from.",
      keys::range_and_bearing, "sensors"},
+    {"omnidirectional_camera", "model", true, "A camera that looks all round and reports coloured spots.",
+     keys::omnidirectional_camera, "sensors"},
+    {"panorama", "model", true, "A camera that looks all round and gives an image.", keys::panorama, "sensors"},
     {"climate_sensor", "model", true, "Temperature and humidity of the air.", keys::climate_sensor, "sensors"},
     {"battery", "model", true, "Feeds the robot, which stops when it is empty.", keys::battery, "sensors"},
     {"gripper", "model", true, "Grasps what is grippable, and holds it.", keys::gripper, "actuators"},

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -13,6 +14,7 @@
 #include "server/description/extension_values.hpp"
 #include "server/description/model.hpp"
 #include "server/description/sdf_report.hpp"
+#include "server/description/shape_files.hpp"
 #include "server/description/text.hpp"
 
 namespace cohort::description {
@@ -21,8 +23,9 @@ namespace cohort::description {
 class DeviceReader {
  public:
   /// `drives` are the treel drives of the model: name and index among the devices.
-  DeviceReader(const Model& model, std::map<std::string, std::size_t> drives, const SdfReport& report)
-      : model_(model), drives_(std::move(drives)), report_(report) {}
+  DeviceReader(const Model& model, std::map<std::string, std::size_t> drives, const SdfReport& report,
+               ShapeFiles& files)
+      : model_(model), drives_(std::move(drives)), report_(report), files_(files) {}
 
   const Model& model() const { return model_; }
   const std::map<std::string, std::size_t>& drives() const { return drives_; }
@@ -49,6 +52,10 @@ class DeviceReader {
   /// The joint that the key `joint` names, one that has an angle or a way: its first axis is meant.
   std::optional<std::size_t> find_moving_joint(const ExtensionValues& values);
 
+  /// What the file of the key `samples` holds, with as many readings as the device; null if there is no such key, and
+  /// reported if the file cannot be.
+  std::shared_ptr<const Samples> find_samples(const ExtensionValues& values, std::size_t count);
+
   /// False, and reported, if the joint is a wheel's or has a motor; then it has one.
   bool takes_motor(std::size_t joint, const ExtensionValues& values);
   /// The joints of the wheels of one side; reported if they cannot be.
@@ -58,6 +65,7 @@ class DeviceReader {
   const Model& model_;
   std::map<std::string, std::size_t> drives_;
   const SdfReport& report_;
+  ShapeFiles& files_;
   std::set<std::size_t> motorised_;  // joints
   std::set<std::size_t> wheels_;     // joints
 };

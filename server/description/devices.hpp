@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -9,6 +10,7 @@
 
 #include "server/core/pose.hpp"
 #include "server/description/readout.hpp"
+#include "server/description/sample_file.hpp"
 #include "server/description/sdf_sensors.hpp"
 
 /// What robots can do and measure, as plain data. Joints, links and devices are indices into those of the model.
@@ -76,6 +78,10 @@ struct TreelEncoder {
   Readout readout{};
 };
 
+/// How proximity is measured (thesis, section 3.2.1): by a ray along the axis of each sensor, by one at random within
+/// its cone, by five in its cone, by all directions round the ring in its plane, or by looking up samples.
+enum class ProximityTechnique { ray, random_ray, five_rays, shadow, samples };
+
 /// A ring of infrared proximity sensors in the xy plane of S, looking outwards, numbered counter-clockwise from
 /// `first_bearing`. Observations `NAME/I/reading`: 1 at contact, falling linearly to 0 at `range`.
 struct ProximityRing {
@@ -88,6 +94,9 @@ struct ProximityRing {
   double ring_radius = 0.0;    ///< where the rays start [m]
   double range = 0.0;          ///< from there [m]
   Readout readout{};
+  ProximityTechnique technique = ProximityTechnique::ray;
+  double cone = 0.0;                         ///< full angle of what a sensor sees, where the technique has one [rad]
+  std::shared_ptr<const Samples> samples{};  ///< of the technique of this name: a reading for each sensor
 };
 
 /// Rays down from places under a link, as a ring of proximity sensors has them outwards: they see where the ground
@@ -111,6 +120,7 @@ struct LightSensors {
   double spacing = 0.0;        ///< [rad]
   double gain = 1.0;           ///< from the sum of what arrives to the argument of the sigmoid [1]
   Readout readout{};
+  std::shared_ptr<const Samples> samples{};  ///< of a lamp that gives 1 at 1 m, in place of its square and cosine
 };
 
 /// Microphones that hear sounds within bands of frequency. Observations `NAME/I/intensity`, a value for each band.
@@ -120,6 +130,15 @@ struct Microphones {
   std::vector<Eigen::Vector3d> places_L;
   std::vector<Eigen::Vector2d> bands;  ///< lowest and highest frequency of each [Hz]
   double gain = 1.0;
+  Readout readout{};
+  std::shared_ptr<const Samples> samples{};  ///< of a sound that gives 1 at 1 m, in place of its square
+};
+
+/// What a mass on springs measures: acceleration less gravity, observation `NAME/0/acceleration`, x y z in S [m/s^2].
+struct Accelerometer {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
   Readout readout{};
 };
 
@@ -175,6 +194,35 @@ struct ClimateSensor {
   Readout readout{};
 };
 
+/// A camera that looks all round and reports coloured spots: markers and LEDs of others that are in sight. Observations
+/// `NAME/0/count` and, of as many spots, the nearest first, `NAME/I/bearing` and `NAME/I/elevation` [rad] in S,
+/// `NAME/I/distance` [m] and `NAME/I/color`.
+struct OmnidirectionalCamera {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  double range = 0.0;          ///< [m]
+  double min_elevation = 0.0;  ///< above the xy plane of S [rad]
+  double max_elevation = 0.0;
+  std::size_t capacity = 0;  ///< spots that are reported at a time
+  Readout readout{};
+};
+
+/// A camera that looks all round and gives an image: rows from the highest elevation to the lowest, each from the x
+/// axis of S counter-clockwise. Observation `NAME/0/image`: red, green and blue of each pixel, from 0 to 1.
+struct PanoramicCamera {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  std::size_t width = 0;   ///< pixels
+  std::size_t height = 0;  ///< pixels
+  double min_elevation = 0.0;
+  double max_elevation = 0.0;
+  double range = std::numeric_limits<double>::infinity();  ///< what is further away is not seen [m]
+  Eigen::Vector3d sky = Eigen::Vector3d::Zero();           ///< where nothing is seen
+  Readout readout{};
+};
+
 /// What feeds the robot: observations `NAME/0/charge` [1] and `NAME/0/power` [W]. When it is empty, commands do nothing
 /// any more: every channel has its neutral value.
 struct Battery {
@@ -226,10 +274,12 @@ struct TractionSensor {
   Readout readout{};
 };
 
-using Device = std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder,
-                            ProximityRing, GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker,
-                            RangeAndBearing, ClimateSensor, Battery, Inclinometer, Lidar, ContactSensor, Altimeter,
-                            Magnetometer, LogicalCamera, AirPressureSensor, Gripper, TorqueSensor, TractionSensor>;
+using Device =
+    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder, ProximityRing,
+                 GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor,
+                 Battery, Accelerometer, Imu, ForceTorqueSensor, Inclinometer, Lidar, ContactSensor, Altimeter,
+                 Magnetometer, LogicalCamera, AirPressureSensor, OmnidirectionalCamera, PanoramicCamera, Gripper,
+                 TorqueSensor, TractionSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

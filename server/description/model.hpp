@@ -37,11 +37,15 @@ struct Inertial {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, in I [kg m^2]
 };
 
+/// Of a link that does not say.
+inline Eigen::Vector3d default_color() { return {0.5, 0.5, 0.5}; }
+
 struct Link {
   std::string name;
   Pose X_ML;
   Inertial inertial;
   std::vector<Collision> collisions;
+  Eigen::Vector3d color = default_color();  ///< for cameras: that of the first visual; red, green, blue from 0 to 1
 };
 
 /// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.

@@ -17,6 +17,22 @@ std::optional<std::size_t> DeviceReader::find_moving_joint(const ExtensionValues
   return std::nullopt;
 }
 
+std::shared_ptr<const Samples> DeviceReader::find_samples(const ExtensionValues& values, std::size_t count) {
+  if (!values.has("samples")) return nullptr;
+  const sdf::ElementPtr where = values.where("samples");
+  try {
+    std::shared_ptr<const Samples> samples = files_.samples(where);
+    if (samples->count() == count) return samples;
+    report_.problem(where, "'" + values.text("samples") + "' has " + std::to_string(samples->count()) +
+                               " readings at each place, the device has " + std::to_string(count));
+  } catch (const InputError& error) {
+    for (const Problem& problem : error.problems()) report_.problem(problem);
+  } catch (const std::runtime_error& error) {
+    report_.problem(where, error.what());
+  }
+  return nullptr;
+}
+
 bool DeviceReader::takes_motor(std::size_t joint, const ExtensionValues& values) {
   const bool is_wheel = wheels_.contains(joint);
   if (!is_wheel && motorised_.insert(joint).second) return true;
@@ -62,7 +78,8 @@ const DeviceKind& kind_of(const Extension& extension) {
 
 }  // namespace
 
-std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report) {
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report,
+                                 ShapeFiles& files) {
   struct Found {
     sdf::ElementPtr element;
     const Extension* extension;
@@ -78,7 +95,7 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const M
     if (found[i].extension->name == "treel_drive" && found[i].element->HasAttribute("name"))
       drives.emplace(found[i].prefix + found[i].element->GetAttribute("name")->GetAsString(), i);
 
-  DeviceReader reader(model, std::move(drives), report);
+  DeviceReader reader(model, std::move(drives), report, files);
   std::vector<Device> devices;
   // Commands and observations are named after their device: two devices that command, or two that observe, cannot
   // share a name.

@@ -5,6 +5,8 @@
 #include <sdf/Collision.hh>
 #include <sdf/Geometry.hh>
 #include <sdf/Heightmap.hh>
+#include <sdf/Material.hh>
+#include <sdf/Visual.hh>
 #include <utility>
 
 #include "server/description/extension_values.hpp"
@@ -128,12 +130,24 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   return surface;
 }
 
+// What cameras see of it. The parts are floats in SDF: what is written with up to six digits comes out as written.
+Eigen::Vector3d read_color(const sdf::Link& link) {
+  constexpr double digits = 1e6;
+  const sdf::Visual* const visual = link.VisualCount() > 0 ? link.VisualByIndex(0) : nullptr;
+  if (visual == nullptr || !find(visual->Element(), {"material", "diffuse"})) return default_color();
+  const ignition::math::Color color = visual->Material()->Diffuse();
+  Eigen::Vector3d rounded(color.R(), color.G(), color.B());
+  for (double& part : rounded) part = std::clamp(std::round(part * digits) / digits, 0.0, 1.0);
+  return rounded.allFinite() ? rounded : default_color();
+}
+
 }  // namespace
 
 Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
   Link link;
   link.name = sdf_link.Name();
   link.X_ML = resolved_pose(sdf_link, reading);
+  link.color = read_color(sdf_link);
   for (std::uint64_t i = 0; i < sdf_link.CollisionCount(); ++i) {
     const sdf::Collision& sdf_collision = *sdf_link.CollisionByIndex(i);
     const sdf::Geometry& geometry = *sdf_collision.Geom();

@@ -172,7 +172,7 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
                        order_links(sdf_model, model, reading.report);
   // Devices name links and joints: with some of those missing, each device would be reported for it.
   if (!is_tree) return model;
-  model.devices = read_devices(parts.scopes(), model, reading.report);
+  model.devices = read_devices(parts.scopes(), model, reading.report, reading.shape_files);
   for (Device& sensor : read_sdf_sensors(parts.sensors(), model, reading)) model.devices.push_back(std::move(sensor));
   return model;
 }

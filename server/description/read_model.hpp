@@ -55,7 +55,8 @@ struct DeviceScope {
 };
 
 /// The devices of a model whose links and joints are read.
-std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report);
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report,
+                                 ShapeFiles& files);
 
 /// Where one of SDF's own sensors stands.
 struct SensorPlace {

@@ -190,6 +190,36 @@ std::optional<Device> read_lidar(SensorElement& sensor) {
   return lidar;
 }
 
+void read_reference(const SensorElement& sensor, Imu& imu) {
+  const auto ignored = [&](Path path, const std::string& what) {
+    sensor.report().warning(sensor.where(path),
+                            what + " is not supported; the orientation is relative to that at first");
+  };
+  const std::string localization = sensor.text({"imu", "orientation_reference_frame", "localization"}, "CUSTOM");
+  if (localization == "ENU") {  // SDF's world frame
+    imu.is_relative_to_world = true;
+    return;
+  }
+  if (localization != "CUSTOM")
+    return ignored({"imu", "orientation_reference_frame", "localization"}, "the localization '" + localization + "'");
+  const sdf::ElementPtr rpy = find(sensor.element(), {"imu", "orientation_reference_frame", "custom_rpy"});
+  if (!rpy) return;
+  const auto frame = rpy->Get<std::string>("parent_frame");
+  if (!frame.empty() && frame != "world")
+    return ignored({"imu", "orientation_reference_frame", "custom_rpy"}, "the parent_frame '" + frame + "'");
+  imu.is_relative_to_world = frame == "world";
+  if (is_written(rpy)) imu.reference_rpy = to_eigen(rpy->Get<ignition::math::Vector3d>());
+}
+
+std::optional<Device> read_imu(SensorElement& sensor) {
+  auto imu = posed<Imu>(sensor);
+  imu.has_orientation = sensor.flag({"imu", "enable_orientation"}, true);
+  read_reference(sensor, imu);
+  for (const char* const quantity : {"angular_velocity", "linear_acceleration"})
+    sensor.add_noises(find(sensor.element(), {"imu", quantity}), quantity);
+  return imu;
+}
+
 std::optional<Device> read_contact(SensorElement& sensor) {
   const std::string name = sensor.text({"contact", "collision"}, "");
   if (name.empty()) {
@@ -204,6 +234,28 @@ std::optional<Device> read_contact(SensorElement& sensor) {
   }
   sensor.problem({"contact", "collision"}, "the link has no collision '" + name + "'" + suggestion(name, names));
   return std::nullopt;
+}
+
+std::optional<Device> read_force_torque(SensorElement& sensor) {
+  ForceTorqueSensor result;
+  result.name = sensor.name();
+  result.joint = sensor.owner();
+  result.X_JS = sensor.pose();
+  const std::string frame = sensor.text({"force_torque", "frame"}, "child");
+  if (frame == "parent")
+    result.axes = ForceTorqueSensor::Frame::parent;
+  else if (frame == "sensor")
+    result.axes = ForceTorqueSensor::Frame::sensor;
+  else if (frame != "child")
+    sensor.problem({"force_torque", "frame"}, "expected parent, child or sensor, not '" + frame + "'");
+  const std::string direction = sensor.text({"force_torque", "measure_direction"}, "child_to_parent");
+  result.is_on_parent = direction == "child_to_parent";
+  if (!result.is_on_parent && direction != "parent_to_child")
+    sensor.problem({"force_torque", "measure_direction"},
+                   "expected parent_to_child or child_to_parent, not '" + direction + "'");
+  for (const char* const quantity : {"force", "torque"})
+    sensor.add_noises(find(sensor.element(), {"force_torque", quantity}), quantity);
+  return result;
 }
 
 std::optional<Device> read_altimeter(SensorElement& sensor) {
@@ -249,7 +301,9 @@ constexpr Kind kinds[] = {
     {"gpu_lidar", "link", &read_lidar},
     {"ray", "link", &read_lidar},
     {"gpu_ray", "link", &read_lidar},
+    {"imu", "link", &read_imu},
     {"contact", "link", &read_contact},
+    {"force_torque", "joint", &read_force_torque},
     {"altimeter", "link", &read_altimeter},
     {"magnetometer", "link", &read_magnetometer},
     {"logical_camera", "link", &read_logical_camera},

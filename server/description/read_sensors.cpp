@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "server/description/device_keys.hpp"
 #include "server/description/device_reader.hpp"
 
 namespace cohort::description {
@@ -33,6 +36,18 @@ std::optional<Device> read_proximity_ring(const ExtensionValues& values, DeviceR
   ring.spacing = values.real("spacing");
   ring.ring_radius = values.real("ring_radius");
   ring.range = values.real("range");
+  const std::span<const std::string_view> techniques = keys::proximity_techniques;
+  const auto technique = std::find(techniques.begin(), techniques.end(), values.text("technique"));
+  ring.technique = static_cast<ProximityTechnique>(technique - techniques.begin());
+  ring.cone = values.real("cone");
+  if (ring.cone >= std::numbers::pi)
+    reader.report().problem(values.where("cone"), "expected a cone of less than half a turn, pi");
+  ring.samples = reader.find_samples(values, ring.count);
+  const bool takes_samples = ring.technique == ProximityTechnique::samples;
+  if (takes_samples != values.has("samples"))
+    reader.report().problem(values.where("samples"), takes_samples
+                                                         ? "the technique 'samples' needs a file <cohort:samples>"
+                                                         : "only the technique 'samples' has a file");
   return ring;
 }
 
@@ -53,6 +68,7 @@ std::optional<Device> read_light_sensors(const ExtensionValues& values, DeviceRe
   sensors.first_bearing = values.real("first_bearing");
   sensors.spacing = values.real("spacing");
   sensors.gain = values.real("gain");
+  sensors.samples = reader.find_samples(values, sensors.count);
   return sensors;
 }
 
@@ -63,7 +79,9 @@ std::optional<Device> read_microphones(const ExtensionValues& values, DeviceRead
     if (bands[i].x() > bands[i].y())
       reader.report().problem(values.where("band", i), "the lowest frequency of the band exceeds the highest");
   if (!link) return std::nullopt;
-  return Microphones{values.name(), *link, values.vectors("place"), bands, values.real("gain")};
+  Microphones microphones{values.name(), *link, values.vectors("place"), bands, values.real("gain")};
+  microphones.samples = reader.find_samples(values, microphones.places_L.size());
+  return microphones;
 }
 
 // Of a sensor that has a place on a link and nothing else.
@@ -106,6 +124,59 @@ std::optional<Device> read_climate_sensor(const ExtensionValues& values, DeviceR
   return sensor;
 }
 
+void check_elevations(const ExtensionValues& values, DeviceReader& reader) {
+  constexpr double quarter_turn = 0.5 * std::numbers::pi;
+  for (const char* const key : {"min_elevation", "max_elevation"})
+    if (std::abs(values.real(key)) > quarter_turn)
+      reader.report().problem(values.where(key), "expected an elevation from -pi/2 to pi/2");
+  if (!(values.real("min_elevation") < values.real("max_elevation")))
+    reader.report().problem(values.where("max_elevation"), "expected more than the lowest elevation");
+}
+
+std::optional<Device> read_omnidirectional_camera(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  check_elevations(values, reader);
+  if (!link) return std::nullopt;
+  OmnidirectionalCamera camera;
+  camera.name = values.name();
+  camera.link = *link;
+  camera.X_LS = values.pose("pose");
+  camera.range = values.real("range");
+  camera.min_elevation = values.real("min_elevation");
+  camera.max_elevation = values.real("max_elevation");
+  camera.capacity = values.whole("capacity");
+  add_noise(camera.readout, "distance", values.real("distance_noise"));
+  add_noise(camera.readout, "bearing", values.real("bearing_noise"));
+  add_noise(camera.readout, "elevation", values.real("bearing_noise"));
+  return camera;
+}
+
+std::optional<Device> read_panorama(const ExtensionValues& values, DeviceReader& reader) {
+  const std::optional<std::size_t> link = reader.find_link(values);
+  check_elevations(values, reader);
+  constexpr std::uint64_t least_width = 4;
+  constexpr std::uint64_t most_pixels = 1'000'000;
+  if (values.whole("width") < least_width)
+    reader.report().problem(values.where("width"), "expected at least 4 columns");
+  if (values.whole("width") * values.whole("height") > most_pixels)
+    reader.report().problem(values.where("height"), "expected at most 1 000 000 pixels");
+  const Eigen::Vector3d sky = values.vector("sky");
+  if (sky.minCoeff() < 0.0 || sky.maxCoeff() > 1.0)
+    reader.report().problem(values.where("sky"), "expected red, green and blue from 0 to 1");
+  if (!link) return std::nullopt;
+  PanoramicCamera camera;
+  camera.name = values.name();
+  camera.link = *link;
+  camera.X_LS = values.pose("pose");
+  camera.width = values.whole("width");
+  camera.height = values.whole("height");
+  camera.min_elevation = values.real("min_elevation");
+  camera.max_elevation = values.real("max_elevation");
+  if (values.has("range")) camera.range = values.real("range");
+  camera.sky = sky;
+  return camera;
+}
+
 std::optional<Device> read_battery(const ExtensionValues& values, DeviceReader& reader) {
   Battery battery{values.name(), values.real("capacity"), values.real("charge"), values.real("idle_power"),
                   values.real("motor_efficiency")};
@@ -137,7 +208,10 @@ constexpr DeviceKind kinds[] = {
     {"climate_sensor", &read_climate_sensor},
     {"torque_sensor", &read_torque_sensor},
     {"traction_sensor", &read_traction_sensor},
+    {"omnidirectional_camera", &read_omnidirectional_camera},
+    {"panorama", &read_panorama},
     {"battery", &read_battery},
+    {"accelerometer", &read_posed<Accelerometer>},
     {"inclinometer", &read_posed<Inclinometer>},
 };
 

@@ -28,11 +28,37 @@ struct Lidar {
   Readout readout{};
 };
 
+/// Type `imu`. Observations `NAME/0/orientation`, the quaternion x y z w of S in its frame of reference,
+/// `NAME/0/angular_velocity` [rad/s] and `NAME/0/linear_acceleration`, acceleration less gravity [m/s^2], both in S.
+struct Imu {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LS;
+  bool has_orientation = true;
+  bool is_relative_to_world = false;                        ///< the frame of reference is given in the world's axes,
+                                                            ///< otherwise in those of S as it was at first
+  Eigen::Vector3d reference_rpy = Eigen::Vector3d::Zero();  ///< roll, pitch and yaw of the frame of reference there
+  Readout readout{};
+};
+
 /// Type `contact`. Observations `NAME/0/touching`, 0 or 1, and `NAME/0/force` [N] of one collision.
 struct ContactSensor {
   std::string name;
   std::size_t link = 0;
   std::size_t collision = 0;  ///< of the link
+  Readout readout{};
+};
+
+/// Type `force_torque`, of a joint. Observations `NAME/0/force` [N] and `NAME/0/torque` about the origin of the joint
+/// [N m].
+struct ForceTorqueSensor {
+  enum class Frame : std::uint8_t { child, parent, sensor };
+
+  std::string name;
+  std::size_t joint = 0;
+  Pose X_JS;
+  Frame axes = Frame::child;
+  bool is_on_parent = true;  ///< of the child on the parent; otherwise of the parent on the child
   Readout readout{};
 };
 

@@ -45,4 +45,11 @@ std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr&
   return grid;
 }
 
+std::shared_ptr<const Samples> ShapeFiles::samples(const sdf::ElementPtr& uri) {
+  const std::filesystem::path file = files_.find_file(uri);
+  std::shared_ptr<const Samples>& samples = samples_[file];
+  if (!samples) samples = std::make_shared<const Samples>(read_samples(file));
+  return samples;
+}
+
 }  // namespace cohort::description

@@ -6,12 +6,14 @@
 #include <sdf/Element.hh>
 #include <tuple>
 
+#include "server/description/sample_file.hpp"
 #include "server/description/sdf_files.hpp"
 #include "server/description/shape.hpp"
 
 namespace cohort::description {
 
-/// The shapes of a world that stand in files of their own. Each is read once, and shared by all that name it.
+/// What a world names that stands in files of its own: shapes and samples. Each is read once, and shared by all that
+/// name it.
 class ShapeFiles {
  public:
   /// `files` must outlive this.
@@ -23,6 +25,10 @@ class ShapeFiles {
   /// The height map of the image that `uri` names. Throws std::runtime_error that says what is wrong.
   std::shared_ptr<const HeightGrid> height_grid(const sdf::ElementPtr& uri, const Eigen::Vector3d& size);
 
+  /// The samples that `uri` names. Throws InputError with what is wrong in the file, or std::runtime_error if there is
+  /// none.
+  std::shared_ptr<const Samples> samples(const sdf::ElementPtr& uri);
+
  private:
   const SdfFiles& files_;
   /// By file, scale and whether convex.
@@ -30,6 +36,7 @@ class ShapeFiles {
       meshes_;
   /// By file and size.
   std::map<std::tuple<std::filesystem::path, double, double, double>, std::shared_ptr<const HeightGrid>> grids_;
+  std::map<std::filesystem::path, std::shared_ptr<const Samples>> samples_;
 };
 
 }  // namespace cohort::description

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "server/description/device_keys.hpp"
 #include "server/description/write_sdf_sensors.hpp"
 #include "server/description/write_values.hpp"
 
@@ -37,6 +38,7 @@ void write_readout(XmlNode& element, const Readout& readout) {
 struct DeviceWriter {
   XmlNode& parent;  // the model
   const Model& model;
+  const std::filesystem::path& folder;
 
   void operator()(const TreelDrive& drive) const {
     XmlNode& element = add_named(parent, prefixed("treel_drive"), drive.name);
@@ -73,6 +75,11 @@ struct DeviceWriter {
     add_key(element, "spacing", ring.spacing);
     add_key(element, "ring_radius", ring.ring_radius);
     add_key(element, "range", ring.range);
+    if (ring.technique != ProximityTechnique::ray) {
+      add_key(element, "technique", std::string(keys::proximity_techniques[static_cast<std::size_t>(ring.technique)]));
+      add_key(element, "cone", ring.cone);
+    }
+    write_samples(element, ring.samples);
     write_readout(element, ring.readout);
   }
   void operator()(const GroundSensors& sensors) const {
@@ -90,6 +97,7 @@ struct DeviceWriter {
     add_key(element, "first_bearing", sensors.first_bearing);
     add_key(element, "spacing", sensors.spacing);
     add_key(element, "gain", sensors.gain);
+    write_samples(element, sensors.samples);
     write_readout(element, sensors.readout);
   }
   void operator()(const Microphones& microphones) const {
@@ -98,8 +106,10 @@ struct DeviceWriter {
     for (const Eigen::Vector3d& place : microphones.places_L) add_key(element, "place", place);
     for (const Eigen::Vector2d& band : microphones.bands) add_key(element, "band", band);
     add_key(element, "gain", microphones.gain);
+    write_samples(element, microphones.samples);
     write_readout(element, microphones.readout);
   }
+  void operator()(const Accelerometer& sensor) const { write_posed("accelerometer", sensor); }
   void operator()(const Inclinometer& sensor) const { write_posed("inclinometer", sensor); }
   /// SDF's own sensors.
   template <class SdfSensor>
@@ -124,6 +134,30 @@ struct DeviceWriter {
     add_key(element, "temperature_noise", deviation_of(sensor.readout, "temperature"));
     add_key(element, "humidity_noise", deviation_of(sensor.readout, "humidity"));
     write_readout(element, sensor.readout);
+  }
+  void operator()(const OmnidirectionalCamera& camera) const {
+    XmlNode& element = add_named(parent, prefixed("omnidirectional_camera"), camera.name);
+    add_key(element, "link", link_name(camera.link));
+    add_key(element, "pose", camera.X_LS);
+    add_key(element, "range", camera.range);
+    add_key(element, "min_elevation", camera.min_elevation);
+    add_key(element, "max_elevation", camera.max_elevation);
+    add_key(element, "capacity", static_cast<std::uint64_t>(camera.capacity));
+    add_key(element, "distance_noise", deviation_of(camera.readout, "distance"));
+    add_key(element, "bearing_noise", deviation_of(camera.readout, "bearing"));
+    write_readout(element, camera.readout);
+  }
+  void operator()(const PanoramicCamera& camera) const {
+    XmlNode& element = add_named(parent, prefixed("panorama"), camera.name);
+    add_key(element, "link", link_name(camera.link));
+    add_key(element, "pose", camera.X_LS);
+    add_key(element, "width", static_cast<std::uint64_t>(camera.width));
+    add_key(element, "height", static_cast<std::uint64_t>(camera.height));
+    add_key(element, "min_elevation", camera.min_elevation);
+    add_key(element, "max_elevation", camera.max_elevation);
+    if (std::isfinite(camera.range)) add_key(element, "range", camera.range);
+    add_key(element, "sky", camera.sky);
+    write_readout(element, camera.readout);
   }
   void operator()(const Battery& battery) const {
     XmlNode& element = add_named(parent, prefixed("battery"), battery.name);
@@ -177,6 +211,9 @@ struct DeviceWriter {
     XmlNode& element = add_named(parent, prefixed(kind), sensor.name);
     add_key(element, "joint", joint_name(sensor.joint));
     write_readout(element, sensor.readout);
+  }
+  void write_samples(XmlNode& element, const std::shared_ptr<const Samples>& samples) const {
+    if (samples) add_key(element, "samples", relative_to(folder, samples->file));
   }
   template <class Motor>
   void write_motor(const char* kind, const Motor& motor) const {
@@ -263,8 +300,14 @@ std::string without_scope_marks(std::string name) {
   return name;
 }
 
-void write_device(XmlNode& model_element, const Model& model, const Device& device) {
-  std::visit(DeviceWriter{model_element, model}, device);
+std::string relative_to(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  return std::filesystem::absolute(file).lexically_normal().lexically_proximate(
+      std::filesystem::absolute(folder).lexically_normal());
+}
+
+void write_device(XmlNode& model_element, const Model& model, const Device& device,
+                  const std::filesystem::path& folder) {
+  std::visit(DeviceWriter{model_element, model, folder}, device);
 }
 
 void write_grip_ring(XmlNode& link_element, const GripRing& ring) {

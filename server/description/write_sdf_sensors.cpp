@@ -104,10 +104,32 @@ void write_sdf_sensor(XmlNode& model_element, const Model&, const Lidar& lidar) 
   add_value(child, "stddev", noise->deviation);
 }
 
+void write_sdf_sensor(XmlNode& model_element, const Model&, const Imu& imu) {
+  XmlNode& element = add(add_posed_sensor(model_element, "imu", imu), "imu");
+  XmlNode& reference = add(element, "orientation_reference_frame");
+  add_value(reference, "localization", std::string("CUSTOM"));
+  XmlNode& rpy = add_value(reference, "custom_rpy", imu.reference_rpy);
+  if (imu.is_relative_to_world) rpy.attributes.emplace_back("parent_frame", "world");
+  for (const char* const quantity : {"angular_velocity", "linear_acceleration"})
+    add_noises(add(element, quantity), imu.readout, quantity);
+  add_value(element, "enable_orientation", imu.has_orientation);
+}
+
 void write_sdf_sensor(XmlNode& model_element, const Model& model, const ContactSensor& sensor) {
   XmlNode& link = child_of(model_element, "link", sensor.link);
   XmlNode& element = add(add_sensor(link, "contact", sensor.name, sensor.readout), "contact");
   add_value(element, "collision", model.links[sensor.link].collisions[sensor.collision].name);
+}
+
+void write_sdf_sensor(XmlNode& model_element, const Model&, const ForceTorqueSensor& sensor) {
+  constexpr const char* frames[] = {"child", "parent", "sensor"};
+  XmlNode& joint = child_of(model_element, "joint", sensor.joint);
+  XmlNode& outer = add_sensor(joint, "force_torque", sensor.name, sensor.readout);
+  add_pose(outer, sensor.X_JS);
+  XmlNode& element = add(outer, "force_torque");
+  add_value(element, "frame", std::string(frames[static_cast<std::size_t>(sensor.axes)]));
+  add_value(element, "measure_direction", std::string(sensor.is_on_parent ? "child_to_parent" : "parent_to_child"));
+  for (const char* const quantity : {"force", "torque"}) add_noises(add(element, quantity), sensor.readout, quantity);
 }
 
 void write_sdf_sensor(XmlNode& model_element, const Model&, const Altimeter& altimeter) {

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -52,8 +53,12 @@ inline void add_pose(XmlNode& parent, const Pose& X) {
 /// SDF keeps "::" for itself: it stands in the names of what was in a model inside of the model.
 std::string without_scope_marks(std::string name);
 
-/// In the element of its model, which has those of its links and joints.
-void write_device(XmlNode& model_element, const Model& model, const Device& device);
+/// How to get to a file from a folder.
+std::string relative_to(const std::filesystem::path& folder, const std::filesystem::path& file);
+
+/// In the element of its model, which has those of its links and joints. `folder`: where the world will stand.
+void write_device(XmlNode& model_element, const Model& model, const Device& device,
+                  const std::filesystem::path& folder);
 /// In its link.
 /// Of a link.
 void write_grip_ring(XmlNode& link_element, const GripRing& ring);

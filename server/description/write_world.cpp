@@ -46,10 +46,7 @@ struct ShapeWriter {
     add_value(element, "radius", radius);
     add_value(element, "length", length);
   }
-  std::string relative(const std::filesystem::path& file) const {
-    return std::filesystem::absolute(file).lexically_normal().lexically_proximate(
-        std::filesystem::absolute(folder).lexically_normal());
-  }
+  std::string relative(const std::filesystem::path& file) const { return relative_to(folder, file); }
 };
 
 class WorldWriter {
@@ -104,7 +101,7 @@ class WorldWriter {
     add_pose(element, instance.X_WM);
     for (std::size_t link = 0; link < model.links.size(); ++link) write_link(element, model, link);
     for (const Joint& joint : model.joints) write_joint(element, joint, model);
-    for (const Device& device : model.devices) write_device(element, model, device);
+    for (const Device& device : model.devices) write_device(element, model, device, folder_);
   }
 
   void write_link(XmlNode& parent, const Model& model, std::size_t index) const {
@@ -121,6 +118,11 @@ class WorldWriter {
       for (int row = 0; row < 3; ++row)
         for (int column = row; column < 3; ++column)
           add_value(inertia, std::string("i") + axes[row] + axes[column], link.inertial.inertia(row, column));
+    }
+    if (link.color != default_color()) {
+      XmlNode& visual = add_named(element, "visual", "color");
+      add(add(visual, "geometry"), "empty");
+      add_value(add(visual, "material"), "diffuse", link.color).text += " 1";
     }
     for (const Collision& collision : link.collisions) {
       XmlNode& shape = add_named(element, "collision", collision.name);

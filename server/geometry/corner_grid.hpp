@@ -23,14 +23,14 @@ class CornerGrid {
   void build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds);
 
   /// Calls `visit(item)` once for each item whose bounds overlap `query`, in an order that depends on the grid's
-  /// content alone.
+  /// content alone. The query may be infinite.
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
     if (entries_.empty()) return;
-    const std::int64_t first = cells_.index_of(query.lower.x()) - 1;
-    const std::int64_t last = cells_.index_of(query.upper.x());
-    const std::int64_t last_row = cells_.index_of(query.upper.y());
-    for (std::int64_t row = cells_.index_of(query.lower.y()) - 1; row <= last_row; ++row) {
+    const std::int64_t first = cells_.index_of(std::max(query.lower.x(), extent_.lower.x())) - 1;
+    const std::int64_t last = cells_.index_of(std::min(query.upper.x(), extent_.upper.x()));
+    const std::int64_t last_row = cells_.index_of(std::min(query.upper.y(), extent_.upper.y()));
+    for (std::int64_t row = cells_.index_of(std::max(query.lower.y(), extent_.lower.y())) - 1; row <= last_row; ++row) {
       for_each_in_row(first, last, row, [&](const Entry& entry) {
         if (!query.overlaps(entry.bounds)) return;
         // Another cell of the query may share the bucket.

@@ -25,6 +25,7 @@ struct Solid {
   Pose X_WC;
   std::uint32_t link = 0;       ///< of the body's model
   std::uint32_t collision = 0;  ///< of the link
+  Eigen::Vector3d color = description::default_color();
 };
 
 struct RayHit {

@@ -47,7 +47,8 @@ struct SightLines::Line {
   std::uint32_t receiver_body;
 };
 
-void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double range, std::uint32_t source_body) {
+void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double range, std::uint32_t source_body,
+                       const Heights& receivers) {
   scene_ = &outlines.scene();
   p_WS_ = p_WS;
   range_ = range;
@@ -57,8 +58,14 @@ void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double ra
   rectangles_.clear();
   candidates_.clear();
   stretches_.clear();
+  const double lowest = std::min(p_WS.z(), receivers.lowest);
+  const double highest = std::max(p_WS.z(), receivers.highest);
+  const auto is_beside_all = [&](const Outline& outline) {
+    return outline.highest + rounding_of(std::abs(outline.highest)) < lowest ||
+           outline.lowest - rounding_of(std::abs(outline.lowest)) > highest;
+  };
   outlines.for_each_near(p_WS, range, [&](const Outlines::Item& item) {
-    if (item.body != source_body) add(item);
+    if (item.body != source_body && !(item.outline && is_beside_all(*item.outline))) add(item);
   });
   sort_candidates();
   fill_bins();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "server/geometry/outlines.hpp"
@@ -21,7 +22,16 @@ class SightLines {
   /// nothing is seen. The source is a part of `source_body`, which never stands in the way. `outlines` and its scene
   /// must outlive the questions. Different objects may be built from different threads.
   void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range,
-             std::uint32_t source_body = Scene::no_body);
+             std::uint32_t source_body = Scene::no_body) {
+    build(outlines, p_WS, range, source_body, {});
+  }
+  /// The same, for receivers that are all within these heights: what is above or below every line is left out.
+  struct Heights {
+    double lowest = -std::numeric_limits<double>::infinity();  ///< z_W [m]
+    double highest = std::numeric_limits<double>::infinity();
+  };
+  void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range, std::uint32_t source_body,
+             const Heights& receivers);
 
   /// Whether nothing solid is on the segment from the source to p_WR, both ends included, and this is no longer than
   /// the range. `receiver_body` never stands in the way either. True if both ends are the same point.

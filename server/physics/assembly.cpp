@@ -31,7 +31,7 @@ void Assembly::add_solid(std::uint32_t body, const description::Model& model, st
                          const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
   const description::Collision& part_collision = model.links[link].collisions[number];
   scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC,
-             static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(number)});
+             static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(number), model.links[link].color});
   collision.add(std::move(shape));
   anchors.part_of_solid.push_back(part);
 }

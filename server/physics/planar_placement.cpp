@@ -97,8 +97,9 @@ void PlanarEngine::add_static(std::uint32_t body) {
     for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
       const description::Collision& collision = links[link].collisions[part];
       const Pose X_WC = bodies_[body].X_WM * links[link].X_ML * collision.X_LC;
-      bodies_[body].solids.push_back(scene_.add({collision.shape, collision.surface, body, false, X_WC,
-                                                 static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(part)}));
+      bodies_[body].solids.push_back(
+          scene_.add({collision.shape, collision.surface, body, false, X_WC, static_cast<std::uint32_t>(link),
+                      static_cast<std::uint32_t>(part), links[link].color}));
       collision_.add_static();
       part_of_solid_.emplace_back();
     }
@@ -122,8 +123,9 @@ void PlanarEngine::add_moving(std::uint32_t body) {
       const description::Collision& collision = links[link].collisions[part];
       const Pose X_SC = place.X_SL * collision.X_LC;
       const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
-      const std::uint32_t solid = scene_.add({collision.shape, collision.surface, body, true, X_WC,
-                                              static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(part)});
+      const std::uint32_t solid =
+          scene_.add({collision.shape, collision.surface, body, true, X_WC, static_cast<std::uint32_t>(link),
+                      static_cast<std::uint32_t>(part), links[link].color});
       parts_.push_back({solid, place.segment, X_SC, {}});
       parts_in_body_.emplace_back();
       collision_.add_moving();

@@ -1,6 +1,6 @@
 #include "server/sensing/lamp_view.hpp"
 
-#include <optional>
+#include <algorithm>
 
 namespace cohort::sensing {
 namespace {
@@ -23,24 +23,30 @@ void LampView::update(std::span<const char> will_ask, WorkerPool& workers) {
   for (std::uint32_t ring = 0; ring < rings_.size(); ++ring)
     if (will_ask[ring] != 0) asking_.push_back(ring);
   const std::size_t lamps = emitters_.lit_lamps().size();
-  if (lamps == 0 || asking_.size() * solids_a_ray < world_.scene().size()) return;
+  if (lamps == 0 || asking_.empty() || asking_.size() * solids_a_ray < world_.scene().size()) return;
 
   workers.for_each_chunk(asking_.size(), rings_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) rings_[asking_[i]].p_WS = middle_of(rings_[asking_[i]]);
   });
+  geometry::SightLines::Heights heights{rings_[asking_[0]].p_WS.z(), rings_[asking_[0]].p_WS.z()};
+  for (const std::uint32_t ring : asking_) {
+    heights.lowest = std::min(heights.lowest, rings_[ring].p_WS.z());
+    heights.highest = std::max(heights.highest, rings_[ring].p_WS.z());
+  }
   const geometry::Outlines outlines(world_.scene());
   lines_.resize(workers.threads());
   answers_.assign(lamps * rings_.size(), unknown);
   workers.for_each_chunk(lamps, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (std::size_t lamp = begin; lamp < end; ++lamp)
-      look_from(static_cast<std::uint32_t>(lamp), outlines, lines_[worker]);
+      look_from(static_cast<std::uint32_t>(lamp), outlines, heights, lines_[worker]);
   });
 }
 
-void LampView::look_from(std::uint32_t place, const geometry::Outlines& outlines, geometry::SightLines& lines) {
+void LampView::look_from(std::uint32_t place, const geometry::Outlines& outlines,
+                         const geometry::SightLines::Heights& heights, geometry::SightLines& lines) {
   const emission::Lamp& lamp = emitters_.lamp(emitters_.lit_lamps()[place]);
   if (lamp.light.kind == description::Light::Kind::directional) return;
-  lines.build(outlines, lamp.p_W, lamp.light.range, lamp.mount.body);
+  lines.build(outlines, lamp.p_W, lamp.light.range, lamp.mount.body, heights);
   Answer* const answers = answers_.data() + place * rings_.size();
   for (const std::uint32_t ring : asking_)
     if (rings_[ring].body != lamp.mount.body)

@@ -42,7 +42,8 @@ class LampView {
   enum Answer : char { unknown, hidden, seen };
 
   Eigen::Vector3d middle_of(const Ring& ring) const { return world_.link_pose(ring.body, ring.link) * ring.p_LS; }
-  void look_from(std::uint32_t lamp, const geometry::Outlines& outlines, geometry::SightLines& lines);
+  void look_from(std::uint32_t lamp, const geometry::Outlines& outlines, const geometry::SightLines::Heights& heights,
+                 geometry::SightLines& lines);
 
   const physics::World& world_;
   const emission::Emitters& emitters_;

@@ -16,7 +16,11 @@ constexpr double least_distance = 1e-3;
 // From where a directional light comes [m].
 constexpr double far_away = std::numeric_limits<double>::infinity();
 
+double brightness(const emission::Lamp& lamp) { return lamp.light.intensity * lamp.light.color.sum() / 3.0; }
+
+// 1 of all but spots.
 double within_cone(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W) {
+  if (lamp.light.kind != Light::Kind::spot) return 1.0;
   const double along = -direction_W.dot(lamp.direction_W);
   const double inner = std::cos(lamp.light.inner_angle);
   const double outer = std::cos(lamp.light.outer_angle);
@@ -29,18 +33,18 @@ double within_cone(const emission::Lamp& lamp, const Eigen::Vector3d& direction_
 
 double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W, double distance) {
   const Light& light = lamp.light;
-  const double brightness = light.intensity * light.color.sum() / 3.0;
-  if (light.kind == Light::Kind::directional) return brightness;
+  if (light.kind == Light::Kind::directional) return brightness(lamp);
   if (distance > light.range) return 0.0;
   const double d = std::max(distance, least_distance);
-  const double arriving = brightness / (light.constant + d * (light.linear + d * light.quadratic));
-  return light.kind == Light::Kind::spot ? arriving * within_cone(lamp, direction_W) : arriving;
+  const double arriving = brightness(lamp) / (light.constant + d * (light.linear + d * light.quadratic));
+  return arriving * within_cone(lamp, direction_W);
 }
 
 LightSensors::LightSensors(const description::LightSensors& sensors, Mount mount)
     : sensors_(sensors),
       mount_(std::move(mount)),
       ring_(mount_.lamp_view.add_ring(mount_.body, sensors.link, sensors.X_LS.position)) {
+  if (sensors.samples) table_.emplace(sensors.samples);
   for (std::size_t i = 0; i < sensors.count; ++i) {
     const double bearing = sensors.first_bearing + static_cast<double>(i) * sensors.spacing;
     directions_S_.emplace_back(std::cos(bearing), std::sin(bearing), 0.0);
@@ -73,6 +77,11 @@ void LightSensors::sense(std::uint64_t, std::span<double> values) const {
                     : !mount_.lamp_view.is_in_sight(place, ring_))
       continue;
     const Eigen::Vector3d direction_S = X_WS.orientation.conjugate() * direction_W;
+    if (table_ && !is_far_away) {
+      const double bearing = std::atan2(direction_S.y(), direction_S.x());
+      table_->add(distance, bearing, brightness(lamp) * within_cone(lamp, direction_W), values);
+      continue;
+    }
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] += arriving * std::max(0.0, direction_S.dot(directions_S_[i]));
   }

@@ -1,6 +1,7 @@
 #include "server/sensing/microphones.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/sensing/saturation.hpp"
 
@@ -20,16 +21,27 @@ void Microphones::sense(std::uint64_t, std::span<double> values) const {
   std::vector<Eigen::Vector3d> places_W;
   places_W.reserve(microphones_.places_L.size());
   for (const Eigen::Vector3d& p_L : microphones_.places_L) places_W.push_back(X_WL * p_L);
+  std::vector<double> sampled(places_W.size());
   const std::size_t bands = microphones_.bands.size();
   std::ranges::fill(values, 0.0);
   for (const std::uint32_t index : mount_.emitters.sounding_tones()) {
     const emission::Tone& tone = mount_.emitters.tone(index);
     if (tone.mount.body == mount_.body) continue;
     const double frequency = tone.sound.frequency;
+    if (table_) {
+      const Eigen::Vector3d p_L = X_WL.orientation.conjugate() * (tone.p_W - X_WL.position);
+      std::ranges::fill(sampled, 0.0);
+      if (p_L.norm() <= tone.sound.range)
+        table_->add(p_L.norm(), std::atan2(p_L.y(), p_L.x()), tone.sound.intensity, sampled);
+    }
     const double range_squared = tone.sound.range * tone.sound.range;
     for (std::size_t band = 0; band < bands; ++band) {
       if (frequency < microphones_.bands[band].x() || frequency > microphones_.bands[band].y()) continue;
       for (std::size_t i = 0; i < places_W.size(); ++i) {
+        if (table_) {
+          values[i * bands + band] += sampled[i];
+          continue;
+        }
         const double squared = std::max((tone.p_W - places_W[i]).squaredNorm(), least_squared);
         if (squared <= range_squared) values[i * bands + band] += tone.sound.intensity / squared;
       }

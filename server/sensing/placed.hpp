@@ -22,6 +22,13 @@ Eigen::Vector3d velocity_of(const Posed& sensor, const Mount& mount) {
   return twist.linear_W + twist.angular_W.cross(p_LS_W);
 }
 
+/// Acceleration of the origin of S less gravity, in S [m/s^2]: the mean over the last step.
+template <class Posed>
+Eigen::Vector3d proper_acceleration_of(const Posed& sensor, const Mount& mount) {
+  const Eigen::Vector3d a_W = mount.world.link_acceleration(mount.body, sensor.link, sensor.X_LS.position);
+  return pose_of(sensor, mount).orientation.conjugate() * (a_W - mount.description.gravity);
+}
+
 inline void write(const Eigen::Vector3d& v, std::span<double> values) {
   for (std::size_t i = 0; i < 3; ++i) values[i] = v[static_cast<Eigen::Index>(i)];
 }

@@ -19,8 +19,8 @@ bool are_ascending(const std::vector<double>& values) {
 
 }  // namespace
 
-SampleTable::SampleTable(description::Samples samples) : samples_(std::move(samples)) {
-  const auto& [distances, angles, units, readings, file] = samples_;
+SampleTable::SampleTable(std::shared_ptr<const description::Samples> samples) : samples_(std::move(samples)) {
+  const auto& [distances, angles, units, readings, file] = *samples_;
   if (!are_ascending(distances) || !are_ascending(angles) || distances.front() < 0.0 ||
       angles.back() - angles.front() >= full_turn || units.empty() ||
       readings.size() != distances.size() * angles.size() * units.size())
@@ -28,8 +28,8 @@ SampleTable::SampleTable(description::Samples samples) : samples_(std::move(samp
 }
 
 SampleTable::Cell SampleTable::cell_of(double distance, double angle) const {
-  const std::vector<double>& distances = samples_.distances;
-  const std::vector<double>& angles = samples_.angles;
+  const std::vector<double>& distances = samples_->distances;
+  const std::vector<double>& angles = samples_->angles;
   Cell cell;
   const auto index_of = [](const std::vector<double>& values, double value) {
     return static_cast<std::size_t>(std::upper_bound(values.begin(), values.end(), value) - values.begin());
@@ -54,7 +54,7 @@ SampleTable::Cell SampleTable::cell_of(double distance, double angle) const {
 
 double SampleTable::interpolate(const Cell& cell, std::size_t index) const {
   const auto at = [&](std::size_t row, std::size_t angle) {
-    return samples_.readings[(row * samples_.angles.size() + angle) * count() + index];
+    return samples_->readings[(row * samples_->angles.size() + angle) * count() + index];
   };
   const auto between = [](double a, double b, double share) { return a + share * (b - a); };
   return between(between(at(cell.near_row, cell.first), at(cell.near_row, cell.second), cell.second_share),
@@ -72,10 +72,10 @@ void SampleTable::keep_greatest(double distance, double angle, std::span<double>
   for (std::size_t i = 0; i < count(); ++i) values[i] = std::max(values[i], interpolate(cell, i));
 }
 
-void SampleTable::add(double distance, double angle, std::span<double> values) const {
+void SampleTable::add(double distance, double angle, double factor, std::span<double> values) const {
   if (is_beyond(distance)) return;
   const Cell cell = cell_of(distance, angle);
-  for (std::size_t i = 0; i < count(); ++i) values[i] += interpolate(cell, i);
+  for (std::size_t i = 0; i < count(); ++i) values[i] += factor * interpolate(cell, i);
 }
 
 }  // namespace cohort::sensing

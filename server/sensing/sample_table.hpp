@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 
 #include "server/description/sample_file.hpp"
@@ -12,9 +13,11 @@ namespace cohort::sensing {
 class SampleTable {
  public:
   /// Throws std::invalid_argument if the samples are not a full grid as `Samples` says.
-  explicit SampleTable(description::Samples samples);
+  explicit SampleTable(std::shared_ptr<const description::Samples> samples);
 
-  std::size_t count() const { return samples_.count(); }  ///< of readings at each place
+  /// Beyond this distance every reading is 0 [m].
+  double range() const { return samples_->distances.back(); }
+  std::size_t count() const { return samples_->count(); }  ///< of readings at each place
 
   /// Reading number `index` of an object at this distance [m] and angle [rad] from the robot's front: bilinear between
   /// the four places around it. Angles go round, whatever turns they have. Nearer than the first distance the reading
@@ -23,8 +26,8 @@ class SampleTable {
 
   /// Makes each of `count()` values the greater of itself and the object's reading.
   void keep_greatest(double distance, double angle, std::span<double> values) const;
-  /// Adds the object's readings to `count()` values.
-  void add(double distance, double angle, std::span<double> values) const;
+  /// Adds the object's readings, times `factor`, to `count()` values.
+  void add(double distance, double angle, double factor, std::span<double> values) const;
 
  private:
   /// Places around, and the share of the second and of the farther ones.
@@ -36,9 +39,9 @@ class SampleTable {
   };
   Cell cell_of(double distance, double angle) const;
   double interpolate(const Cell& cell, std::size_t index) const;
-  bool is_beyond(double distance) const { return distance > samples_.distances.back(); }
+  bool is_beyond(double distance) const { return distance > range(); }
 
-  description::Samples samples_;
+  std::shared_ptr<const description::Samples> samples_;
 };
 
 }  // namespace cohort::sensing

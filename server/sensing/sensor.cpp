@@ -1,12 +1,15 @@
 #include "server/sensing/sensor.hpp"
 
+#include "server/sensing/accelerometer.hpp"
 #include "server/sensing/air_pressure.hpp"
 #include "server/sensing/altimeter.hpp"
 #include "server/sensing/battery.hpp"
 #include "server/sensing/climate_sensor.hpp"
 #include "server/sensing/contact_sensor.hpp"
+#include "server/sensing/force_torque_sensor.hpp"
 #include "server/sensing/gripper.hpp"
 #include "server/sensing/ground_sensors.hpp"
+#include "server/sensing/imu.hpp"
 #include "server/sensing/inclinometer.hpp"
 #include "server/sensing/joint_encoder.hpp"
 #include "server/sensing/lidar.hpp"
@@ -15,6 +18,8 @@
 #include "server/sensing/magnetometer.hpp"
 #include "server/sensing/message_receiver.hpp"
 #include "server/sensing/microphones.hpp"
+#include "server/sensing/omnidirectional_camera.hpp"
+#include "server/sensing/panoramic_camera.hpp"
 #include "server/sensing/proximity_ring.hpp"
 #include "server/sensing/torque_sensor.hpp"
 #include "server/sensing/traction_sensor.hpp"
@@ -60,6 +65,15 @@ struct Make {
   std::unique_ptr<Sensor> operator()(const description::Microphones& d) const {
     return std::make_unique<Microphones>(d, std::move(mount));
   }
+  std::unique_ptr<Sensor> operator()(const description::Accelerometer& d) const {
+    return std::make_unique<Accelerometer>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::Imu& d) const {
+    return std::make_unique<Imu>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::ForceTorqueSensor& d) const {
+    return std::make_unique<ForceTorqueSensor>(d, model.joints[d.joint], std::move(mount));
+  }
   std::unique_ptr<Sensor> operator()(const description::Inclinometer& d) const {
     return std::make_unique<Inclinometer>(d, std::move(mount));
   }
@@ -86,6 +100,12 @@ struct Make {
   }
   std::unique_ptr<Sensor> operator()(const description::ClimateSensor& d) const {
     return std::make_unique<ClimateSensor>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::OmnidirectionalCamera& d) const {
+    return std::make_unique<OmnidirectionalCamera>(d, std::move(mount));
+  }
+  std::unique_ptr<Sensor> operator()(const description::PanoramicCamera& d) const {
+    return std::make_unique<PanoramicCamera>(d, std::move(mount));
   }
   std::unique_ptr<Sensor> operator()(const description::Battery& d) const {
     return std::make_unique<Battery>(d, model, std::move(mount));

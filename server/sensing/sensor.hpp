@@ -41,8 +41,8 @@ class Sensor {
   /// any thread.
   virtual void sense(std::uint64_t tick, std::span<double> values) const = 0;
 
-  /// Whether the world has to record what goes through the robot's joints.
-  virtual bool needs_forces() const { return false; }
+  /// Whether it asks for joint_wrench or link_acceleration of its robot's body, which the world then has to keep.
+  virtual bool needs_record() const { return false; }
 
   /// Of a sensor with a memory: takes note of this tick, before it senses and whether it is asked or not.
   /// `was_delivered`: the robot was given what was sensed at the tick before.

@@ -11,7 +11,7 @@ class TractionSensor final : public Sensor {
       : sensor_(sensor), joint_(joint), mount_(std::move(mount)) {}
   std::vector<Channel> channels() const override;
   void sense(std::uint64_t tick, std::span<double> values) const override;
-  bool needs_forces() const override { return true; }
+  bool needs_record() const override { return true; }
 
  private:
   description::TractionSensor sensor_;

@@ -72,8 +72,8 @@ void Simulation::build_robot(std::uint32_t id) {
     if (auto sensor = sensing::make_sensor(
             model, device,
             {world_, emitters_, world, grippers_, lamp_view_, robot.body, instance.name, experiment_.seed})) {
+      if (sensor->needs_record()) world_.record(robot.body);
       rings_.resize(lamp_view_.ring_count(), {id, robot.sensors.size()});
-      if (sensor->needs_forces()) world_.record(robot.body);
       const std::vector<Channel> channels = sensor->channels();
       kind.observation.insert(kind.observation.end(), channels.begin(), channels.end());
       const description::Readout* readout = description::readout_of(model.devices[device]);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double half_width = 5.0;
 constexpr std::uint32_t sources = 24;
+constexpr std::uint32_t leds_a_robot = 8;
 constexpr double pi = std::numbers::pi;
 
 class Swarm {
@@ -38,14 +39,24 @@ class Swarm {
     lamp_view_ = std::make_unique<LampView>(*world_, *emitters_);
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        sensors_.push_back(make_sensor(robot, device,
-                                       {*world_, *emitters_, description_, *lamp_view_,
-                                        static_cast<std::uint32_t>(body), description_.instances[body].name, 1}));
+        auto sensor = make_sensor(robot, device,
+                                  {*world_, *emitters_, description_, *lamp_view_, static_cast<std::uint32_t>(body),
+                                   description_.instances[body].name, 1});
+        if (!sensor) continue;
+        sensors_.push_back(std::move(sensor));
         std::size_t size = 0;
         for (const Channel& channel : sensors_.back()->channels()) size += channel.size;
         values_.emplace_back(size);
       }
     asks_.assign(lamp_view_->ring_count(), 1);
+  }
+
+  /// All LEDs of all robots shine, if they have any.
+  void light_up() {
+    for (std::size_t body : description_.robots)
+      for (std::uint32_t led = 0; led < leds_a_robot; ++led)
+        emitters_->set_marker(emitters_->of_device(static_cast<std::uint32_t>(body), 1).marker + led,
+                              Eigen::Vector3d::Ones());
   }
 
   void sense(std::uint64_t tick) {
@@ -111,6 +122,50 @@ void see_and_hear_24_of_each(benchmark::State& state) {
   run(state, swarm);
 }
 BENCHMARK(see_and_hear_24_of_each)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+// The ways to measure proximity. The argument is the technique, in the order of the enumeration.
+void measure_proximity(benchmark::State& state) {
+  description::ProximityRing ring{"proximity", 1, {{0, 0, 0.02}}, 15, 0.2, 2.0 * pi / 15.0, 0.058, 0.2, {}};
+  ring.technique = static_cast<description::ProximityTechnique>(state.range(1));
+  ring.cone = 0.7;
+  description::Samples samples;
+  for (int i = 0; i < 20; ++i) samples.distances.push_back(0.058 + 0.01 * i);
+  for (int i = 0; i < 72; ++i) samples.angles.push_back(2.0 * pi * i / 72.0);
+  samples.units.assign(15, "1");
+  samples.readings.assign(20UL * 72UL * 15UL, 0.5);
+  ring.samples = std::make_shared<const description::Samples>(samples);
+  Swarm swarm(static_cast<std::uint32_t>(state.range(0)), {ring}, 0, 0);
+  run(state, swarm);
+}
+BENCHMARK(measure_proximity)->ArgsProduct({{1000}, {0, 1, 2, 3, 4}})->Unit(benchmark::kMicrosecond);
+
+const description::Device leds = description::LedRing{"leds", 1, {{0, 0, 0.02}}, leds_a_robot, 0.0, pi / 4.0, 0.058};
+
+// The spots of the robots around, within 0.5 m; all LEDs shine.
+void see_spots(benchmark::State& state) {
+  const description::Device camera =
+      description::OmnidirectionalCamera{"camera", 1, {{0, 0, 0.06}}, 0.5, -1.0, 1.0, 32, {}};
+  Swarm swarm(static_cast<std::uint32_t>(state.range(0)), {camera, leds}, 0, 0);
+  swarm.light_up();
+  run(state, swarm);
+}
+BENCHMARK(see_spots)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
+
+// An image of 180 x 32 pixels.
+void film(benchmark::State& state) {
+  description::PanoramicCamera camera;
+  camera.name = "film";
+  camera.link = 1;
+  camera.X_LS = {{0, 0, 0.06}};
+  camera.width = 180;
+  camera.height = 32;
+  camera.min_elevation = -0.6;
+  camera.max_elevation = 0.4;
+  Swarm swarm(static_cast<std::uint32_t>(state.range(0)), {camera, leds}, 0, 0);
+  swarm.light_up();
+  run(state, swarm);
+}
+BENCHMARK(film)->Arg(100)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace cohort::sensing

@@ -254,7 +254,7 @@ void look_up_samples(benchmark::State& state) {
   for (std::uint64_t i = 0; i < 72; ++i) samples.angles.push_back(0.087 * static_cast<double>(i));
   samples.units.assign(15, "1");
   for (std::uint64_t i = 0; i < 20 * 72 * 15; ++i) samples.readings.push_back(random.uniform(i, 0));
-  const sensing::SampleTable table(samples);
+  const sensing::SampleTable table(std::make_shared<const description::Samples>(samples));
   std::vector<double> values(table.count(), 0.0);
   std::uint64_t n = 0;
   for ([[maybe_unused]] auto iteration : state) {

@@ -46,6 +46,35 @@ TEST(Export, RefusesWhatItCannotWriteOrRead) {
   EXPECT_FALSE(std::filesystem::exists(folder / "w.sdf"));
 }
 
+TEST(Samples, OfARingAreReadAgainByTheTechniqueOfThisName) {
+  const ScratchFolder folder;
+  const std::string model = std::string(COHORT_SOURCE_DIR) + "/worlds/robots/sbot/model.sdf";
+  const std::string file = (folder / "s.csv").string();
+  const Ended taken =
+      run_to_end({cohort_program(), "samples", model, "proximity", "-o", file, "--distances", "3", "--angles", "30"});
+  EXPECT_EQ(taken.exit_code, 0) << taken.err;
+  EXPECT_EQ(taken.out + taken.err, "");
+  EXPECT_TRUE(read_file(file).starts_with("distance [m],angle [rad],reading_0 [1],")) << read_file(file);
+  std::string text = read_file(model);
+  const std::string range = "</cohort:range>";
+  const std::size_t end = text.find(range, text.find("cohort:proximity_ring"));
+  ASSERT_NE(end, std::string::npos);
+  text.insert(end + range.size(), "<cohort:technique>samples</cohort:technique><cohort:samples>s.csv</cohort:samples>");
+  write_file(folder / "model.sdf", text);
+  const Ended checked = run_to_end({cohort_program(), "check", (folder / "model.sdf").string()});
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+}
+
+TEST(Samples, RefuseWhatIsNoRing) {
+  const ScratchFolder folder;
+  const Ended ended =
+      run_to_end({cohort_program(), "samples", std::string(COHORT_SOURCE_DIR) + "/worlds/robots/sbot/model.sdf",
+                  "proximty", "-o", (folder / "s.csv").string()});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_NE(ended.err.find("no proximity_ring 'proximty'; did you mean 'proximity'?"), std::string::npos) << ended.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "s.csv"));
+}
+
 TEST(Help, FindsWhatIsAskedForAndSuggestsTheNearest) {
   const Ended contents = run_to_end({cohort_program(), "help"});
   EXPECT_EQ(contents.exit_code, 0);

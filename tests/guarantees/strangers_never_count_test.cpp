@@ -9,6 +9,7 @@
 
 #include "idl/wire.hpp"
 #include "tests/support/process.hpp"
+#include "tests/support/sbot_layout.hpp"
 
 namespace cohort::testing {
 namespace {
@@ -119,7 +120,7 @@ TEST(StrangersNeverCount, AHoldersStaleEarlyRepeatedAndMalformedCommandsAreRejec
                   "--summary", (folder / "summary.json").string()});
   Process controllers({cohort_program(), "host", "obstacle_avoidance", "--robots", "1..15", "--domain", domain.text()});
   const std::vector<std::uint32_t> own = {0}, others = {0, 1};
-  const std::vector<double> still(3, 0.0);
+  const std::vector<double> still(sbot_command_size, 0.0);
   HandWrittenClient client(domain.number(), "0", [&](auto& commands, const wire::Observation& frame) {
     const auto send = [&](std::uint64_t tick, std::uint64_t epoch, std::span<const std::uint32_t> robots) {
       commands.write({own_id, frame.run, epoch, tick, robots, still});
@@ -148,8 +149,8 @@ TEST_P(FaultyHolder, StopsTheRunUnderWaitWithTheChannelAndTheReason) {
   const ScratchFolder folder;
   Process server({cohort_program(), "serve", demo_experiment(), "--duration", "2", "--domain", domain.text(),
                   "--summary", (folder / "summary.json").string()});
-  std::vector<double> values(48, 0.0);
-  values[3 * 5 + 1] = value;  // right track of robot 5
+  std::vector<double> values(16 * sbot_command_size, 0.0);
+  values[sbot_command_size * 5 + 1] = value;  // right track of robot 5
   HandWrittenClient client(domain.number(), "all", [&](auto& commands, const wire::Observation& frame) {
     commands.write({own_id, frame.run, frame.epoch, frame.tick, frame.robots, values});
   });

@@ -109,7 +109,7 @@ TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
   EXPECT_EQ(sbot.joints[0].type, JointType::revolute);
   EXPECT_TRUE(std::isinf(sbot.joints[0].axis.upper));
 
-  ASSERT_EQ(sbot.devices.size(), 5u);
+  ASSERT_EQ(sbot.devices.size(), 11u);
   EXPECT_DOUBLE_EQ(std::get<TreelDrive>(sbot.devices[0]).max_velocity, 0.2);
   EXPECT_DOUBLE_EQ(std::get<VelocityMotor>(sbot.devices[1]).max_effort, 0.3);
   EXPECT_EQ(std::get<TreelEncoder>(sbot.devices[2]).drive, 0u);
@@ -291,7 +291,7 @@ TEST_F(Description, AMergedModelBringsItsLinksAndDevices) {
                   "<cohort:joint_encoder name=\"mast\"><cohort:joint>mast</cohort:joint></cohort:joint_encoder>");
   const World world = read("<include><uri>model://tall</uri></include>");
   EXPECT_EQ(world.models[0].links.size(), 3u);
-  EXPECT_EQ(world.models[0].devices.size(), 6u);
+  EXPECT_EQ(world.models[0].devices.size(), 12u);
 }
 
 TEST_F(Description, TheEnvironmentsModelPathComesFirstAndTheWorkingDirectoryNever) {

@@ -133,6 +133,42 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
   expect_the_same_again(read(content));
 }
 
+TEST_F(ExportedWorlds, HaveTheirColorsTechniquesCamerasAndFilesOfSamples) {
+  write("data/s.csv", "distance [m],angle [rad],reading_0 [1],reading_1 [1]\n0.1,0,0.5,2\n0.2,0,0.25,1\n");
+  const std::string link = "<cohort:link>a</cohort:link>";
+  const std::string ring = link +
+                           "<cohort:count>2</cohort:count><cohort:first_bearing>0.1</cohort:first_bearing>"
+                           "<cohort:spacing>1.1</cohort:spacing>";
+  const std::string rays = "<cohort:ring_radius>0.05</cohort:ring_radius><cohort:range>1.3</cohort:range>";
+  const std::string samples = "<cohort:samples>data/s.csv</cohort:samples>";
+  const World world = read(
+      "<model name=\"m\"><pose>0 0 1 0 0 0</pose><link name=\"a\"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1"
+      "</iyy><izz>1</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia></inertial><visual name=\"v\"><geometry><sphere>"
+      "<radius>1</radius></sphere></geometry><material><diffuse>0.1 0.7 0.3 1</diffuse></material></visual></link>"
+      "<cohort:proximity_ring name=\"five\">" +
+      ring + rays +
+      "<cohort:technique>five_rays</cohort:technique><cohort:cone>0.3</cohort:cone></cohort:proximity_ring>"
+      "<cohort:proximity_ring name=\"sampled\">" +
+      ring + rays + "<cohort:technique>samples</cohort:technique>" + samples +
+      "</cohort:proximity_ring>"
+      "<cohort:light_sensors name=\"light\">" +
+      ring + samples +
+      "</cohort:light_sensors>"
+      "<cohort:microphones name=\"ears\">" +
+      link + "<cohort:place>0 0 0</cohort:place><cohort:place>0 0 1</cohort:place><cohort:band>0 100</cohort:band>" +
+      samples + "</cohort:microphones><cohort:omnidirectional_camera name=\"camera\">" + link +
+      "<cohort:range>2</cohort:range><cohort:min_elevation>-0.3</cohort:min_elevation><cohort:capacity>3"
+      "</cohort:capacity><cohort:distance_noise>0.01</cohort:distance_noise><cohort:bearing_noise>0.02"
+      "</cohort:bearing_noise></cohort:omnidirectional_camera><cohort:panorama name=\"film\">" +
+      link +
+      "<cohort:width>8</cohort:width><cohort:height>3</cohort:height><cohort:range>7</cohort:range><cohort:sky>0 0.1 1"
+      "</cohort:sky></cohort:panorama></model>" +
+      static_model(collision("<plane/>"), "floor"));
+  EXPECT_NE(text_of(world).find("<diffuse>0.1 0.7 0.3 1</diffuse>"), std::string::npos);
+  EXPECT_NE(text_of(world).find("<cohort:samples>data/s.csv</cohort:samples>"), std::string::npos);
+  expect_the_same_again(world);
+}
+
 TEST_F(ExportedWorlds, HaveTheModelsInsideOfModelsAsOne) {
   const World world =
       read("<model name=\"outer\">" + links("a") + "<model name=\"inner\"><pose>0.3 0.2 0.1 0.1 0.2 0.3</pose>" +

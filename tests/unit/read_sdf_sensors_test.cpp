@@ -112,6 +112,67 @@ TEST_F(SdfSensors, ABiasThatWandersHasTheDeviationThatItsDensityComesTo) {
   EXPECT_EQ(altimeter.readout.noises[0].drift_time, 50.0);
 }
 
+TEST_F(SdfSensors, AnImuHasNoiseOnEachAxisAndAFrameOfReference) {
+  const auto read_imu = [&](const std::string& content) {
+    return std::get<Imu>(device(on_a_link(sensor("imu", content))));
+  };
+  const Imu simple = read_imu("");
+  EXPECT_TRUE(simple.has_orientation);
+  EXPECT_FALSE(simple.is_relative_to_world);
+  const Imu imu = read_imu(
+      "<imu><angular_velocity><y><noise type=\"gaussian\"><stddev>2e-4</stddev></noise></y></angular_velocity>"
+      "<linear_acceleration><z><noise type=\"gaussian\"><mean>0.1</mean></noise></z></linear_acceleration>"
+      "<orientation_reference_frame><localization>CUSTOM</localization><custom_rpy parent_frame=\"world\">0.1 0.2 0.3"
+      "</custom_rpy></orientation_reference_frame><enable_orientation>false</enable_orientation></imu>");
+  EXPECT_FALSE(imu.has_orientation);
+  EXPECT_TRUE(imu.is_relative_to_world);
+  EXPECT_EQ(imu.reference_rpy, Eigen::Vector3d(0.1, 0.2, 0.3));
+  ASSERT_EQ(imu.readout.noises.size(), 2u);
+  EXPECT_EQ(imu.readout.noises[0].quantity, "angular_velocity");
+  EXPECT_EQ(imu.readout.noises[0].element, 1);
+  EXPECT_EQ(imu.readout.noises[1].quantity, "linear_acceleration");
+  EXPECT_EQ(imu.readout.noises[1].element, 2);
+  EXPECT_TRUE(read_imu("<imu><orientation_reference_frame><localization>ENU</localization>"
+                       "</orientation_reference_frame></imu>")
+                  .is_relative_to_world);
+}
+
+TEST_F(SdfSensors, AnImuInAFrameThatIsNotSupportedIsRelativeToTheFirstWithAWarning) {
+  const World world = read(on_a_link(sensor("imu",
+                                            "<imu><orientation_reference_frame>\n<localization>NED</localization>"
+                                            "</orientation_reference_frame></imu>")));
+  EXPECT_NE(texts_of(world.warnings)
+                .find(":4: world/model[m]/link[l]/sensor[s]/imu/orientation_reference_frame/"
+                      "localization: the localization 'NED' is not supported"),
+            std::string::npos)
+      << texts_of(world.warnings);
+  EXPECT_FALSE(std::get<Imu>(world.models[0].devices.at(0)).is_relative_to_world);
+}
+
+std::string held_by(const std::string& sensor_text) {
+  return model(link("a", "") + link("b", "") + "<joint name=\"j\" type=\"fixed\"><parent>a</parent><child>b</child>\n" +
+               sensor_text + "</joint>");
+}
+
+TEST_F(SdfSensors, AForceTorqueSensorIsOfItsJoint) {
+  const auto simple = std::get<ForceTorqueSensor>(device(held_by(sensor("force_torque", ""))));
+  EXPECT_EQ(simple.joint, 0u);
+  EXPECT_EQ(simple.axes, ForceTorqueSensor::Frame::child);
+  EXPECT_TRUE(simple.is_on_parent);
+  const auto sensed = std::get<ForceTorqueSensor>(device(
+      held_by(sensor("force_torque",
+                     "<pose>0 0 0.1 0 0 0</pose><force_torque><frame>sensor</frame><measure_direction>"
+                     "parent_to_child</measure_direction><torque><x><noise type=\"gaussian\"><stddev>0.5</stddev>"
+                     "</noise></x></torque></force_torque>"))));
+  EXPECT_EQ(sensed.axes, ForceTorqueSensor::Frame::sensor);
+  EXPECT_FALSE(sensed.is_on_parent);
+  EXPECT_EQ(sensed.X_JS.position.z(), 0.1);
+  EXPECT_EQ(sensed.readout.noises.at(0).quantity, "torque");
+  const std::string in_another_frame = held_by(sensor("force_torque", "<pose relative_to=\"a\">0 0 0 0 0 0</pose>"));
+  expect_only_flaw({in_another_frame, 3, "world/model[m]/joint[j]/sensor[s]/pose", "in the frame of the joint"},
+                   write_world(in_another_frame));
+}
+
 TEST_F(SdfSensors, AContactSensorHasACollisionOfItsLink) {
   const auto contact = std::get<ContactSensor>(
       device(model(link("a", "") +
@@ -267,6 +328,12 @@ std::string all_sensors() {
                     "<range><min>0.07</min><max>3.3</max><resolution>0.0013</resolution></range><noise><type>"
                     "gaussian</type><mean>0.003</mean><stddev>0.007</stddev></noise></ray>",
                 "lidar") +
+         sensor("imu",
+                pose + "<imu><angular_velocity><x>" + noise + "</x></angular_velocity><linear_acceleration><y>" +
+                    noise +
+                    "</y></linear_acceleration><orientation_reference_frame><localization>CUSTOM</localization>"
+                    "<custom_rpy>0.31 0.37 0.41</custom_rpy></orientation_reference_frame></imu>",
+                "imu") +
          sensor("contact", "<update_rate>7</update_rate><contact><collision>foot</collision></contact>", "contact") +
          sensor("altimeter",
                 pose + "<altimeter><vertical_position>" + noise + "</vertical_position><vertical_velocity>" + noise +
@@ -287,15 +354,23 @@ std::string all_sensors() {
 
 TEST_F(SdfSensors, ComeBackFromAnExportBitForBit) {
   const std::string extension =
-      "<cohort:inclinometer name=\"lean\"><cohort:link>a</cohort:link><cohort:pose>0.1 0.2 0.3 0.4 0.5 0.6"
+      "<cohort:accelerometer name=\"shake\"><cohort:link>b</cohort:link><cohort:bias>0.1</cohort:bias>"
+      "</cohort:accelerometer><cohort:inclinometer name=\"lean\"><cohort:link>a</cohort:link><cohort:pose>0.1 0.2 0.3 "
+      "0.4 0.5 0.6"
       "</cohort:pose><cohort:noise>0.013</cohort:noise></cohort:inclinometer>";
   const World world =
       read("<magnetic_field>1.1e-5 2.3e-6 -4.7e-5</magnetic_field>" +
            static_model(collision("<plane><normal>0 0 1</normal></plane>"), "floor") + "<model name=\"m\">" +
            "<pose>0 0 0.5 0.1 0.2 0.3</pose>" + link("b", sensor("altimeter", "", "other")) + link("a", all_sensors()) +
-           joint("j", "a", "b") + extension + "</model>");
+           "<joint name=\"j\" type=\"revolute\"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>" +
+           sensor("force_torque",
+                  "<pose>0.1 0.2 0.3 0.4 0.5 0.6</pose><force_torque><frame>sensor</frame><measure_direction>"
+                  "parent_to_child</measure_direction><force><y><noise type=\"gaussian\"><stddev>0.07</stddev></noise>"
+                  "</y></force></force_torque>",
+                  "wrench") +
+           "</joint>" + extension + "</model>");
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
-  ASSERT_EQ(world.models[1].devices.size(), 8u);
+  ASSERT_EQ(world.models[1].devices.size(), 11u);
   const auto text_of = [&](const World& each) { return xml_text(sdf_of(each, folder_)); };
   const World again = read_world(write("exported.sdf", text_of(world)), 1);
   EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);

@@ -116,8 +116,10 @@ Samples sloped() {
   return samples;
 }
 
+std::shared_ptr<const Samples> shared(Samples samples) { return std::make_shared<const Samples>(std::move(samples)); }
+
 TEST(SampleTable, IsBilinearBetweenSamples) {
-  const SampleTable table(sloped());
+  const SampleTable table(shared(sloped()));
   for (const double distance : {0.1, 0.13, 0.2, 0.35, 0.4})
     for (const double angle : {-2.0, -1.1, 0.0, 0.7, 1.5}) {
       const double expected = 3.0 - 2.0 * distance + 0.5 * angle + distance * angle;
@@ -129,7 +131,7 @@ TEST(SampleTable, IsBilinearBetweenSamples) {
 }
 
 TEST(SampleTable, GoesRoundFromTheLastAngleToTheFirst) {
-  const SampleTable table(sloped());
+  const SampleTable table(shared(sloped()));
   const double last = table.reading(0.2, 1.5, 0), first = table.reading(0.2, -2.0, 0);
   const double middle = 0.5 * (1.5 + (2 * pi - 2.0));
   EXPECT_NEAR(table.reading(0.2, middle, 0), 0.5 * (last + first), 1e-14);
@@ -137,37 +139,37 @@ TEST(SampleTable, GoesRoundFromTheLastAngleToTheFirst) {
 }
 
 TEST(SampleTable, KeepsTheFirstRowBeforeItAndIsZeroBeyondTheLast) {
-  const SampleTable table(sloped());
+  const SampleTable table(shared(sloped()));
   EXPECT_EQ(table.reading(0.0, 0.7, 0), table.reading(0.1, 0.7, 0));
   EXPECT_NE(table.reading(0.4, 0.7, 0), 0.0);
   EXPECT_EQ(table.reading(std::nextafter(0.4, 1.0), 0.7, 0), 0.0);
 }
 
 TEST(SampleTable, OfASingleSampleIsTheSameAllRound) {
-  const SampleTable table(Samples{{0.1}, {1.0}, {"1"}, {7.0}});
+  const SampleTable table(shared(Samples{{0.1}, {1.0}, {"1"}, {7.0}}));
   for (const double angle : {-4.0, 0.0, 1.0, 2.0}) EXPECT_EQ(table.reading(0.05, angle, 0), 7.0);
 }
 
 TEST(SampleTable, CombinesObjectsByTheGreatestOrTheSum) {
-  const SampleTable table(sloped());
+  const SampleTable table(shared(sloped()));
   std::vector<double> greatest(2, 0.0), sum(2, 0.0);
   for (const double distance : {0.2, 0.4, 0.5}) {
     table.keep_greatest(distance, 0.0, greatest);
-    table.add(distance, 0.0, sum);
+    table.add(distance, 0.0, 0.5, sum);
   }
   EXPECT_NEAR(greatest[0], 2.6, 1e-15);
   EXPECT_NEAR(greatest[1], 0.4, 1e-15);
-  EXPECT_NEAR(sum[0], 2.6 + 2.2, 1e-15);
-  EXPECT_NEAR(sum[1], 0.6, 1e-15);
+  EXPECT_NEAR(sum[0], 0.5 * (2.6 + 2.2), 1e-15);
+  EXPECT_NEAR(sum[1], 0.5 * 0.6, 1e-15);
 }
 
 TEST(SampleTable, RefusesWhatIsNoGrid) {
   Samples samples = sloped();
   samples.readings.pop_back();
-  EXPECT_THROW(SampleTable{samples}, std::invalid_argument);
+  EXPECT_THROW(SampleTable{shared(samples)}, std::invalid_argument);
   samples = sloped();
   samples.angles.back() = 5.0;
-  EXPECT_THROW(SampleTable{samples}, std::invalid_argument);
+  EXPECT_THROW(SampleTable{shared(samples)}, std::invalid_argument);
 }
 
 }  // namespace

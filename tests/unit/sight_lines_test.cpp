@@ -95,7 +95,7 @@ Count compare(const Scene& scene, std::uint64_t seed, double half_width, double 
               int receivers) {
   const RandomStream random(seed, "sight_lines_test", "ends");
   const Outlines outlines(scene);
-  SightLines lines;
+  SightLines lines, within_heights;
   Count count;
   for (int i = 0; i < sources; ++i) {
     const auto n = static_cast<std::uint64_t>(i);
@@ -125,6 +125,11 @@ Count compare(const Scene& scene, std::uint64_t seed, double half_width, double 
         if (scene.solid(solid).body != source_body && scene.solid(solid).body != receiver_body) others.push_back(solid);
       const bool expected = !scene.cast_ray_among(others, source, offset / distance, distance);
       EXPECT_EQ(lines.is_free(receiver, receiver_body), expected) << i << " " << j;
+      if (j % 5 == 0) {
+        // For receivers within heights that hold this one.
+        within_heights.build(outlines, source, range, source_body, {receiver.z() - 0.01 * (j % 3), receiver.z()});
+        EXPECT_EQ(within_heights.is_free(receiver, receiver_body), expected) << i << " " << j;
+      }
       if (source_body == Scene::no_body) {
         EXPECT_EQ(!scene.cast_ray(source, offset / distance, distance, receiver_body), expected) << i << " " << j;
       }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/sensing/take_samples.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/thesis.hpp"
 #include "tools/cohort/log.hpp"
@@ -69,6 +70,14 @@ struct ExportCommand {
   std::optional<std::uint64_t> seed;  ///< of the populations; none: the experiment's, or 1
 };
 int export_world(const ExportCommand& command, Log& log);
+
+struct SamplesCommand {
+  std::filesystem::path file;  ///< model, or world whose first robot is meant
+  std::string device;          ///< name of a proximity ring
+  std::filesystem::path output;
+  sensing::SampleGrid grid;
+};
+int take_samples(const SamplesCommand& command, Log& log);
 
 /// `topic`: empty for the list of topics.
 int help(const std::string& topic, Log& log);

@@ -145,6 +145,30 @@ void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::st
       ->type_name("N");
 }
 
+void add_samples_options(CLI::App& app, SamplesCommand& command) {
+  constexpr double longest = 1e3;  // [m]
+  app.add_option("MODEL", command.file, "Model, or world whose first robot is meant")->required()->type_name("");
+  app.add_option("DEVICE", command.device, "Name of its proximity_ring")->required()->type_name("");
+  app.add_option("-o,--output", command.output, "File to write")->required()->type_name("FILE");
+  app.add_option("--radius", command.grid.radius, "Radius of the cylinder in metres")
+      ->check(number_above_zero(longest))
+      ->capture_default_str()
+      ->type_name("M");
+  app.add_option("--height", command.grid.height, "Height of the cylinder in metres")
+      ->check(number_above_zero(longest))
+      ->capture_default_str()
+      ->type_name("M");
+  app.add_option("--distances", command.grid.distances, "How many distances, from contact to the end of the range")
+      ->check(whole_number(2, 10'000))
+      ->capture_default_str()
+      ->type_name("N");
+  app.add_option("--angles", command.grid.angles, "How many angles, evenly all round")
+      ->check(whole_number(1, 10'000))
+      ->capture_default_str()
+      ->type_name("N");
+  app.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
+}
+
 void add_bench_options(CLI::App& app, BenchCommand& command) {
   cohort::bench::Options& options = command.options;
   const auto list = [&](const char* name, auto& values, const char* text) {
@@ -283,6 +307,11 @@ int main(int argc, char** argv) {
   add_log_options(*export_app, log_flags);
   export_app->footer("Example: cohort export worlds/arenas/obstacles.sdf -o placed.sdf");
 
+  SamplesCommand samples_options;
+  CLI::App* samples_app = app.add_subcommand("samples", "Write what a ring of proximity sensors reads of a cylinder");
+  add_samples_options(*samples_app, samples_options);
+  add_log_options(*samples_app, log_flags);
+
   std::string help_topic;
   CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
   help_app->add_option("TOPIC", help_topic, "Such as sensors, placement, proximity_ring or events")->type_name("");
@@ -326,6 +355,7 @@ int main(int argc, char** argv) {
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
+  if (samples_app->parsed()) return take_samples(samples_options, log);
   if (help_app->parsed()) return help(help_topic, log);
   if (thesis_app->parsed()) bench_command.thesis = thesis_options;
   if (bench_app->parsed()) return bench(bench_command, log, stop_requested);

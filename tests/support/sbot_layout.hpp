@@ -1,0 +1,10 @@
+#pragma once
+
+#include <cstddef>
+
+namespace cohort::testing {
+
+/// float64 values of a command of the s-bot that ships: tracks, turret, LEDs and loudspeakers. The tracks come first.
+inline constexpr std::size_t sbot_command_size = 31;
+
+}  // namespace cohort::testing

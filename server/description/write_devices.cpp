@@ -206,14 +206,14 @@ struct DeviceWriter {
   void operator()(const TractionSensor& sensor) const { write_joint_sensor("traction_sensor", sensor); }
 
  private:
+  void write_samples(XmlNode& element, const std::shared_ptr<const Samples>& samples) const {
+    if (samples) add_key(element, "samples", relative_to(folder, samples->file));
+  }
   template <class OnJoint>
   void write_joint_sensor(const char* kind, const OnJoint& sensor) const {
     XmlNode& element = add_named(parent, prefixed(kind), sensor.name);
     add_key(element, "joint", joint_name(sensor.joint));
     write_readout(element, sensor.readout);
-  }
-  void write_samples(XmlNode& element, const std::shared_ptr<const Samples>& samples) const {
-    if (samples) add_key(element, "samples", relative_to(folder, samples->file));
   }
   template <class Motor>
   void write_motor(const char* kind, const Motor& motor) const {

@@ -36,12 +36,13 @@ class Swarm {
 
     world_ = std::make_unique<physics::World>(description_, workers_);
     emitters_ = std::make_unique<emission::Emitters>(description_, *world_);
+    grippers_ = std::make_unique<gripping::Grippers>(description_, *world_);
     lamp_view_ = std::make_unique<LampView>(*world_, *emitters_);
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
         auto sensor = make_sensor(robot, device,
-                                  {*world_, *emitters_, description_, *lamp_view_, static_cast<std::uint32_t>(body),
-                                   description_.instances[body].name, 1});
+                                  {*world_, *emitters_, description_, *grippers_, *lamp_view_,
+                                   static_cast<std::uint32_t>(body), description_.instances[body].name, 1});
         if (!sensor) continue;
         sensors_.push_back(std::move(sensor));
         std::size_t size = 0;
@@ -86,6 +87,7 @@ class Swarm {
   description::World description_ = testing::world_with_floor();
   std::unique_ptr<physics::World> world_;
   std::unique_ptr<emission::Emitters> emitters_;
+  std::unique_ptr<gripping::Grippers> grippers_;
   std::unique_ptr<LampView> lamp_view_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::vector<std::vector<double>> values_;

@@ -69,9 +69,11 @@ class Sensed {
     if (sensor_) return;
     const physics::World& world = small.world();
     emitters_.emplace(small.description, world);
+    grippers_.emplace(small.description, small.world());
     lamp_view_.emplace(world, *emitters_);
     const description::Model& model = small.description.models[small.description.instances[body].model];
-    sensor_ = sensing::make_sensor(model, 0, {world, *emitters_, small.description, *lamp_view_, body, "carrier", 1});
+    sensor_ = sensing::make_sensor(model, 0,
+                                   {world, *emitters_, small.description, *grippers_, *lamp_view_, body, "carrier", 1});
     if (sensor_->needs_record()) small.world().record(body);
     channels_ = sensor_->channels();
     for (const Channel& channel : channels_) size_ += channel.size;
@@ -80,6 +82,7 @@ class Sensed {
   }
 
   std::optional<emission::Emitters> emitters_;
+  std::optional<gripping::Grippers> grippers_;
   std::optional<sensing::LampView> lamp_view_;
   std::unique_ptr<sensing::Sensor> sensor_;
   std::optional<sensing::Readout> readout_;

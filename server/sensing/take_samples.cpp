@@ -29,8 +29,8 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   WorkerPool workers(1);
   physics::World world(description, workers);
   const emission::Emitters emitters(description, world);
-  const gripping::Grippers grippers(description, world);
   LampView lamp_view(world, emitters);
+  const gripping::Grippers grippers(description, world);
   const auto sensor = make_sensor(model, device, {world, emitters, description, grippers, lamp_view, 0, "robot", 1});
   const std::uint64_t ticks = ring.technique == description::ProximityTechnique::random_ray ? random_ticks : 1;
 

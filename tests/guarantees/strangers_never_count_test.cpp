@@ -83,7 +83,9 @@ TEST(StrangersNeverCount, CommandsInTheNameOfAnotherClientLeaveTheRunItsBits) {
     Process controllers(
         {cohort_program(), "host", "obstacle_avoidance", "--robots", "1..15", "--domain", domain.text()});
     // Holds its answer to tick 300 back until the forger has tried to give it a thousand times.
-    const std::vector<double> drive = {0.1, 0.15, 0.0};
+    std::vector<double> drive(sbot_command_size, 0.0);
+    drive[0] = 0.1;
+    drive[1] = 0.15;
     std::atomic<bool> answers = true;
     std::atomic<bool> holds_back = false;
     if (forged) answers = false;

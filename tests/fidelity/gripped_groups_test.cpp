@@ -1,0 +1,70 @@
+// Groups that hold each other, with the iterative solver at ten iterations; and what the rotors of motors resist.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/gripped_swarm.hpp"
+
+namespace cohort::testing {
+namespace {
+
+TEST(Motors, TheRotorResistsAsMuchInertiaMore) {
+  constexpr double rotor_inertia = 0.003;
+  constexpr double torque = 0.02;
+  description::World empty;
+  empty.name = "empty";
+  SmallWorld small(std::move(empty));
+  small.description.gravity.setZero();
+  description::Model model = loose("wheel", description::Sphere{0.05}, solid_sphere(0.5, 0.05));
+  model.joints.push_back({});
+  model.joints[0].name = "axle";
+  model.joints[0].type = description::JointType::revolute;
+  model.joints[0].parent = description::Joint::world;
+  model.devices.push_back(description::EffortMotor{"motor", 0, 1.0, rotor_inertia});
+  const auto wheel = small.add(model, at(0, 0, 0));
+  small.world().set_joint_effort_target(wheel, 0, torque);
+  small.run(1.0);
+  const double inertia = 0.4 * 0.5 * 0.05 * 0.05;
+  EXPECT_NEAR(small.world().joint_velocity(wheel, 0), torque / (inertia + rotor_inertia), 1e-9);
+  EXPECT_NEAR(small.world().joint_effort(wheel, 0), torque, 1e-12);
+}
+
+struct Outcome {
+  double gap = 0.0;
+  double speed = 0.0;
+  double height = 0.0;
+};
+Outcome drive(GrippedSwarm& swarm, int seconds) {
+  Outcome worst;
+  for (int tick = 0; tick < 100 * seconds; ++tick) {
+    swarm.drive(tick);
+    swarm.small.world().step();
+    worst.gap = std::max(worst.gap, swarm.gap());
+    worst.speed = std::max(worst.speed, swarm.greatest_speed());
+    worst.height = std::max(worst.height, swarm.greatest_height());
+  }
+  return worst;
+}
+
+TEST(GrippedGroups, OfTurretsStayTogether) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    GrippedSwarm swarm(seed, false);
+    const Outcome worst = drive(swarm, 60);
+    EXPECT_LT(worst.gap, 3e-3) << seed;
+    EXPECT_LT(worst.speed, 0.5) << seed;
+  }
+}
+
+TEST(GrippedGroups, OfArmsThatLiftEachOtherGainNoEnergy) {
+  for (const double rotor_inertia : {0.0, 0.002}) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      GrippedSwarm swarm(seed, true, 10, rotor_inertia);
+      const Outcome worst = drive(swarm, 30);
+      EXPECT_LT(worst.gap, rotor_inertia > 0.0 ? 12e-3 : 25e-3) << seed;
+      EXPECT_LT(worst.speed, 2.0) << seed;
+      EXPECT_LT(worst.height, 0.1) << seed;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cohort::testing

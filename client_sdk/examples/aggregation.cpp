@@ -53,7 +53,8 @@ class Aggregation final : public cohort::Controller {
     command.set(frequency_, tone);
     command.set(loudness_, call_);
 
-    // What arrives at each microphone, from its saturated reading; in multiples of a call from a neighbour that touches.
+    // What arrives at each microphone, from its saturated reading; in multiples of a call from a neighbour that
+    // touches.
     std::array<double, 4> heard{};
     for (std::size_t i = 0; i < heard.size(); ++i)
       heard[i] = -std::log(2.0 / (1.0 + std::min(observation[microphones_[i]], 0.999999)) - 1.0);

@@ -30,8 +30,7 @@ PlanarModel::PlanarModel(const description::Model& model)
 void PlanarModel::add_motor(const description::MotorLimits& motor, const std::string& name) {
   const description::Joint& joint = mechanism_.model().joints[motor.joint];
   const Mechanism::JointPlace& place = mechanism_.joint(motor.joint);
-  if (place.dofs == 0)
-    throw std::invalid_argument("motor '" + name + "' drives the fixed joint '" + joint.name + "'");
+  if (place.dofs == 0) throw std::invalid_argument("motor '" + name + "' drives the fixed joint '" + joint.name + "'");
   const Dof& dof = mechanism_.dofs()[static_cast<std::size_t>(place.first_dof)];
   if (dof.coordinate < 0)
     throw std::invalid_argument("motor '" + name + "' drives the ball joint '" + joint.name +

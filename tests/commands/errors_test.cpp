@@ -241,7 +241,9 @@ TEST_P(MistypedCommand, IsOneMessageThatSaysWhatToDo) {
 INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
-        Typed{{}, "expected a command; known: run, serve, host, teleop, check, export, samples, help, bench. Try 'cohort --help'"},
+        Typed{{},
+              "expected a command; known: run, serve, host, teleop, check, export, samples, help, bench. Try 'cohort "
+              "--help'"},
         Typed{{"rn", "x"}, "there is no command 'rn'; did you mean 'run'?"},
         Typed{{"run"}, "FILE is required. Try 'cohort run --help'"}, Typed{{"run", "x", "y"}, "unexpected 'y'"},
         Typed{{"run", "x", "--thread", "3"}, "there is no option '--thread'; did you mean '--threads'?"},

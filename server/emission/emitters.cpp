@@ -99,33 +99,6 @@ void Emitters::set_beacon(std::uint32_t beacon, bool is_sending, std::span<const
   std::ranges::copy(message, beacons_[beacon].message.begin());
 }
 
-std::size_t Emitters::switch_emitters(std::uint32_t body, const std::string& name, bool on) {
-  std::size_t found = 0;
-  std::size_t next[4] = {0, 0, 0, 0};  // of each kind, among those of this body
-  const auto is_of_body = [&](const auto& emitter) { return emitter.mount.body == body; };
-  const auto set = [&](auto& emitters, std::size_t place) {
-    const auto first = std::find_if(emitters.begin(), emitters.end(), is_of_body);
-    (first + static_cast<std::ptrdiff_t>(place))->is_on = on;
-  };
-  std::size_t model = 0;
-  if (body < description_.instances.size()) model = description_.instances[body].model;
-  for (const auto& [added_body, added_model] : added_)
-    if (added_body == body) model = added_model;
-  for (const description::Emitter& emitter : description_.models[model].emitters) {
-    const std::size_t kind = emitter.what.index();
-    const std::size_t place = next[kind]++;
-    if (emitter.name != name) continue;
-    ++found;
-    switch (kind) {
-      case 0: set(lamps_, place); break;
-      case 1: set(tones_, place); break;
-      case 2: set(markers_, place); break;
-      default: set(climate_sources_, place);
-    }
-  }
-  return found;
-}
-
 void Emitters::update(WorkerPool& workers) {
   const auto place = [&](auto& emitters, const auto& more) {
     workers.for_each_chunk(emitters.size(), emitters_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {

@@ -112,8 +112,6 @@ class Emitters {
   void set_tone(std::uint32_t tone, double frequency, double intensity);
   void set_marker(std::uint32_t marker, const Eigen::Vector3d& color) { markers_[marker].color = color; }
   void set_beacon(std::uint32_t beacon, bool is_sending, std::span<const double> message);
-  /// Switches all emitters of a body that its model names so. Returns how many there are.
-  std::size_t switch_emitters(std::uint32_t body, const std::string& name, bool on);
 
   /// Adds all that can change, but for poses.
   void hash(StateHash& hash) const;

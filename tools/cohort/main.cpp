@@ -120,6 +120,12 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->type_name("max|X");
   app.add_option("--summary", options.summary, "Write the summary to this file as JSON")->type_name("FILE");
   app.add_option("--plot", options.plot, "Draw arena, paths and contacts to this file as SVG")->type_name("FILE");
+  const auto set_view = [&options](const std::string& view) {
+    options.viewpoint = view == "side" ? Viewpoint::side : Viewpoint::above;
+  };
+  app.add_option_function<std::string>("--view", set_view, "Of the plot: from above (the default), or from the side")
+      ->check(one_of({"above", "side"}))
+      ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   app.add_option("--domain", options.domain, "DDS domain (default: a free one, or 0 if others start controllers)")
       ->envname("COHORT_DOMAIN")

@@ -134,9 +134,10 @@ Behaviour behaviour_of(const EngineKind& kind, double step) {
     const std::unique_ptr<Engine> engine = kind.make(scene, 1);
     start_z = engine->turret_centre(0).z();
     engine->set_command(0, {speed, speed, 0.0});
+    const unsigned last_steps = steps - steps / 2;
     const Eigen::Vector2d half = run(*engine, steps / 2);
-    const Eigen::Vector2d whole = run(*engine, steps - steps / 2);
-    behaviour.speed_ratio = (whole - half).norm() / (step * (steps - steps / 2) * speed);
+    const Eigen::Vector2d whole = run(*engine, last_steps);
+    behaviour.speed_ratio = (whole - half).norm() / (step * last_steps * speed);
   }
   {
     const std::unique_ptr<Engine> engine = kind.make(scene, 1);

@@ -243,7 +243,8 @@ std::string draw(const Page& page) {
       "<text x=\"{3}\" y=\"30\" font-size=\"19\" font-weight=\"bold\">{4}</text>\n",
       number(width), number(height), ink, number(margin + 10.0), escaped(page.title));
   for (std::size_t i = 0; i < page.panels.size(); ++i) {
-    const Vector2d place(static_cast<double>(i % columns), static_cast<double>(i / columns));
+    const std::size_t row = i / columns;
+    const Vector2d place(static_cast<double>(i % columns), static_cast<double>(row));
     PanelDrawing(page.panels[i], Vector2d(margin, header) + place.cwiseProduct(cell), text).draw();
   }
   return text + "</svg>\n";

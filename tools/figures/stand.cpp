@@ -68,13 +68,13 @@ Model static_shape(const Shape& shape) {
 }
 
 Stand::Stand() {
-  experiment.world.name = "stand";
-  experiment.duration = std::chrono::hours(1);
+  experiment_.world.name = "stand";
+  experiment_.duration = std::chrono::hours(1);
   add(static_shape(Plane{}));
 }
 
 std::uint32_t Stand::add(const Model& model, const Pose& X_WM) {
-  World& world = experiment.world;
+  World& world = experiment_.world;
   const auto object = static_cast<std::uint32_t>(world.instances.size());
   if (model.is_robot()) world.robots.push_back(object);
   world.instances.push_back({model.name + "_" + std::to_string(object), world.models.size(), X_WM});
@@ -94,9 +94,9 @@ void Stand::add_emitter(const decltype(Emitter::what)& what, const Pose& X_WM) {
 Simulation& Stand::simulation() {
   if (!simulation_) {
     Team team{"team", {}, "none", {}};
-    for (std::uint32_t robot = 0; robot < experiment.world.robots.size(); ++robot) team.robots.push_back(robot);
-    experiment.teams = {team};
-    simulation_.emplace(experiment, 1);
+    for (std::uint32_t robot = 0; robot < experiment_.world.robots.size(); ++robot) team.robots.push_back(robot);
+    experiment_.teams = {team};
+    simulation_.emplace(experiment_, 1);
   }
   return *simulation_;
 }

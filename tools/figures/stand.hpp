@@ -45,11 +45,10 @@ class Stand {
   double time();  ///< simulated [s]
   Simulation& simulation();
 
-  description::Experiment experiment;
-
  private:
   static std::size_t offset_of(const std::vector<Channel>& channels, const std::string& name);
 
+  description::Experiment experiment_;
   std::optional<Simulation> simulation_;
   std::vector<std::vector<double>> commands_;
 };

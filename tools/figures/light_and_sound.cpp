@@ -80,12 +80,12 @@ Panel light_by_distance() {
 
 Panel light_by_bearing() {
   Panel panel{"Light: bearing",
-              "lines: the sum of cosines, saturated",
+              "lines: cosines, summed; a second lamp is ahead",
               "bearing of a lamp, 1 m away [degrees]",
               "reading of the sensor ahead",
               {}};
   for (const bool is_alone : {true, false}) {
-    Series series{is_alone ? "alone" : "and one ahead", {}};
+    Series series{is_alone ? "one" : "two", {}};
     for (const double bearing : evenly(-180.0, 180.0, 49)) {
       Stand stand;
       stand.add(perceiving_robot());

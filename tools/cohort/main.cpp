@@ -230,12 +230,23 @@ void add_thesis_options(CLI::App& app, cohort::bench::ThesisOptions& options, Be
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str()
       ->type_name("N");
+  app.add_option("--table", options.tables, "Tables (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of(cohort::bench::thesis_tables()))
+      ->type_name("NAME[,NAME...]");
+  app.add_option("--robots", options.robots, "How many robots, a row for each number (default: the thesis's, and more)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(whole_number(1, 100'000))
+      ->type_name("N[,N...]");
   app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
   app.footer(
       "Tables 5.1 (random movement) and 5.2 (connected robots): the thesis's own seconds, and beside them Cohort and\n"
       "ODE, the thesis's engine, run here and now with steps of 10 ms; ODE also with the thesis's 100 ms, and what "
       "its\n"
-      "robots then do. docs/bench.md says all of it.");
+      "robots then do (behaviour). Tables 5.3 (proximity sensors) and 5.4 (light and sound): robots that stand still,\n"
+      "beside rays of ODE. docs/bench.md says all of it.");
 }
 
 }  // namespace

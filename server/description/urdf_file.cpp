@@ -69,7 +69,10 @@ class LineFinder {
     XmlNode node{element->GetName(), source->line, nullptr, {}, "", {}};
     for (const sdf::ParamPtr& attribute : element->GetAttributes())
       if (attribute->GetSet()) node.attributes.emplace_back(attribute->GetKey(), attribute->GetAsString());
-    if (element->GetValue() && element->GetValue()->GetSet()) node.text = element->GetValue()->GetAsString();
+    // What stands in an element that SDF does not know is the default of its value.
+    const bool is_foreign = element->GetName().find(':') != std::string::npos;
+    if (element->GetValue() && (is_foreign || element->GetValue()->GetSet()))
+      node.text = element->GetValue()->GetAsString();
     for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
       if (child->GetExplicitlySetInFile()) node.children.push_back(tree(child, *source));
     return node;

@@ -150,6 +150,27 @@ TEST_F(Formats, AUrdfRobotHasItsLinksJointsAndLimits) {
   expect_near(model.joints[0].axis.direction, {0, 1, 0});
 }
 
+TEST_F(Formats, AUrdfRobotHasItsDevicesAndSensorsInGazeboBlocks) {
+  const std::string ns = "xmlns:cohort=\"https://cohort-sim.org/sdf/1\"";
+  const std::string text =
+      "<robot name=\"r\" " + ns + ">" + urdf_link("a") + urdf_link("b") + urdf_joint("j", "continuous", "a", "b") +
+      "<gazebo><cohort:velocity_motor name=\"m\"><cohort:joint>j</cohort:joint><cohort:max_velocity>1.5"
+      "</cohort:max_velocity><cohort:max_effort>2</cohort:max_effort></cohort:velocity_motor></gazebo>"
+      "<gazebo reference=\"b\"><cohort:grip_ring name=\"ring\"><cohort:radius>0.1</cohort:radius></cohort:grip_ring>"
+      "<sensor name=\"s\" type=\"imu\"><update_rate>10</update_rate></sensor></gazebo></robot>";
+  const World world = read_world_or_model(write("r.urdf", text), 1);
+  const Model& model = world.models[0];
+  ASSERT_EQ(model.devices.size(), 2u);
+  const auto& motor = std::get<VelocityMotor>(model.devices[0]);
+  EXPECT_EQ(motor.joint, 0u);
+  EXPECT_EQ(motor.max_velocity, 1.5);
+  EXPECT_EQ(motor.max_effort, 2.0);
+  EXPECT_TRUE(std::holds_alternative<Imu>(model.devices[1]));
+  ASSERT_EQ(model.grip_rings.size(), 1u);
+  EXPECT_EQ(model.grip_rings[0].link, 1u);
+  EXPECT_EQ(model.grip_rings[0].radius, 0.1);
+}
+
 TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
   const World world =
       read_urdf(urdf_link("a") + urdf_link("b") + urdf_link("c") + urdf_joint("j", "continuous", "a", "b") + "\n" +

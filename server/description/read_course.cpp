@@ -46,6 +46,7 @@ struct CourseReader::Written {
   std::string on_path;
 };
 
+// NOLINTNEXTLINE(bugprone-exception-escape): the same.
 struct CourseReader::ReadEvent {
   Event event;
   YAML::Node node;
@@ -96,10 +97,13 @@ std::vector<std::size_t> selected_joints(const CourseEntry& entry, const World& 
   std::vector<std::string> names;
   for (const BreakableJoint& joint : world.breakable_joints) names.push_back(joint.name);
   for (const std::string& selector : entry.values().texts("joints")) {
-    const std::size_t before = selected.size();
-    for (std::size_t joint = 0; joint < names.size(); ++joint)
-      if (matches(names[joint], selector)) selected.insert(joint);
-    if (selected.size() == before)
+    bool selects = false;
+    for (std::size_t joint = 0; joint < names.size(); ++joint) {
+      if (!matches(names[joint], selector)) continue;
+      selected.insert(joint);
+      selects = true;
+    }
+    if (!selects)
       entry.problem("joints", "no breakable joint is called '" + selector + "'" + suggestion(selector, names));
   }
   return {selected.begin(), selected.end()};

@@ -177,7 +177,7 @@ void Simulation::on_action(const std::string& name, ActionHandler handler) {
 void Simulation::handle_actions() {
   for (const actuation::ActionOfRobot& action : actions_.all()) {
     bool is_handled = false;
-    for (std::size_t i = 0; i < handlers_.size(); ++i) {
+    for (std::size_t i = 0; i < handlers_.size(); ++i) {  // NOLINT(modernize-loop-convert): a handler may add one
       const auto& [name, handler] = handlers_[i];
       if (name != action.name || !world_.is_active(action.body)) continue;
       handler(action.robot, action.value);

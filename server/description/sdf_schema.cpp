@@ -36,8 +36,18 @@ const sdf::ElementPtr& sdf_definition() {
 }
 
 sdf::SDFPtr empty_sdf() {
-  sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-  sdf->Root(sdf_definition()->Clone());
+  // Not a clone, which would copy the definition of every element there is: those are only read.
+  const sdf::ElementPtr& definition = sdf_definition();
+  const sdf::ElementPtr root = std::make_shared<sdf::Element>();
+  root->SetName(definition->GetName());
+  root->SetRequired(definition->GetRequired());
+  for (const sdf::ParamPtr& attribute : definition->GetAttributes())
+    root->AddAttribute(attribute->GetKey(), attribute->GetTypeName(), attribute->GetDefaultAsString(),
+                       attribute->GetRequired(), attribute->GetDescription());
+  for (unsigned i = 0; i < definition->GetElementDescriptionCount(); ++i)
+    root->AddElementDescription(definition->GetElementDescription(i));
+  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+  sdf->Root(root);
   return sdf;
 }
 

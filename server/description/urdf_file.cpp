@@ -53,7 +53,7 @@ const XmlNode* find_below(const XmlNode& node, const std::string& name) {
 
 class LineFinder {
  public:
-  explicit LineFinder(const XmlNode& robot) : robot_(robot) {
+  explicit LineFinder(const XmlNode& robot) {
     for (const XmlNode& child : robot.children)
       if (const std::string* const name = child.attribute("name");
           name != nullptr && (child.name == "link" || child.name == "joint"))
@@ -90,7 +90,6 @@ class LineFinder {
     return collision != nullptr ? collision : link->second;
   }
 
-  const XmlNode& robot_;
   std::map<std::string, const XmlNode*> named_;
 };
 

@@ -48,7 +48,7 @@ TEST(Export, RefusesWhatItCannotWriteOrRead) {
 
 TEST(Samples, OfARingAreReadAgainByTheTechniqueOfThisName) {
   const ScratchFolder folder;
-  const std::string model = std::string(COHORT_SOURCE_DIR) + "/worlds/robots/sbot/model.sdf";
+  const std::string model = std::string(COHORT_SOURCE_DIR) + "/worlds/robots/sbot/base.sdf";
   const std::string file = (folder / "s.csv").string();
   const Ended taken =
       run_to_end({cohort_program(), "samples", model, "proximity", "-o", file, "--distances", "3", "--angles", "30"});

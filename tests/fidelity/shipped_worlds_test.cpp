@@ -100,7 +100,7 @@ TEST(ShippedExperiments, OnRoughTerrainRobotsStayUprightOnTheGround) {
 }
 
 TEST(ShippedExperiments, TwoRobotsPushTheBarIntoTheNest) {
-  const Shipped run("retrieval");
+  const Shipped run("pushing");
   EXPECT_EQ(run.result.stop_reason, "inside: 1 object");
   EXPECT_NEAR(run.position("things/bar").x(), 1.0, 0.01);
   EXPECT_LT(std::abs(run.position("things/bar").y()), 0.1);

@@ -49,6 +49,22 @@ class ShippedExperiment {
     return std::any_of(result.events.begin(), result.events.end(),
                        [](const session::Event& event) { return event.kind == "quarantined"; });
   }
+  /// What a robot last observed; the first value of the channel.
+  double reading(std::uint32_t robot, const std::string& channel) const {
+    std::size_t offset = 0;
+    for (const Channel& each : simulation.kinds()[simulation.kind_of(robot)].observation) {
+      if (each.name == channel) return simulation.observation(robot)[offset];
+      offset += each.size;
+    }
+    ADD_FAILURE() << "no channel " << channel;
+    return 0.0;
+  }
+  int robots_that_grip() const {
+    int count = 0;
+    for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
+      if (simulation.is_present(robot) && reading(robot, "gripper/0/gripping") == 1.0) ++count;
+    return count;
+  }
   double seconds() const { return std::chrono::duration<double>(simulation.time()).count(); }
   /// Of the robots, how many are no further than `radius` from a point of the plane.
   int robots_near(double x, double y, double radius) const {

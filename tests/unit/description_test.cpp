@@ -109,12 +109,12 @@ TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
   EXPECT_EQ(sbot.joints[0].type, JointType::revolute);
   EXPECT_TRUE(std::isinf(sbot.joints[0].axis.upper));
 
-  ASSERT_EQ(sbot.devices.size(), 11u);
+  ASSERT_EQ(sbot.devices.size(), 14u);
   EXPECT_DOUBLE_EQ(std::get<TreelDrive>(sbot.devices[0]).max_velocity, 0.2);
   EXPECT_DOUBLE_EQ(std::get<VelocityMotor>(sbot.devices[1]).max_effort, 0.3);
   EXPECT_EQ(std::get<TreelEncoder>(sbot.devices[2]).drive, 0u);
   EXPECT_EQ(std::get<JointEncoder>(sbot.devices[3]).joint, 0u);
-  const auto& ring = std::get<ProximityRing>(sbot.devices[4]);
+  const auto& ring = std::get<ProximityRing>(sbot.devices[6]);
   EXPECT_EQ(ring.link, 1u);
   EXPECT_EQ(ring.count, 15u);
   EXPECT_DOUBLE_EQ(ring.X_LS.position.z(), 0.02);
@@ -291,7 +291,7 @@ TEST_F(Description, AMergedModelBringsItsLinksAndDevices) {
                   "<cohort:joint_encoder name=\"mast\"><cohort:joint>mast</cohort:joint></cohort:joint_encoder>");
   const World world = read("<include><uri>model://tall</uri></include>");
   EXPECT_EQ(world.models[0].links.size(), 3u);
-  EXPECT_EQ(world.models[0].devices.size(), 12u);
+  EXPECT_EQ(world.models[0].devices.size(), 15u);
 }
 
 TEST_F(Description, TheEnvironmentsModelPathComesFirstAndTheWorkingDirectoryNever) {

@@ -150,8 +150,11 @@ RunTrace TraceRecorder::finish() {
   }
   for (const emission::Lamp& lamp : simulation_.emitters().lamps()) {
     const bool of_robot = lamp.mount.body < robot_of_body_.size() && robot_of_body_[lamp.mount.body] != none;
-    if (of_robot || lamp.light.kind == description::Light::Kind::directional || !lamp.p_W.allFinite()) continue;
-    trace_.lamps.push_back({lamp.p_W.head<2>(), lamp.is_on && simulation_.emitters().is_in_world(lamp.mount)});
+    if (of_robot || lamp.light.kind == description::Light::Kind::directional) continue;
+    // Also of one that was never in the world, which the emitters know no place of.
+    const Pose X_WE = simulation_.world().link_pose(lamp.mount.body, lamp.mount.link) * lamp.mount.X_LE;
+    if (!X_WE.position.allFinite()) continue;
+    trace_.lamps.push_back({X_WE.position.head<2>(), lamp.is_on && simulation_.emitters().is_in_world(lamp.mount)});
   }
   return std::move(trace_);
 }

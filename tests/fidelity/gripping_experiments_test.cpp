@@ -1,0 +1,137 @@
+// What the experiments with grippers come to, in numbers, for three seeds each.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "tests/support/shipped_experiment.hpp"
+
+namespace cohort {
+namespace {
+
+using testing::ShippedExperiment;
+
+constexpr std::size_t turret = 1;
+
+class Chain : public ::testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Experiments, Chain, ::testing::Values(1, 2, 3));
+
+TEST_P(Chain, CrossesATroughThatASingleOneFallsInto) {
+  constexpr double floor = 0.2, far_side = 0.65;
+  double lowest = floor;
+  int gripping_at_the_edge = 0;
+  const auto look = [&](const ShippedExperiment& run) {
+    double foremost = -1e9;
+    for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot) {
+      const Eigen::Vector3d at = run.simulation.robot_pose(robot).position;
+      lowest = std::min(lowest, at.z());
+      foremost = std::max(foremost, at.x());
+    }
+    if (foremost > 0.5 && foremost < far_side) gripping_at_the_edge = run.robots_that_grip();
+  };
+  const ShippedExperiment run("chain", GetParam(), 0.0, look);
+  EXPECT_EQ(run.result.stop_reason, "inside: 4 objects");
+  EXPECT_EQ(gripping_at_the_edge, 3) << "all but the first";
+  EXPECT_GT(lowest, floor - 0.015) << "nobody hangs deeper than this";
+  for (std::uint32_t robot = 0; robot < 4; ++robot) {
+    EXPECT_GT(run.simulation.robot_pose(robot).position.x(), far_side + 0.1);
+    EXPECT_NEAR(run.simulation.robot_pose(robot).position.z(), floor, 0.002);
+  }
+}
+
+class Lifting : public ::testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Experiments, Lifting, ::testing::Values(1, 2, 3));
+
+TEST_P(Lifting, AnSbotHoldsAnotherInTheAirAndPutsItDownAgain) {
+  double held = 0.0;          // [s]
+  double lifter_moved = 0.0;  // [m]
+  const auto look = [&](const ShippedExperiment& run) {
+    const double step = std::chrono::duration<double>(run.experiment.world.step).count();
+    // The lowest point of the tracks.
+    const Pose X_WL = run.pose("load/sbot_detailed_0");
+    double lowest = 1e9;
+    for (const double x : {-0.04, 0.04})
+      for (const double y : {-0.04, 0.04}) lowest = std::min(lowest, (X_WL * Eigen::Vector3d(x, y, 0.0)).z());
+    if (lowest > 0.02) held += step;
+    lifter_moved = std::max(lifter_moved, run.position("lifter/sbot_detailed_0").z());
+  };
+  const ShippedExperiment run("lifting", GetParam(), 0.0, look);
+  EXPECT_GT(held, 5.0);
+  EXPECT_LT(lifter_moved, 0.002) << "the anchor keeps the lifter on the ground";
+  const Pose X_WL = run.pose("load/sbot_detailed_0");
+  EXPECT_NEAR(X_WL.position.z(), 0.0, 0.001);
+  EXPECT_GT((X_WL.orientation * Eigen::Vector3d::UnitZ()).z(), 0.999);
+}
+
+// The robot whose ring is in a robot's gripper.
+std::uint32_t held_by(const ShippedExperiment& run, std::uint32_t robot) {
+  const auto X_WT = [&](std::uint32_t each) {
+    const auto body = *run.simulation.objects().find(run.simulation.robot_name(each));
+    return run.simulation.world().link_pose(body, turret);
+  };
+  std::uint32_t nearest = robot;
+  double least = 1e9;
+  const Eigen::Vector3d jaw_W = X_WT(robot) * Eigen::Vector3d(0.058, 0.0, 0.02);
+  for (std::uint32_t other = 0; other < run.simulation.robot_count(); ++other) {
+    if (other == robot) continue;
+    const double distance = (X_WT(other) * Eigen::Vector3d(0.0, 0.0, 0.02) - jaw_W).norm();
+    if (distance < least) {
+      least = distance;
+      nearest = other;
+    }
+  }
+  return nearest;
+}
+
+class Assembly : public ::testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Experiments, Assembly, ::testing::Values(1, 2, 3));
+
+TEST_P(Assembly, SbotsGripWhatTheyCanAndMoveAsOne) {
+  constexpr double west = -0.9, east = 0.9;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> grips;  // and how far apart the two are
+  int at_west = 0;
+  double stretched = 0.0;
+  const auto look = [&](const ShippedExperiment& run) {
+    const auto apart = [&](std::uint32_t a, std::uint32_t b) {
+      return (run.simulation.robot_pose(a).position - run.simulation.robot_pose(b).position).norm();
+    };
+    if (run.seconds() == 89.0) {
+      at_west = run.robots_near(west, 0.0, 0.7);
+      for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot) {
+        if (run.reading(robot, "gripper/0/gripping") != 1.0) continue;
+        const std::uint32_t other = held_by(run, robot);
+        grips[{robot, other}] = apart(robot, other);
+      }
+    }
+    for (const auto& [pair, distance] : grips)
+      stretched = std::max(stretched, std::abs(apart(pair.first, pair.second) - distance));
+  };
+  const ShippedExperiment run("assembly", GetParam(), 0.0, look);
+  EXPECT_GE(at_west, 10);
+  EXPECT_GE(grips.size(), 6u) << "of 12";
+  EXPECT_LT(stretched, 0.005) << "those that grip stay as they are on all of the way";
+  for (const auto& [pair, distance] : grips)
+    EXPECT_EQ(run.reading(pair.first, "gripper/0/gripping"), 1.0) << "nobody lets go";
+  EXPECT_GE(run.robots_near(east, 0.0, 0.7), 10);
+  EXPECT_FALSE(run.has_quarantined());
+}
+
+class Retrieval : public ::testing::TestWithParam<std::uint64_t> {};
+INSTANTIATE_TEST_SUITE_P(Experiments, Retrieval, ::testing::Values(1, 2, 3));
+
+TEST_P(Retrieval, SeveralMoveWhatTwoCannot) {
+  double moved_by_two = 0.0;
+  const auto look = [&](const ShippedExperiment& run) {
+    if (run.robots_that_grip() <= 2)
+      moved_by_two = std::max(moved_by_two, (run.position("prey") - Eigen::Vector3d(-0.4, 0.0, 0.0)).norm());
+  };
+  const ShippedExperiment run("retrieval", GetParam(), 0.0, look);
+  EXPECT_EQ(run.result.stop_reason, "inside: 1 object");
+  EXPECT_LT(moved_by_two, 0.01);
+  EXPECT_GE(run.robots_that_grip(), 3);
+}
+
+}  // namespace
+}  // namespace cohort

@@ -179,7 +179,8 @@ TEST_F(CourseWithActions, ChangesTheEmittersThatItNames) {
 }
 
 TEST_F(CourseWithActions, PrintsBreakableJoints) {
-  const Experiment experiment = read_course("print:\n  - {quantity: joint_force, joints: [hook, ho*]}\n  - {quantity: count}\n");
+  const Experiment experiment =
+      read_course("print:\n  - {quantity: joint_force, joints: [hook, ho*]}\n  - {quantity: count}\n");
   EXPECT_EQ(experiment.prints[0].quantity, Quantity::joint_force);
   EXPECT_EQ(experiment.prints[0].joints, std::vector<std::size_t>{0});
   EXPECT_TRUE(experiment.prints[0].objects.empty());

@@ -48,6 +48,7 @@ class WorldReader {
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
   void add_included_model(const Include& include, const Pose& X_WM);
   void read_extensions(const sdf::World& sdf_world);
+  void read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read);
   void add_material_pair(const ExtensionValues& values);
   void add_breakable_joint(const ExtensionValues& values);
   /// The index of the material that `key` names; reported if nothing is made of it.
@@ -235,15 +236,19 @@ void WorldReader::read_extensions(const sdf::World& sdf_world) {
   }
   // Last, when all materials and objects are known; what could not be read may have had more.
   const bool all_is_read = problems_.empty();
-  for (const auto& [element, extension] : extensions) {
-    if (extension->name != "material_pair" && extension->name != "breakable_joint") continue;
-    const auto values = ExtensionValues::read(element, *extension, report_);
-    if (!values || !all_is_read) continue;
-    if (extension->name == "material_pair")
-      add_material_pair(*values);
-    else
-      add_breakable_joint(*values);
-  }
+  for (const auto& [element, extension] : extensions) read_reference(element, *extension, all_is_read);
+}
+
+// What names a material or an object. Its keys are checked in any case.
+void WorldReader::read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read) {
+  const bool is_pair = extension.name == "material_pair";
+  if (!is_pair && extension.name != "breakable_joint") return;
+  const auto values = ExtensionValues::read(element, extension, report_);
+  if (!values || !all_is_read) return;
+  if (is_pair)
+    add_material_pair(*values);
+  else
+    add_breakable_joint(*values);
 }
 
 std::optional<std::uint32_t> WorldReader::find_material(const ExtensionValues& values, const char* key) const {

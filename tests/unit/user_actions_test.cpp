@@ -266,7 +266,8 @@ class EventsForEmitters : public ::testing::Test {
     stand_ = world_.add(stand, "stand", at(1, 0, 0.1));
   }
   void at_time(std::chrono::nanoseconds time, std::vector<std::size_t> emitters, EmitterChange change) {
-    world_.experiment.events.push_back({time, stand_, SetEmitters{std::move(emitters), std::move(change)}, "set_emitter"});
+    world_.experiment.events.push_back(
+        {time, stand_, SetEmitters{std::move(emitters), std::move(change)}, "set_emitter"});
   }
   double light() { return world_.read(0, "light/0/reading"); }
   double sound(std::size_t band) { return world_.read(0, "microphones/0/intensity", band); }

@@ -1,5 +1,5 @@
-// Phototaxis and assembly (thesis, section 5.2.3), for the s-bot: it goes to the light, and grips whatever it can. Those
-// that hold on to each other turn their chassis under their turrets towards the light, and so move as one.
+// Phototaxis and assembly (thesis, section 5.2.3), for the s-bot: it goes to the light, and grips whatever it can.
+// Those that hold on to each other turn their chassis under their turrets towards the light, and so move as one.
 //
 // It remembers whether it tries to grip; one that takes over in the middle of a run begins by trying.
 

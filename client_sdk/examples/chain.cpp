@@ -1,6 +1,6 @@
-// A chain of s-bots over a gap that is too wide for one (thesis, figure 1.2b). Each drives ahead until it sees the edge of
-// the ground, or another s-bot before it, which it grips. Who is on its way calls; when nobody is heard any more, all
-// that are in the chain drive ahead together.
+// A chain of s-bots over a gap that is too wide for one (thesis, figure 1.2b). Each drives ahead until it sees the edge
+// of the ground, or another s-bot before it, which it grips. Who is on its way calls; when nobody is heard any more,
+// all that are in the chain drive ahead together.
 //
 // It remembers what it is doing; one that takes over in the middle of a run begins by driving ahead.
 

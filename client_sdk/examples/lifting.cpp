@@ -1,6 +1,6 @@
-// One s-bot lifts another (thesis, section 1.1), held from behind by a third: alone it would tip over. Each that has this
-// controller drives ahead until it can grip the one before it. Who is on its way calls; when nobody is heard any more,
-// those that are told an angle raise their arm to it, hold, lower it, and let go.
+// One s-bot lifts another (thesis, section 1.1), held from behind by a third: alone it would tip over. Each that has
+// this controller drives ahead until it can grip the one before it. Who is on its way calls; when nobody is heard any
+// more, those that are told an angle raise their arm to it, hold, lower it, and let go.
 //
 // It remembers what it is doing; one that takes over in the middle of a run begins by driving ahead.
 

@@ -1,5 +1,6 @@
-// A swarm retrieves what is too heavy for one (thesis, figure 1.2a). An s-bot goes where the prey calls, grips it, turns its
-// chassis under its turret towards the light and drives: as soon as enough of them pull and push, the prey moves.
+// A swarm retrieves what is too heavy for one (thesis, figure 1.2a). An s-bot goes where the prey calls, grips it,
+// turns its chassis under its turret towards the light and drives: as soon as enough of them pull and push, the prey
+// moves.
 //
 // It keeps nothing from one step to the next but how long it still goes around another robot.
 
@@ -13,15 +14,15 @@
 
 namespace {
 
-constexpr double full_speed = 0.12;     // of a track [m/s]
-constexpr double turning_gain = 0.15;   // of a track, of the angle to where it wants to go [m/s]
-constexpr double turret_gain = 5.0;     // [1/s]
-constexpr double in_the_way = 0.6;      // of a proximity sensor: 8 cm
-constexpr double around_time = 1.0;     // that it goes around what is in the way [s]
-constexpr double around = 1.2;          // to its side [rad]
-constexpr double call_at_prey = 0.4;    // what is heard next to the prey, and not one robot further out
-constexpr double darkness = 0.03;       // what the noise of a light sensor may give without any light
-constexpr double slow_down = 1.0;       // of the angle to the light: from here on it only turns [rad]
+constexpr double full_speed = 0.12;    // of a track [m/s]
+constexpr double turning_gain = 0.15;  // of a track, of the angle to where it wants to go [m/s]
+constexpr double turret_gain = 5.0;    // [1/s]
+constexpr double in_the_way = 0.6;     // of a proximity sensor: 8 cm
+constexpr double around_time = 1.0;    // that it goes around what is in the way [s]
+constexpr double around = 1.2;         // to its side [rad]
+constexpr double call_at_prey = 0.4;   // what is heard next to the prey, and not one robot further out
+constexpr double darkness = 0.03;      // what the noise of a light sensor may give without any light
+constexpr double slow_down = 1.0;      // of the angle to the light: from here on it only turns [rad]
 
 class Retrieval final : public cohort::Controller {
  public:
@@ -30,7 +31,8 @@ class Retrieval final : public cohort::Controller {
     light_ = start.observations("light/*/reading");
     microphones_ = start.observations("microphones/*/intensity");
     if (proximity_.size() != 15 || light_.size() != 8 || microphones_.size() != 4)
-      throw std::runtime_error("this controller wants the proximity sensors, light sensors and microphones of an s-bot");
+      throw std::runtime_error(
+          "this controller wants the proximity sensors, light sensors and microphones of an s-bot");
     grippable_ = start.observation("gripper/0/grippable");
     gripping_ = start.observation("gripper/0/gripping");
     turret_position_ = start.observation("turret/0/position");

@@ -58,6 +58,26 @@ const std::vector<Form>& forms() {
   return all;
 }
 
+// Of <gazebo>: what libsdformat's converter takes for a number.
+constexpr std::string_view gazebo_numbers[] = {"dampingFactor",
+                                               "maxVel",
+                                               "minDepth",
+                                               "mu1",
+                                               "mu2",
+                                               "kp",
+                                               "kd",
+                                               "maxContacts",
+                                               "laserRetro",
+                                               "springReference",
+                                               "stopCfm",
+                                               "stopErp",
+                                               "springStiffness",
+                                               "stopKp",
+                                               "stopKd",
+                                               "cfmDamping",
+                                               "fudgeFactor",
+                                               "initialJointPosition"};
+
 constexpr std::string_view joint_types[] = {"revolute", "continuous", "prismatic", "fixed"};
 
 class Checker {
@@ -77,6 +97,7 @@ class Checker {
   void check_top(const XmlNode& node);
   void check_form(const XmlNode& node, const std::string& path);
   void check_attributes(const XmlNode& node, const Form& form, const std::string& path);
+  void check_gazebo(const XmlNode& gazebo);
   void check_link(const XmlNode& link, const std::string& path);
   void check_joint(const XmlNode& joint, const std::string& path);
   void check_tree(const XmlNode& robot);
@@ -131,7 +152,9 @@ void Checker::check_top(const XmlNode& node) {
     node.name == "link" ? check_link(node, path) : check_joint(node, path);
   } else if (node.name == "transmission") {
     warning(node, path, "<transmission> is not supported and is ignored; motors are cohort: elements");
-  } else if (node.name != "gazebo" && node.name != "material") {
+  } else if (node.name == "gazebo") {
+    check_gazebo(node);
+  } else if (node.name != "material") {
     warning(node, path, "<" + node.name + "> is not supported and is ignored");
   }
 }
@@ -191,6 +214,17 @@ void Checker::check_attributes(const XmlNode& node, const Form& form, const std:
       continue;
     }
     if (const std::optional<std::string> wrong = what_is_wrong(*value, attribute)) problem(node, path, *wrong);
+  }
+}
+
+void Checker::check_gazebo(const XmlNode& gazebo) {
+  for (const XmlNode& child : gazebo.children) {
+    if (std::find(std::begin(gazebo_numbers), std::end(gazebo_numbers), child.name) == std::end(gazebo_numbers))
+      continue;
+    const std::string* const attribute = child.attribute("value");
+    const Attribute number = {child.name, 1};
+    if (const auto wrong = what_is_wrong(attribute != nullptr ? *attribute : child.text, number))
+      problem(child, "robot/gazebo/" + child.name, *wrong);
   }
 }
 

@@ -164,12 +164,16 @@ std::vector<std::string> known_names(const sdf::Error& error, std::string_view p
   return names;
 }
 
+std::string cannot_have(const XmlNode& node) {
+  return "<" + node.name + "> cannot have the value '" + node.text + "'";
+}
+
 // For `Error reading element <NAME>`: what the value is that libsdformat says nothing about.
 std::string message_with_value(const sdf::Error& error, const XmlNode* node) {
   std::string name = error.Message().substr(error.Message().find('<') + 1);
   name.resize(std::min(name.find('>'), name.size()));
   if (node == nullptr || node->name != name || !node->children.empty()) return "<" + name + "> cannot be read";
-  return "<" + name + "> cannot have the value '" + node->text + "'";
+  return cannot_have(*node);
 }
 
 // A <frame> stands for an <include>.
@@ -193,7 +197,31 @@ void explain_unknown(const sdf::Error& error, Problem& problem, PlacedNames& mis
   if (const auto meant = nearest(name, known); meant && is_attribute) misspelt.emplace(parent, *meant);
 }
 
+void replace_bad_values_below(XmlNode& node, const ElementSchema& schema, const std::string& path, const SdfFile& file,
+                              std::vector<Problem>& problems) {
+  for (XmlNode& child : node.children) {
+    const ElementSchema of_child = schema.child(child.name);
+    if (of_child.is_free() || of_child.is_extension()) continue;
+    const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
+    // A pose may be written in several ways, by its attributes.
+    const bool is_as_usual = child.attribute("rotation_format") == nullptr && child.attribute("degrees") == nullptr;
+    if (!child.text.empty() && is_as_usual && !of_child.can_have(child.text)) {
+      std::string shown_path = child_path;
+      name_include(shown_path, file);
+      problems.push_back({child.file->shown, child.line, shown_path, cannot_have(child)});
+      child.text = of_child.default_text();
+    }
+    replace_bad_values_below(child, of_child, child_path, file, problems);
+  }
+}
+
 }  // namespace
+
+std::vector<Problem> replace_bad_values(XmlNode& tree, const SdfFile& file) {
+  std::vector<Problem> problems;
+  replace_bad_values_below(tree, ElementSchema::root(), "", file, problems);
+  return problems;
+}
 
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file, const XmlNode& tree) {
   std::vector<Problem> problems;

@@ -297,6 +297,20 @@ void SdfFiles::warn_of_repeated(const XmlNode& node, const ElementSchema& schema
 }
 
 void SdfFiles::load(SdfFile& file) {
+  std::vector<Problem> found = try_to_load(file);
+  if (!file.loaded) {
+    if (std::vector<Problem> values = replace_bad_values(file.tree, file); !values.empty()) {
+      found = try_to_load(file);
+      found.insert(found.begin(), values.begin(), values.end());
+    }
+  }
+  if (!file.loaded && found.empty() && problems_.empty())
+    found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
+  file.sound = file.loaded && found.empty() && file.complete;
+  problems_.insert(problems_.end(), found.begin(), found.end());
+}
+
+std::vector<Problem> SdfFiles::try_to_load(SdfFile& file) {
   XmlText written = xml_text_of(file.tree);
   file.nodes = std::move(written.nodes);
   sdf::Errors errors;
@@ -313,14 +327,9 @@ void SdfFiles::load(SdfFile& file) {
     }
   } catch (const std::exception& error) {
     file.loaded = false;
-    problems_.push_back({file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()});
-    return;
+    return {{file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()}};
   }
-  std::vector<Problem> found = problems_of(errors, file, file.tree);
-  if (!file.loaded && found.empty() && problems_.empty())
-    found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
-  file.sound = file.loaded && found.empty() && file.complete;
-  problems_.insert(problems_.end(), found.begin(), found.end());
+  return problems_of(errors, file, file.tree);
 }
 
 const SdfFile* SdfFiles::find(const std::string& path) const {

@@ -118,6 +118,8 @@ class SdfFiles {
   /// Of an element that SDF has once, the first counts.
   void warn_of_repeated(const XmlNode& node, const ElementSchema& schema, const std::string& path);
   void load(SdfFile& file);
+  /// Sets `loaded`; what libsdformat finds wrong.
+  std::vector<Problem> try_to_load(SdfFile& file);
   const SdfFile* find(const std::string& path) const;
   const XmlNode* node_of(const sdf::ElementPtr& element) const;
 

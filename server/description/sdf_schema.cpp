@@ -98,6 +98,14 @@ bool ElementSchema::has_value() const {
   return extension_ != nullptr && extension_->value != ExtensionValue::group;
 }
 
+bool ElementSchema::can_have(const std::string& text) const {
+  return !element_ || !element_->GetValue() || element_->GetValue()->Clone()->SetFromString(text);
+}
+
+std::string ElementSchema::default_text() const {
+  return element_ && element_->GetValue() ? element_->GetValue()->GetDefaultAsString() : std::string();
+}
+
 bool ElementSchema::is_vector() const {
   if (element_) return element_->GetValue() && is_vector_type(element_->GetValue()->GetTypeName());
   return key_ != nullptr && (key_->value == ExtensionValue::point || key_->value == ExtensionValue::pose);

@@ -31,6 +31,9 @@ class ElementSchema {
   /// SDF has it at most once in its parent.
   bool is_single() const;
   bool has_value() const;
+  /// Whether SDF can have this text as its value. Only what depends on no attribute is looked at.
+  bool can_have(const std::string& text) const;
+  std::string default_text() const;
   /// Its value is several numbers.
   bool is_vector() const;
 

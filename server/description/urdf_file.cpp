@@ -126,9 +126,15 @@ std::optional<XmlNode> sdf_of_urdf(const XmlNode& robot, const std::filesystem::
   const ConsoleCapture console;
   sdf::Errors errors;
   const sdf::SDFPtr sdf = empty_sdf();
-  const bool is_read = sdf::readString(xml_text_of(robot).text, config, sdf, errors);
+  bool is_read = false;
+  std::string why;
+  try {
+    is_read = sdf::readString(xml_text_of(robot).text, config, sdf, errors);
+  } catch (const std::exception& error) {  // of what <gazebo> holds, for example
+    why = error.what();
+  }
   if (!is_read || !sdf->Root()->HasElement("model")) {
-    std::string why = console.errors();
+    why += console.errors();
     for (const sdf::Error& error : errors) why += (why.empty() ? "" : "; ") + error.Message();
     problems.push_back(
         {file, robot.line, "robot", "libsdformat cannot convert this URDF to SDF" + (why.empty() ? "" : ": " + why)});

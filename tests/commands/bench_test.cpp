@@ -169,6 +169,79 @@ TEST(Bench, MeasuresRaysAndTheBuildingOfAWorld) {
   }
 }
 
+Measured measure_thesis(std::vector<std::string> arguments) {
+  const ScratchFolder folder;
+  const std::string file = (folder / "results.json").string();
+  arguments.insert(arguments.begin(), {cohort_program(), "bench", "thesis"});
+  arguments.insert(arguments.end(), {"--budget", "0.01", "--json", file});
+  Measured measured{run_to_end(arguments), {}};
+  EXPECT_EQ(measured.ended.exit_code, 0) << measured.ended.err;
+  measured.json = Json::parse(read_file(file), nullptr, false);
+  return measured;
+}
+
+// Every column of the row, in the order of the table, with its costs; those of an engine that is not there are left
+// out.
+void expect_costs(const Json& row, const std::vector<std::string>& columns) {
+  for (const std::string& column : columns) {
+    ASSERT_TRUE(row.contains(column)) << column << " in " << row;
+    EXPECT_GT(row[column].value("seconds", 0.0), 0.0) << row;
+    EXPECT_GT(row[column].value("us_per_robot_frame", 0.0), 0.0) << row;
+  }
+}
+
+TEST(BenchThesis, PrintsProximitySensorsBesideTheThesis) {
+  const Measured measured = measure_thesis({"--table", "5.3", "--robots", "3,8", "--seconds", "0.2"});
+  ASSERT_EQ(measured.json["results"].size(), 2u) << measured.json;
+  EXPECT_NE(measured.ended.out.find("Table 5.3, proximity sensors: 2 frames of 100 ms"), std::string::npos);
+  EXPECT_NE(measured.ended.out.find("Table 5.3, proximity sensors: 20 frames of 10 ms"), std::string::npos);
+  for (const Json& table : measured.json["results"]) {
+    ASSERT_EQ(table["rows"].size(), 2u) << table;
+    for (const Json& row : table["rows"])
+      expect_costs(row, {"ray", "samples", "shadow", "random_ray", "five_rays", "ray, whole tick"});
+  }
+  const Json& rows = measured.json["results"][0]["rows"];
+  EXPECT_EQ(rows[1]["thesis raytracing"], 0.57722);
+  EXPECT_EQ(rows[1]["thesis sampling"], 0.30498);
+  EXPECT_EQ(rows[1]["thesis shadow"], 0.30375);
+  EXPECT_TRUE(rows[0]["thesis shadow"].is_null()) << "the thesis has no row for 3 robots";
+}
+
+TEST(BenchThesis, RaysOfOdeMeetTheSameObstacles) {
+  const Measured measured = measure_thesis({"--table", "5.3", "--robots", "64", "--seconds", "0.1"});
+  const Json& row = measured.json["results"][0]["rows"][0];
+  EXPECT_GT(row["ray"].value("answer", 0.0), 0.01) << "nothing is near";
+  if (row.contains("ODE rays")) {
+    EXPECT_NEAR(row["ODE rays"].value("answer", 0.0), row["ray"].value("answer", 0.0), 1e-9);
+  }
+}
+
+TEST(BenchThesis, PrintsLightAndSoundAndTheCostOfAThousandRobots) {
+  const Measured measured = measure_thesis({"--table", "5.4", "--robots", "64,1000", "--seconds", "0.1"});
+  const Json& rows = measured.json["results"][0]["rows"];
+  ASSERT_EQ(rows.size(), 2u);
+  for (const Json& row : rows) {
+    expect_costs(row, {"light", "sound", "both", "both, whole tick"});
+    const double seen = row["light"].value("answer", 0.0);
+    EXPECT_GT(seen, 0.0);
+    EXPECT_LT(seen, 1.0) << "no robot hides a lamp";
+    if (row.contains("ODE rays of light")) {
+      EXPECT_NEAR(row["ODE rays of light"].value("answer", 0.0), seen, 1e-3);
+    }
+  }
+  EXPECT_NE(measured.ended.out.find("24 lamps and 24 sounds, 1000 robots"), std::string::npos) << measured.ended.out;
+}
+
+TEST(BenchThesis, RunsOnlyTheTablesThatAreAskedFor) {
+  const Measured measured = measure_thesis({"--table", "5.1", "--robots", "2", "--seconds", "0.1"});
+  ASSERT_EQ(measured.json["results"].size(), 1u);
+  const Json& row = measured.json["results"][0]["rows"][0];
+  EXPECT_EQ(row["thesis worldstep"], 0.16606);
+  EXPECT_GT(row["cohort 10 ms"].value("seconds", 0.0), 0.0);
+  const Ended ended = run_to_end({cohort_program(), "bench", "thesis", "--table", "5.5"});
+  EXPECT_EQ(ended.exit_code, 2);
+}
+
 TEST(Bench, AnEngineThatIsNotInThisBuildIsRefusedWithItsPackage) {
   const Measured some = measure({"--scene", "rays", "--robots", "1"});
   for (const Json& engine : some.json["missing_engines"]) {

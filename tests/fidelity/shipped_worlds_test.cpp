@@ -121,6 +121,44 @@ TEST(ShippedExperiments, TheRoverDrivesTheCircleOfItsWheels) {
   EXPECT_GT(run.least_upright, 0.98);
 }
 
+TEST(ShippedExperiments, WheelsRollAsTheTreelDriveThatStandsForThem) {
+  struct Circle {
+    double diameter = 0.0;  // [m]
+    double heading = 0.0;   // all that it turned by [rad]
+  };
+  const auto drive = [](description::Fidelity fidelity) {
+    description::Experiment experiment = description::read_experiment(testing::shipped_experiments / "wheels.yaml");
+    EXPECT_EQ(experiment.world.physics.fidelity, description::Fidelity::articulated);
+    experiment.world.physics.fidelity = fidelity;
+    Simulation simulation(experiment, 1);
+    std::vector<double> command(simulation.kinds()[0].command_size, 0.0);
+    command[0] = 0.08;
+    command[1] = 0.12;
+    simulation.set_command(0, command);
+    Circle circle;
+    double before = 0.0;
+    for (int tick = 0; tick < 1000; ++tick) {
+      simulation.step();
+      const Pose X_WL = simulation.robot_pose(0);
+      circle.diameter = std::max(circle.diameter, X_WL.position.norm());
+      const Eigen::Vector3d forward_W = X_WL.orientation * Eigen::Vector3d::UnitX();
+      const double heading = std::atan2(forward_W.y(), forward_W.x());
+      circle.heading += std::remainder(heading - before, 2.0 * M_PI);
+      before = heading;
+    }
+    return circle;
+  };
+  // The middles of the two sides are 0.08 m apart.
+  constexpr double turn_rate = 0.04 / 0.08, diameter = 2.0 * 0.1 / turn_rate;
+  const Circle tracks = drive(description::Fidelity::treel);
+  EXPECT_NEAR(tracks.diameter, diameter, 0.01 * diameter);
+  EXPECT_NEAR(tracks.heading, turn_rate * 10.0, 0.02 * turn_rate * 10.0);
+  // Wheels of 12 mm touch the ground anywhere along their width.
+  const Circle wheels = drive(description::Fidelity::articulated);
+  EXPECT_NEAR(wheels.diameter, tracks.diameter, 0.05 * diameter);
+  EXPECT_NEAR(wheels.heading, tracks.heading, 0.05 * turn_rate * 10.0);
+}
+
 TEST(ShippedExperiments, TheHexapodWalksAheadAndStaysUpright) {
   const Shipped run("hexapod");
   EXPECT_GT(run.position("hexapod").x(), 1.0);

@@ -4,7 +4,8 @@
 
 namespace cohort::testing {
 
-/// float64 values of a command of the s-bot that ships: tracks, turret, LEDs, loudspeakers and gripper. The tracks come first.
+/// float64 values of a command of the s-bot that ships: tracks, turret, LEDs, loudspeakers and gripper. The tracks come
+/// first.
 inline constexpr std::size_t sbot_command_size = 32;
 
 }  // namespace cohort::testing

@@ -478,6 +478,21 @@ TEST_F(Description, FlawsOfIncludedFilesAndOfTheWorldAreReportedTogetherAndOnce)
   EXPECT_EQ(problems.size(), 5u);  // the population misses three things
 }
 
+TEST_F(Description, EveryValueThatIsNoneIsReportedTogetherWithWhatElseIsWrong) {
+  const fs::path file = write_world(
+      "<gravity>0 0 x</gravity><model name=\"m\"><link name=\"l\">\n<inertial><mass>heavy</mass></inertial>\n"
+      "<collision name=\"c\"><geometry><box><size>1 1</size></box></geometry></collision>\n"
+      "<cohort:grip_ring name=\"r\"><cohort:radiuss>1</cohort:radiuss></cohort:grip_ring></link></model>");
+  const auto problems = problems_of([&] { read_world(file, 1); });
+  expect_problem(problems, file, {"", 2, "world/gravity", "cannot have the value '0 0 x'"});
+  expect_problem(problems, file, {"", 3, "world/model[m]/link[l]/inertial/mass", "cannot have the value 'heavy'"});
+  expect_problem(problems, file,
+                 {"", 4, "world/model[m]/link[l]/collision[c]/geometry/box/size", "cannot have the value '1 1'"});
+  expect_problem(problems, file,
+                 {"", 5, "world/model[m]/link[l]/cohort:grip_ring[r]/cohort:radiuss", "did you mean 'cohort:radius'?"});
+  EXPECT_EQ(problems.size(), 4u);
+}
+
 // ---- Experiments ----
 
 class Experiments : public Description {

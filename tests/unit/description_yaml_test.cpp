@@ -276,7 +276,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"world:\n  name: w\n  static: true\n", 3, "world/static", "unknown key"},
         Flaw{"world:\n  model: {name: m, static: true, link: box}\n", 2, "world/model[m]/link",
              "expected 'KEY: VALUE' lines, not 'box'"},
-        Flaw{"world:\n  gravity: [[0, 0], [0, 1]]\n", 2, "world/gravity", "cannot have the value '0 0'"},
+        Flaw{"world:\n  gravity: [[0, 0], [0, 0, 1]]\n", 2, "world/gravity", "cannot have the value '0 0'"},
         Flaw{"world:\n  model:\n    - [1, 2]\n", 3, "world/model", "a list in a list"},
         Flaw{"world:\n  ? [a, b]\n  : c\n", 2, "world", "expected the name of an element as a key, not a list"},
         Flaw{"world:\n  a b: 1\n", 2, "world", "'a b' cannot be the name of an element"},

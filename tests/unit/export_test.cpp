@@ -113,6 +113,11 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
       odd_joint("five", "fixed", "f", "g", "") +
       "<cohort:velocity_motor name=\"m\"><cohort:joint>one</cohort:joint><cohort:max_velocity>1.7</cohort:max_velocity>"
       "<cohort:max_effort>0.3</cohort:max_effort></cohort:velocity_motor>"
+      "<cohort:effort_motor name=\"push\"><cohort:joint>four</cohort:joint><cohort:max_effort>0.7</cohort:max_effort>"
+      "<cohort:rotor_inertia>0.013</cohort:rotor_inertia></cohort:effort_motor>"
+      "<cohort:torque_sensor name=\"m_torque\"><cohort:joint>one</cohort:joint></cohort:torque_sensor>"
+      "<cohort:traction_sensor name=\"two\"><cohort:joint>two</cohort:joint><cohort:noise>0.1</cohort:noise>"
+      "</cohort:traction_sensor>"
       "<cohort:joint_encoder name=\"m\"><cohort:joint>four</cohort:joint></cohort:joint_encoder>"
       "<cohort:proximity_ring name=\"r\"><cohort:link>b</cohort:link><cohort:pose>0 0.1 0.2 0.3 0.4 0.5</cohort:pose>"
       "<cohort:count>5</cohort:count><cohort:first_bearing>0.1</cohort:first_bearing><cohort:spacing>1.1</"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -162,6 +163,51 @@ TEST(Grippers, LoseWhatPullsHarderThanTheyBearAndGraspAgainOnlyOnceOpened) {
   pair.drive(0, 0.0, 0.0);
   pair.world.step(20);
   EXPECT_FALSE(pair.grips(0)) << "though it is still closed";
+}
+
+TEST(Grippers, SlipAboveWhatTheyHold) {
+  // The other one brakes with 1.8 N.
+  const auto moved_apart = [](double holding_force) {
+    SensingWorld world;
+    description::Model weak = gripping_robot();
+    for (description::Device& device : weak.devices)
+      if (auto* const gripper = std::get_if<description::Gripper>(&device)) gripper->holding_force = holding_force;
+    const std::uint32_t first = world.add(weak, "first", at(0, 0, 0));
+    const std::uint32_t second = world.add(gripping_robot(), "second", at(2.0 * radius + 0.008, 0, 0, 0.5));
+    world.command(1, "gripper/0/opening", {1.0});
+    world.command(0, "gripper/0/opening", {0.0});
+    world.step(closing_ticks);
+    const auto apart = [&] {
+      return (world.simulation().object_pose(first).position - world.simulation().object_pose(second).position).norm();
+    };
+    const double before = apart();
+    world.command(0, "treel/left/velocity", {-0.1});
+    world.command(0, "treel/right/velocity", {-0.1});
+    world.step(100);
+    EXPECT_EQ(world.read(0, "gripper/0/gripping"), 1.0);
+    EXPECT_NEAR(world.read(0, "gripper/0/force"), std::min(holding_force, 2.0 * 0.02 / 0.022), 0.05);
+    return apart() - before;
+  };
+  EXPECT_GT(moved_apart(0.5), 0.05);
+  EXPECT_LT(moved_apart(60.0), 0.001);
+}
+
+TEST(Grippers, WithABeamSeeWhateverIsBetweenTheirSides) {
+  description::Model model = gripping_robot();
+  for (description::Device& device : model.devices)
+    if (auto* const gripper = std::get_if<description::Gripper>(&device))
+      gripper->light_barrier = description::Gripper::LightBarrier::beam;
+  // A post that nobody can grip; the beam is 7.5 mm before the jaw, from 15 mm left of it to 15 mm right.
+  const auto sees = [&](double x, double y) {
+    SensingWorld world;
+    world.add(model, "robot", at(0, 0, 0));
+    world.add(testing::static_shape("post", description::Cylinder{0.004, 0.2}), "post", at(radius + x, y, 0.1));
+    return world.read(0, "gripper/0/grippable") == 1.0;
+  };
+  EXPECT_TRUE(sees(0.0075, 0.0));
+  EXPECT_TRUE(sees(0.0075, 0.014));
+  EXPECT_FALSE(sees(0.0075, 0.03));
+  EXPECT_FALSE(sees(0.014, 0.0));
 }
 
 TEST(Grippers, OfTwoRobotsMayHoldEachOther) {

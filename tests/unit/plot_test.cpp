@@ -37,7 +37,7 @@ struct PastRun {
 };
 
 // Every robot drives straight ahead at 0.1 m/s.
-PastRun run(const description::World& world, int ticks, bool recorded = true) {
+PastRun run(const description::World& world, int ticks, bool recorded = true, Viewpoint viewpoint = Viewpoint::above) {
   description::Experiment experiment;
   experiment.world = world;
   description::Team team{"team", {}, "none", {}};
@@ -45,7 +45,7 @@ PastRun run(const description::World& world, int ticks, bool recorded = true) {
   experiment.teams.push_back(team);
   Simulation simulation(experiment, 1);
   std::optional<TraceRecorder> recorder;
-  if (recorded) recorder.emplace(experiment.world, simulation);
+  if (recorded) recorder.emplace(experiment.world, simulation, viewpoint);
   for (int tick = 0; tick < ticks; ++tick) {
     if (recorder) recorder->boundary();
     for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
@@ -191,9 +191,9 @@ TEST(Plot, DrawsABoxByItsFourCornersTurnedByItsYaw) {
 // Size of the least upright rectangle around an outline.
 Eigen::Vector2d extent_of(const geometry::Shape& shape, const Pose& X_WC) {
   const Outline outline = outline_of({TracedSolid::Kind::obstacle, shape, X_WC});
-  if (outline.corners_W.empty()) return Eigen::Vector2d::Constant(2.0 * outline.radius);
-  Eigen::Vector2d lower = outline.corners_W[0], upper = outline.corners_W[0];
-  for (const Eigen::Vector2d& corner : outline.corners_W) {
+  if (outline.corners_V.empty()) return Eigen::Vector2d::Constant(2.0 * outline.radius);
+  Eigen::Vector2d lower = outline.corners_V[0], upper = outline.corners_V[0];
+  for (const Eigen::Vector2d& corner : outline.corners_V) {
     lower = lower.cwiseMin(corner);
     upper = upper.cwiseMax(corner);
   }
@@ -230,6 +230,32 @@ TEST(Plot, ShowsRobotsWhereTheyStartAndEndInTheirRealSize) {
   for (std::size_t robot : {0u, 1u}) expect_at(group(plot, "ends"), robot, done.ends[robot].position);
   EXPECT_GT((done.ends[0].position - Eigen::Vector3d(100.3, 50.8, 0.0)).norm(), 0.1) << "they did move";
   EXPECT_NEAR(done.trace.robots[1].end_heading, 2.0, 0.05);
+}
+
+TEST(Plot, FromTheSideShowsHeightsAndWhatRobotsAreMadeOf) {
+  description::World world = world_with_floor();
+  place(world, static_shape("block", description::Box{{0.4, 0.2, 0.3}}), "block", at(1.0, 0.5, 0.15));
+  place(world, tracked_robot(), "robot", at(0.0, 0.0, 0.0));
+  const PastRun done = run(world, 100, true, Viewpoint::side);
+  ASSERT_EQ(done.trace.solids.size(), 1u);
+  EXPECT_TRUE(done.trace.solids[0].X_VC.position.isApprox(Eigen::Vector3d(1.0, 0.15, -0.5)));
+  const RobotTrace& robot = done.trace.robots[0];
+  EXPECT_NEAR(robot.path_V.back().x(), done.ends[0].position.x(), 1e-12);
+  EXPECT_NEAR(robot.path_V.back().y(), done.ends[0].position.z(), 1e-12);
+  // Its tracks, and each of its collisions.
+  ASSERT_EQ(robot.at_end.size(), robot.at_start.size());
+  double lowest = 1e9, highest = -1e9;
+  for (const TracedSolid& solid : robot.at_end) {
+    const geometry::Bounds bounds = geometry::bounds_of(solid.shape, solid.X_VC);
+    lowest = std::min(lowest, bounds.lower.y());
+    highest = std::max(highest, bounds.upper.y());
+  }
+  EXPECT_NEAR(lowest, 0.0, 1e-3) << "the tracks are on the ground";
+  EXPECT_NEAR(highest, 0.095, 1e-3) << "the turret ends here";
+  const std::string plot = done.plot();
+  EXPECT_EQ(count(group(plot, "ends"), "<polygon"), robot.at_end.size());
+  EXPECT_EQ(count(group(plot, "starts"), "<polygon"), robot.at_start.size());
+  EXPECT_EQ(count(group(plot, "obstacles"), "<polygon"), 1u);
 }
 
 TEST(Plot, ShowsWhichLampsShineAtTheEnd) {
@@ -313,7 +339,7 @@ TEST(Plot, MarksARobotThatLeansOnAWallOnce) {
   ASSERT_GE(done.trace.contacts.size(), 1u);
   EXPECT_LE(done.trace.contacts.size(), 2u) << "at the most one in a square of 5 cm, or a neighbour";
   EXPECT_EQ(done.trace.contacts[0].kind, ContactMark::Kind::obstacle);
-  EXPECT_NEAR(done.trace.contacts[0].position_W.x(), 0.11, 0.01);
+  EXPECT_NEAR(done.trace.contacts[0].position_V.x(), 0.11, 0.01);
   EXPECT_GE(count(group(done.plot(), "contacts"), "#touches-obstacle"), 1u);
 }
 
@@ -331,7 +357,7 @@ TEST(Plot, KeepsAStraightPathShort) {
   description::World world = world_with_floor();
   place(world, tracked_robot(), "robot", at(0, 0, 0));
   const PastRun done = run(world, 500);
-  EXPECT_GE(done.trace.robots[0].path_W.size(), 51u) << "a sample every 0.1 s";
+  EXPECT_GE(done.trace.robots[0].path_V.size(), 51u) << "a sample every 0.1 s";
   EXPECT_LT(group(done.plot(), "paths").size(), 300u);
 }
 

@@ -3,9 +3,9 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <stdexcept>
 
 #include "tools/bench/engines.hpp"
+#include "tools/bench/ode_start.hpp"
 
 namespace cohort::bench {
 namespace {
@@ -224,12 +224,6 @@ class OdeEngine final : public Engine {
   std::array<dContact, most_points> contacts_{};  // of the pair at hand
   std::vector<Touch> touches_;
 };
-
-// Whoever uses ODE first starts it; it holds no more than tables.
-void start_ode() {
-  static const bool started = [] { return dInitODE2(0) != 0; }();
-  if (!started) throw std::runtime_error("ODE does not start");
-}
 
 }  // namespace
 

@@ -94,18 +94,15 @@ Scene connected_scene(std::uint32_t robots) {
   return scene;
 }
 
-struct Known {
-  std::uint32_t robots;
-  std::optional<double> worldstep;
-  std::optional<double> quickstep;
-};
-
 template <class MakeScene>
-ThesisTable measure_table(const std::string& title, std::span<const Known> known, const MakeScene& make_scene,
+ThesisTable measure_table(const std::string& title, const std::vector<KnownRow>& known, const MakeScene& make_scene,
                           const ThesisOptions& options, const Surroundings& surroundings) {
-  ThesisTable table{title, {"worldstep", "quickstep"}, column_names(), {}};
-  for (const Known& each : known) {
-    ThesisRow row{each.robots, {each.worldstep, each.quickstep}, {}};
+  ThesisTable table;
+  table.title = title;
+  table.thesis_columns = {"worldstep", "quickstep"};
+  table.columns = column_names();
+  for (const KnownRow& each : wanted_rows(known, options)) {
+    ThesisRow row{each.robots, each.seconds, {}};
     for (const Column& column : columns) {
       const bool is_ours = std::string_view(column.engine) == "cohort";
       row.cells.push_back(is_ours || each.robots <= last_of_ode
@@ -137,9 +134,10 @@ Behaviour behaviour_of(const EngineKind& kind, double step) {
     const std::unique_ptr<Engine> engine = kind.make(scene, 1);
     start_z = engine->turret_centre(0).z();
     engine->set_command(0, {speed, speed, 0.0});
+    const unsigned last_steps = steps - steps / 2;
     const Eigen::Vector2d half = run(*engine, steps / 2);
-    const Eigen::Vector2d whole = run(*engine, steps - steps / 2);
-    behaviour.speed_ratio = (whole - half).norm() / (step * (steps - steps / 2) * speed);
+    const Eigen::Vector2d whole = run(*engine, last_steps);
+    behaviour.speed_ratio = (whole - half).norm() / (step * last_steps * speed);
   }
   {
     const std::unique_ptr<Engine> engine = kind.make(scene, 1);
@@ -150,30 +148,38 @@ Behaviour behaviour_of(const EngineKind& kind, double step) {
   return behaviour;
 }
 
-std::string seconds_of(const std::optional<double>& seconds) { return seconds ? fmt::format("{:.3g}", *seconds) : "-"; }
-
-std::string text_of(const ThesisCell& cell) {
-  if (cell.is_missing) return "-";
-  return fmt::format("{:.3g}{}", cell.seconds, cell.is_extrapolated ? "*" : "");
-}
-
 }  // namespace
 
+std::vector<std::string> thesis_tables() { return {"5.1", "5.2", "5.3", "5.4", "behaviour"}; }
+
+std::vector<KnownRow> wanted_rows(std::vector<KnownRow> known, const ThesisOptions& options) {
+  if (options.robots.empty()) return known;
+  std::vector<KnownRow> wanted;
+  for (const std::uint32_t robots : options.robots) {
+    const auto found = std::ranges::find(known, robots, &KnownRow::robots);
+    if (found != known.end())
+      wanted.push_back(*found);
+    else
+      wanted.push_back({robots, std::vector<std::optional<double>>(known.front().seconds.size())});
+  }
+  return wanted;
+}
+
 ThesisTable random_movement(const ThesisOptions& options, const Surroundings& surroundings) {
-  static const Known known[] = {{1, 0.08638, 0.41086},  {2, 0.16606, 0.81016},   {4, 0.32694, 1.62109},
-                                {8, 0.65303, 3.25002},  {16, 1.40601, 6.50322},  {32, 4.16268, 13.1822},
-                                {64, 15.0444, 27.4801}, {128, 52.1648, 57.5374}, {1000, {}, {}},
-                                {10'000, {}, {}}};
+  const std::vector<KnownRow> known = {{1, {0.08638, 0.41086}},  {2, {0.16606, 0.81016}},   {4, {0.32694, 1.62109}},
+                                       {8, {0.65303, 3.25002}},  {16, {1.40601, 6.50322}},  {32, {4.16268, 13.1822}},
+                                       {64, {15.0444, 27.4801}}, {128, {52.1648, 57.5374}}, {1000, {{}, {}}},
+                                       {10'000, {{}, {}}}};
   return measure_table(
       "Table 5.1, random movement", known, [&](std::uint32_t robots) { return random_scene(robots, options.seed); },
       options, surroundings);
 }
 
 ThesisTable connected_robots(const ThesisOptions& options, const Surroundings& surroundings) {
-  static const Known known[] = {{1, 0.08638, 0.41086}, {2, 0.41023, 0.84053}, {4, 2.72198, 1.73786},
-                                {6, 8.90234, 2.61219}, {8, 24.8694, 3.49186}, {12, 75.4717, 5.26593},
-                                {16, {}, 7.06165},     {20, {}, 8.88494},     {25, {}, 11.0939},
-                                {128, {}, {}}};
+  const std::vector<KnownRow> known = {{1, {0.08638, 0.41086}}, {2, {0.41023, 0.84053}}, {4, {2.72198, 1.73786}},
+                                       {6, {8.90234, 2.61219}}, {8, {24.8694, 3.49186}}, {12, {75.4717, 5.26593}},
+                                       {16, {{}, 7.06165}},     {20, {{}, 8.88494}},     {25, {{}, 11.0939}},
+                                       {128, {{}, {}}}};
   return measure_table(
       "Table 5.2, connected robots", known, [](std::uint32_t robots) { return connected_scene(robots); }, options,
       surroundings);
@@ -186,56 +192,6 @@ std::vector<Behaviour> behaviours(const Surroundings& surroundings) {
     if (const EngineKind& kind = kind_of(column.engine); kind.make) all.push_back(behaviour_of(kind, column.step));
   }
   return all;
-}
-
-std::string text_of(const ThesisTable& table) {
-  std::string text = table.title + "\n  " + fmt::format("{:>7}", "robots");
-  for (const std::string& column : table.thesis_columns) text += fmt::format("{:>18}", "thesis " + column);
-  for (const std::string& column : table.columns) text += fmt::format("{:>21}", column);
-  text += "\n";
-  for (const ThesisRow& row : table.rows) {
-    text += fmt::format("  {:>7}", row.robots);
-    for (const auto& seconds : row.thesis) text += fmt::format("{:>18}", seconds_of(seconds));
-    for (const ThesisCell& cell : row.cells) text += fmt::format("{:>21}", text_of(cell));
-    text += "\n";
-  }
-  return text;
-}
-
-std::string text_of(const std::vector<Behaviour>& behaviours) {
-  std::string text = "What a robot alone does\n";
-  text +=
-      fmt::format("  {:<16}{:>9}{:>8}{:>19}{:>13}\n", "engine", "step ms", "speed", "creep mm in 5 s", "sinking mm");
-  for (const Behaviour& each : behaviours)
-    text += fmt::format("  {:<16}{:>9g}{:>8.3f}{:>19.3f}{:>13.3f}\n", each.engine, 1e3 * each.step, each.speed_ratio,
-                        1e3 * each.creep, 1e3 * each.sinking);
-  return text;
-}
-
-nlohmann::ordered_json to_json(const ThesisTable& table) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const ThesisRow& row : table.rows) {
-    nlohmann::ordered_json json{{"robots", row.robots}};
-    for (std::size_t i = 0; i < row.thesis.size(); ++i)
-      json["thesis " + table.thesis_columns[i]] =
-          row.thesis[i] ? nlohmann::ordered_json(*row.thesis[i]) : nlohmann::ordered_json(nullptr);
-    for (std::size_t i = 0; i < row.cells.size(); ++i)
-      if (!row.cells[i].is_missing)
-        json[table.columns[i]] = {{"seconds", row.cells[i].seconds}, {"extrapolated", row.cells[i].is_extrapolated}};
-    rows.push_back(std::move(json));
-  }
-  return {{"table", table.title}, {"rows", rows}};
-}
-
-nlohmann::ordered_json to_json(const std::vector<Behaviour>& behaviours) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const Behaviour& each : behaviours)
-    rows.push_back({{"engine", each.engine},
-                    {"step_s", each.step},
-                    {"speed_ratio", each.speed_ratio},
-                    {"creep_m", each.creep},
-                    {"sinking_m", each.sinking}});
-  return {{"table", "behaviour"}, {"rows", rows}};
 }
 
 nlohmann::ordered_json measure_thesis(const ThesisOptions& options, const Surroundings& surroundings,
@@ -253,9 +209,15 @@ nlohmann::ordered_json measure_thesis(const ThesisOptions& options, const Surrou
       fmt::format("CPU seconds for {:g} simulated seconds, one thread; *: extrapolated from {:g} s of CPU time.\n"
                   "The thesis's own were measured on an Athlon XP 2800+ of 2003, in steps of 100 ms.\n",
                   options.seconds, options.budget));
-  take(random_movement(options, surroundings));
-  take(connected_robots(options, surroundings));
-  take(behaviours(surroundings));
+  const auto is_wanted = [&](const char* table) {
+    return options.tables.empty() || std::ranges::find(options.tables, table) != options.tables.end();
+  };
+  if (is_wanted("5.1")) take(random_movement(options, surroundings));
+  if (is_wanted("5.2")) take(connected_robots(options, surroundings));
+  if (is_wanted("5.3"))
+    for (const ThesisTable& table : proximity_sensors(options, surroundings)) take(table);
+  if (is_wanted("5.4")) take(light_and_sound(options, surroundings));
+  if (is_wanted("behaviour")) take(behaviours(surroundings));
   return all;
 }
 

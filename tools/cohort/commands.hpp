@@ -11,6 +11,7 @@
 #include "tools/bench/measure.hpp"
 #include "tools/bench/thesis.hpp"
 #include "tools/cohort/log.hpp"
+#include "tools/cohort/run_trace.hpp"
 
 /// The commands of `cohort`, one file each. Every command returns the process's exit code.
 namespace cohort::tool {
@@ -36,10 +37,11 @@ struct RunCommand {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   Controllers controllers = Controllers::process;
-  std::optional<double> speed;    ///< 0: as fast as it goes; none: that, or real time if people drive
-  std::filesystem::path summary;  ///< file to write; empty: none
-  std::filesystem::path plot;     ///< the same
-  std::filesystem::path csv;      ///< the same: what the experiment prints
+  std::optional<double> speed;             ///< 0: as fast as it goes; none: that, or real time if people drive
+  std::filesystem::path summary;           ///< file to write; empty: none
+  std::filesystem::path plot;              ///< the same
+  Viewpoint viewpoint = Viewpoint::above;  ///< of the plot
+  std::filesystem::path csv;               ///< the same: what the experiment prints
   bool quiet = false;
   std::optional<std::uint32_t> domain;
   std::string network = "127.0.0.1";

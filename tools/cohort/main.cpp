@@ -120,6 +120,12 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->type_name("max|X");
   app.add_option("--summary", options.summary, "Write the summary to this file as JSON")->type_name("FILE");
   app.add_option("--plot", options.plot, "Draw arena, paths and contacts to this file as SVG")->type_name("FILE");
+  const auto set_view = [&options](const std::string& view) {
+    options.viewpoint = view == "side" ? Viewpoint::side : Viewpoint::above;
+  };
+  app.add_option_function<std::string>("--view", set_view, "Of the plot: from above (the default), or from the side")
+      ->check(one_of({"above", "side"}))
+      ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   app.add_option("--domain", options.domain, "DDS domain (default: a free one, or 0 if others start controllers)")
       ->envname("COHORT_DOMAIN")
@@ -224,12 +230,23 @@ void add_thesis_options(CLI::App& app, cohort::bench::ThesisOptions& options, Be
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str()
       ->type_name("N");
+  app.add_option("--table", options.tables, "Tables (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(one_of(cohort::bench::thesis_tables()))
+      ->type_name("NAME[,NAME...]");
+  app.add_option("--robots", options.robots, "How many robots, a row for each number (default: the thesis's, and more)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(whole_number(1, 100'000))
+      ->type_name("N[,N...]");
   app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
   app.footer(
       "Tables 5.1 (random movement) and 5.2 (connected robots): the thesis's own seconds, and beside them Cohort and\n"
       "ODE, the thesis's engine, run here and now with steps of 10 ms; ODE also with the thesis's 100 ms, and what "
       "its\n"
-      "robots then do. docs/bench.md says all of it.");
+      "robots then do (behaviour). Tables 5.3 (proximity sensors) and 5.4 (light and sound): robots that stand still,\n"
+      "beside rays of ODE. docs/bench.md says all of it.");
 }
 
 }  // namespace

@@ -17,29 +17,29 @@ Vector2d on_circle(int corner) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-struct SeenFromAbove {
-  const Pose& X_WC;
+struct Seen {
+  const Pose& X_VC;
 
-  Vector2d shown(const Vector3d& point_C) const { return (X_WC * point_C).head<2>(); }
-  Outline circle(double radius) const { return {{}, X_WC.position.head<2>(), radius}; }
+  Vector2d shown(const Vector3d& point_C) const { return (X_VC * point_C).head<2>(); }
+  Outline circle(double radius) const { return {{}, X_VC.position.head<2>(), radius}; }
 
   Outline operator()(const description::Box& box) const {
     Outline outline;
     for (const double x : {-0.5, 0.5})
       for (const double y : {-0.5, 0.5})
-        for (const double z : {-0.5, 0.5}) outline.corners_W.push_back(shown(Vector3d(x, y, z).cwiseProduct(box.size)));
+        for (const double z : {-0.5, 0.5}) outline.corners_V.push_back(shown(Vector3d(x, y, z).cwiseProduct(box.size)));
     return outline;
   }
 
   Outline operator()(const description::Sphere& sphere) const { return circle(sphere.radius); }
 
   Outline operator()(const description::Cylinder& cylinder) const {
-    const Vector3d axis_W = X_WC.orientation * Vector3d::UnitZ();
-    if (axis_W.head<2>().norm() < 1e-3) return circle(cylinder.radius);
+    const Vector3d axis_V = X_VC.orientation * Vector3d::UnitZ();
+    if (axis_V.head<2>().norm() < 1e-3) return circle(cylinder.radius);
     Outline outline;
     for (int i = 0; i < corners_of_a_circle; ++i) {
       const Vector2d at = cylinder.radius * on_circle(i);
-      for (const double z : {-0.5, 0.5}) outline.corners_W.push_back(shown({at.x(), at.y(), z * cylinder.length}));
+      for (const double z : {-0.5, 0.5}) outline.corners_V.push_back(shown({at.x(), at.y(), z * cylinder.length}));
     }
     return outline;
   }
@@ -48,24 +48,24 @@ struct SeenFromAbove {
     Outline outline;
     for (int i = 0; i < corners_of_a_circle; ++i)
       for (const double z : {-0.5, 0.5})
-        outline.corners_W.push_back(shown({0.0, 0.0, z * capsule.length}) + capsule.radius * on_circle(i));
+        outline.corners_V.push_back(shown({0.0, 0.0, z * capsule.length}) + capsule.radius * on_circle(i));
     return outline;
   }
 
   Outline operator()(const description::Ellipsoid& ellipsoid) const {
-    const Eigen::Matrix3d axes = X_WC.orientation.toRotationMatrix() * ellipsoid.radii.asDiagonal();
+    const Eigen::Matrix3d axes = X_VC.orientation.toRotationMatrix() * ellipsoid.radii.asDiagonal();
     Outline outline;
     for (int i = 0; i < corners_of_a_circle; ++i) {
       // The point of the ellipsoid that lies furthest in this direction.
       const Vector3d furthest = axes.topRows<2>().transpose() * on_circle(i);
-      outline.corners_W.push_back(X_WC.position.head<2>() + axes.topRows<2>() * furthest.normalized());
+      outline.corners_V.push_back(X_VC.position.head<2>() + axes.topRows<2>() * furthest.normalized());
     }
     return outline;
   }
 
   Outline operator()(const description::Mesh& mesh) const {
     Outline outline;
-    for (const Vector3d& vertex : mesh.triangles->vertices) outline.corners_W.push_back(shown(vertex));
+    for (const Vector3d& vertex : mesh.triangles->vertices) outline.corners_V.push_back(shown(vertex));
     return outline;
   }
 
@@ -75,6 +75,6 @@ struct SeenFromAbove {
 
 }  // namespace
 
-Outline outline_of(const TracedSolid& solid) { return std::visit(SeenFromAbove{solid.X_WC}, solid.shape); }
+Outline outline_of(const TracedSolid& solid) { return std::visit(Seen{solid.X_VC}, solid.shape); }
 
 }  // namespace cohort::tool

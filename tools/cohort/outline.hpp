@@ -7,10 +7,10 @@
 
 namespace cohort::tool {
 
-/// A solid seen from above: the convex hull of its corners, or a circle if it has none [m].
+/// A solid as it is seen: the convex hull of its corners, or a circle if it has none [m].
 struct Outline {
-  std::vector<Eigen::Vector2d> corners_W;
-  Eigen::Vector2d centre_W = Eigen::Vector2d::Zero();
+  std::vector<Eigen::Vector2d> corners_V;
+  Eigen::Vector2d centre_V = Eigen::Vector2d::Zero();
   double radius = 0.0;
 };
 

@@ -51,9 +51,9 @@ class Drawing {
  public:
   Drawing(const RunTrace& trace, const PlotCaption& caption)
       : trace_(trace), caption_(caption), view_(range_of(trace)), out_(text_) {
-    const double grid = round_length(std::max(view_.range_W.size().maxCoeff() / 4.0, 1e-9));
-    x_ticks_ = {view_.range_W.lower.x(), view_.range_W.upper.x(), grid};
-    y_ticks_ = {view_.range_W.lower.y(), view_.range_W.upper.y(), grid};
+    const double grid = round_length(std::max(view_.range_V.size().maxCoeff() / 4.0, 1e-9));
+    x_ticks_ = {view_.range_V.lower.x(), view_.range_V.upper.x(), grid};
+    y_ticks_ = {view_.range_V.lower.y(), view_.range_V.upper.y(), grid};
     const std::size_t digits = std::max(y_ticks_.label(y_ticks_.first).size(), y_ticks_.label(y_ticks_.last).size());
     view_.origin = {margin + 10.0 + digit_width * static_cast<double>(digits), header};
   }
@@ -146,26 +146,33 @@ class Drawing {
 
   void draw_frame() { text_ += map_rectangle(fmt::format("fill=\"none\" stroke=\"{}\"", frame_colour)) + "\n"; }
 
-  void draw_footprint(const TracedSolid& solid) {
+  void draw_outline(const TracedSolid& solid) {
     const Outline outline = outline_of(solid);
-    if (outline.corners_W.empty()) {
-      const Vector2d centre = view_(outline.centre_W);
+    if (outline.corners_V.empty()) {
+      const Vector2d centre = view_(outline.centre_V);
       fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", number(centre.x()), number(centre.y()),
                      number(view_.scale * outline.radius));
       return;
     }
     svg::Points points;
     // Rounded as they are written: corners above each other are then one.
-    for (const Vector2d& corner_W : outline.corners_W)
-      points.push_back((100.0 * view_(corner_W)).array().round() / 100.0);
+    for (const Vector2d& corner_V : outline.corners_V)
+      points.push_back((100.0 * view_(corner_V)).array().round() / 100.0);
     fmt::format_to(out_, "<polygon points=\"{}\"/>\n", svg::polygon_points(svg::convex_hull(std::move(points))));
+  }
+
+  bool is_from_the_side() const { return trace_.viewpoint == Viewpoint::side; }
+  void draw_parts(const std::vector<TracedSolid>& parts, std::string_view style) {
+    fmt::format_to(out_, "<g {}>\n", style);
+    for (const TracedSolid& part : parts) draw_outline(part);
+    text_ += "</g>\n";
   }
 
   void draw_solids() {
     const auto draw_all = [&](TracedSolid::Kind kind, std::string_view id, std::string_view style) {
       fmt::format_to(out_, "<g id=\"{}\" {}>\n", id, style);
       for (const TracedSolid& solid : trace_.solids)
-        if (solid.kind == kind) draw_footprint(solid);
+        if (solid.kind == kind) draw_outline(solid);
       text_ += "</g>\n";
     };
     draw_all(TracedSolid::Kind::floor, "floors", fmt::format("fill=\"{}\"", floor_colour));
@@ -193,7 +200,7 @@ class Drawing {
                    number(path_width()), number(0.85 * crowd_factor()));
     for (std::size_t i = 0; i < trace_.robots.size(); ++i) {
       svg::Points points;
-      for (const Eigen::Vector2d& point_W : trace_.robots[i].path_W) points.push_back(view_(point_W));
+      for (const Eigen::Vector2d& point_V : trace_.robots[i].path_V) points.push_back(view_(point_V));
       fmt::format_to(out_, "<path stroke=\"{}\" d=\"{}\"/>\n", colour(i),
                      svg::path_data(svg::simplified(points, path_tolerance)));
     }
@@ -205,8 +212,12 @@ class Drawing {
     fmt::format_to(out_, "<g id=\"starts\" fill=\"none\" stroke-width=\"{}\">\n", number(1.3 * crowd_factor()));
     for (std::size_t i = 0; i < trace_.robots.size(); ++i) {
       const RobotTrace& robot = trace_.robots[i];
-      if (robot.path_W.empty()) continue;
-      const Vector2d at = view_(robot.path_W.front());
+      if (robot.path_V.empty()) continue;
+      if (is_from_the_side()) {
+        draw_parts(robot.at_start, fmt::format("stroke=\"{}\"", colour(i)));
+        continue;
+      }
+      const Vector2d at = view_(robot.path_V.front());
       fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" stroke=\"{}\"/>\n", number(at.x()), number(at.y()),
                      number(shown_radius(robot)), colour(i));
     }
@@ -217,8 +228,11 @@ class Drawing {
     fmt::format_to(out_, "<g id=\"ends\" stroke=\"#ffffff\" stroke-width=\".6\" stroke-linecap=\"round\">\n");
     for (std::size_t i = 0; i < trace_.robots.size(); ++i) {
       const RobotTrace& robot = trace_.robots[i];
-      if (robot.path_W.empty()) continue;
-      draw_robot(view_(robot.path_W.back()), shown_radius(robot), robot.end_heading, colour(i), robot.name);
+      if (robot.path_V.empty()) continue;
+      if (is_from_the_side())
+        draw_parts(robot.at_end, fmt::format("fill=\"{}\"", colour(i)));
+      else
+        draw_robot(view_(robot.path_V.back()), shown_radius(robot), robot.end_heading, colour(i), robot.name);
     }
     text_ += "</g>\n";
   }
@@ -236,7 +250,7 @@ class Drawing {
     text_ += "<g id=\"contacts\">\n";
     std::set<std::pair<ContactMark::Kind, std::pair<long, long>>> taken;
     for (const ContactMark& contact : trace_.contacts) {
-      const Vector2d at = view_(contact.position_W);
+      const Vector2d at = view_(contact.position_V);
       const std::pair cell(std::lround(at.x() / mark_spacing), std::lround(at.y() / mark_spacing));
       if (taken.insert({contact.kind, cell}).second) draw_mark(contact.kind, at);
     }
@@ -250,7 +264,7 @@ class Drawing {
 
   void draw_lamps() {
     text_ += "<g id=\"lamps\">\n";
-    for (const TracedLamp& lamp : trace_.lamps) draw_lamp(view_(lamp.position_W), lamp.is_on);
+    for (const TracedLamp& lamp : trace_.lamps) draw_lamp(view_(lamp.position_V), lamp.is_on);
     text_ += "</g>\n";
   }
 
@@ -294,10 +308,15 @@ class Drawing {
     fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n",
                    number(at.x()), number(at.y()), number(radius), soft_ink);
     add("start");
-    text_ += "<g stroke=\"#ffffff\" stroke-linecap=\"round\">";
-    draw_robot(at, radius, 0.5, soft_ink, "");
-    text_ += "</g>\n";
-    add("end and heading");
+    if (is_from_the_side()) {
+      fmt::format_to(out_, "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"/>\n", number(at.x()), number(at.y()),
+                     number(radius), soft_ink);
+    } else {
+      text_ += "<g stroke=\"#ffffff\" stroke-linecap=\"round\">";
+      draw_robot(at, radius, 0.5, soft_ink, "");
+      text_ += "</g>\n";
+    }
+    add(is_from_the_side() ? "end" : "end and heading");
     fmt::format_to(out_, "<path d=\"M{} {}q7 -9 12 -3t12 -3\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\"/>\n",
                    number(at.x() - 12.0), number(at.y() + 4.0), soft_ink);
     add("path");

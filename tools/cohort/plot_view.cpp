@@ -14,23 +14,23 @@ Range range_of(const RunTrace& trace) {
   const auto add_solids = [&](bool floors) {
     for (const TracedSolid& solid : trace.solids) {
       if ((solid.kind == TracedSolid::Kind::floor) != floors) continue;
-      const geometry::Bounds bounds = geometry::bounds_of(solid.shape, solid.X_WC);
+      const geometry::Bounds bounds = geometry::bounds_of(solid.shape, solid.X_VC);
       range.add(bounds.lower.head<2>());
       range.add(bounds.upper.head<2>());
     }
   };
   for (const RobotTrace& robot : trace.robots)
-    for (const Eigen::Vector2d& point_W : robot.path_W) range.add(point_W, robot.radius);
+    for (const Eigen::Vector2d& point_V : robot.path_V) range.add(point_V, robot.radius);
   add_solids(false);
   if (range.empty()) add_solids(true);
   if (range.empty()) range.add(Eigen::Vector2d::Zero());
 
-  // A robot that hardly moves in an empty world is shown with some of the world around it.
+  // A robot that hardly moves in an empty world is shown with some of the world around it, from above.
   double largest_robot = 0.0;
   for (const RobotTrace& robot : trace.robots) largest_robot = std::max(largest_robot, robot.radius);
   const double least_size = largest_robot > 0.0 ? 12.0 * largest_robot : 1.0;
   const Eigen::Vector2d centre = (range.lower + range.upper) / 2.0;
-  if (range.size().maxCoeff() < least_size) range.add(centre, least_size / 2.0);
+  if (trace.viewpoint == Viewpoint::above && range.size().maxCoeff() < least_size) range.add(centre, least_size / 2.0);
   const double border = 0.025 * range.size().maxCoeff();
   range.lower.array() -= border;
   range.upper.array() += border;
@@ -38,12 +38,12 @@ Range range_of(const RunTrace& trace) {
 }
 
 View::View(const Range& range)
-    : range_W(range), scale(longest_side / range.size().maxCoeff()), origin(Eigen::Vector2d::Zero()) {
+    : range_V(range), scale(longest_side / range.size().maxCoeff()), origin(Eigen::Vector2d::Zero()) {
   const Eigen::Vector2d least = Eigen::Vector2d::Constant(shortest_side / scale);
   const Eigen::Vector2d missing = (least - range.size()).cwiseMax(0.0);
-  range_W.lower -= missing / 2.0;
-  range_W.upper += missing / 2.0;
-  size = scale * range_W.size();
+  range_V.lower -= missing / 2.0;
+  range_V.upper += missing / 2.0;
+  size = scale * range_V.size();
 }
 
 double round_length(double length) {

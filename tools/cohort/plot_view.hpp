@@ -7,7 +7,7 @@
 
 #include "tools/cohort/run_trace.hpp"
 
-/// Where on the page a plot draws what. The world is seen from above: x to the right, y upwards [m]. On the page y goes
+/// Where on the page a plot draws what. The frame of who looks has x to the right, y upwards [m]. On the page y goes
 /// downwards; its unit is a CSS pixel when the picture is shown in its own size.
 namespace cohort::tool {
 
@@ -32,7 +32,7 @@ struct View {
   static constexpr double longest_side = 600.0;
   static constexpr double shortest_side = 236.0;  ///< the legend stands beside it
 
-  Range range_W;
+  Range range_V;
   double scale;            ///< page units of a metre
   Eigen::Vector2d origin;  ///< upper left corner of the map on the page
   Eigen::Vector2d size;    ///< of the map
@@ -40,9 +40,9 @@ struct View {
   /// Fits `range` into the map; a long corridor gets some of the world on its sides.
   explicit View(const Range& range);
 
-  Eigen::Vector2d operator()(const Eigen::Vector2d& point_W) const {
-    return {origin.x() + scale * (point_W.x() - range_W.lower.x()),
-            origin.y() + scale * (range_W.upper.y() - point_W.y())};
+  Eigen::Vector2d operator()(const Eigen::Vector2d& point_V) const {
+    return {origin.x() + scale * (point_V.x() - range_V.lower.x()),
+            origin.y() + scale * (range_V.upper.y() - point_V.y())};
   }
 };
 

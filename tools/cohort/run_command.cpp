@@ -202,7 +202,7 @@ int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
     warn_if_not_portable(log);
 
     std::optional<TraceRecorder> recorder;
-    if (!command.plot.empty()) recorder.emplace(experiment.world, simulation);
+    if (!command.plot.empty()) recorder.emplace(experiment.world, simulation, command.viewpoint);
     const bool own_controllers = command.controllers != Controllers::external && !has_keyboard(experiment);
     std::optional<PrintedTable> table;
     if (!experiment.prints.empty()) table.emplace(experiment, simulation, command.csv.empty() && !command.quiet);

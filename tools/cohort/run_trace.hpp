@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <chrono>
 #include <compare>
 #include <cstdint>
@@ -12,15 +12,13 @@
 #include "server/geometry/shapes.hpp"
 #include "server/simulation/simulation.hpp"
 
-/// What a run leaves behind for a picture of it from above.
+/// What a run leaves behind for a picture of it. Everything is in the frame of who looks, V: x to the right, y upwards,
+/// z towards them.
 namespace cohort::tool {
 
-/// Where a robot was, in the plane of W.
-struct RobotTrace {
-  std::string name;
-  double radius = 0.0;                  ///< about the root link's origin, around all of its collisions at tick 0 [m]
-  std::vector<Eigen::Vector2d> path_W;  ///< [m], first the start, last the end
-  double end_heading = 0.0;             ///< of the root link's x axis, from that of W [rad]
+enum class Viewpoint {
+  above,  ///< V is W
+  side,   ///< x of V is that of W, y of V is z of W
 };
 
 struct TracedSolid {
@@ -28,27 +26,39 @@ struct TracedSolid {
     floor,     ///< static, and no higher than the lowest point of any robot
     obstacle,  ///< static
     object,    ///< moves, and belongs to no robot; where it is at the end
+    robot,     ///< of one, or what stands for its tracks
   };
   Kind kind;
   geometry::Shape shape;
-  Pose X_WC;
+  Pose X_VC;
+};
+
+/// Where a robot was, in the plane of V.
+struct RobotTrace {
+  std::string name;
+  double radius = 0.0;                  ///< about the root link's origin, around all of its collisions at tick 0 [m]
+  std::vector<Eigen::Vector2d> path_V;  ///< [m], first the start, last the end
+  double end_heading = 0.0;             ///< of the root link's x axis, from that of V [rad]
+  std::vector<TracedSolid> at_start;    ///< seen from the side only
+  std::vector<TracedSolid> at_end;      ///< the same
 };
 
 /// Where robots touched something. A robot has at most one mark of each kind within a square of `contact_spacing`.
 struct ContactMark {
   enum class Kind { obstacle, robot };
   Kind kind;
-  Eigen::Vector2d position_W;
+  Eigen::Vector2d position_V;
 };
 
 /// A lamp that belongs to no robot, as it is at the end.
 struct TracedLamp {
-  Eigen::Vector2d position_W;
+  Eigen::Vector2d position_V;
   bool is_on = false;
 };
 
 struct RunTrace {
-  std::vector<TracedSolid> solids;  ///< the lowest first; planes and height maps are not among them
+  Viewpoint viewpoint = Viewpoint::above;
+  std::vector<TracedSolid> solids;  ///< the farthest first; planes and height maps are not among them
   std::vector<RobotTrace> robots;   ///< by id
   std::vector<ContactMark> contacts;
   std::vector<TracedLamp> lamps;  ///< directional ones, which are nowhere, are not among them
@@ -62,7 +72,7 @@ class TraceRecorder {
   static constexpr double contact_spacing = 0.05;                   ///< [m]
 
   /// `simulation` stands at tick 0. Both must outlive this.
-  TraceRecorder(const description::World& world, const Simulation& simulation);
+  TraceRecorder(const description::World& world, const Simulation& simulation, Viewpoint viewpoint = Viewpoint::above);
 
   /// At every boundary.
   void boundary();
@@ -81,9 +91,13 @@ class TraceRecorder {
 
   void sample();
   void note_contacts();
+  Eigen::Vector2d seen(const Eigen::Vector3d& p_W) const { return (R_VW_ * p_W).head<2>(); }
+  Pose X_V(const Pose& X_W) const { return {R_VW_ * X_W.position, R_VW_ * X_W.orientation}; }
+  void draw_robots_into(std::vector<TracedSolid> RobotTrace::*solids);
 
   const description::World& world_;
   const Simulation& simulation_;
+  Eigen::Quaterniond R_VW_;
   std::uint64_t sample_ticks_;
   std::uint64_t next_sample_;
   std::vector<std::uint32_t> robot_of_body_;

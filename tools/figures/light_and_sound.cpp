@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/figures/figures.hpp"
+#include "tools/figures/stand.hpp"
+
+namespace cohort::figures {
+namespace {
+
+constexpr double sensor_height = 0.042;  // in the turret [m]
+constexpr double z = turret_height + sensor_height;
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double exact = 1e-9;
+
+// Thesis, section 3.2.3 and figure 3.2.
+double saturated(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }
+
+description::Model perceiving_robot() {
+  description::Model model = tracked_robot();
+  description::LightSensors light;
+  light.name = "light";
+  light.link = turret;
+  light.X_LS.position.z() = sensor_height;
+  light.count = 8;
+  light.spacing = 0.25 * std::numbers::pi;
+  model.devices.emplace_back(light);
+  description::Microphones microphones;
+  microphones.name = "microphones";
+  microphones.link = turret;
+  microphones.places_L = {{0.0, 0.0, sensor_height}};
+  microphones.bands = {{100.0, 8000.0}};
+  model.devices.emplace_back(microphones);
+  return model;
+}
+
+// Shines and sounds; its LED is at x = 0.06 m of its turret, its loudspeaker in the middle.
+description::Model emitting_robot() {
+  description::Model model = tracked_robot();
+  description::LedRing leds;
+  leds.name = "leds";
+  leds.link = turret;
+  leds.X_LS.position.z() = sensor_height;
+  leds.count = 1;
+  leds.ring_radius = 0.06;
+  leds.intensity = 1.0;
+  model.devices.emplace_back(leds);
+  description::Loudspeaker speaker;
+  speaker.name = "speaker";
+  speaker.link = turret;
+  speaker.X_LE.position.z() = sensor_height;
+  speaker.max_frequency = 8000.0;
+  speaker.max_intensity = 4.0;
+  model.devices.emplace_back(speaker);
+  return model;
+}
+
+description::Light lamp(double intensity) {
+  description::Light light;
+  light.intensity = intensity;
+  return light;
+}
+
+Panel light_by_distance() {
+  Panel panel{"Light: distance", "lines: 2 / (1 + exp(-I / d²)) - 1", "distance d of the lamp [m]", "reading", {}};
+  for (const double intensity : {1.0, 0.2}) {
+    Series series{intensity == 1.0 ? "I = 1" : "I = 0.2", {}};
+    for (const double d : evenly(0.15, 3.0, 39)) {
+      Stand stand;
+      stand.add(perceiving_robot());
+      stand.add_emitter(lamp(intensity), at(d, 0, z));
+      series.measured.emplace_back(d, stand.read("light/0/reading"));
+    }
+    series.closed_form = [intensity](double d) { return saturated(intensity / (d * d)); };
+    series.tolerance = exact;
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+Panel light_by_bearing() {
+  Panel panel{"Light: bearing",
+              "lines: cosines, summed; a second lamp is ahead",
+              "bearing of a lamp, 1 m away [degrees]",
+              "reading of the sensor ahead",
+              {}};
+  for (const bool is_alone : {true, false}) {
+    Series series{is_alone ? "one" : "two", {}};
+    for (const double bearing : evenly(-180.0, 180.0, 49)) {
+      Stand stand;
+      stand.add(perceiving_robot());
+      stand.add_emitter(lamp(1.0), at(std::cos(degree * bearing), std::sin(degree * bearing), z));
+      if (!is_alone) stand.add_emitter(lamp(1.0), at(1, 0, z));
+      series.measured.emplace_back(bearing, stand.read("light/0/reading"));
+    }
+    const double ahead = is_alone ? 0.0 : 1.0;
+    series.closed_form = [ahead](double bearing) {
+      return saturated(ahead + std::max(0.0, std::cos(degree * bearing)));
+    };
+    series.tolerance = exact;
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+Panel light_behind_a_screen() {
+  static constexpr double half_width = 0.1;
+  Series series{"", {}};
+  for (const double y : evenly(-0.205, 0.205, 42)) {
+    Stand stand;
+    stand.add(perceiving_robot());
+    stand.add_emitter(lamp(1.0), at(1, 0, z));
+    stand.add(static_shape(description::Box{{0.02, 2.0 * half_width, 0.4}}), at(0.5, y, 0.2));
+    series.measured.emplace_back(y, stand.read("light/0/reading"));
+  }
+  series.closed_form = [](double y) { return std::abs(y) < half_width ? 0.0 : saturated(1.0); };
+  series.tolerance = exact;
+  return {"Light: a screen of 0.2 m",
+          "line: a hidden lamp gives nothing",
+          "middle of the screen, aside [m]",
+          "reading",
+          {series}};
+}
+
+Panel sound_by_distance() {
+  Panel panel{
+      "Microphones: distance", "lines: 2 / (1 + exp(-I / d²)) - 1", "distance d of the source [m]", "reading", {}};
+  for (const double intensity : {1.0, 0.2}) {
+    Series series{intensity == 1.0 ? "I = 1" : "I = 0.2", {}};
+    for (const double d : evenly(0.15, 3.0, 39)) {
+      Stand stand;
+      stand.add(perceiving_robot());
+      stand.add_emitter(description::Sound{440.0, intensity}, at(d, 0, z));
+      series.measured.emplace_back(d, stand.read("microphones/0/intensity"));
+    }
+    series.closed_form = [intensity](double d) { return saturated(intensity / (d * d)); };
+    series.tolerance = exact;
+    panel.series.push_back(std::move(series));
+  }
+  return panel;
+}
+
+// Robots emit what they are told; it is perceived one tick later.
+double perceived(const std::string& channel, const std::vector<double>& command, const std::string& reading,
+                 double away) {
+  Stand stand;
+  stand.add(perceiving_robot());
+  stand.add(emitting_robot(), at(away, 0, 0, std::numbers::pi));
+  stand.command(channel, command, 1);
+  if (channel.starts_with("speaker/")) stand.command("speaker/0/frequency", {440.0}, 1);
+  stand.step();
+  return stand.read(reading);
+}
+
+Panel loudspeaker() {
+  Series series{"", {}};
+  for (const double intensity : evenly(0.0, 4.0, 21))
+    series.measured.emplace_back(intensity,
+                                 perceived("speaker/0/intensity", {intensity}, "microphones/0/intensity", 1.0));
+  series.closed_form = [](double intensity) { return saturated(intensity); };
+  series.tolerance = 1e-5;  // the robots settle by a hair in the first tick
+  return {"Loudspeaker, 1 m away",
+          "line: 2 / (1 + exp(-I)) - 1",
+          "commanded intensity I",
+          "reading of a microphone",
+          {series}};
+}
+
+Panel led() {
+  static constexpr double gap = 0.5;
+  Series series{"", {}};
+  for (const double brightness : evenly(0.0, 1.0, 21))
+    series.measured.emplace_back(
+        brightness, perceived("leds/0/color", {brightness, brightness, brightness}, "light/0/reading", gap + 0.06));
+  series.closed_form = [](double brightness) { return saturated(brightness / (gap * gap)); };
+  series.tolerance = 1e-5;
+  return {"LED as a lamp, 0.5 m away",
+          "line: 2 / (1 + exp(-b / d²)) - 1",
+          "commanded brightness b",
+          "reading of a light sensor",
+          {series}};
+}
+
+}  // namespace
+
+Page light_and_sound() {
+  return {
+      "light_and_sound",
+      "Light sensors, microphones, LEDs and loudspeakers",
+      {light_by_distance(), light_by_bearing(), light_behind_a_screen(), sound_by_distance(), loudspeaker(), led()}};
+}
+
+}  // namespace cohort::figures

@@ -8,7 +8,8 @@
 namespace cohort::bench {
 namespace {
 
-// A space for each robot's solids and one for its rays: the first test is of their boxes.
+// A space for each robot's solids and one for its rays: the first test is of their boxes. Rays are placed anew each
+// time, as they have to be for robots that may move.
 class OdeRays : public SensingRun {
  public:
   // `first_hit`: any is enough, the nearest is not asked for.
@@ -31,7 +32,13 @@ class OdeRays : public SensingRun {
 
   void sense() override {
     for (Rays& rays : rays_) {
-      for (Ray& ray : rays.rays) ray.depth = ray.length;
+      const double c = std::cos(rays.at.yaw), s = std::sin(rays.at.yaw);
+      for (Ray& ray : rays.rays) {
+        const Eigen::Vector3d &p = ray.origin_R, &d = ray.direction_R;
+        dGeomRaySet(ray.geom, rays.at.x + c * p.x() - s * p.y(), rays.at.y + s * p.x() + c * p.y(), p.z(),
+                    c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());
+        ray.depth = ray.length;
+      }
       dSpaceCollide2(reinterpret_cast<dGeomID>(rays.space), reinterpret_cast<dGeomID>(solids_), &rays, near_callback);
     }
   }
@@ -39,21 +46,25 @@ class OdeRays : public SensingRun {
  protected:
   struct Ray {
     dGeomID geom = nullptr;
+    Eigen::Vector3d origin_R;  // in the axes of the robot, from where it is on the ground
+    Eigen::Vector3d direction_R;
     double depth = 0.0;  // of the nearest hit; the length if there is none
     double length = 0.0;
   };
   struct Rays {
+    Placement at;
     dSpaceID space = nullptr;
     dSpaceID own = nullptr;  // of the robot's solids, which its rays pass through
     bool first_hit = false;
     std::deque<Ray> rays;  // geoms keep pointers to them
   };
 
-  void add_ray(Rays& of, const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double length) {
+  void add_ray(Rays& of, const Eigen::Vector3d& origin_R, const Eigen::Vector3d& direction_R, double length) {
     Ray& ray = of.rays.emplace_back();
     ray.geom = dCreateRay(of.space, length);
+    ray.origin_R = origin_R;
+    ray.direction_R = direction_R;
     ray.length = ray.depth = length;
-    dGeomRaySet(ray.geom, origin_W.x(), origin_W.y(), origin_W.z(), direction_W.x(), direction_W.y(), direction_W.z());
     dGeomSetData(ray.geom, &ray);
   }
 
@@ -84,6 +95,7 @@ class OdeRays : public SensingRun {
   void add_robot(const Placement& at) {
     const Robot& robot = scene_.scene.robot;
     Rays& rays = rays_.emplace_back();
+    rays.at = at;
     rays.first_hit = first_hit_;
     rays.own = dSimpleSpaceCreate(solids_);
     place(dCreateCylinder(rays.own, robot.hull_radius, robot.hull_height), at, robot.hull_z);
@@ -118,11 +130,10 @@ class OdeProximity final : public OdeRays {
   explicit OdeProximity(const SensingScene& scene) : OdeRays(scene, false) {
     const ProximityLayout& layout = scene.proximity;
     for (std::size_t robot = 0; robot < scene.scene.robots.size(); ++robot) {
-      const Placement& at = scene.scene.robots[robot];
       for (std::size_t i = 0; i < layout.sensors; ++i) {
-        const double bearing = at.yaw + layout.first_bearing + static_cast<double>(i) * layout.spacing;
-        const Eigen::Vector3d direction_W(std::cos(bearing), std::sin(bearing), 0.0);
-        add_ray(rays()[robot], Eigen::Vector3d(at.x, at.y, layout.height) + layout.radius * direction_W, direction_W,
+        const double bearing = layout.first_bearing + static_cast<double>(i) * layout.spacing;
+        const Eigen::Vector3d direction_R(std::cos(bearing), std::sin(bearing), 0.0);
+        add_ray(rays()[robot], Eigen::Vector3d(0.0, 0.0, layout.height) + layout.radius * direction_R, direction_R,
                 layout.range);
       }
     }
@@ -145,10 +156,11 @@ class OdeVisibility final : public OdeRays {
   explicit OdeVisibility(const SensingScene& scene) : OdeRays(scene, true) {
     for (std::size_t robot = 0; robot < scene.scene.robots.size(); ++robot) {
       const Placement& at = scene.scene.robots[robot];
-      const Eigen::Vector3d eye_W(at.x, at.y, scene.light_height);
+      const Eigen::Vector3d eye_R(0.0, 0.0, scene.light_height);
+      const Eigen::Quaterniond R_RW(Eigen::AngleAxisd(-at.yaw, Eigen::Vector3d::UnitZ()));
       for (const Eigen::Vector3d& source_W : scene.sources) {
-        const Eigen::Vector3d way_W = source_W - eye_W;
-        add_ray(rays()[robot], eye_W, way_W.normalized(), way_W.norm());
+        const Eigen::Vector3d way_R = R_RW * (source_W - Eigen::Vector3d(at.x, at.y, 0.0)) - eye_R;
+        add_ray(rays()[robot], eye_R, way_R.normalized(), way_R.norm());
       }
     }
   }

@@ -7,6 +7,7 @@
 #include "server/actuation/message_sender.hpp"
 #include "server/actuation/position_motor.hpp"
 #include "server/actuation/treel_drive.hpp"
+#include "server/actuation/user_action.hpp"
 #include "server/actuation/velocity_motor.hpp"
 
 namespace cohort::actuation {
@@ -45,6 +46,9 @@ struct Make {
   }
   std::unique_ptr<Actuator> operator()(const description::RangeAndBearing& d) const {
     return std::make_unique<MessageSender>(d, device, mount);
+  }
+  std::unique_ptr<Actuator> operator()(const description::UserAction& d) const {
+    return std::make_unique<UserAction>(d, device, mount);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "server/actuation/user_actions.hpp"
 #include "server/core/channel.hpp"
 #include "server/description/model.hpp"
 #include "server/emission/emitters.hpp"
@@ -29,6 +30,7 @@ struct Mount {
   physics::World& world;
   emission::Emitters& emitters;
   gripping::Grippers& grippers;
+  UserActions& actions;
   std::uint32_t body;
 };
 

@@ -276,6 +276,7 @@ inline constexpr Extension device_extensions[] = {
     {"torque_sensor", "model", true, "Measures what a joint's motor gives.", keys::torque_sensor, "sensors"},
     {"traction_sensor", "model", true, "Measures the force between two links, in the plane of the parent.",
      keys::traction_sensor, "sensors"},
+    {"action", "model", true, "Something that a robot does and no joint stands for.", {}, "actuators"},
     {"grip_ring", "link", true, "A circle that grippers hold on to.", keys::grip_ring, "actuators"},
     {"grippable",
      "collision",

@@ -274,12 +274,18 @@ struct TractionSensor {
   Readout readout{};
 };
 
+/// Something that a robot does and no joint stands for: events of the experiment, or a handler of whoever uses
+/// `Simulation`, say what comes of it. Command `NAME/0/value`, from 0 to 1.
+struct UserAction {
+  std::string name;
+};
+
 using Device =
     std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder, ProximityRing,
                  GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor,
                  Battery, Accelerometer, Imu, ForceTorqueSensor, Inclinometer, Lidar, ContactSensor, Altimeter,
                  Magnetometer, LogicalCamera, AirPressureSensor, OmnidirectionalCamera, PanoramicCamera, Gripper,
-                 TorqueSensor, TractionSensor>;
+                 TorqueSensor, TractionSensor, UserAction>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

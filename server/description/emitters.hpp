@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -54,6 +55,16 @@ struct Emitter {
   Pose X_LE;
   bool is_on = true;  ///< at first
   std::variant<Light, Sound, Marker, ClimateSource> what;
+};
+
+/// What becomes of an emitter; what is absent, or not of its kind, stays as it is.
+struct EmitterChange {
+  std::optional<bool> is_on;
+  std::optional<double> intensity;       ///< of a light or a sound [1]
+  std::optional<double> frequency;       ///< of a sound [Hz]
+  std::optional<Eigen::Vector3d> color;  ///< of a light or a marker
+  std::optional<double> temperature;     ///< of a climate source [K]
+  std::optional<double> humidity;        ///< [1]
 };
 
 }  // namespace cohort::description

@@ -2,11 +2,13 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "server/core/pose.hpp"
+#include "server/description/emitters.hpp"
 
 /// What an experiment says of the course of a run, as plain data. Objects are indices into World::instances; times are
 /// simulated, and what is to happen at one happens at the first boundary that is not before it.
@@ -15,6 +17,7 @@ namespace cohort::description {
 /// The object comes into the world, where it was or at first, or leaves it.
 struct SetPresence {
   bool present = true;
+  bool once = false;  ///< it comes for the first time, or leaves for good
 };
 /// At rest, with its joints as they are.
 struct PlaceAt {
@@ -32,13 +35,25 @@ struct ApplyForce {
   Eigen::Vector3d torque_W = Eigen::Vector3d::Zero();  ///< [N m]
   std::chrono::nanoseconds duration{0};
 };
-using Action = std::variant<SetPresence, PlaceAt, SetVelocity, ApplyForce>;
+/// Acts on some of the object's emitters.
+struct SetEmitters {
+  std::vector<std::size_t> emitters;  ///< indices into Model::emitters
+  EmitterChange change;
+};
+using Effect = std::variant<SetPresence, PlaceAt, SetVelocity, ApplyForce, SetEmitters>;
 
 struct Event {
   std::chrono::nanoseconds time{0};
   std::size_t object = 0;
-  Action action;
+  Effect effect;
   std::string kind;  ///< as the file calls it
+};
+
+/// What happens whenever one of some robots begins an action.
+struct Reaction {
+  std::string action;                 ///< name of the UserAction
+  std::vector<std::uint32_t> robots;  ///< ids, ascending, of those that have it
+  std::vector<Event> events;          ///< all at once, in this order; their times mean nothing
 };
 
 /// All of the objects that are in the world, and at least one, have the origins of their root links in a rectangle.
@@ -67,12 +82,14 @@ struct StopCondition {
 };
 
 enum class Quantity {
-  position,     ///< of the root link: x, y, z [m]
-  pose,         ///< the same, and the quaternion x y z w
-  heading,      ///< of the root link's x axis in the plane, from that of the world [rad]
-  velocity,     ///< of the root link's origin [m/s]
-  count,        ///< how many of the objects are in the world
-  quarantined,  ///< how many of the objects have been quarantined
+  position,      ///< of the root link: x, y, z [m]
+  pose,          ///< the same, and the quaternion x y z w
+  heading,       ///< of the root link's x axis in the plane, from that of the world [rad]
+  velocity,      ///< of the root link's origin [m/s]
+  count,         ///< how many of the objects are in the world
+  quarantined,   ///< how many of the objects have been quarantined
+  joint_force,   ///< of a breakable joint: on the first link, then on the second, x, y, z of the world [N]
+  joint_torque,  ///< the same [N m]
 };
 
 /// What is printed in a run.
@@ -80,6 +97,7 @@ struct PrintedQuantity {
   Quantity quantity = Quantity::position;
   std::string selector;  ///< of the objects, as written
   std::vector<std::size_t> objects;
+  std::vector<std::size_t> joints;  ///< indices into World::breakable_joints, where the quantity is of these
   std::chrono::nanoseconds every{0};
 };
 

@@ -53,6 +53,7 @@ struct Experiment {
   std::vector<Team> teams;    ///< every robot is in exactly one
   unsigned threads = 0;       ///< that step the world; 0: as many as there are cores
   std::vector<Event> events;  ///< in the order of their times, and of the file
+  std::vector<Reaction> reactions;
   std::vector<StopCondition> stops;
   std::vector<PrintedQuantity> prints;
   History history;

@@ -18,7 +18,7 @@ constexpr ExtensionKey experiment[] = {
     {"physics", group, "", "the world's",
      "map with keys of [`<cohort:physics>`](#cohortphysics-in-world), each in place of the world's"},
     {"teams", group, "", "", "list; every robot of the world is in exactly one team"},
-    {"events", group, "", no_value, "list of what happens at a time"},
+    {"events", group, "", no_value, "list of what happens at a time, or when a robot does something"},
     {"stop", group, "", no_value, "list of conditions; the run ends when one of them holds"},
     {"print", group, "", no_value, "list of quantities that `cohort run` prints"},
     {"history", group, "", no_value, "whose last poses are kept"},
@@ -69,6 +69,21 @@ constexpr ExtensionKey apply_force[] = {
     {"for", positive, "s", "", "how long it acts"},
 };
 
+constexpr ExtensionKey set_emitter[] = {
+    {"objects", name, "", "", "names, in which `*` stands for any characters", true},
+    {"emitter", name, "", "*", "names of their emitters, the same way", true},
+    {"on", flag, "", no_value, "whether it emits"},
+    {"intensity", non_negative, "1", no_value, "of a light or a sound: what arrives at 1 m"},
+    {"frequency", positive, "Hz", no_value, "of a sound"},
+    {"color", vector, "1", no_value, "of a light or a marker: red, green and blue, from 0 to 1"},
+    {"temperature", real, "K", no_value, "of a climate source: added in its middle"},
+    {"humidity", real, "1", no_value, "of a climate source: relative, added in its middle"},
+};
+constexpr ExtensionKey on[] = {
+    {"action", name, "", "", "the name of a `cohort:action`"},
+    {"robots", name, "", "all", "a selector or a list of selectors: whose action it is", true},
+};
+
 constexpr ExtensionKey inside[] = {
     {"objects", name, "", "", "names, in which `*` stands for any characters", true},
     {"min", point, "m", "", "corner of a rectangle with the least x and y"},
@@ -91,12 +106,15 @@ constexpr ExtensionKey quarantined[] = {
     {"objects", name, "", "*", "names, in which `*` stands for any characters", true},
 };
 
-constexpr std::string_view quantities[] = {"position", "pose", "heading", "velocity", "count", "quarantined"};
+constexpr std::string_view quantities[] = {"position", "pose",        "heading",     "velocity",
+                                           "count",    "quarantined", "joint_force", "joint_torque"};
 
 constexpr ExtensionKey print[] = {
-    {"quantity", choice, "", "", "`position`, `pose`, `heading`, `velocity`, `count` or `quarantined`", false,
+    {"quantity", choice, "", "",
+     "`position`, `pose`, `heading`, `velocity`, `count`, `quarantined`, `joint_force` or `joint_torque`", false,
      quantities},
     {"objects", name, "", "*", "names, in which `*` stands for any characters", true},
+    {"joints", name, "", "*", "of `joint_force` and `joint_torque`: names of breakable joints, the same way", true},
     {"every", positive, "s", "1", "of simulated time, in whole ticks"},
 };
 
@@ -117,6 +135,8 @@ constexpr Extension table[] = {
      "events"},
     {"set_velocity", "events", false, "Objects get a velocity.", set_velocity, "events"},
     {"apply_force", "events", false, "A force and a torque act for some time.", apply_force, "events"},
+    {"set_emitter", "events", false, "Emitters of objects change.", set_emitter, "events"},
+    {"on", "an event", false, "What makes it happen in place of a time: a robot does something.", on, "events"},
     {"inside", "stop", false, "All of the objects are within a rectangle.", inside, "stop"},
     {"beyond", "stop", false, "One of the objects is beyond a line.", beyond, "stop"},
     {"at_rest", "stop", false, "None of the objects moves.", at_rest, "stop"},

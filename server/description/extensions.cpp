@@ -97,6 +97,16 @@ constexpr ExtensionKey material_pair[] = {
     {"rolling_resistance", non_negative, "m", "0", "torque against rolling for each newton of normal force"},
 };
 
+constexpr ExtensionKey breakable_joint[] = {
+    {"first", name, "", "", "an object, by its scoped name"},
+    {"first_link", name, "", no_value, "of it; its root link if absent"},
+    {"second", name, "", "", "another object; one of the two moves"},
+    {"second_link", name, "", no_value, "of it; its root link if absent"},
+    {"pose", pose, "m, rad", no_value, "where it is, in the first link; at the origin of the second one if absent"},
+    {"breaking_force", positive, "N", no_value, "above it breaks; never if absent"},
+    {"breaking_torque", positive, "N m", no_value, "above it breaks; never if absent"},
+};
+
 constexpr std::string_view terrains[] = {"sine", "ramp", "steps", "hills", "rough"};
 
 constexpr ExtensionKey terrain[] = {
@@ -125,6 +135,8 @@ constexpr Extension of_worlds[] = {
     {"terrain", "heightmap", false, "Ground that a function describes, in place of an image.", terrain, "physics"},
     {"material", "collision", false, "The name of what a collision is made of.", {}, "physics", name},
     {"material_pair", "world", false, "What holds where two materials touch.", material_pair, "physics"},
+    {"breakable_joint", "world", true, "Holds links of two objects together until that takes too much.",
+     breakable_joint, "physics"},
     {"physics", "world", false, "How the world is simulated.", physics, "physics"},
     {"population", "world", true, "Instances of one model, placed by the seed of the run.", population, "placement"},
     {"placement", "population", false, "Where the instances of a population are put.", placement, "placement"},

@@ -79,6 +79,8 @@ std::optional<Device> read_gripper(const ExtensionValues& values, DeviceReader& 
   return gripper;
 }
 
+std::optional<Device> read_action(const ExtensionValues& values, DeviceReader&) { return UserAction{values.name()}; }
+
 // The register of actuators: a new kind is one more line here.
 constexpr DeviceKind kinds[] = {
     {"treel_drive", &read_treel_drive, true, false},
@@ -88,6 +90,7 @@ constexpr DeviceKind kinds[] = {
     {"led_ring", &read_led_ring, true, false},
     {"loudspeaker", &read_loudspeaker, true, false},
     {"gripper", &read_gripper, true, true},
+    {"action", &read_action, true, false},
 };
 
 }  // namespace

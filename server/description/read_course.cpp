@@ -1,26 +1,21 @@
 #include "server/description/read_course.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "server/description/course_entry.hpp"
 #include "server/description/experiment_keys.hpp"
+#include "server/description/read_effects.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
 #include "server/description/yaml_values.hpp"
 
 namespace cohort::description {
 namespace {
-
-constexpr double longest = 9e9;  // 285 years, which fits into nanoseconds
-
-std::optional<std::chrono::nanoseconds> to_time(double seconds) {
-  if (!(seconds >= 0.0 && seconds <= longest)) return std::nullopt;
-  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::round(seconds * 1e9)));
-}
 
 // The names of the parts that may stand in a list of the experiment.
 std::vector<std::string> kinds_in(std::string_view list) {
@@ -29,6 +24,8 @@ std::vector<std::string> kinds_in(std::string_view list) {
     if (part.parent == list) kinds.emplace_back(part.name);
   return kinds;
 }
+
+bool is_when(std::string_view key) { return key == "at" || key == "on"; }
 
 std::string either_of(const std::vector<std::string>& kinds) {
   std::string text;
@@ -45,8 +42,11 @@ struct CourseReader::Written {
   std::string kind;
   YAML::Node map;  // of the kind's keys
   std::chrono::nanoseconds time{0};
+  YAML::Node on;  // what makes it happen in place of a time
+  std::string on_path;
 };
 
+// NOLINTNEXTLINE(bugprone-exception-escape): the same.
 struct CourseReader::ReadEvent {
   Event event;
   YAML::Node node;
@@ -55,138 +55,59 @@ struct CourseReader::ReadEvent {
 
 namespace {
 
-/// The values of one entry and where they stand.
-class Entry {
- public:
-  Entry(const YAML::Node& map, std::string path, const Extension& part, const YamlReport& report)
-      : map_(map), path_(std::move(path)), report_(report), values_(read_values(map, path_, part, true, report)) {}
-
-  const KeyValues& values() const { return values_; }
-  void problem(const std::string& key, std::string message) const {
-    const YAML::Node& map = map_;
-    const bool has_key = map.IsMap() && map[key];
-    report_.problem(has_key ? map[key] : map, path_ + "." + key, std::move(message));
-  }
-  /// Of a key in seconds; nothing, and reported, if it is too long.
-  std::optional<std::chrono::nanoseconds> time(const std::string& key) const {
-    if (!values_.has(key)) return std::nullopt;
-    const std::optional<std::chrono::nanoseconds> time = to_time(values_.real(key));
-    if (!time) problem(key, "expected at most 9e9 s");
-    return time;
-  }
-  /// The objects that the key `objects` selects, ascending; what selects none is reported.
-  std::vector<std::size_t> objects(const World& world) const {
-    std::vector<std::size_t> selected;
-    for (const std::string& selector : values_.texts("objects")) {
-      try {
-        const std::vector<std::size_t> found = select_objects(world, selector);
-        selected.insert(selected.end(), found.begin(), found.end());
-      } catch (const std::invalid_argument& error) {
-        problem("objects", error.what());
-      }
-    }
-    std::sort(selected.begin(), selected.end());
-    selected.erase(std::unique(selected.begin(), selected.end()), selected.end());
-    return selected;
-  }
-
- private:
-  YAML::Node map_;
-  std::string path_;
-  const YamlReport& report_;
-  KeyValues values_;
-};
-
-/// What an event of some kind does to one object; nothing, and reported, if it cannot be.
-using ReadAction = std::optional<Action> (*)(const Entry& entry, const World& world, std::size_t object);
-
-std::optional<Action> read_coming(const Entry&, const World&, std::size_t) { return SetPresence{true}; }
-std::optional<Action> read_leaving(const Entry&, const World&, std::size_t) { return SetPresence{false}; }
-
-std::optional<Action> read_move(const Entry& entry, const World&, std::size_t) {
-  if (!entry.values().has("pose")) return std::nullopt;
-  return PlaceAt{entry.values().pose("pose")};
-}
-
-// False, and reported, of what stays where it is.
-bool can_be_pushed(const Entry& entry, const World& world, std::size_t object) {
-  const Model& model = world.models[world.instances[object].model];
-  const auto ties_root = [](const Joint& joint) { return joint.parent == Joint::world && joint.child == 0; };
-  const bool is_tied = std::any_of(model.joints.begin(), model.joints.end(), ties_root);
-  if (!model.is_static && !is_tied) return true;
-  entry.problem("objects", "'" + world.instances[object].name + "' " +
-                               (model.is_static ? "is static" : "is tied to the world by a joint"));
-  return false;
-}
-
-std::optional<Action> read_set_velocity(const Entry& entry, const World& world, std::size_t object) {
-  const KeyValues& values = entry.values();
-  if (!values.has("linear") || !values.has("angular") || !can_be_pushed(entry, world, object)) return std::nullopt;
-  return SetVelocity{values.vector("linear"), values.vector("angular")};
-}
-
-std::optional<Action> read_apply_force(const Entry& entry, const World& world, std::size_t object) {
-  const KeyValues& values = entry.values();
-  const std::optional<std::chrono::nanoseconds> duration = entry.time("for");
-  const Model& model = world.models[world.instances[object].model];
-  if (!values.has("force") || !values.has("torque") || !duration) return std::nullopt;
-  if (model.is_static) {
-    entry.problem("objects", "'" + world.instances[object].name + "' is static");
-    return std::nullopt;
-  }
-  std::size_t link = 0;
-  if (values.has("link")) {
-    std::vector<std::string> names;
-    for (const Link& each : model.links) names.push_back(each.name);
-    link = static_cast<std::size_t>(std::find(names.begin(), names.end(), values.text("link")) - names.begin());
-    if (link == names.size()) {
-      entry.problem("link", "'" + world.instances[object].name + "' has no link '" + values.text("link") + "'" +
-                                suggestion(values.text("link"), names));
-      return std::nullopt;
-    }
-  }
-  return ApplyForce{link, values.vector("force"), values.vector("torque"), *duration};
-}
-
-// A new kind of event: its keys in experiment_keys.cpp, a line here, and what it does in the simulation.
-constexpr std::pair<std::string_view, ReadAction> actions[] = {
-    {"add", &read_coming},
-    {"remove", &read_leaving},
-    {"disable", &read_leaving},
-    {"enable", &read_coming},
-    {"move", &read_move},
-    {"set_velocity", &read_set_velocity},
-    {"apply_force", &read_apply_force},
-};
-
 using Condition = decltype(StopCondition::what);
-using ReadCondition = std::optional<Condition> (*)(const Entry& entry);
+using ReadCondition = std::optional<Condition> (*)(const CourseEntry& entry);
 
-std::optional<Condition> read_inside(const Entry& entry) {
+std::optional<Condition> read_inside(const CourseEntry& entry) {
   const KeyValues& values = entry.values();
   if (!values.has("min") || !values.has("max")) return std::nullopt;
   if ((values.point("min").array() > values.point("max").array()).any()) entry.problem("min", "exceeds max");
   return AllInside{values.point("min"), values.point("max")};
 }
-std::optional<Condition> read_beyond(const Entry& entry) {
+std::optional<Condition> read_beyond(const CourseEntry& entry) {
   const KeyValues& values = entry.values();
   if (!values.has("point") || !values.has("direction")) return std::nullopt;
   if (values.point("direction").isZero()) entry.problem("direction", "expected a direction that is not zero");
   return OneBeyond{values.point("point"), values.point("direction")};
 }
-std::optional<Condition> read_at_rest(const Entry& entry) {
+std::optional<Condition> read_at_rest(const CourseEntry& entry) {
   const KeyValues& values = entry.values();
   if (!values.has("speed") || !values.has("turn_rate")) return std::nullopt;
   return AllAtRest{values.real("speed"), values.real("turn_rate")};
 }
-std::optional<Condition> read_quarantined(const Entry&) { return OneQuarantined{}; }
+std::optional<Condition> read_quarantined(const CourseEntry&) { return OneQuarantined{}; }
 
 constexpr std::pair<std::string_view, ReadCondition> conditions[] = {
     {"inside", &read_inside}, {"beyond", &read_beyond}, {"at_rest", &read_at_rest}, {"quarantined", &read_quarantined}};
 
-constexpr std::pair<std::string_view, Quantity> quantities[] = {
-    {"position", Quantity::position}, {"pose", Quantity::pose},   {"heading", Quantity::heading},
-    {"velocity", Quantity::velocity}, {"count", Quantity::count}, {"quarantined", Quantity::quarantined}};
+constexpr std::pair<std::string_view, Quantity> quantities[] = {{"position", Quantity::position},
+                                                                {"pose", Quantity::pose},
+                                                                {"heading", Quantity::heading},
+                                                                {"velocity", Quantity::velocity},
+                                                                {"count", Quantity::count},
+                                                                {"quarantined", Quantity::quarantined},
+                                                                {"joint_force", Quantity::joint_force},
+                                                                {"joint_torque", Quantity::joint_torque}};
+
+bool is_of_joints(Quantity quantity) { return quantity == Quantity::joint_force || quantity == Quantity::joint_torque; }
+
+// Ascending; what selects none is reported.
+std::vector<std::size_t> selected_joints(const CourseEntry& entry, const World& world) {
+  std::set<std::size_t> selected;
+  std::vector<std::string> names;
+  for (const BreakableJoint& joint : world.breakable_joints) names.push_back(joint.name);
+  for (const std::string& selector : entry.values().texts("joints")) {
+    bool selects = false;
+    for (std::size_t joint = 0; joint < names.size(); ++joint) {
+      if (!matches(names[joint], selector)) continue;
+      selected.insert(joint);
+      selects = true;
+    }
+    if (!selects)
+      entry.problem("joints", "no breakable joint is called '" + selector + "'" + suggestion(selector, names));
+  }
+  return {selected.begin(), selected.end()};
+}
 
 template <class Named>
 auto named(const Named& entries, std::string_view name) {
@@ -211,6 +132,21 @@ void CourseReader::choose_kind(const YamlMap& map, const std::vector<std::string
   }
 }
 
+void CourseReader::read_when(const YamlMap& map, Written& written) {
+  if (map.has("on")) {
+    written.on = map.where("on");
+    written.on_path = map.path_to("on");
+    if (map.has("at")) map.problem("on", "has no place beside `at`");
+    return;
+  }
+  map.require("at", "when it happens, in seconds of simulated time; or `on`, what makes it happen");
+  const std::optional<double> seconds = map.real("at");
+  if (!seconds) return;
+  const std::optional<std::chrono::nanoseconds> time = course_time(*seconds);
+  if (!time) map.problem("at", "expected from 0 s to 9e9 s");
+  written.time = time.value_or(written.time);
+}
+
 std::vector<CourseReader::Written> CourseReader::entries(const std::string& list, bool have_times) const {
   std::vector<Written> found;
   if (!top_.has(list)) return found;
@@ -221,25 +157,18 @@ std::vector<CourseReader::Written> CourseReader::entries(const std::string& list
   }
   const std::vector<std::string> kinds = kinds_in(list);
   std::vector<std::string> known = kinds;
-  if (have_times) known.insert(known.begin(), "at");
+  if (have_times) known.insert(known.begin(), {"at", "on"});
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::string path = list + "[" + std::to_string(i) + "]";
     const YamlMap map(nodes[i], path, known, report_);
     if (!nodes[i].IsMap()) continue;
-    Written written{nodes[i], path, "", {}, {}};
-    if (have_times) {
-      map.require("at", "when it happens, in seconds of simulated time");
-      if (const std::optional<double> seconds = map.real("at")) {
-        const std::optional<std::chrono::nanoseconds> time = to_time(*seconds);
-        if (!time) map.problem("at", "expected from 0 s to 9e9 s");
-        written.time = time.value_or(written.time);
-      }
-    }
+    Written written{nodes[i], path, "", {}, {}, {}, ""};
+    if (have_times) read_when(map, written);
     choose_kind(map, kinds, written);
     if (!written.kind.empty())
       found.push_back(written);
     else if (std::all_of(nodes[i].begin(), nodes[i].end(),
-                         [&](const auto& entry) { return entry.first.IsScalar() && entry.first.Scalar() == "at"; }))
+                         [&](const auto& entry) { return entry.first.IsScalar() && is_when(entry.first.Scalar()); }))
       report_.problem(nodes[i], path, "missing: one of " + either_of(kinds));
   }
   return found;
@@ -275,15 +204,55 @@ void CourseReader::read(Experiment& experiment) const {
 
 void CourseReader::read_events(Experiment& experiment) const {
   std::vector<ReadEvent> events;
-  for (const Written& written : entries("events", true)) read_event(written, experiment.world, events);
+  std::vector<Event> at_any_time;
+  for (const Written& written : entries("events", true)) {
+    std::vector<ReadEvent> read = read_event(written, experiment.world);
+    if (written.on_path.empty()) {
+      std::move(read.begin(), read.end(), std::back_inserter(events));
+      continue;
+    }
+    std::optional<Reaction> reaction = read_on(written, experiment.world);
+    if (!reaction) continue;
+    for (const ReadEvent& each : read) reaction->events.push_back(each.event);
+    at_any_time.insert(at_any_time.end(), reaction->events.begin(), reaction->events.end());
+    experiment.reactions.push_back(*std::move(reaction));
+  }
   std::stable_sort(events.begin(), events.end(),
                    [](const ReadEvent& a, const ReadEvent& b) { return a.event.time < b.event.time; });
-  check_order(experiment.world, events);
+  check_order(experiment.world, events, at_any_time);
   for (ReadEvent& each : events) experiment.events.push_back(std::move(each.event));
 }
 
-void CourseReader::read_event(const Written& written, const World& world, std::vector<ReadEvent>& events) const {
-  const Entry entry(written.map, written.path, experiment_part(written.kind, "events"), report_);
+// The robots among those chosen that have the action.
+std::optional<Reaction> CourseReader::read_on(const Written& written, const World& world) const {
+  const CourseEntry entry(written.on, written.on_path, experiment_part("on", "an event"), report_);
+  const KeyValues& values = entry.values();
+  if (!values.has("action") || !values.has("robots")) return std::nullopt;
+  std::set<std::uint32_t> chosen;
+  for (const std::string& selector : values.texts("robots")) {
+    try {
+      for (const std::uint32_t robot : select_robots(world, selector)) chosen.insert(robot);
+    } catch (const std::invalid_argument& error) {
+      entry.problem("robots", error.what());
+      return std::nullopt;
+    }
+  }
+  Reaction reaction{values.text("action"), {}, {}};
+  std::set<std::string> known;
+  for (const std::uint32_t robot : chosen)
+    for (const Device& device : world.robot_model(robot).devices) {
+      if (!std::holds_alternative<UserAction>(device)) continue;
+      known.insert(name_of(device));
+      if (name_of(device) == reaction.action) reaction.robots.push_back(robot);
+    }
+  if (!reaction.robots.empty()) return reaction;
+  entry.problem("action", "no robot that is chosen has an action '" + reaction.action + "'" +
+                              suggestion(reaction.action, {known.begin(), known.end()}));
+  return std::nullopt;
+}
+
+std::vector<CourseReader::ReadEvent> CourseReader::read_event(const Written& written, const World& world) const {
+  const CourseEntry entry(written.map, written.path, experiment_part(written.kind, "events"), report_);
   std::vector<std::size_t> objects;
   if (written.kind == "add") {
     const auto is_added = [&](const Instance& instance) {
@@ -294,16 +263,21 @@ void CourseReader::read_event(const Written& written, const World& world, std::v
   } else {
     objects = entry.objects(world);
   }
-  for (const std::size_t object : objects)
-    if (const std::optional<Action> action = named(actions, written.kind)(entry, world, object))
-      events.push_back({{written.time, object, *action, written.kind}, written.map, written.path});
+  std::vector<ReadEvent> events;
+  for (auto& [object, effect] : read_effects(written.kind, entry, world, objects))
+    events.push_back({{written.time, object, std::move(effect), written.kind}, written.map, written.path});
+  return events;
 }
 
-// What has been removed does not come back, and what has not come yet cannot be acted on.
-void CourseReader::check_order(const World& world, const std::vector<ReadEvent>& events) const {
+// What has been removed does not come back, and what has not come yet cannot be acted on. What comes when a robot does
+// something may be there at any time.
+void CourseReader::check_order(const World& world, const std::vector<ReadEvent>& events,
+                               const std::vector<Event>& at_any_time) const {
   std::vector<char> is_there(world.instances.size());
   std::vector<char> is_gone(world.instances.size(), 0);
   for (std::size_t i = 0; i < world.instances.size(); ++i) is_there[i] = world.instances[i].is_present ? 1 : 0;
+  for (const Event& event : at_any_time)
+    if (event.kind == "add") is_there[event.object] = 1;
   for (const ReadEvent& each : events) {
     const Event& event = each.event;
     const std::string name = "'" + world.instances[event.object].name + "'";
@@ -318,7 +292,7 @@ void CourseReader::check_order(const World& world, const std::vector<ReadEvent>&
 
 void CourseReader::read_stops(Experiment& experiment) const {
   for (const Written& written : entries("stop", false)) {
-    const Entry entry(written.map, written.path, experiment_part(written.kind, "stop"), report_);
+    const CourseEntry entry(written.map, written.path, experiment_part(written.kind, "stop"), report_);
     StopCondition condition{written.kind, entry.objects(experiment.world), OneQuarantined{},
                             entry.time("for").value_or(std::chrono::nanoseconds(0))};
     if (const auto what = named(conditions, written.kind)(entry)) {
@@ -333,15 +307,22 @@ void CourseReader::read_prints(Experiment& experiment) const {
   const YAML::Node nodes = top_.where("print");
   if (!nodes.IsSequence()) return top_.problem("print", "expected a list, not " + shown(nodes));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Entry entry(nodes[i], "print[" + std::to_string(i) + "]", experiment_part("print", "experiment"), report_);
+    const CourseEntry entry(nodes[i], "print[" + std::to_string(i) + "]", experiment_part("print", "experiment"),
+                            report_);
     const KeyValues& values = entry.values();
     const std::optional<std::chrono::nanoseconds> every = entry.time("every");
     PrintedQuantity printed;
     for (const std::string& selector : values.texts("objects"))
       printed.selector += (printed.selector.empty() ? "" : " ") + selector;
-    printed.objects = entry.objects(experiment.world);
     if (!values.has("quantity") || !every) continue;
     printed.quantity = named(quantities, values.text("quantity"));
+    const bool of_joints = is_of_joints(printed.quantity);
+    if (const std::string stray = of_joints ? "objects" : "joints"; entry.is_written(stray))
+      entry.problem(stray, "has no place beside the quantity '" + values.text("quantity") + "'");
+    if (of_joints)
+      printed.joints = selected_joints(entry, experiment.world);
+    else
+      printed.objects = entry.objects(experiment.world);
     printed.every = *every;
     experiment.prints.push_back(std::move(printed));
   }
@@ -349,7 +330,7 @@ void CourseReader::read_prints(Experiment& experiment) const {
 
 void CourseReader::read_history(Experiment& experiment) const {
   if (!top_.has("history")) return;
-  const Entry entry(top_.where("history"), "history", experiment_part("history", "experiment"), report_);
+  const CourseEntry entry(top_.where("history"), "history", experiment_part("history", "experiment"), report_);
   experiment.history.objects = entry.objects(experiment.world);
   if (entry.values().has("length"))
     experiment.history.length = static_cast<std::size_t>(entry.values().whole("length"));

@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <optional>
 #include <vector>
 
 #include "server/description/experiment.hpp"
@@ -27,9 +28,12 @@ class CourseReader {
   struct ReadEvent;  // and where it stands
   std::vector<Written> entries(const std::string& list, bool have_times) const;
   static void choose_kind(const YamlMap& map, const std::vector<std::string>& kinds, Written& written);
+  static void read_when(const YamlMap& map, Written& written);
   void read_events(Experiment& experiment) const;
-  void read_event(const Written& written, const World& world, std::vector<ReadEvent>& events) const;
-  void check_order(const World& world, const std::vector<ReadEvent>& events) const;
+  std::vector<ReadEvent> read_event(const Written& written, const World& world) const;
+  std::optional<Reaction> read_on(const Written& written, const World& world) const;
+  void check_order(const World& world, const std::vector<ReadEvent>& events,
+                   const std::vector<Event>& at_any_time) const;
   void read_stops(Experiment& experiment) const;
   void read_prints(Experiment& experiment) const;
   void read_history(Experiment& experiment) const;

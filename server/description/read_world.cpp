@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/description/breakable_joints.hpp"
 #include "server/description/extension_values.hpp"
 #include "server/description/not_supported.hpp"
 #include "server/description/physics_settings.hpp"
@@ -47,7 +48,9 @@ class WorldReader {
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
   void add_included_model(const Include& include, const Pose& X_WM);
   void read_extensions(const sdf::World& sdf_world);
+  void read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read);
   void add_material_pair(const ExtensionValues& values);
+  void add_breakable_joint(const ExtensionValues& values);
   /// The index of the material that `key` names; reported if nothing is made of it.
   std::optional<std::uint32_t> find_material(const ExtensionValues& values, const char* key) const;
   ModelReading reading(bool is_static, const SdfFile& file) {
@@ -231,13 +234,21 @@ void WorldReader::read_extensions(const sdf::World& sdf_world) {
         world_.climate = {values->real("temperature"), values->real("humidity")};
     }
   }
-  // Last, when all materials are known; what could not be read may have had more.
+  // Last, when all materials and objects are known; what could not be read may have had more.
   const bool all_is_read = problems_.empty();
-  for (const auto& [element, extension] : extensions) {
-    if (extension->name != "material_pair") continue;
-    if (const auto values = ExtensionValues::read(element, *extension, report_); values && all_is_read)
-      add_material_pair(*values);
-  }
+  for (const auto& [element, extension] : extensions) read_reference(element, *extension, all_is_read);
+}
+
+// What names a material or an object. Its keys are checked in any case.
+void WorldReader::read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read) {
+  const bool is_pair = extension.name == "material_pair";
+  if (!is_pair && extension.name != "breakable_joint") return;
+  const auto values = ExtensionValues::read(element, extension, report_);
+  if (!values || !all_is_read) return;
+  if (is_pair)
+    add_material_pair(*values);
+  else
+    add_breakable_joint(*values);
 }
 
 std::optional<std::uint32_t> WorldReader::find_material(const ExtensionValues& values, const char* key) const {
@@ -259,6 +270,13 @@ void WorldReader::add_material_pair(const ExtensionValues& values) {
                                             values.text("second") + "'");
   world_.material_pairs.push_back(
       {*first, *second, values.real("friction"), values.real("restitution"), values.real("rolling_resistance")});
+}
+
+void WorldReader::add_breakable_joint(const ExtensionValues& values) {
+  const std::vector<BreakableJoint>& others = world_.breakable_joints;
+  if (std::any_of(others.begin(), others.end(), [&](const auto& other) { return other.name == values.name(); }))
+    return report_.problem(values.element(), "another breakable joint has the name '" + values.name() + "'");
+  if (auto joint = read_breakable_joint(values, world_, report_)) world_.breakable_joints.push_back(*std::move(joint));
 }
 
 template <class Report>

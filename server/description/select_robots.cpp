@@ -4,12 +4,25 @@
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <string_view>
 
 #include "server/description/text.hpp"
 
 namespace cohort::description {
 namespace {
+
+std::vector<std::uint32_t> ids(std::uint64_t first, std::uint64_t last) {
+  std::vector<std::uint32_t> range(last - first + 1);
+  std::iota(range.begin(), range.end(), static_cast<std::uint32_t>(first));
+  return range;
+}
+
+std::string robots_of(const World& world) {
+  const std::size_t count = world.robots.size();
+  if (count == 0) return "the world has no robots";
+  return "the robots of this world are 0.." + std::to_string(count - 1);
+}
+
+}  // namespace
 
 // Greedy matching with one step back to the last star is enough for stars alone.
 bool matches(std::string_view name, std::string_view pattern) {
@@ -33,20 +46,6 @@ bool matches(std::string_view name, std::string_view pattern) {
   }
   return pattern.find_first_not_of('*', p) == std::string_view::npos;
 }
-
-std::vector<std::uint32_t> ids(std::uint64_t first, std::uint64_t last) {
-  std::vector<std::uint32_t> range(last - first + 1);
-  std::iota(range.begin(), range.end(), static_cast<std::uint32_t>(first));
-  return range;
-}
-
-std::string robots_of(const World& world) {
-  const std::size_t count = world.robots.size();
-  if (count == 0) return "the world has no robots";
-  return "the robots of this world are 0.." + std::to_string(count - 1);
-}
-
-}  // namespace
 
 std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector) {
   const std::string_view text = trimmed(selector);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/description/world.hpp"
@@ -16,6 +17,9 @@ namespace cohort::description {
 /// - a scoped name, in which `*` stands for any characters or none, such as `explorers/*`.
 /// Throws std::invalid_argument, with a message for the user, if it is none of these or means no robot.
 std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector);
+
+/// Whether a name is `pattern`, in which `*` stands for any characters or none.
+bool matches(std::string_view name, std::string_view pattern);
 
 /// The instances, ascending, whose names are `selector`, in which `*` stands for any characters or none. Throws
 /// std::invalid_argument, with a message for the user, if there are none.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,18 @@ struct MaterialPair {
   double rolling_resistance = 0.0;  ///< [m]
 };
 
+/// Links of two objects, held together as they stand at first until that takes too much. One of the two moves.
+struct BreakableJoint {
+  std::string name;
+  std::size_t first = 0;  ///< index into World::instances
+  std::size_t first_link = 0;
+  std::size_t second = 0;
+  std::size_t second_link = 0;
+  std::optional<Pose> X_LP{};  ///< where it is, in the first link; at the origin of the second one if absent
+  double breaking_force = std::numeric_limits<double>::infinity();   ///< [N]
+  double breaking_torque = std::numeric_limits<double>::infinity();  ///< [N m]
+};
+
 /// A world with every include and population expanded. A robot's id is its place in `robots`.
 struct World {
   std::string name;
@@ -80,6 +93,7 @@ struct World {
   std::vector<MaterialPair> material_pairs;
   std::vector<Model> models;
   std::vector<Instance> instances;
+  std::vector<BreakableJoint> breakable_joints;
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order
   std::vector<Problem> warnings;    ///< what the file asks for and is not simulated
 

@@ -202,6 +202,7 @@ struct DeviceWriter {
     add_key(element, "jaw_width", gripper.jaw_width);
     write_readout(element, gripper.readout);
   }
+  void operator()(const UserAction& action) const { add_named(parent, prefixed("action"), action.name); }
   void operator()(const TorqueSensor& sensor) const { write_joint_sensor("torque_sensor", sensor); }
   void operator()(const TractionSensor& sensor) const { write_joint_sensor("traction_sensor", sensor); }
 

@@ -74,10 +74,25 @@ class WorldWriter {
       add_key(element, "restitution", pair.restitution);
       add_key(element, "rolling_resistance", pair.rolling_resistance);
     }
+    for (const BreakableJoint& joint : world_.breakable_joints) write_breakable_joint(world, joint);
     return root;
   }
 
  private:
+  void write_breakable_joint(XmlNode& world, const BreakableJoint& joint) const {
+    XmlNode& element = add_named(world, prefixed("breakable_joint"), joint.name);
+    const auto add_end = [&](const std::string& key, std::size_t object, std::size_t link) {
+      const Instance& instance = world_.instances[object];
+      add_key(element, key, instance.name);
+      add_key(element, key + "_link", without_scope_marks(world_.models[instance.model].links[link].name));
+    };
+    add_end("first", joint.first, joint.first_link);
+    add_end("second", joint.second, joint.second_link);
+    if (joint.X_LP) add_key(element, "pose", *joint.X_LP);
+    if (std::isfinite(joint.breaking_force)) add_key(element, "breaking_force", joint.breaking_force);
+    if (std::isfinite(joint.breaking_torque)) add_key(element, "breaking_torque", joint.breaking_torque);
+  }
+
   void write_physics(XmlNode& world) const {
     XmlNode& sdf = add_named(world, "physics", "default");
     sdf.attributes.emplace_back("type", "ignored");

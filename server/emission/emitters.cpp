@@ -30,27 +30,81 @@ Emitters::Emitters(const description::World& description, const physics::World& 
   beacon_grid_.set_cell_size(beacon_cell);
   for (std::uint32_t body = 0; body < description.instances.size(); ++body) {
     const description::Model& model = description.models[description.instances[body].model];
-    for (const description::Emitter& emitter : model.emitters) add({body, emitter.link, emitter.X_LE}, emitter);
+    add_emitters(body, model);
     add_devices(body, model);
   }
 }
 
 void Emitters::add_body(std::uint32_t body, std::size_t model) {
   added_.emplace_back(body, static_cast<std::uint32_t>(model));
-  for (const description::Emitter& emitter : description_.models[model].emitters)
-    add({body, emitter.link, emitter.X_LE}, emitter);
+  add_emitters(body, description_.models[model]);
 }
 
-void Emitters::add(const Mount& mount, const description::Emitter& emitter) {
+void Emitters::add_emitters(std::uint32_t body, const description::Model& model) {
+  for (std::size_t i = 0; i < model.emitters.size(); ++i) add(body, i, model.emitters[i]);
+}
+
+void Emitters::add(std::uint32_t body, std::size_t place, const description::Emitter& emitter) {
+  const Mount mount{body, emitter.link, emitter.X_LE};
   const bool is_on = emitter.is_on;
-  if (const auto* light = std::get_if<description::Light>(&emitter.what))
-    lamps_.push_back({mount, *light, is_on});
-  else if (const auto* sound = std::get_if<description::Sound>(&emitter.what))
+  const auto note = [&](Kind kind, const auto& emitters) {
+    entries_.push_back({body, place, kind, count_of(emitters) - 1});
+  };
+  if (const auto* light = std::get_if<description::Light>(&emitter.what)) {
+    lamps_.push_back({.mount = mount, .light = *light, .is_on = is_on});
+    note(Kind::lamp, lamps_);
+  } else if (const auto* sound = std::get_if<description::Sound>(&emitter.what)) {
     tones_.push_back({mount, *sound, is_on});
-  else if (const auto* marker = std::get_if<description::Marker>(&emitter.what))
+    note(Kind::tone, tones_);
+  } else if (const auto* marker = std::get_if<description::Marker>(&emitter.what)) {
     markers_.push_back({mount, marker->color, is_on});
-  else
-    climate_sources_.push_back({mount, std::get<description::ClimateSource>(emitter.what), is_on});
+    note(Kind::marker, markers_);
+  } else {
+    const auto& source = std::get<description::ClimateSource>(emitter.what);
+    climate_sources_.push_back({.mount = mount, .source = source, .is_on = is_on});
+    note(Kind::climate_source, climate_sources_);
+  }
+}
+
+void Emitters::change(std::uint32_t body, std::size_t emitter, const description::EmitterChange& change) {
+  const auto found = std::lower_bound(entries_.begin(), entries_.end(), std::pair{body, emitter},
+                                      [](const Entry& entry, const std::pair<std::uint32_t, std::size_t>& key) {
+                                        return std::pair{entry.body, entry.emitter} < key;
+                                      });
+  if (found == entries_.end() || found->body != body || found->emitter != emitter)
+    throw std::invalid_argument("the object has no such emitter");
+  const auto set = [](auto& value, const auto& to) {
+    if (to) value = *to;
+  };
+  switch (found->kind) {
+    case Kind::lamp: {
+      Lamp& lamp = lamps_[found->index];
+      set(lamp.is_on, change.is_on);
+      set(lamp.light.intensity, change.intensity);
+      set(lamp.light.color, change.color);
+      break;
+    }
+    case Kind::tone: {
+      Tone& tone = tones_[found->index];
+      set(tone.is_on, change.is_on);
+      set(tone.sound.intensity, change.intensity);
+      set(tone.sound.frequency, change.frequency);
+      break;
+    }
+    case Kind::marker: {
+      Marker& marker = markers_[found->index];
+      set(marker.is_on, change.is_on);
+      set(marker.color, change.color);
+      break;
+    }
+    case Kind::climate_source: {
+      ClimateSource& source = climate_sources_[found->index];
+      set(source.is_on, change.is_on);
+      set(source.source.temperature, change.temperature);
+      set(source.source.humidity, change.humidity);
+      break;
+    }
+  }
 }
 
 void Emitters::add_devices(std::uint32_t body, const description::Model& model) {
@@ -146,6 +200,7 @@ void Emitters::visit_state(Self& self, Visit&& visit) {
   for (auto& lamp : self.lamps_) {
     visit(lamp.is_on);
     for (int i = 0; i < 3; ++i) visit(lamp.light.color[i]);
+    visit.unusual(lamp.light.intensity, lamp.usual_intensity);
   }
   for (auto& tone : self.tones_) {
     visit(tone.is_on);
@@ -156,7 +211,11 @@ void Emitters::visit_state(Self& self, Visit&& visit) {
     visit(marker.is_on);
     for (int i = 0; i < 3; ++i) visit(marker.color[i]);
   }
-  for (auto& source : self.climate_sources_) visit(source.is_on);
+  for (auto& source : self.climate_sources_) {
+    visit(source.is_on);
+    visit.unusual(source.source.temperature, source.usual.temperature);
+    visit.unusual(source.source.humidity, source.usual.humidity);
+  }
   for (auto& beacon : self.beacons_) {
     visit(beacon.is_sending);
     for (auto& value : beacon.message) visit(value);

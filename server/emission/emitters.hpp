@@ -23,7 +23,8 @@ struct Mount {
 
 struct Lamp {
   Mount mount;
-  description::Light light;  ///< colour and intensity as they are now
+  description::Light light;                  ///< colour and intensity as they are now
+  double usual_intensity = light.intensity;  ///< at first
   bool is_on = true;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction_W = Eigen::Vector3d::Zero();  ///< of a spot or directional light, unit
@@ -45,7 +46,8 @@ struct Marker {
 
 struct ClimateSource {
   Mount mount;
-  description::ClimateSource source;
+  description::ClimateSource source;          ///< temperature and humidity as they are now
+  description::ClimateSource usual = source;  ///< at first
   bool is_on = true;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
 };
@@ -108,6 +110,8 @@ class Emitters {
   };
   /// `device`: index in the body's model, of one that emits.
   OfDevice of_device(std::uint32_t body, std::size_t device) const;
+  /// Of an emitter of a body's model, by its index there. Throws std::invalid_argument if there is none.
+  void change(std::uint32_t body, std::size_t emitter, const description::EmitterChange& change);
   void set_lamp(std::uint32_t lamp, const Eigen::Vector3d& color) { lamps_[lamp].light.color = color; }
   void set_tone(std::uint32_t tone, double frequency, double intensity);
   void set_marker(std::uint32_t marker, const Eigen::Vector3d& color) { markers_[marker].color = color; }
@@ -126,7 +130,15 @@ class Emitters {
     std::size_t device = 0;
     OfDevice first;
   };
-  void add(const Mount& mount, const description::Emitter& emitter);
+  enum class Kind : std::uint8_t { lamp, tone, marker, climate_source };
+  struct Entry {
+    std::uint32_t body = 0;
+    std::size_t emitter = 0;
+    Kind kind = Kind::lamp;
+    std::uint32_t index = 0;  // among those of its kind
+  };
+  void add_emitters(std::uint32_t body, const description::Model& model);
+  void add(std::uint32_t body, std::size_t place, const description::Emitter& emitter);
   void add_devices(std::uint32_t body, const description::Model& model);
   std::size_t emitter_count() const;
   template <class Self, class Visit>
@@ -139,6 +151,7 @@ class Emitters {
   std::vector<Marker> markers_;
   std::vector<ClimateSource> climate_sources_;
   std::vector<Beacon> beacons_;
+  std::vector<Entry> entries_;                                  // ascending by body, then emitter
   std::vector<DeviceEntry> devices_;                            // ascending by body, then device
   std::vector<std::pair<std::uint32_t, std::uint32_t>> added_;  // bodies and their models
 

@@ -18,6 +18,7 @@ class Connection {
     int segment = 0;
     std::uint32_t link = 0;  ///< of the model; several may be one segment
     Pose X_SP;
+    std::uint32_t body = 0;  ///< in the world, also if it does not move
   };
   using Impulses = std::array<double, 6>;  ///< linear [N s], then angular [N m s]
 

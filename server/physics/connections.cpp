@@ -11,6 +11,7 @@ void visit_end(End& end, Visit&& visit) {
   visit(end.segment);
   visit(end.link);
   visit_pose(end.X_SP, visit);
+  visit(end.body);
 }
 
 }  // namespace
@@ -26,6 +27,11 @@ std::uint32_t Connections::add(const Connection::End& a, const Connection::End& 
 void Connections::release_of(std::uint32_t member) {
   for (Connection& connection : connections_)
     if (connection.a().member == member || connection.b().member == member) connection.release();
+}
+
+void Connections::release_of_body(std::uint32_t body) {
+  for (Connection& connection : connections_)
+    if (connection.a().body == body || connection.b().body == body) connection.release();
 }
 
 void Connections::break_overloaded(double step) {
@@ -56,6 +62,9 @@ void Connections::save(SnapshotWriter& writer) const {
 
 void Connections::restore(SnapshotReader& reader, std::size_t members) {
   const StateRestorer restore{reader};
+  connections_.clear();
+  of_member_.clear();
+  broken_.clear();
   constexpr std::size_t least_bytes = 100;
   for (std::size_t count = reader.read_count(least_bytes); count > 0; --count) {
     Connection::End a;

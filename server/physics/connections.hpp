@@ -16,6 +16,8 @@ class Connections {
   void release(std::uint32_t connection) { connections_[connection].release(); }
   /// Those at either end of a body that moves.
   void release_of(std::uint32_t member);
+  /// Those at either end of any body of the world.
+  void release_of_body(std::uint32_t body);
   /// After a step, of all that hold and yield: `pose(end)` is X_WS of its segment.
   template <class PoseOf>
   void settle(PoseOf&& pose, double step) {
@@ -40,7 +42,7 @@ class Connections {
 
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// Into an empty one. Throws SnapshotError if a connection is not of one of the `members`.
+  /// In the place of what there is. Throws SnapshotError if a connection is not of one of the `members`.
   void restore(SnapshotReader& reader, std::size_t members);
 
  private:

@@ -9,6 +9,7 @@ void PlanarEngine::remove_body(std::uint32_t index) {
   if (!is_active(index)) return;
   if (body.member != Anchors::nobody) return take_out(body.member);
   body.is_out = true;
+  connections_.release_of_body(index);
   for (const std::uint32_t solid : body.solids) scene_.remove(solid);
 }
 
@@ -33,6 +34,7 @@ void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
   body.X_WM = X_WM;
   body.is_placed_again = true;
   if (body.member == Anchors::nobody) {
+    connections_.release_of_body(index);
     std::size_t next = 0;
     for (const description::Link& link : description_.models[body.model].links)
       for (const description::Collision& collision : link.collisions) {

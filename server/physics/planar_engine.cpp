@@ -233,13 +233,13 @@ std::uint32_t PlanarEngine::connect(std::uint32_t body_a, std::size_t link_a, co
   };
   const Mechanism::LinkPlace& place_a = link_of(body_a, link_a);
   const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
-                              place_a.X_SL * X_LP};
+                              place_a.X_SL * X_LP, body_a};
   const Pose X_WP = planar_.segment_pose(end_a.member, end_a.segment) * end_a.X_SP;
-  Connection::End end_b{Anchors::nobody, 0, 0, X_WP};
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, body_b};
   if (const std::uint32_t member = bodies_[body_b].member; member != Anchors::nobody) {
     const int segment = link_of(body_b, link_b).segment;
     end_b = {member, segment, static_cast<std::uint32_t>(link_b),
-             planar_.segment_pose(member, segment).inverse() * X_WP};
+             planar_.segment_pose(member, segment).inverse() * X_WP, body_b};
   }
   return connections_.add(end_a, end_b, limits);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
 #include "server/core/hash.hpp"
@@ -17,7 +18,11 @@ struct StateHasher {
   void operator()(const bool& flag) const { hash.add(static_cast<std::uint64_t>(flag)); }
   template <class Choice>
   void unusual(const Choice& choice, Choice usual) const {
-    if (choice != usual) hash.add(static_cast<std::uint64_t>(choice));
+    if (choice == usual) return;
+    if constexpr (std::is_floating_point_v<Choice>)
+      hash.add(choice);
+    else
+      hash.add(static_cast<std::uint64_t>(choice));
   }
 };
 /// Writes it.

@@ -183,14 +183,14 @@ std::uint32_t Stepper::connect(std::uint32_t body_a, std::size_t link_a, const P
   const Multibody& a = multibody(body_a);
   const Mechanism::LinkPlace& place_a = a.mechanism().link(link_a);
   const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
-                              place_a.X_SL * X_LP};
+                              place_a.X_SL * X_LP, body_a};
   const Pose X_WP = a.segment_pose(place_a.segment) * end_a.X_SP;
-  Connection::End end_b{Anchors::nobody, 0, 0, X_WP};
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, body_b};
   if (!is_static(body_b)) {
     const Multibody& b = multibody(body_b);
     const int segment = b.mechanism().link(link_b).segment;
     end_b = {bodies_[body_b].member, segment, static_cast<std::uint32_t>(link_b),
-             b.segment_pose(segment).inverse() * X_WP};
+             b.segment_pose(segment).inverse() * X_WP, body_b};
   }
   return assembly_.connections.add(end_a, end_b, limits);
 }

@@ -9,6 +9,7 @@ void Stepper::remove_body(std::uint32_t index) {
   if (!is_active(index)) return;
   if (!is_static(index)) return assembly_.take_out(body.member);
   body.is_out = true;
+  assembly_.connections.release_of_body(index);
   for (const std::uint32_t solid : body.solids) {
     assembly_.scene.remove(solid);
     assembly_.collision.remove(solid);
@@ -28,6 +29,7 @@ void Stepper::place_body(std::uint32_t index, const Pose& X_WM) {
   body.X_WM = X_WM;
   body.is_placed_again = true;
   if (!is_static(index)) return assembly_.place(body.member, X_WM);
+  assembly_.connections.release_of_body(index);
   std::size_t next = 0;
   for (const description::Link& link : description_.models[body.model].links)
     for (const description::Collision& collision : link.collisions) {

@@ -16,33 +16,94 @@ Overloaded(Functions...) -> Overloaded<Functions...>;
 
 }  // namespace
 
-Course::Course(const description::Experiment& experiment, physics::World& world, Objects& objects)
-    : experiment_(experiment), world_(world), objects_(objects), boundaries_held_(experiment.stops.size(), 0) {
+Course::Course(const description::Experiment& experiment, physics::World& world, Objects& objects,
+               emission::Emitters& emitters, const actuation::UserActions& actions)
+    : experiment_(experiment),
+      world_(world),
+      objects_(objects),
+      emitters_(emitters),
+      actions_(actions),
+      boundaries_held_(experiment.stops.size(), 0) {
   for (const description::Event& event : experiment.events)
     event_ticks_.push_back(event.time.count() == 0 ? 0 : ticks_of(event.time, experiment.world.step));
+  for (const description::Instance& instance : experiment.world.instances)
+    stages_.push_back(instance.is_present ? Stage::came : Stage::to_come);
+  for (const description::Reaction& reaction : experiment.reactions)
+    force_ends_.resize(force_ends_.size() + reaction.events.size(), 0);
 }
 
 std::vector<std::string> Course::begin_tick(std::uint64_t tick) {
   std::vector<std::string> happened;
   for (; next_event_ < event_ticks_.size() && event_ticks_[next_event_] <= tick; ++next_event_)
     happened.push_back(act(experiment_.events[next_event_]));
+  react(tick, happened);
   return happened;
+}
+
+void Course::react(std::uint64_t tick, std::vector<std::string>& happened) {
+  std::size_t first_event = 0;
+  for (const description::Reaction& reaction : experiment_.reactions) {
+    if (const std::string actors = who_begins(reaction); !actors.empty()) {
+      for (std::size_t i = 0; i < reaction.events.size(); ++i) {
+        const description::Event& event = reaction.events[i];
+        happened.push_back(reaction.action + " of " + actors + ": " + act(event));
+        if (const auto* const force = std::get_if<description::ApplyForce>(&event.effect))
+          force_ends_[first_event + i] = tick + ticks_of(force->duration, experiment_.world.step);
+      }
+    }
+    first_event += reaction.events.size();
+  }
+}
+
+// The first of those who begin the action, and how many more there are; nobody: empty.
+std::string Course::who_begins(const description::Reaction& reaction) const {
+  std::string text;
+  std::size_t others = 0;
+  for (const actuation::ActionOfRobot& action : actions_.all()) {
+    if (!action.begins || action.name != reaction.action ||
+        !std::binary_search(reaction.robots.begin(), reaction.robots.end(), action.robot))
+      continue;
+    if (text.empty())
+      text = "'" + objects_.name(action.body) + "'";
+    else
+      ++others;
+  }
+  return others == 0 ? text : text + " and " + std::to_string(others) + " more";
+}
+
+// What comes and goes once cannot be acted on before or after that.
+std::optional<std::string> Course::why_not(const description::Event& event) const {
+  const auto* const presence = std::get_if<description::SetPresence>(&event.effect);
+  const bool comes_first = presence != nullptr && presence->once && presence->present;
+  switch (stages_[event.object]) {
+    case Stage::to_come: return comes_first ? std::nullopt : std::optional("it has not been added");
+    case Stage::came: return comes_first ? std::optional("it has been added already") : std::nullopt;
+    case Stage::gone: return "it has been removed";
+  }
+  return std::nullopt;
 }
 
 std::string Course::act(const description::Event& event) {
   const auto object = static_cast<std::uint32_t>(event.object);
   std::string text = event.kind + " '" + objects_.name(object) + "'";
+  if (const std::optional<std::string> reason = why_not(event)) return text + " does nothing: " + *reason;
   try {
     std::visit(Overloaded{
-                   [&](const description::SetPresence& presence) { objects_.set_present(object, presence.present); },
+                   [&](const description::SetPresence& presence) {
+                     objects_.set_present(object, presence.present);
+                     if (presence.once) stages_[object] = presence.present ? Stage::came : Stage::gone;
+                   },
                    [&](const description::PlaceAt& place) { world_.place_body(object, place.X_WM); },
                    [&](const description::SetVelocity& velocity) {
                      if (world_.is_active(object))
                        world_.set_root_twist(object, {velocity.angular_W, velocity.linear_W});
                    },
                    [](const description::ApplyForce&) {},  // acts in the steps that follow
+                   [&](const description::SetEmitters& set) {
+                     for (const std::size_t emitter : set.emitters) emitters_.change(object, emitter, set.change);
+                   },
                },
-               event.action);
+               event.effect);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(text + ": " + error.what());
   }
@@ -50,13 +111,22 @@ std::string Course::act(const description::Event& event) {
 }
 
 void Course::push(std::uint64_t tick) {
-  for (std::size_t i = 0; i < next_event_; ++i) {
-    const auto* const force = std::get_if<description::ApplyForce>(&experiment_.events[i].action);
-    const auto object = static_cast<std::uint32_t>(experiment_.events[i].object);
-    if (force == nullptr || !world_.is_active(object)) continue;
-    if (tick < event_ticks_[i] + ticks_of(force->duration, experiment_.world.step))
+  const auto push_for = [&](const description::Event& event, auto&& end) {
+    const auto* const force = std::get_if<description::ApplyForce>(&event.effect);
+    const auto object = static_cast<std::uint32_t>(event.object);
+    if (force != nullptr && world_.is_active(object) && tick < end(*force))
       world_.push_body(object, force->link, {force->force_W, force->torque_W});
-  }
+  };
+  for (std::size_t i = 0; i < next_event_; ++i)
+    push_for(experiment_.events[i], [&](const description::ApplyForce& force) {
+      return event_ticks_[i] + ticks_of(force.duration, experiment_.world.step);
+    });
+  std::size_t i = 0;
+  for (const description::Reaction& reaction : experiment_.reactions)
+    for (const description::Event& event : reaction.events) {
+      push_for(event, [&](const description::ApplyForce&) { return force_ends_[i]; });
+      ++i;
+    }
 }
 
 void Course::check_stops() {
@@ -112,6 +182,9 @@ std::optional<std::string> Course::why_it_holds(const description::StopCondition
 
 void Course::hash(StateHash& hash) const {
   for (const std::uint64_t held : boundaries_held_) hash.add(held);
+  if (experiment_.reactions.empty()) return;  // then all else follows from the tick
+  for (const Stage stage : stages_) hash.add(static_cast<std::uint64_t>(stage));
+  for (const std::uint64_t end : force_ends_) hash.add(end);
 }
 
 void Course::save(SnapshotWriter& writer) const {
@@ -120,6 +193,10 @@ void Course::save(SnapshotWriter& writer) const {
   const std::string reason = stop_reason_.value_or("");
   writer.add_count(reason.size());
   writer.add_all(reason.data(), reason.size());
+  writer.add_count(stages_.size());
+  writer.add_all(stages_.data(), stages_.size());
+  writer.add_count(force_ends_.size());
+  writer.add_all(force_ends_.data(), force_ends_.size());
 }
 
 void Course::restore(SnapshotReader& reader, std::uint64_t tick) {
@@ -129,6 +206,10 @@ void Course::restore(SnapshotReader& reader, std::uint64_t tick) {
   reader.read_all(reason.data(), reason.size());
   stop_reason_.reset();
   if (!reason.empty()) stop_reason_ = std::move(reason);
+  reader.expect_count(stages_.size(), "objects in its world");
+  reader.read_all(stages_.data(), stages_.size());
+  reader.expect_count(force_ends_.size(), "events of actions");
+  reader.read_all(force_ends_.data(), force_ends_.size());
   next_event_ =
       static_cast<std::size_t>(std::upper_bound(event_ticks_.begin(), event_ticks_.end(), tick) - event_ticks_.begin());
 }

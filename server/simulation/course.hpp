@@ -5,16 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "server/actuation/user_actions.hpp"
+#include "server/emission/emitters.hpp"
 #include "server/simulation/objects.hpp"
 
 namespace cohort {
 
-/// What an experiment says of the course of its run, at work: its events, and when it stops.
+/// What an experiment says of the course of its run, at work: its events, what actions of robots make happen, and when
+/// it stops.
 class Course {
  public:
-  Course(const description::Experiment& experiment, physics::World& world, Objects& objects);
+  Course(const description::Experiment& experiment, physics::World& world, Objects& objects,
+         emission::Emitters& emitters, const actuation::UserActions& actions);
 
-  /// The events of a boundary. Throws std::runtime_error for one that cannot be done. Returns a sentence for each.
+  /// The events of a boundary: those of its time, then those of the actions that begin. Throws std::runtime_error for
+  /// one that cannot be done. Returns a sentence for each.
   std::vector<std::string> begin_tick(std::uint64_t tick);
   /// Applies the forces that act in the step from `tick` on.
   void push(std::uint64_t tick);
@@ -30,15 +35,24 @@ class Course {
   void restore(SnapshotReader& reader, std::uint64_t tick);
 
  private:
+  /// Of an object of the description.
+  enum class Stage : std::uint8_t { to_come, came, gone };
+  void react(std::uint64_t tick, std::vector<std::string>& happened);
+  std::string who_begins(const description::Reaction& reaction) const;
+  std::optional<std::string> why_not(const description::Event& event) const;
   std::string act(const description::Event& event);
   std::optional<std::string> why_it_holds(const description::StopCondition& condition) const;
 
   const description::Experiment& experiment_;
   physics::World& world_;
   Objects& objects_;
+  emission::Emitters& emitters_;
+  const actuation::UserActions& actions_;
   std::vector<std::uint64_t> event_ticks_;
   std::size_t next_event_ = 0;
   std::vector<std::uint64_t> boundaries_held_;  // in a row, of each stop condition
+  std::vector<Stage> stages_;                   // by object
+  std::vector<std::uint64_t> force_ends_;       // of each event of each reaction: its force acts before this tick
   std::optional<std::string> stop_reason_;
 };
 

@@ -35,11 +35,13 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
     : experiment_(experiment),
       workers_(threads),
       world_(experiment.world, workers_),
+      breakable_joints_(experiment.world, world_),
       emitters_(experiment.world, world_),
       grippers_(experiment.world, world_),
+      actions_(experiment.world, world_),
       lamp_view_(world_, emitters_),
       objects_(experiment, world_),
-      course_(experiment, world_, objects_) {
+      course_(experiment, world_, objects_, emitters_, actions_) {
   const description::World& world = experiment.world;
   kind_of_model_.assign(world.models.size(), none);
   robot_of_body_.assign(world.instances.size(), none);
@@ -83,7 +85,7 @@ void Simulation::build_robot(std::uint32_t id) {
                             instance.name, description::name_of(model.devices[device]), world.step),
            total_size(channels)});
     }
-    if (auto actuator = actuation::make_actuator(model, device, {world_, emitters_, grippers_, robot.body})) {
+    if (auto actuator = actuation::make_actuator(model, device, {world_, emitters_, grippers_, actions_, robot.body})) {
       const std::vector<Channel> channels = actuator->channels();
       kind.command.insert(kind.command.end(), channels.begin(), channels.end());
       robot.actuators.push_back(std::move(actuator));
@@ -158,12 +160,36 @@ void Simulation::step() {
   ++tick_;
   name_quarantined();
   count_touches();
+  happened_ = breakable_joints_.broken();
+  actions_.finish_step();
+  handle_actions();
   begin_tick();
   sense();
 }
 
+void Simulation::on_action(const std::string& name, ActionHandler handler) {
+  const auto all = actions_.all();
+  if (std::none_of(all.begin(), all.end(), [&](const auto& action) { return action.name == name; }))
+    throw std::invalid_argument("no robot has an action '" + name + "'");
+  handlers_.emplace_back(name, std::move(handler));
+}
+
+void Simulation::handle_actions() {
+  for (const actuation::ActionOfRobot& action : actions_.all()) {
+    bool is_handled = false;
+    for (std::size_t i = 0; i < handlers_.size(); ++i) {  // NOLINT(modernize-loop-convert): a handler may add one
+      const auto& [name, handler] = handlers_[i];
+      if (name != action.name || !world_.is_active(action.body)) continue;
+      handler(action.robot, action.value);
+      is_handled = true;
+    }
+    if (is_handled && action.begins) happened_.push_back(action.name + " of '" + robot_name(action.robot) + "'");
+  }
+}
+
 void Simulation::begin_tick() {
-  happened_ = course_.begin_tick(tick_);
+  const std::vector<std::string> events = course_.begin_tick(tick_);
+  happened_.insert(happened_.end(), events.begin(), events.end());
   objects_.record(tick_);
   course_.check_stops();
 }
@@ -271,6 +297,7 @@ std::vector<std::byte> Simulation::save() const {
   course_.save(writer);
   emitters_.save(writer);
   grippers_.save(writer);
+  actions_.save(writer);
   writer.add_count(robots_.size());
   for (const Robot& robot : robots_) {
     writer.add_count(robot.command.size());
@@ -307,6 +334,7 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   emitters_.restore(reader);
   emitters_.update(workers_);
   grippers_.restore(reader);
+  actions_.restore(reader);
   reader.expect_count(robots_.size(), "robots");
   for (Robot& robot : robots_) {
     reader.expect_count(robot.command.size(), "commanded values of a robot");
@@ -349,6 +377,7 @@ std::uint64_t Simulation::state_hash() const {
   course_.hash(hash);
   emitters_.hash(hash);
   grippers_.hash(hash);
+  actions_.hash(hash);
   return hash.value();
 }
 

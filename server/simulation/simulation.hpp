@@ -3,13 +3,17 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/actuation/actuator.hpp"
+#include "server/actuation/user_actions.hpp"
 #include "server/core/channel.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/experiment.hpp"
@@ -18,6 +22,7 @@
 #include "server/physics/world.hpp"
 #include "server/sensing/readout.hpp"
 #include "server/sensing/sensor.hpp"
+#include "server/simulation/breakable_joints.hpp"
 #include "server/simulation/course.hpp"
 #include "server/simulation/objects.hpp"
 
@@ -46,6 +51,9 @@ struct TouchCounts {
   std::uint64_t obstacles = 0;    ///< touched something that is neither a robot nor a plane
   std::uint64_t robots = 0;       ///< touched another robot
 };
+
+/// What a program does when robots do something. The value is that of the step that has just ended, from 0 to 1.
+using ActionHandler = std::function<void(std::uint32_t robot, double value)>;
 
 /// One world, advancing tick by tick. Between calls it stands at a boundary: the state of tick() is complete, and the
 /// observations of the robots due at this tick are there. No network, no wall clock; every result is a function of the
@@ -76,6 +84,13 @@ class Simulation {
 
   /// Nothing if `values` may act on `robot`.
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const;
+  /// From now on `handler` is called at the boundary after each step, before the events, for every robot in the world
+  /// that has an action of this name, in the order of the robots; if there are several, in the order of their coming.
+  /// On the thread that steps. It may do what may be done between steps; what it keeps itself is no part of a snapshot,
+  /// and what it throws comes out of `step`, after which this is not to be used. Throws std::invalid_argument if no
+  /// robot has such an action.
+  void on_action(const std::string& name, ActionHandler handler);
+
   /// From this tick on the robot does this, until told otherwise. `values` must have passed `check_command`. Until the
   /// first call every channel has its neutral value.
   void set_command(std::uint32_t robot, std::span<const double> values);
@@ -86,14 +101,14 @@ class Simulation {
   /// breaks is quarantined; in a `strict` world std::runtime_error is thrown, which names it. The events of the new
   /// boundary happen before the robots sense; one that cannot be done throws std::runtime_error too.
   void step();
-  /// The events of this boundary, a sentence for each.
+  /// What happened at this boundary, a sentence for each: what broke, then actions that have a handler, then events.
   const std::vector<std::string>& happened() const { return happened_; }
   /// Says which stop condition of the experiment holds, as soon as one does.
   const std::optional<std::string>& stop_reason() const { return course_.stop_reason(); }
 
   /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
-  /// The next four between steps. They act on any object, at once; what is sensed changes with the next step. An object
+  /// The next five between steps. They act on any object, at once; what is sensed changes with the next step. An object
   /// of one of the description's models, not a robot's; throws std::invalid_argument if the name is taken or the model
   /// cannot be simulated.
   std::uint32_t add_object(const std::string& name, std::size_t model, const Pose& X_WM);
@@ -102,6 +117,10 @@ class Simulation {
   void put_back_object(std::uint32_t object) { objects_.set_present(object, true); }
   /// At rest. Throws std::invalid_argument where a planar body has no ground.
   void place_object(std::uint32_t object, const Pose& X_WM) { world_.place_body(object, X_WM); }
+  /// `emitter`: index among those of its model. Throws std::invalid_argument if there is none.
+  void change_emitter(std::uint32_t object, std::size_t emitter, const description::EmitterChange& change) {
+    emitters_.change(object, emitter, change);
+  }
   Pose object_pose(std::uint32_t object) const { return world_.link_pose(object, 0); }  ///< of its root link, X_WL
   /// What the last step took out of the world: a sentence for each body, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }
@@ -119,6 +138,7 @@ class Simulation {
   Pose robot_pose(std::uint32_t robot) const;  ///< of its root link, X_WL
   const physics::World& world() const { return world_; }
   const emission::Emitters& emitters() const { return emitters_; }
+  const BreakableJoints& breakable_joints() const { return breakable_joints_; }
   const TouchCounts& touches() const { return touches_; }
 
  private:
@@ -145,14 +165,17 @@ class Simulation {
                         std::vector<double>& scratch);
   void count_touches();
   void name_quarantined();
+  void handle_actions();
   void begin_tick();
   void note_added();
 
   const description::Experiment& experiment_;
   mutable WorkerPool workers_;
   physics::World world_;
+  BreakableJoints breakable_joints_;
   emission::Emitters emitters_;
   gripping::Grippers grippers_;
+  actuation::UserActions actions_;
   sensing::LampView lamp_view_;
   Objects objects_;
   Course course_;
@@ -173,6 +196,7 @@ class Simulation {
   TouchCounts touches_;
   std::vector<std::string> quarantined_;
   std::vector<std::string> happened_;
+  std::deque<std::pair<std::string, ActionHandler>> handlers_;  // a handler may add one
   mutable std::vector<std::uint64_t> body_hashes_;
 };
 

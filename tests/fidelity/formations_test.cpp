@@ -106,6 +106,27 @@ TEST(Formations, TwoThatLetGoOfEachOtherDriveApart) {
   EXPECT_NEAR(chain.gap(), 0.4, 0.03);
 }
 
+TEST(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
+  for (const description::Fidelity fidelity : {description::Fidelity::treel, description::Fidelity::planar})
+    for (const bool is_moved : {false, true}) {
+      SmallWorld small;
+      small.description.physics.fidelity = fidelity;
+      const std::uint32_t wall = small.add(static_shape("wall", description::Box{{0.1, 1, 1}}), at(0.5, 0, 0.5));
+      const std::uint32_t robot = small.add(tracked_robot(), at(0, 0, 0));
+      const std::uint32_t connection = small.world().connect(robot, 0, {}, wall, 0);
+      small.drive(robot, -0.1, -0.1);
+      small.run(0.5);
+      EXPECT_NEAR(small.position(robot).x(), 0.0, 0.01);
+      if (is_moved)
+        small.world().place_body(wall, at(0.6, 0, 0.5));
+      else
+        small.world().remove_body(wall);
+      EXPECT_FALSE(small.world().is_connected(connection));
+      small.run(1.0);
+      EXPECT_LT(small.position(robot).x(), -0.05);
+    }
+}
+
 // Each solver on the same chain: all hold it together.
 class EverySolver : public ::testing::TestWithParam<description::Solver> {};
 

@@ -180,6 +180,25 @@ TEST(ShippedExperiments, TheArmComesToItsAngles) {
   EXPECT_NEAR(run.position("ball").z(), 0.03, 0.01) << "it fell from where the event put it";
 }
 
+TEST(ShippedExperiments, ThePorterOpensTheGateSwitchesTheLampOffAndPushesTheBarOff) {
+  const Shipped run("gate");
+  EXPECT_EQ(run.result.stop_reason, "beyond: 'porter'");
+  std::vector<session::Event> events;
+  for (const session::Event& event : run.result.events)
+    if (event.kind == "event") events.push_back(event);
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].text, "open_gate of 'porter': disable 'gate'");
+  EXPECT_EQ(events[1].text, "switch_off of 'porter': set_emitter 'lamp'");
+  EXPECT_TRUE(events[2].text.starts_with("joint 'bracket' broke at 1.")) << events[2].text;
+  // The gate opens where two readings of 1 - d / 0.2 make 0.6 of them a half, the bar breaks where the hull meets it.
+  EXPECT_NEAR(run.path_of_the_first[events[0].tick].x(), 0.49 - 0.058 - 0.117, 0.02);
+  EXPECT_NEAR(run.path_of_the_first[events[2].tick].x(), 1.2 - 0.006 - 0.05, 0.02);
+  EXPECT_FALSE(run.simulation.objects().is_present(*run.simulation.objects().find("gate")));
+  EXPECT_TRUE(run.simulation.emitters().lit_lamps().empty());
+  EXPECT_LT(run.position("bar").z(), 0.02) << "it was 3 cm high";
+  EXPECT_GT(run.position("bar").x(), 1.21);
+}
+
 TEST(ShippedExperiments, AFormationDrivesAheadAsOne) {
   const Shipped run("formation", 5.0);
   for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot) {

@@ -40,9 +40,9 @@ class CourseOfARun : public ::testing::TestWithParam<description::Fidelity> {
     description::Team team{"team", {0, 1}, "none", {}};
     experiment_.teams.push_back(team);
   }
-  void at_time(std::chrono::nanoseconds time, std::size_t object, description::Action action,
+  void at_time(std::chrono::nanoseconds time, std::size_t object, description::Effect effect,
                const std::string& kind = "event") {
-    experiment_.events.push_back({time, object, std::move(action), kind});
+    experiment_.events.push_back({time, object, std::move(effect), kind});
   }
   static void run(Simulation& simulation, std::uint64_t ticks, double speed = 0.0) {
     for (std::uint64_t i = 0; i < ticks; ++i) {
@@ -85,7 +85,7 @@ TEST_P(CourseOfARun, AWallThatComesBackStandsInTheWayAgain) {
 TEST_P(CourseOfARun, ARobotThatComesLaterIsNeitherAskedNorSeenBefore) {
   experiment_.world.instances[second_].is_present = false;
   experiment_.world.instances[second_].X_WM = at(0.2, 0, 0);  // right in front of the first one
-  at_time(50ms, second_, description::SetPresence{true});
+  at_time(50ms, second_, description::SetPresence{true, true});
   Simulation simulation(experiment_, 1);
   const auto sees_something = [&] {
     const auto values = simulation.observation(0);
@@ -230,7 +230,7 @@ class EventfulRun : public CourseOfARun {
  protected:
   EventfulRun() {
     experiment_.world.instances[second_].is_present = false;
-    at_time(50ms, second_, description::SetPresence{true});
+    at_time(50ms, second_, description::SetPresence{true, true});
     at_time(100ms, wall_, description::SetPresence{false});
     at_time(150ms, box_, description::ApplyForce{0, {40, 5, 0}, {0, 0, 0.5}, 300ms});
     at_time(200ms, wall_, description::PlaceAt{at(0.3, 0, 0.2, 0.2)});

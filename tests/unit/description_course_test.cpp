@@ -41,21 +41,21 @@ TEST_F(Course, HasItsEventsInTheOrderOfTheirTimes) {
   ASSERT_EQ(experiment.events.size(), 7u);
   EXPECT_EQ(experiment.events[0].time, 1500ms);
   EXPECT_EQ(experiment.events[0].object, 2u);
-  EXPECT_FALSE(std::get<SetPresence>(experiment.events[0].action).present);
+  EXPECT_FALSE(std::get<SetPresence>(experiment.events[0].effect).present);
   EXPECT_EQ(experiment.events[1].object, 3u);
-  EXPECT_TRUE(std::get<SetPresence>(experiment.events[1].action).present);
+  EXPECT_TRUE(std::get<SetPresence>(experiment.events[1].effect).present);
   std::vector<std::size_t> pushed;
   for (std::size_t i = 2; i < 5; ++i) {
     pushed.push_back(experiment.events[i].object);
-    const auto& force = std::get<ApplyForce>(experiment.events[i].action);
+    const auto& force = std::get<ApplyForce>(experiment.events[i].effect);
     EXPECT_EQ(force.link, 1u);
     EXPECT_EQ(force.force_W, Eigen::Vector3d(1, 2, 3));
     EXPECT_EQ(force.torque_W, Eigen::Vector3d(4, 5, 6));
     EXPECT_EQ(force.duration, 500ms);
   }
   EXPECT_EQ(pushed, (std::vector<std::size_t>{0, 1, 3}));
-  EXPECT_NEAR(std::get<PlaceAt>(experiment.events[5].action).X_WM.orientation.z(), std::sqrt(0.5), 1e-15);
-  EXPECT_EQ(std::get<SetVelocity>(experiment.events[6].action).angular_W, Eigen::Vector3d::Zero());
+  EXPECT_NEAR(std::get<PlaceAt>(experiment.events[5].effect).X_WM.orientation.z(), std::sqrt(0.5), 1e-15);
+  EXPECT_EQ(std::get<SetVelocity>(experiment.events[6].effect).angular_W, Eigen::Vector3d::Zero());
 }
 
 TEST_F(Course, HasStopsPrintsAndAHistory) {

@@ -174,6 +174,22 @@ TEST_F(ExportedWorlds, HaveTheirColorsTechniquesCamerasAndFilesOfSamples) {
   expect_the_same_again(world);
 }
 
+TEST_F(ExportedWorlds, HaveTheirActionsAndBreakableJoints) {
+  const auto hung = [](const std::string& name, const std::string& x) {
+    return "<model name=\"" + name + "\"><pose>" + x + " 0 0.7 0.1 0.2 0.3</pose>" + links("ab") +
+           joint("j", "a", "b") + "<cohort:action name=\"open_" + name + "\"/></model>";
+  };
+  const World world = read(
+      static_model(collision("<plane/>"), "floor") + hung("one", "0.1") + hung("two", "0.7") +
+      "<cohort:breakable_joint name=\"rope\"><cohort:first>one</cohort:first><cohort:first_link>b</cohort:first_link>"
+      "<cohort:second>two</cohort:second><cohort:pose>0.1 0.2 0.3 0.4 0.5 0.6</cohort:pose><cohort:breaking_torque>0.37"
+      "</cohort:breaking_torque></cohort:breakable_joint><cohort:breakable_joint name=\"hook\"><cohort:first>floor"
+      "</cohort:first><cohort:second>two</cohort:second><cohort:second_link>b</cohort:second_link>"
+      "<cohort:breaking_force>35.7</cohort:breaking_force></cohort:breakable_joint>");
+  EXPECT_NE(text_of(world).find("<cohort:breaking_torque>0.37</cohort:breaking_torque>"), std::string::npos);
+  expect_the_same_again(world);
+}
+
 TEST_F(ExportedWorlds, HaveTheModelsInsideOfModelsAsOne) {
   const World world =
       read("<model name=\"outer\">" + links("a") + "<model name=\"inner\"><pose>0.3 0.2 0.1 0.1 0.2 0.3</pose>" +

@@ -21,6 +21,8 @@ std::vector<std::string> columns_of(Quantity quantity) {
     case Quantity::velocity: return {"vx", "vy", "vz"};
     case Quantity::count: return {"count"};
     case Quantity::quarantined: return {"quarantined"};
+    case Quantity::joint_force: return {"first_fx", "first_fy", "first_fz", "second_fx", "second_fy", "second_fz"};
+    case Quantity::joint_torque: return {"first_tx", "first_ty", "first_tz", "second_tx", "second_ty", "second_tz"};
   }
   return {};
 }
@@ -44,6 +46,16 @@ std::vector<double> values_of(Quantity quantity, const Simulation& simulation, s
     }
     default: return {};
   }
+}
+
+// At both ends.
+std::vector<double> values_of_joint(Quantity quantity, const BreakableJoints& joints, std::size_t joint) {
+  std::vector<double> values;
+  for (const physics::Wrench& wrench : {joints.wrench_on_first(joint), joints.wrench_on_second(joint)}) {
+    const Eigen::Vector3d& v = quantity == Quantity::joint_force ? wrench.force_W : wrench.torque_W;
+    for (const double component : v) values.push_back(component + 0.0);  // no -0
+  }
+  return values;
 }
 
 double number_of(Quantity quantity, const Objects& objects, const std::vector<std::size_t>& among) {
@@ -75,6 +87,9 @@ PrintedTable::PrintedTable(const description::Experiment& experiment, const Simu
     for (const std::size_t object : printed.objects)
       for (const std::string& column : columns_of(printed.quantity))
         header += "," + cell(experiment.world.instances[object].name + "/" + column);
+    for (const std::size_t joint : printed.joints)
+      for (const std::string& column : columns_of(printed.quantity))
+        header += "," + cell(experiment.world.breakable_joints[joint].name + "/" + column);
   }
   add_line(header);
 }
@@ -98,6 +113,13 @@ void PrintedTable::boundary() {
       } else {
         line.append(columns_of(printed.quantity).size(), ',');
       }
+    }
+    for (const std::size_t joint : printed.joints) {
+      if (due)
+        for (const double value : values_of_joint(printed.quantity, simulation_.breakable_joints(), joint))
+          line += fmt::format(",{}", value);
+      else
+        line.append(columns_of(printed.quantity).size(), ',');
     }
   }
   add_line(line);

@@ -1,0 +1,39 @@
+#include "server/actuation/user_actions.hpp"
+
+namespace cohort::actuation {
+
+UserActions::UserActions(const description::World& description, const physics::World& world) : world_(world) {
+  for (std::uint32_t robot = 0; robot < description.robots.size(); ++robot) {
+    const auto body = static_cast<std::uint32_t>(description.robots[robot]);
+    const std::vector<description::Device>& devices = description.robot_model(robot).devices;
+    for (std::size_t device = 0; device < devices.size(); ++device) {
+      const auto* const action = std::get_if<description::UserAction>(&devices[device]);
+      if (action == nullptr) continue;
+      numbers_[{body, device}] = static_cast<std::uint32_t>(actions_.size());
+      actions_.push_back({.name = action->name, .robot = robot, .body = body});
+    }
+  }
+}
+
+void UserActions::finish_step() {
+  for (ActionOfRobot& action : actions_) {
+    if (!world_.is_active(action.body)) action.value = 0.0;
+    const bool was_done = action.is_done;
+    action.is_done = action.value > threshold;
+    action.begins = action.is_done && !was_done;
+  }
+}
+
+void UserActions::hash(StateHash& hash) const {
+  for (const ActionOfRobot& action : actions_) hash.add(static_cast<std::uint64_t>(action.is_done));
+}
+
+void UserActions::save(SnapshotWriter& writer) const {
+  for (const ActionOfRobot& action : actions_) writer.add(action.is_done);
+}
+
+void UserActions::restore(SnapshotReader& reader) {
+  for (ActionOfRobot& action : actions_) reader.read(action.is_done);
+}
+
+}  // namespace cohort::actuation

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/core/hash.hpp"
+#include "server/core/snapshot.hpp"
+#include "server/description/world.hpp"
+#include "server/physics/world.hpp"
+
+namespace cohort::actuation {
+
+/// An action of one robot.
+struct ActionOfRobot {
+  std::string name;
+  std::uint32_t robot = 0;  ///< its id
+  std::uint32_t body = 0;
+  double value = 0.0;    ///< commanded for the last step; 0 if the robot was not in the world
+  bool is_done = false;  ///< the value is above `UserActions::threshold`
+  bool begins = false;   ///< it was not in the step before
+};
+
+/// What robots do that no joint stands for. Commands come from one thread, between steps.
+class UserActions {
+ public:
+  /// Above it the robot does it, and up to it not [1].
+  static constexpr double threshold = 0.5;
+
+  /// What it refers to must outlive it.
+  UserActions(const description::World& description, const physics::World& world);
+
+  /// The number of the action that is a device of a robot.
+  std::uint32_t of_device(std::uint32_t body, std::size_t device) const { return numbers_.at({body, device}); }
+  void command(std::uint32_t action, double value) { actions_[action].value = value; }
+  /// After each step: which of them begin.
+  void finish_step();
+
+  /// In the order of the robots, then of their devices.
+  std::span<const ActionOfRobot> all() const { return actions_; }
+
+  void hash(StateHash& hash) const;
+  void save(SnapshotWriter& writer) const;
+  void restore(SnapshotReader& reader);
+
+ private:
+  const physics::World& world_;
+  std::vector<ActionOfRobot> actions_;
+  std::map<std::pair<std::uint32_t, std::size_t>, std::uint32_t> numbers_;
+};
+
+}  // namespace cohort::actuation

@@ -1,0 +1,63 @@
+#include "server/description/breakable_joints.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "server/description/text.hpp"
+
+namespace cohort::description {
+namespace {
+
+// One end: its object and the key of its link.
+std::optional<std::size_t> find_object(const ExtensionValues& values, const char* key, const World& world,
+                                       const SdfReport& report) {
+  std::vector<std::string> names;
+  for (const Instance& instance : world.instances) names.push_back(instance.name);
+  const std::string& name = values.text(key);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  report.problem(values.where(key), "no object is called '" + name + "'" + suggestion(name, names));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> find_link(const ExtensionValues& values, const char* key, const Instance& object,
+                                     const Model& model, const SdfReport& report) {
+  if (!values.has(key)) return 0;
+  std::vector<std::string> names;
+  for (const Link& link : model.links) names.push_back(link.name);
+  const std::string& name = values.text(key);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  report.problem(values.where(key), "'" + object.name + "' has no link '" + name + "'" + suggestion(name, names));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<BreakableJoint> read_breakable_joint(const ExtensionValues& values, const World& world,
+                                                   const SdfReport& report) {
+  const std::optional<std::size_t> first = find_object(values, "first", world, report);
+  const std::optional<std::size_t> second = find_object(values, "second", world, report);
+  if (!first || !second) return std::nullopt;
+  const auto model = [&](std::size_t object) -> const Model& { return world.models[world.instances[object].model]; };
+  const auto first_link = find_link(values, "first_link", world.instances[*first], model(*first), report);
+  const auto second_link = find_link(values, "second_link", world.instances[*second], model(*second), report);
+  if (!first_link || !second_link) return std::nullopt;
+  if (*first == *second) {
+    report.problem(values.where("second"), "expected another object than '" + values.text("first") + "'");
+    return std::nullopt;
+  }
+  if (model(*first).is_static && model(*second).is_static) {
+    report.problem(values.element(),
+                   "neither '" + values.text("first") + "' nor '" + values.text("second") + "' moves: both are static");
+    return std::nullopt;
+  }
+  BreakableJoint joint{values.name(), *first, *first_link, *second, *second_link};
+  if (values.has("pose")) joint.X_LP = values.pose("pose");
+  if (values.has("breaking_force")) joint.breaking_force = values.real("breaking_force");
+  if (values.has("breaking_torque")) joint.breaking_torque = values.real("breaking_torque");
+  return joint;
+}
+
+}  // namespace cohort::description

@@ -87,18 +87,6 @@ TEST(ShippedExperiments, AStepOfACentimetreIsClimbedAndOneOfSixIsNot) {
   EXPECT_LT(run.position("stays").z(), 0.03);
 }
 
-TEST(ShippedExperiments, OnRoughTerrainRobotsStayUprightOnTheGround) {
-  const Shipped run("rough_terrain", 20.0);
-  EXPECT_FALSE(run.has_quarantined());
-  EXPECT_GT(run.least_upright, 0.5);
-  EXPECT_GT(run.lowest, -0.02);
-  double moved = 0.0;
-  for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot)
-    moved = std::max(
-        moved, (run.simulation.robot_pose(robot).position - run.experiment.world.robot(robot).X_WM.position).norm());
-  EXPECT_GT(moved, 0.3);
-}
-
 TEST(ShippedExperiments, TwoRobotsPushTheBarIntoTheNest) {
   const Shipped run("pushing");
   EXPECT_EQ(run.result.stop_reason, "inside: 1 object");

@@ -100,6 +100,13 @@ TEST_F(Installation, AnOutsideControllerGivesTheSameBitsAsPluginInEitherPlacemen
   EXPECT_EQ(hash_with_attached("weaver", environment), in_process);
 }
 
+TEST_F(Installation, AnOutsideControllerInCGivesTheBitsOfItsTwinInCpp) {
+  const std::string expected = hash_of_run("experiment.yaml", "inprocess");
+  EXPECT_EQ(hash_of_run("in_c.yaml", "inprocess"), expected);
+  EXPECT_EQ(hash_of_run("in_c.yaml", "process"), expected);
+  EXPECT_EQ(hash_with_attached("weaver_c", environment_of_another_cpu), expected);
+}
+
 TEST_F(Installation, AnOutsideControllerGivesTheSameBitsOnAnyCpu) {
   const std::string expected = hash_of_run("experiment.yaml", "inprocess");
   EXPECT_EQ(hash_of_run("tuned.yaml", "inprocess"), expected);

@@ -107,6 +107,12 @@ class LoopController final : public Controller {
   std::uint32_t robot_ = 0;
 };
 
+ControllerKind loop_controllers(const std::string& name, HandOver& hand_over) {
+  return {name, [&hand_over] {
+            return OwnedController(new LoopController(hand_over), [](Controller* controller) { delete controller; });
+          }};
+}
+
 CohortEnd end_of(ClientEnd end) {
   switch (end) {
     case ClientEnd::finished: return cohort_end_finished;
@@ -148,14 +154,9 @@ struct CohortClient {
   }
 
   void run() noexcept {
-    const cohort::ControllerKind kind{options.name, [this] {
-                                        return cohort::OwnedController(
-                                            new cohort::LoopController(hand_over),
-                                            [](cohort::Controller* controller) { delete controller; });
-                                      }};
     CohortEnd end = cohort_end_failed;
     try {
-      end = cohort::end_of(cohort::run_client(kind, options, stop));
+      end = cohort::end_of(cohort::run_client(cohort::loop_controllers(options.name, hand_over), options, stop));
     } catch (const std::exception& error) {
       tell(cohort::Severity::error, error.what());
     }

@@ -3,6 +3,7 @@
 # Builds one controller twice: as the program NAME (target NAME) and as the plugin NAME.so (target NAME_plugin). They are
 # put where CMake puts programs and libraries: in the current binary directory, unless CMAKE_RUNTIME_OUTPUT_DIRECTORY or
 # CMAKE_LIBRARY_OUTPUT_DIRECTORY say otherwise. More sources, libraries and options go to both targets by hand.
+# Sources may be in C too; a project without C++ needs its library all the same, which the SDK is made with.
 function(cohort_add_controller name)
   add_executable(${name} ${ARGN})
   add_library(${name}_plugin MODULE ${ARGN})
@@ -13,6 +14,12 @@ function(cohort_add_controller name)
     target_compile_options(${target} PRIVATE -ffp-contract=off -fno-fast-math)
     target_link_options(${target} PRIVATE -fno-fast-math)
   endforeach()
+
+  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+  if(NOT CXX IN_LIST languages)
+    target_link_libraries(${name} PRIVATE stdc++ m)
+    target_link_libraries(${name}_plugin PRIVATE stdc++ m)
+  endif()
 
   target_compile_definitions(${name}_plugin PRIVATE COHORT_BUILDS_PLUGIN)
   # Only cohort_plugin is seen from outside, and everything that the plugin has itself is its own: whatever the program

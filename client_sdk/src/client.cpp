@@ -217,6 +217,8 @@ void Client::drive(Lock& lock) {
     for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
     if (offered_ && is_described(offered_->admit)) heed(*std::exchange(offered_, std::nullopt), lock);
     answer_frames(lock);
+  } catch (const LeaveRun&) {
+    end_ = ClientEnd::interrupted;
   } catch (const std::exception& error) {
     failure_ = error.what();
   }
@@ -330,6 +332,16 @@ void Client::tell(Severity severity, const std::string& text) const {
 }
 
 }  // namespace
+
+std::vector<std::string> split_selectors(std::string_view list) {
+  std::vector<std::string> parts;
+  while (!list.empty()) {
+    const std::string_view part = list.substr(0, list.find(','));
+    if (!part.empty()) parts.emplace_back(part);
+    list.remove_prefix(std::min(list.size(), part.size() + 1));
+  }
+  return parts;
+}
 
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop) {
   return Client(kind, options, stop).run();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "client_sdk/src/controller_host.hpp"
@@ -26,13 +27,16 @@ struct ClientOptions {
   std::function<void(Severity severity, const std::string& text)> tell{};
 };
 
+/// Selectors of robots that stand in one text with commas between.
+std::vector<std::string> split_selectors(std::string_view list);
+
 enum class ClientEnd {
   finished,     ///< the server ended the run
   refused,      ///< the claim was refused
   superseded,   ///< another process took these robots over
   failed,       ///< a controller threw, or the server rejected an answer for good
   server_lost,  ///< the server died or left
-  interrupted,  ///< `stop` was set
+  interrupted,  ///< `stop` was set, or a controller threw LeaveRun
 };
 
 /// Attaches to a server, drives robots until the run ends, and says why it ended; tells what anything but `finished` is

@@ -17,6 +17,8 @@ decltype(auto) guarded(const std::string& robot, const char* function, std::uint
   };
   try {
     return call();
+  } catch (const LeaveRun&) {
+    throw;
   } catch (const std::exception& error) {
     throw failure(error.what());
   } catch (...) {

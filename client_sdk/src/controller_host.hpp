@@ -19,6 +19,9 @@ class ControllerFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a controller throws that leaves the run as if its process had died: no failure, and no answer.
+struct LeaveRun {};
+
 using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
 
 /// How to make controllers of one kind.
@@ -42,10 +45,11 @@ class ControllerHost {
   ~ControllerHost();
 
   /// Creates a controller for each admitted robot (keeping those that it has if the reason is reset or restored) and
-  /// calls `start`. `descriptions` holds at least those that `admit` names. Throws ControllerFailure.
+  /// calls `start`. `descriptions` holds at least those that `admit` names. Throws ControllerFailure, or LeaveRun if a
+  /// controller did.
   void start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions);
 
-  /// The answer's values, robot after robot as in `frame.robots`. Valid until the next call. Throws ControllerFailure,
+  /// The answer's values, robot after robot as in `frame.robots`. Valid until the next call. Throws as `start` does,
   /// also if the frame does not fit the descriptions.
   std::span<const double> answer(const wire::Observation& frame);
 

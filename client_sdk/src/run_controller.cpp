@@ -6,7 +6,6 @@
 #include <exception>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "client_sdk/src/client.hpp"
 
@@ -61,16 +60,6 @@ std::uint32_t parse_domain(std::string_view text) {
   return domain;
 }
 
-std::vector<std::string> split(std::string_view list) {
-  std::vector<std::string> parts;
-  while (!list.empty()) {
-    const std::string_view part = list.substr(0, list.find(','));
-    if (!part.empty()) parts.emplace_back(part);
-    list.remove_prefix(std::min(list.size(), part.size() + 1));
-  }
-  return parts;
-}
-
 struct Arguments {
   ClientOptions options;
   bool help = false;
@@ -93,7 +82,7 @@ Arguments parse(int argc, char** argv) {
     if (name == "--help" || name == "-h") {
       arguments.help = true;
     } else if (name == "--robots") {
-      options.robots = split(value());
+      options.robots = split_selectors(value());
       if (options.robots.empty()) throw UsageError("--robots names no robot");
     } else if (name == "--server") {
       options.server = value();

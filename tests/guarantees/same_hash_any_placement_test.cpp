@@ -28,6 +28,27 @@ TEST(SameHashAnyPlacement, ControllersThatAttachFromOutsideGiveTheSameBits) {
   EXPECT_NE(server.output().find(reference_hash(5)), std::string::npos) << server.output();
 }
 
+// Wherever it runs: as a plugin, as a program, and from a loop of its own.
+TEST(SameHashAnyPlacement, AControllerInCGivesTheBitsOfItsTwinInCpp) {
+  const std::string expected = reference_hash(5);
+  const ScratchFolder folder;
+  const std::string experiment = (folder / "experiment.yaml").string();
+  write_file(experiment, "world: " COHORT_SOURCE_DIR
+                         "/worlds/arenas/obstacles.sdf\nduration: 5\nseed: 1\nteams:\n  - name: explorers\n"
+                         "    robots: explorers/*\n    controller: obstacle_avoidance_c\n");
+  for (const char* placement : {"inprocess", "process"})
+    EXPECT_EQ(run_experiment(experiment, {"--controllers", placement})["state_hash"], expected) << placement;
+
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", experiment, "--domain", domain.text()});
+  Process program({COHORT_BUILD_DIR "/bin/obstacle_avoidance_c", "--robots", "0..7", "--domain", domain.text()});
+  Process loop({COHORT_BUILD_DIR "/bin/drive_in_a_loop", domain.text(), "8..15"});
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(program.wait_for_exit(), 0) << program.output();
+  EXPECT_EQ(loop.wait_for_exit(), 0) << loop.output();
+  EXPECT_NE(server.output().find(expected), std::string::npos) << server.output();
+}
+
 // A wall goes, a robot comes, another one leaves, one is away for a second.
 TEST(SameHashAnyPlacement, EventsHappenAlikeWhereverControllersAreAndWithAnyNumberOfThreads) {
   const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/changes.yaml";
@@ -42,7 +63,7 @@ TEST(SameHashAnyPlacement, EventsHappenAlikeWhereverControllersAreAndWithAnyNumb
     EXPECT_EQ(summary["touches"]["robot_ticks"], expected["touches"]["robot_ticks"]);
   }
   int events = 0;
-  for (const auto& event : expected["events"]) events += event["kind"] == "event";
+  for (const auto& event : expected["events"]) events += event["kind"] == "event" ? 1 : 0;
   EXPECT_EQ(events, 6);
 }
 

@@ -49,17 +49,20 @@ class Installation : public ::testing::Test {
     outside = *scratch / "outside";
     const Ended installed = run({COHORT_CMAKE, "--install", COHORT_BUILD_DIR, "--prefix", prefix});
     ASSERT_EQ(installed.exit_code, 0) << installed.output;
-    fs::copy(COHORT_SOURCE_DIR "/tests/install/outside", outside);
-    const Ended configured = configure("build", this_version);
-    ASSERT_EQ(configured.exit_code, 0) << configured.output;
-    const Ended built = build("build");
-    ASSERT_EQ(built.exit_code, 0) << built.output;
+    fs::copy(COHORT_SOURCE_DIR "/tests/install/outside", outside, fs::copy_options::recursive);
+    for (const char* project : {"", "in_c"}) {
+      const Ended configured = configure("build", this_version, project);
+      ASSERT_EQ(configured.exit_code, 0) << configured.output;
+      const Ended built = build(fs::path(project) / "build");
+      ASSERT_EQ(built.exit_code, 0) << built.output;
+    }
   }
   static void TearDownTestSuite() { scratch.reset(); }
 
-  static Ended configure(const std::string& build_folder, const std::string& version) {
-    return run({COHORT_CMAKE, "-G", COHORT_GENERATOR, "-S", outside, "-B", outside / build_folder, "-C",
-                COHORT_SETTINGS, "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DWANTED_VERSION=" + version});
+  static Ended configure(const std::string& build_folder, const std::string& version, const fs::path& project = "") {
+    const fs::path source = outside / project;
+    return run({COHORT_CMAKE, "-G", COHORT_GENERATOR, "-S", source, "-B", source / build_folder, "-C", COHORT_SETTINGS,
+                "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DWANTED_VERSION=" + version});
   }
   static Ended build(const std::string& build_folder, const std::string& target = "all") {
     return run({COHORT_CMAKE, "--build", outside / build_folder, "--target", target});
@@ -82,7 +85,7 @@ class Installation : public ::testing::Test {
     const fs::path summary = folder / "summary.json";
     Process server({cohort(), "serve", outside / "experiment.yaml", "--domain", domain.text(), "--summary", summary},
                    environment);
-    Process controller({outside / "build" / program, "--domain", domain.text()}, its_environment);
+    Process controller({outside / program, "--domain", domain.text()}, its_environment);
     EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
     EXPECT_EQ(controller.wait_for_exit(), 0) << controller.output();
     return hash_in(summary);
@@ -97,13 +100,20 @@ TEST_F(Installation, AnOutsideControllerGivesTheSameBitsAsPluginInEitherPlacemen
   const std::string in_process = hash_of_run("experiment.yaml", "inprocess");
   EXPECT_EQ(in_process.size(), 16u) << in_process;
   EXPECT_EQ(hash_of_run("experiment.yaml", "process"), in_process);
-  EXPECT_EQ(hash_with_attached("weaver", environment), in_process);
+  EXPECT_EQ(hash_with_attached("build/weaver", environment), in_process);
+}
+
+TEST_F(Installation, AnOutsideControllerInCGivesTheBitsOfItsTwinInCpp) {
+  const std::string expected = hash_of_run("experiment.yaml", "inprocess");
+  EXPECT_EQ(hash_of_run("in_c.yaml", "inprocess"), expected);
+  EXPECT_EQ(hash_of_run("in_c.yaml", "process"), expected);
+  EXPECT_EQ(hash_with_attached("in_c/build/weaver", environment_of_another_cpu), expected);
 }
 
 TEST_F(Installation, AnOutsideControllerGivesTheSameBitsOnAnyCpu) {
   const std::string expected = hash_of_run("experiment.yaml", "inprocess");
   EXPECT_EQ(hash_of_run("tuned.yaml", "inprocess"), expected);
-  EXPECT_EQ(hash_with_attached("weaver", environment_of_another_cpu), expected);
+  EXPECT_EQ(hash_with_attached("build/weaver", environment_of_another_cpu), expected);
 }
 
 TEST_F(Installation, AnOutsidePluginShowsNothingButItself) {

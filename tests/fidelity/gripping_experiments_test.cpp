@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <string>
 #include <utility>
 
+#include "server/core/random.hpp"
+#include "tests/support/sensing_world.hpp"
 #include "tests/support/shipped_experiment.hpp"
 
 namespace cohort {
@@ -131,6 +135,64 @@ TEST_P(Retrieval, SeveralMoveWhatTwoCannot) {
   EXPECT_EQ(run.result.stop_reason, "inside: 1 object");
   EXPECT_LT(moved_by_two, 0.01);
   EXPECT_GE(run.robots_that_grip(), 3);
+}
+
+TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndTogether) {
+  constexpr int side = 5;
+  constexpr double spacing = 0.13;
+  constexpr int ticks_a_pull = 200, ticks = 60000;
+  const description::World shipped =
+      description::read_world_or_model(COHORT_SOURCE_DIR "/worlds/robots/sbot/model.sdf", 1);
+  const RandomStream random(1, "swarm", "pull");
+  testing::SensingWorld world(2);
+  for (int i = 0; i < side * side; ++i) {
+    const double yaw = 2.0 * M_PI * random.uniform(0, static_cast<std::uint32_t>(i));
+    world.add(shipped.robot_model(0), "robot_" + std::to_string(i),
+              testing::at(spacing * (i % side), spacing * (i / side), 0.0, yaw));
+  }
+  const Simulation& simulation = world.simulation();
+  const auto gripping = [&] {
+    int count = 0;
+    for (std::uint32_t robot = 0; robot < side * side; ++robot)
+      if (world.read(robot, "gripper/0/gripping") == 1.0) ++count;
+    return count;
+  };
+  int at_first = 0;
+  for (int tick = 0; tick < ticks; ++tick) {
+    if (tick % ticks_a_pull == 0)
+      for (std::uint32_t robot = 0; robot < side * side; ++robot) {
+        const auto pull = static_cast<std::uint64_t>(1 + tick / ticks_a_pull);
+        world.command(robot, "gripper/0/opening", {0.0});
+        world.command(robot, "treel/left/velocity", {0.4 * random.uniform(pull, 3 * robot) - 0.2});
+        world.command(robot, "treel/right/velocity", {0.4 * random.uniform(pull, 3 * robot + 1) - 0.2});
+        world.command(robot, "turret/0/velocity", {2.0 * random.uniform(pull, 3 * robot + 2) - 1.0});
+      }
+    world.step();
+    if (tick == 2 * ticks_a_pull) at_first = gripping();
+    if (tick % 100 != 0) continue;
+    ASSERT_TRUE(simulation.quarantined().empty()) << tick;
+    for (std::uint32_t robot = 0; robot < side * side; ++robot) {
+      const Eigen::Vector3d at = simulation.robot_pose(robot).position;
+      ASSERT_TRUE(at.allFinite());
+      ASSERT_LT(std::abs(at.z()), 0.02) << "robot " << robot << " at tick " << tick;
+    }
+  }
+  EXPECT_GE(at_first, 10) << "of 25, where they stand at random";
+  EXPECT_GE(gripping(), at_first) << "nobody is torn away";
+  RecordProperty("gripping", gripping());
+  // What they hold is where they grasped it: within the depth of the jaw.
+  for (std::uint32_t robot = 0; robot < side * side; ++robot) {
+    if (world.read(robot, "gripper/0/gripping") != 1.0) continue;
+    const auto X_WT = [&](std::uint32_t each) {
+      return simulation.world().link_pose(*simulation.objects().find(simulation.robot_name(each)), turret);
+    };
+    const Eigen::Vector3d jaw_W = X_WT(robot) * Eigen::Vector3d(0.058, 0.0, 0.02);
+    double least = 1e9;
+    for (std::uint32_t other = 0; other < side * side; ++other)
+      if (other != robot)
+        least = std::min(least, std::abs((X_WT(other) * Eigen::Vector3d(0.0, 0.0, 0.02) - jaw_W).norm() - 0.058));
+    EXPECT_LT(least, 0.02 + 0.005) << "robot " << robot;
+  }
 }
 
 }  // namespace

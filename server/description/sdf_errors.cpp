@@ -164,9 +164,7 @@ std::vector<std::string> known_names(const sdf::Error& error, std::string_view p
   return names;
 }
 
-std::string cannot_have(const XmlNode& node) {
-  return "<" + node.name + "> cannot have the value '" + node.text + "'";
-}
+std::string cannot_have(const XmlNode& node) { return "<" + node.name + "> cannot have the value '" + node.text + "'"; }
 
 // For `Error reading element <NAME>`: what the value is that libsdformat says nothing about.
 std::string message_with_value(const sdf::Error& error, const XmlNode* node) {

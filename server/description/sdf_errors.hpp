@@ -13,8 +13,8 @@ namespace cohort::description {
 /// `tree` is what SdfFile::nodes are of.
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file, const XmlNode& tree);
 
-/// Of all values in `tree` that libsdformat cannot read, the first of which it stops at. Puts the default into the place
-/// of each, so that what else is wrong can be found.
+/// Of all values in `tree` that libsdformat cannot read, the first of which it stops at. Puts the default into the
+/// place of each, so that what else is wrong can be found.
 std::vector<Problem> replace_bad_values(XmlNode& tree, const SdfFile& file);
 
 }  // namespace cohort::description

@@ -46,7 +46,7 @@ sdf::SDFPtr empty_sdf() {
                        attribute->GetRequired(), attribute->GetDescription());
   for (unsigned i = 0; i < definition->GetElementDescriptionCount(); ++i)
     root->AddElementDescription(definition->GetElementDescription(i));
-  const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+  sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
   sdf->Root(root);
   return sdf;
 }

@@ -45,8 +45,8 @@ class Readout {
   struct Value {
     int noise = -1;         // place in the readout's, -1: none
     double constant = 0.0;  // bias and mean of the noise
-    double lower;
-    double upper;
+    double lower = 0.0;
+    double upper = 0.0;
   };
   struct Report {
     std::uint64_t due = 0;  // the tick at which it arrives

@@ -147,8 +147,9 @@ TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndToget
   testing::SensingWorld world(2);
   for (int i = 0; i < side * side; ++i) {
     const double yaw = 2.0 * M_PI * random.uniform(0, static_cast<std::uint32_t>(i));
+    const int column = i % side, row = i / side;
     world.add(shipped.robot_model(0), "robot_" + std::to_string(i),
-              testing::at(spacing * (i % side), spacing * (i / side), 0.0, yaw));
+              testing::at(spacing * column, spacing * row, 0.0, yaw));
   }
   const Simulation& simulation = world.simulation();
   const auto gripping = [&] {
@@ -161,7 +162,7 @@ TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndToget
   for (int tick = 0; tick < ticks; ++tick) {
     if (tick % ticks_a_pull == 0)
       for (std::uint32_t robot = 0; robot < side * side; ++robot) {
-        const auto pull = static_cast<std::uint64_t>(1 + tick / ticks_a_pull);
+        const auto pull = 1u + static_cast<std::uint64_t>(tick) / ticks_a_pull;
         world.command(robot, "gripper/0/opening", {0.0});
         world.command(robot, "treel/left/velocity", {0.4 * random.uniform(pull, 3 * robot) - 0.2});
         world.command(robot, "treel/right/velocity", {0.4 * random.uniform(pull, 3 * robot + 1) - 0.2});

@@ -61,7 +61,7 @@ struct Pair {
     world.command(robot, "treel/left/velocity", {left});
     world.command(robot, "treel/right/velocity", {right});
   }
-  Pose X_FirstSecond() {
+  Pose second_in_first() {
     const physics::World& physics = world.simulation().world();
     return physics.link_pose(static_cast<std::uint32_t>(first_body), 1).inverse() *
            physics.link_pose(static_cast<std::uint32_t>(second_body), 1);
@@ -110,10 +110,10 @@ TEST(Grippers, HoldRigidlyAndLetGo) {
   Pair pair;
   pair.close(0);
   pair.world.step(closing_ticks);
-  const Pose before = pair.X_FirstSecond();
+  const Pose before = pair.second_in_first();
   pair.drive(0, -0.1, -0.1);
   pair.world.step(200);
-  const Pose after = pair.X_FirstSecond();
+  const Pose after = pair.second_in_first();
   EXPECT_LT((after.position - before.position).norm(), 0.5e-3);
   EXPECT_LT(after.orientation.angularDistance(before.orientation), 0.01);
   // The other one brakes: both motors of the first give all they can, a torque over the radius of a wheel.
@@ -122,7 +122,7 @@ TEST(Grippers, HoldRigidlyAndLetGo) {
   pair.world.step(closing_ticks);
   EXPECT_FALSE(pair.grips(0));
   EXPECT_EQ(pair.world.read(0, "gripper/0/force"), 0.0);
-  EXPECT_GT((pair.X_FirstSecond().position - before.position).norm(), 0.01);
+  EXPECT_GT((pair.second_in_first().position - before.position).norm(), 0.01);
 }
 
 TEST(Grippers, ThatAreNotQuiteClosedGiveAboutTheAxisOfTheRing) {
@@ -130,10 +130,10 @@ TEST(Grippers, ThatAreNotQuiteClosedGiveAboutTheAxisOfTheRing) {
     Pair pair;
     pair.close(0, opening);
     pair.world.step(closing_ticks);
-    const Pose before = pair.X_FirstSecond();
+    const Pose before = pair.second_in_first();
     pair.world.command(1, "turret/0/velocity", {1.0});  // its chassis is held by the ground
     pair.world.step(100);
-    const Pose after = pair.X_FirstSecond();
+    const Pose after = pair.second_in_first();
     EXPECT_TRUE(pair.grips(0));
     return after.orientation.angularDistance(before.orientation);
   };

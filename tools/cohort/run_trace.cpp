@@ -86,7 +86,7 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
     lowest_robot = std::min(lowest_robot, scene.bounds(i).lower.z());
     double& radius = trace_.robots[robot].radius;
     const Eigen::Vector2d centre_V = seen(simulation.robot_pose(robot).position);
-    radius = std::max(radius, std::visit(Reach{X_V(solid.X_WC), centre_V}, solid.shape));
+    radius = std::max(radius, std::visit(Reach{pose_seen(solid.X_WC), centre_V}, solid.shape));
   }
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
@@ -138,7 +138,7 @@ void TraceRecorder::draw_robots_into(std::vector<TracedSolid> RobotTrace::*solid
   using Kind = TracedSolid::Kind;
   const auto add = [&](std::uint32_t robot, const geometry::Shape& shape, const Pose& X_WC) {
     if (!X_WC.position.allFinite()) return;
-    (trace_.robots[robot].*solids).push_back({Kind::robot, shape, X_V(X_WC)});
+    (trace_.robots[robot].*solids).push_back({Kind::robot, shape, pose_seen(X_WC)});
   };
   for (std::uint32_t robot = 0; robot < trace_.robots.size(); ++robot) {
     if (!simulation_.is_present(robot)) continue;
@@ -181,7 +181,7 @@ RunTrace TraceRecorder::finish() {
     const Solid& solid = scene.solid(i);
     using Kind = TracedSolid::Kind;
     const Kind kind = solid.moves ? Kind::object : is_floor_[solid.body] ? Kind::floor : Kind::obstacle;
-    trace_.solids.push_back({kind, solid.shape, X_V(solid.X_WC)});
+    trace_.solids.push_back({kind, solid.shape, pose_seen(solid.X_WC)});
   }
   for (const emission::Lamp& lamp : simulation_.emitters().lamps()) {
     const bool of_robot = lamp.mount.body < robot_of_body_.size() && robot_of_body_[lamp.mount.body] != none;

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sbot_senses.hpp"
+
 namespace {
 
 constexpr double full_speed = 0.1;       // of a track [m/s]
@@ -56,10 +58,10 @@ class Assembly final : public cohort::Controller {
       command.set(frequency_, tone);
       command.set(loudness_, call);
     }
-    const bool is_member = grips || is_next_to_one_that_grips(observation);
+    const bool is_member = grips || sbot::hears(observation, microphones_, next_to);
     for (const cohort::CommandChannel led : colors_) command.set(led, 1.0, is_member ? 0 : 2);  // red or blue
 
-    const Light light = look(observation);
+    const sbot::Light light = sbot::look(observation, light_);
     if (is_member)
       move_as_one(observation, light, command);
     else if (!is_closing_)
@@ -67,36 +69,15 @@ class Assembly final : public cohort::Controller {
   }
 
  private:
-  struct Light {
-    double bearing = 0.0;  // from where the turret looks [rad]
-    bool is_seen = false;
-    bool is_near = false;  // where those that are assembled stay
-  };
-  Light look(const cohort::Observation& observation) const {
-    double ahead = 0.0, left = 0.0, brightest = 0.0;
-    for (std::size_t i = 0; i < light_.size(); ++i) {
-      const double reading = observation[light_[i]];
-      const double bearing = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(light_.size());
-      ahead += reading * std::cos(bearing);
-      left += reading * std::sin(bearing);
-      brightest = std::max(brightest, reading);
-    }
-    return {std::atan2(left, ahead), brightest > darkness, brightest > arrived};
-  }
-  bool is_next_to_one_that_grips(const cohort::Observation& observation) const {
-    return std::any_of(microphones_.begin(), microphones_.end(),
-                       [&](cohort::ObservationChannel microphone) { return observation[microphone] > next_to; });
-  }
-
   // The turret is held, so its motor turns the chassis.
-  void move_as_one(const cohort::Observation& observation, const Light& light, cohort::Command& command) const {
-    if (!light.is_seen || light.is_near) return;
+  void move_as_one(const cohort::Observation& observation, const sbot::Light& light, cohort::Command& command) const {
+    if (light.brightest < darkness || light.brightest > arrived) return;
     const double off = std::remainder(light.bearing + observation[turret_position_], 2.0 * std::numbers::pi);
     command.set(turret_velocity_, -turret_gain * off);
     drive(off, command);
   }
 
-  void move_alone(const cohort::Observation& observation, const Light& light, cohort::Command& command) {
+  void move_alone(const cohort::Observation& observation, const sbot::Light& light, cohort::Command& command) {
     command.set(turret_velocity_, -turret_gain * observation[turret_position_]);
     const double ahead = std::max(observation[proximity_.front()], observation[proximity_.back()]);
     const double left = std::max(observation[proximity_[1]], observation[proximity_[2]]);
@@ -109,7 +90,7 @@ class Assembly final : public cohort::Controller {
     } else if (std::max(left, right) > in_the_way) {
       // It may be one to grip: towards it.
       drive(left > right ? 0.5 : -0.5, command);
-    } else if (ahead > in_the_way || !light.is_seen) {
+    } else if (ahead > in_the_way || light.brightest < darkness) {
       drive(0.0, command);
     } else {
       drive(std::remainder(light.bearing + observation[turret_position_], 2.0 * std::numbers::pi), command);

@@ -4,11 +4,11 @@
 //
 // It remembers what it is doing; one that takes over in the middle of a run begins by driving ahead.
 
-#include <algorithm>
-#include <array>
 #include <cohort/controller.hpp>
 #include <stdexcept>
 #include <vector>
+
+#include "sbot_senses.hpp"
 
 namespace {
 
@@ -45,7 +45,7 @@ class Chain final : public cohort::Controller {
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
-    if (is_heard(observation)) silent_since_ = observation.time();
+    if (sbot::hears(observation, microphones_, silence)) silent_since_ = observation.time();
     if (state_ == State::approaching && observation[grippable_] > 0.5) state_ = State::gripping;
     if (state_ == State::approaching && observation[ground_[0]] < no_ground) state_ = State::waiting;
     if (state_ == State::gripping && observation[gripping_] > 0.5) state_ = State::waiting;
@@ -74,11 +74,6 @@ class Chain final : public cohort::Controller {
 
  private:
   enum class State { approaching, gripping, waiting, crossing };
-
-  bool is_heard(const cohort::Observation& observation) const {
-    return std::any_of(microphones_.begin(), microphones_.end(),
-                       [&](cohort::ObservationChannel microphone) { return observation[microphone] > silence; });
-  }
 
   std::vector<cohort::ObservationChannel> proximity_;
   std::vector<cohort::ObservationChannel> ground_;

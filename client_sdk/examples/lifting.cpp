@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sbot_senses.hpp"
+
 namespace {
 
 constexpr double approach_speed = 0.04;  // of a track [m/s]
@@ -47,7 +49,7 @@ class Lifting final : public cohort::Controller {
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
-    calm_for_ = is_heard(observation) ? 0.0 : calm_for_ + step_;
+    calm_for_ = sbot::hears(observation, microphones_, silence) ? 0.0 : calm_for_ + step_;
     advance(observation);
     command.set(elevation_, raised_);
     if (state_ == State::approaching || state_ == State::gripping) {
@@ -92,11 +94,6 @@ class Lifting final : public cohort::Controller {
       case State::done: break;
     }
   }
-  bool is_heard(const cohort::Observation& observation) const {
-    return std::any_of(microphones_.begin(), microphones_.end(),
-                       [&](cohort::ObservationChannel microphone) { return observation[microphone] > silence; });
-  }
-
   std::vector<cohort::ObservationChannel> proximity_;
   std::vector<cohort::ObservationChannel> microphones_;
   cohort::ObservationChannel grippable_;

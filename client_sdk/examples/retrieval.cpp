@@ -5,12 +5,13 @@
 // It keeps nothing from one step to the next but how long it still goes around another robot.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cohort/controller.hpp>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
+
+#include "sbot_senses.hpp"
 
 namespace {
 
@@ -46,7 +47,7 @@ class Retrieval final : public cohort::Controller {
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
-    const Sound sound = listen(observation);
+    const sbot::Sound sound = sbot::listen(observation, microphones_);
     const bool grips = observation[gripping_] > 0.5;
     for (const cohort::CommandChannel led : colors_) command.set(led, 1.0, grips ? 0 : 2);  // red or blue
     if (grips || (observation[grippable_] > 0.5 && sound.level > call_at_prey)) command.set(opening_, 0.0);
@@ -57,21 +58,7 @@ class Retrieval final : public cohort::Controller {
   }
 
  private:
-  struct Sound {
-    double bearing = 0.0;  // from where the turret looks [rad]
-    double level = 0.0;    // what arrives
-  };
-  // The microphones are at the corners of a square, the first one ahead and to the left. Undoes their saturation.
-  Sound listen(const cohort::Observation& observation) const {
-    std::array<double, 4> heard{};
-    for (std::size_t i = 0; i < heard.size(); ++i)
-      heard[i] = -std::log(2.0 / (1.0 + std::min(observation[microphones_[i]], 0.999999)) - 1.0);
-    const double ahead = heard[0] + heard[3] - heard[1] - heard[2];
-    const double left = heard[0] + heard[1] - heard[2] - heard[3];
-    return {std::atan2(left, ahead), (heard[0] + heard[1] + heard[2] + heard[3]) / 4.0};
-  }
-
-  void approach(const cohort::Observation& observation, const Sound& sound, cohort::Command& command) {
+  void approach(const cohort::Observation& observation, const sbot::Sound& sound, cohort::Command& command) {
     command.set(turret_velocity_, -turret_gain * observation[turret_position_]);
     double ahead = 0.0;
     for (const std::size_t i : {0u, 1u, 13u, 14u}) ahead = std::max(ahead, observation[proximity_[i]]);
@@ -85,16 +72,9 @@ class Retrieval final : public cohort::Controller {
 
   // The prey holds the turret, so its motor turns the chassis.
   void carry(const cohort::Observation& observation, cohort::Command& command) const {
-    double ahead = 0.0, left = 0.0, brightest = 0.0;
-    for (std::size_t i = 0; i < light_.size(); ++i) {
-      const double reading = observation[light_[i]];
-      const double bearing = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(light_.size());
-      ahead += reading * std::cos(bearing);
-      left += reading * std::sin(bearing);
-      brightest = std::max(brightest, reading);
-    }
-    if (brightest < darkness) return;
-    const double off = std::remainder(std::atan2(left, ahead) + observation[turret_position_], 2.0 * std::numbers::pi);
+    const sbot::Light light = sbot::look(observation, light_);
+    if (light.brightest < darkness) return;
+    const double off = std::remainder(light.bearing + observation[turret_position_], 2.0 * std::numbers::pi);
     command.set(turret_velocity_, -turret_gain * off);
     drive(off, std::abs(off) < slow_down ? 1.0 : 0.0, command);
   }

@@ -1,7 +1,7 @@
 // Phototaxis and assembly (thesis, section 5.2.3), for the s-bot: it goes to the light, and grips whatever it can.
 // Those that hold on to each other turn their chassis under their turrets towards the light, and so move as one.
 //
-// It remembers whether it tries to grip; one that takes over in the middle of a run begins by trying.
+// It keeps nothing from one step to the next but how long it still turns away from what it could not grip.
 
 #include <algorithm>
 #include <cmath>
@@ -47,13 +47,12 @@ class Assembly final : public cohort::Controller {
     colors_ = start.commands("leds/*/color");
     step_ = std::chrono::duration<double>(start.step).count() * start.period;
     avoiding_for_ = 0.0;
-    is_closing_ = false;
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
     const bool grips = observation[gripping_] > 0.5;
-    is_closing_ = grips || (is_closing_ && observation[grippable_] > 0.5) || observation[grippable_] > 0.5;
-    if (is_closing_) command.set(opening_, 0.0);
+    const bool is_closing = grips || observation[grippable_] > 0.5;
+    if (is_closing) command.set(opening_, 0.0);
     if (grips) {
       command.set(frequency_, tone);
       command.set(loudness_, call);
@@ -64,7 +63,7 @@ class Assembly final : public cohort::Controller {
     const sbot::Light light = sbot::look(observation, light_);
     if (is_member)
       move_as_one(observation, light, command);
-    else if (!is_closing_)
+    else if (!is_closing)
       move_alone(observation, light, command);
   }
 
@@ -117,7 +116,6 @@ class Assembly final : public cohort::Controller {
   std::vector<cohort::CommandChannel> colors_;
   double step_ = 0.0;          // from one answer to the next [s]
   double avoiding_for_ = 0.0;  // [s]
-  bool is_closing_ = false;
 };
 
 }  // namespace

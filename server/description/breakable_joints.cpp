@@ -9,28 +9,28 @@
 namespace cohort::description {
 namespace {
 
-// One end: its object and the key of its link.
-std::optional<std::size_t> find_object(const ExtensionValues& values, const char* key, const World& world,
-                                       const SdfReport& report) {
+// The place among `things` of the one that a key names; reported, beginning with `otherwise`, if there is none.
+template <class Things>
+std::optional<std::size_t> find_named(const ExtensionValues& values, const char* key, const Things& things,
+                                      const std::string& otherwise, const SdfReport& report) {
   std::vector<std::string> names;
-  for (const Instance& instance : world.instances) names.push_back(instance.name);
+  for (const auto& thing : things) names.push_back(thing.name);
   const std::string& name = values.text(key);
   const auto found = std::find(names.begin(), names.end(), name);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  report.problem(values.where(key), "no object is called '" + name + "'" + suggestion(name, names));
+  report.problem(values.where(key), otherwise + " '" + name + "'" + suggestion(name, names));
   return std::nullopt;
+}
+
+std::optional<std::size_t> find_object(const ExtensionValues& values, const char* key, const World& world,
+                                       const SdfReport& report) {
+  return find_named(values, key, world.instances, "no object is called", report);
 }
 
 std::optional<std::size_t> find_link(const ExtensionValues& values, const char* key, const Instance& object,
                                      const Model& model, const SdfReport& report) {
   if (!values.has(key)) return 0;
-  std::vector<std::string> names;
-  for (const Link& link : model.links) names.push_back(link.name);
-  const std::string& name = values.text(key);
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  report.problem(values.where(key), "'" + object.name + "' has no link '" + name + "'" + suggestion(name, names));
-  return std::nullopt;
+  return find_named(values, key, model.links, "'" + object.name + "' has no link", report);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "server/core/random.hpp"
+#include "tests/support/process.hpp"
 #include "tests/support/sensing_world.hpp"
 #include "tests/support/shipped_experiment.hpp"
 
@@ -19,10 +20,37 @@ using testing::ShippedExperiment;
 
 constexpr std::size_t turret = 1;
 
+// The path, without its extension, of an experiment that ships, with `to` for `from` in it or in its arena.
+std::string changed_experiment(const testing::ScratchFolder& folder, const std::string& experiment,
+                               const std::string& arena, const std::string& from, const std::string& to) {
+  const std::filesystem::path worlds = testing::shipped_experiments.parent_path();
+  std::filesystem::create_directory_symlink(worlds / "robots", folder / "robots");
+  bool is_changed = false;
+  for (const std::string& file : {"arenas/" + arena + ".yaml", "experiments/" + experiment + ".yaml"}) {
+    std::string text = testing::read_file(worlds / file);
+    if (const std::size_t at = text.find(from); at != std::string::npos) {
+      text.replace(at, from.size(), to);
+      is_changed = true;
+    }
+    std::filesystem::create_directories((folder / file).parent_path());
+    testing::write_file(folder / file, text);
+  }
+  EXPECT_TRUE(is_changed) << from;
+  return folder / ("experiments/" + experiment);
+}
+
+TEST(Chain, OfOneFallsIntoTheTrough) {
+  const testing::ScratchFolder folder;
+  const std::string alone = changed_experiment(folder, "chain", "wide_trough", "count: 4", "count: 1");
+  const ShippedExperiment run(alone, 1);
+  EXPECT_EQ(run.simulation.robot_count(), 1u);
+  EXPECT_LT(run.simulation.robot_pose(0).position.z(), 0.19);
+}
+
 class Chain : public ::testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Experiments, Chain, ::testing::Values(1, 2, 3));
 
-TEST_P(Chain, CrossesATroughThatASingleOneFallsInto) {
+TEST_P(Chain, CrossesTheTrough) {
   constexpr double floor = 0.2, far_side = 0.65;
   double lowest = floor;
   int gripping_at_the_edge = 0;
@@ -67,6 +95,21 @@ TEST_P(Lifting, AnSbotHoldsAnotherInTheAirAndPutsItDownAgain) {
   const Pose X_WL = run.pose("load/sbot_detailed_0");
   EXPECT_NEAR(X_WL.position.z(), 0.0, 0.001);
   EXPECT_GT((X_WL.orientation * Eigen::Vector3d::UnitZ()).z(), 0.999);
+}
+
+TEST(Lifting, AloneTipsOver) {
+  const testing::ScratchFolder folder;
+  const std::string alone = changed_experiment(folder, "lifting", "lifting", "anchor/*, controller: lifting",
+                                               "anchor/*, controller: constant");
+  double least_upright = 1.0;
+  double highest_load = 0.0;
+  const ShippedExperiment run(alone, 1, 0.0, [&](const ShippedExperiment& its) {
+    least_upright =
+        std::min(least_upright, (its.pose("lifter/sbot_detailed_0").orientation * Eigen::Vector3d::UnitZ()).z());
+    highest_load = std::max(highest_load, its.position("load/sbot_detailed_0").z());
+  });
+  EXPECT_LT(least_upright, std::cos(0.2)) << "it tips up itself instead";
+  EXPECT_LT(highest_load, 0.005);
 }
 
 // The robot whose ring is in a robot's gripper.

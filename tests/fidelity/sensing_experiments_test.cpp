@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "tests/support/shipped_experiment.hpp"
 
@@ -16,18 +17,19 @@ using testing::ShippedExperiment;
 
 // Where robots were, and how upright.
 struct Watch {
-  double farthest = 0.0;  // along x or y [m]
-  double lowest = 1e9;    // [m]
-  double least_upright = 1.0;
+  double farthest = 0.0;                // along x or y [m]
+  double lowest = 1e9;                  // [m]
+  std::vector<double> least_upright;    // of each robot
   std::set<std::pair<int, int>> cells;  // of 25 cm, that some robot was in
 
   void operator()(const ShippedExperiment& run) {
     constexpr double cell = 0.25;
+    least_upright.resize(run.simulation.robot_count(), 1.0);
     for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot) {
       const Pose X_WL = run.simulation.robot_pose(robot);
       farthest = std::max(farthest, X_WL.position.head<2>().cwiseAbs().maxCoeff());
       lowest = std::min(lowest, X_WL.position.z());
-      least_upright = std::min(least_upright, (X_WL.orientation * Eigen::Vector3d::UnitZ()).z());
+      least_upright[robot] = std::min(least_upright[robot], (X_WL.orientation * Eigen::Vector3d::UnitZ()).z());
       cells.insert({static_cast<int>(std::floor(X_WL.position.x() / cell)),
                     static_cast<int>(std::floor(X_WL.position.y() / cell))});
     }
@@ -41,7 +43,7 @@ TEST_P(ObstacleAvoidance, RobotsCoverTheArenaAndHardlyTouchAnything) {
   Watch watch;
   const ShippedExperiment run("obstacle_avoidance", GetParam(), 0.0, std::ref(watch));
   EXPECT_LT(watch.farthest, 2.0 - 0.058 + 0.005) << "within the walls";
-  EXPECT_GT(watch.least_upright, 0.99);
+  EXPECT_GT(*std::ranges::min_element(watch.least_upright), 0.99);
   EXPECT_GT(watch.cells.size(), 200u) << "of 256";
   const TouchCounts& touches = run.simulation.touches();
   EXPECT_LT(static_cast<double>(touches.obstacles + touches.robots), 0.02 * static_cast<double>(touches.robot_ticks));
@@ -55,13 +57,11 @@ TEST_P(RoughTerrain, RobotsStayUprightOnTheGroundAndSomeGetAbout) {
   const ShippedExperiment run("rough_terrain", GetParam(), 0.0, std::ref(watch));
   EXPECT_FALSE(run.has_quarantined());
   EXPECT_GT(watch.lowest, -0.02);
-  int fallen = 0;
   double moved = 0.0;
-  for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot) {
-    const Pose X_WL = run.simulation.robot_pose(robot);
-    if ((X_WL.orientation * Eigen::Vector3d::UnitZ()).z() < 0.5) ++fallen;
-    moved = std::max(moved, (X_WL.position - run.experiment.world.robot(robot).X_WM.position).norm());
-  }
+  for (std::uint32_t robot = 0; robot < run.simulation.robot_count(); ++robot)
+    moved = std::max(
+        moved, (run.simulation.robot_pose(robot).position - run.experiment.world.robot(robot).X_WM.position).norm());
+  const auto fallen = std::ranges::count_if(watch.least_upright, [](double up) { return up < 0.5; });
   EXPECT_LE(fallen, 1) << "of 8: one that was set down where it is steep";
   EXPECT_GT(moved, 0.3);
 }

@@ -94,7 +94,7 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
     if (!geometry::is_ground(solid.shape) && !below) is_floor_[solid.body] = 0;
   }
   sample();
-  if (viewpoint == Viewpoint::side) draw_robots_into(&RobotTrace::at_start);
+  if (viewpoint == Viewpoint::side) note_robots(&RobotTrace::at_start);
 }
 
 void TraceRecorder::boundary() {
@@ -134,7 +134,7 @@ void TraceRecorder::note_contacts() {
 }
 
 // Tracks have no collisions: what they touch the ground with is drawn as a box as high as a wheel's middle.
-void TraceRecorder::draw_robots_into(std::vector<TracedSolid> RobotTrace::*solids) {
+void TraceRecorder::note_robots(std::vector<TracedSolid> RobotTrace::*solids) {
   using Kind = TracedSolid::Kind;
   const auto add = [&](std::uint32_t robot, const geometry::Shape& shape, const Pose& X_WC) {
     if (!X_WC.position.allFinite()) return;
@@ -162,7 +162,7 @@ void TraceRecorder::draw_robots_into(std::vector<TracedSolid> RobotTrace::*solid
 
 RunTrace TraceRecorder::finish() {
   sample();
-  if (trace_.viewpoint == Viewpoint::side) draw_robots_into(&RobotTrace::at_end);
+  if (trace_.viewpoint == Viewpoint::side) note_robots(&RobotTrace::at_end);
   const Scene& scene = simulation_.world().scene();
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < scene.size(); ++i) {

@@ -93,7 +93,7 @@ class TraceRecorder {
   void note_contacts();
   Eigen::Vector2d seen(const Eigen::Vector3d& p_W) const { return (R_VW_ * p_W).head<2>(); }
   Pose pose_seen(const Pose& X_W) const { return {R_VW_ * X_W.position, R_VW_ * X_W.orientation}; }
-  void draw_robots_into(std::vector<TracedSolid> RobotTrace::*solids);
+  void note_robots(std::vector<TracedSolid> RobotTrace::*solids);
 
   const description::World& world_;
   const Simulation& simulation_;

@@ -51,9 +51,14 @@ const Leases::Lease* Leases::lease(std::uint64_t client) const {
   return found == leases_.end() ? nullptr : &found->second;
 }
 
-void Leases::note_answer(std::uint64_t client) {
+void Leases::note_answer(std::uint64_t client, Time now, std::uint64_t tick, std::uint32_t copy) {
   ++answers_[client];
-  set_alive(client, true);
+  const auto found = leases_.find(client);
+  if (found == leases_.end()) return;
+  found->second.alive = true;
+  found->second.answered_at = now;
+  found->second.answered_tick = tick;
+  found->second.answered_copy = copy;
 }
 
 void Leases::set_alive(std::uint64_t client, bool alive) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "server/lockstep/barrier.hpp"
+
 namespace cohort::lockstep {
 
 /// Who drives which robots. One client has one lease for all its robots, with an epoch that is never used again; a
@@ -23,6 +25,10 @@ class Leases {
     std::uint64_t epoch = 0;
     std::vector<std::uint32_t> robots;  ///< ascending
     bool alive = true;
+    /// The last answer: when it came, to which frame, and which of the copies that were sent of it.
+    Time answered_at{0};
+    std::uint64_t answered_tick = 0;
+    std::uint32_t answered_copy = 0;
   };
 
   /// `robots`: ascending, at least one. A client's new claim stands in for its earlier one that still waits.
@@ -58,7 +64,7 @@ class Leases {
   bool has_claims() const { return !claims_.empty(); }
 
   /// The client, which has a lease, answered a frame: it lives, whatever liveliness said last.
-  void note_answer(std::uint64_t client);
+  void note_answer(std::uint64_t client, Time now = Time{0}, std::uint64_t tick = 0, std::uint32_t copy = 0);
   /// What liveliness says.
   void set_alive(std::uint64_t client, bool alive);
   /// The client left for good: its robots are free, its claim is gone.

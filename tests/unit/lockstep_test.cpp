@@ -254,25 +254,52 @@ TEST(Leases, KeepsTheEpochOfAClientThatAsksForItsOwnRobotsAgain) {
   EXPECT_EQ(leases.lease(100)->epoch, epoch);
 }
 
-TEST(ResendTimer, WaitsThreeTicksButAtLeastThreeMillisecondsAndThenBacksOff) {
+TEST(ResendTimer, WaitsTwoMillisecondsAtFirstAndThenLongerAndLonger) {
   ResendTimer timer;
-  timer.start(0ns, 100us);
-  EXPECT_EQ(timer.due(), Time(3ms));
-  timer.start(0ns, 4ms);
-  EXPECT_EQ(timer.due(), Time(12ms));
-  timer.resent(12ms);
-  EXPECT_EQ(timer.due(), Time(36ms));
-  for (int i = 0; i < 20; ++i) timer.resent(1s);
-  EXPECT_EQ(timer.due(), Time(1500ms));
+  timer.start(0, 1s);
+  EXPECT_EQ(timer.due(), Time(1002ms));
+  EXPECT_FALSE(timer.is_due(1001ms));
+  EXPECT_TRUE(timer.is_due(1002ms));
+  timer.resent(1002ms);
+  EXPECT_EQ(timer.due(), Time(1004250us));
+  for (int i = 0; i < 50; ++i) timer.resent(2s);
+  EXPECT_EQ(timer.due(), Time(2500ms));
 }
 
-TEST(MedianDuration, IsTheMiddleOfTheLastOnes) {
-  MedianDuration median;
-  EXPECT_EQ(median.value(), 0ns);
-  for (const auto value : {5ms, 1ms, 3ms}) median.add(value);
-  EXPECT_EQ(median.value(), Time(3ms));
-  for (int i = 0; i < 63; ++i) median.add(9ms);
-  EXPECT_EQ(median.value(), Time(9ms));
+TEST(ResendTimer, WaitsThreeRoundTripsOfASlowClient) {
+  ResendTimer timer;
+  Time now = 1s;
+  for (std::uint64_t tick = 0; tick < 5; ++tick) {
+    if (tick > 0) timer.note_answer(tick - 1, 0, now - 30ms);
+    timer.start(tick, now);
+    now += 50ms;
+  }
+  now -= 50ms;
+  EXPECT_FALSE(timer.is_due(now + 59ms));
+  EXPECT_TRUE(timer.is_due(now + 60ms));
+}
+
+TEST(ResendTimer, WhatWasLostIsNotTheClientsSlowness) {
+  ResendTimer timer;
+  Time now = 1s;
+  for (std::uint64_t tick = 0; tick < 5; ++tick) {
+    timer.start(tick, now);
+    ASSERT_TRUE(timer.is_due(now + 40ms));
+    timer.resent(now + 40ms);  // this is the one that comes
+    timer.note_answer(tick, 1, now + 41ms);
+    now += 50ms;
+  }
+  timer.start(5, now);
+  EXPECT_TRUE(timer.is_due(now + 3ms));
+}
+
+TEST(RoundTrips, AMedian) {
+  RoundTrips round_trips;
+  EXPECT_EQ(round_trips.median(), 0ns);
+  for (const auto value : {5ms, 1ms, 3ms}) round_trips.add(value);
+  EXPECT_EQ(round_trips.median(), Time(3ms));
+  for (int i = 0; i < 31; ++i) round_trips.add(9ms);
+  EXPECT_EQ(round_trips.median(), Time(9ms));
 }
 
 TEST(LatencyHistogram, GivesQuantilesToWithinThreePercent) {

@@ -208,7 +208,7 @@ void Server::decide_claims() {
     if (!run_->leases.has_claims()) return;
     const lockstep::Barrier& barrier = run_->exchange.barrier();
     const bool at_boundary = barrier.complete();
-    decisions = run_->leases.decide([&](const std::vector<std::uint32_t>& robots) {
+    decisions = run_->leases.decide(Clock::now().time_since_epoch(), [&](const std::vector<std::uint32_t>& robots) {
       return at_boundary || std::ranges::any_of(robots, [&](auto robot) { return barrier.is_awaited(robot); });
     });
   }

@@ -175,8 +175,8 @@ TEST(Barrier, CountsAnAnswerThatCannotActAsAMissAtOnce) {
   EXPECT_EQ(barrier.judge(0, 0), Verdict::repeated);
 }
 
-Leases::Decisions decide(Leases& leases) {
-  return leases.decide([](const Robots&) { return true; });
+Leases::Decisions decide(Leases& leases, Time now = 10s) {
+  return leases.decide(now, [](const Robots&) { return true; });
 }
 
 TEST(Leases, GrantsFreeRobots) {
@@ -192,7 +192,7 @@ TEST(Leases, GrantsFreeRobots) {
 TEST(Leases, GrantsNothingUntilItMay) {
   Leases leases(1);
   leases.claim(100, {0});
-  EXPECT_TRUE(leases.decide([](const Robots&) { return false; }).granted.empty());
+  EXPECT_TRUE(leases.decide(10s, [](const Robots&) { return false; }).granted.empty());
   EXPECT_TRUE(leases.has_claims());
   EXPECT_EQ(decide(leases).granted.size(), 1u);
 }
@@ -229,14 +229,26 @@ TEST(Leases, HandsTheRobotsOfADeadHolderOverWithANewEpoch) {
   EXPECT_FALSE(leases.holder(0)) << "losing one robot ends the whole lease";
 }
 
+// It was stopped, went on, answered once, and was killed before liveliness had noticed that it went on.
+TEST(Leases, AnAnswerIsNoSignOfLifeForEver) {
+  Leases leases(1);
+  leases.claim(100, {0});
+  decide(leases);
+  leases.set_alive(100, false);
+  leases.note_answer(100, 10s);
+  leases.claim(200, {0});
+  EXPECT_TRUE(decide(leases, 10900ms).granted.empty());
+  EXPECT_EQ(decide(leases, 11s).granted.size(), 1u);
+}
+
 TEST(Leases, TakesAnAnswerAsASignOfLifeThoughLivelinessSaidOtherwise) {
   Leases leases(1);
   leases.claim(100, {0});
   decide(leases);
   leases.set_alive(100, false);
   leases.claim(200, {0});
-  leases.note_answer(100);
-  const auto decisions = decide(leases);
+  leases.note_answer(100, 10s);
+  const auto decisions = decide(leases, 10s);
   EXPECT_TRUE(decisions.granted.empty());
   ASSERT_EQ(decisions.refused.size(), 1u);
   EXPECT_EQ(decisions.refused[0].client, 200u);

@@ -166,6 +166,72 @@ INSTANTIATE_TEST_SUITE_P(All, MissedDeadline,
                                            std::pair{OnLate::stop, Kind::neutral}),
                          [](const auto& tested) { return name_of(tested.param.first); });
 
+Policy free_policy(OnLate on_late = OnLate::hold, Time silence = 0ns) {
+  Policy free = policy(1, 0, 0, on_late, silence);
+  free.mode = description::Mode::free;
+  return free;
+}
+
+TEST(Barrier, NeverWaitsForAFreeRobotWhoseNewestAnswerActs) {
+  Barrier barrier = barrier_of({free_policy()});
+  barrier.open(0, 0ns);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_TRUE(barrier.is_due(0, 0));
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::keep);
+  for (std::uint64_t tick = 1; tick < 5; ++tick) barrier.open(tick, 0ns);
+  answer(barrier, 0, 3, 3.0);
+  EXPECT_EQ(barrier.outcome(0).values[0], 3.0);
+  EXPECT_EQ(barrier.judge(0, 2), Verdict::stale);
+  EXPECT_EQ(barrier.judge(0, 3), Verdict::repeated);
+  EXPECT_EQ(barrier.judge(0, 5), Verdict::early);
+  barrier.open(5, 0ns);
+  EXPECT_EQ(barrier.outcome(0).values[0], 3.0) << "it holds";
+  answer(barrier, 0, 5, 5.0);
+  EXPECT_EQ(barrier.outcome(0).values[0], 5.0);
+}
+
+TEST(Barrier, AFreeRobotMissesOncePerSilence) {
+  Barrier barrier = barrier_of({free_policy(OnLate::zero, 1s)});
+  barrier.open(0, 10s);
+  EXPECT_TRUE(barrier.expire(10900ms).empty());
+  barrier.answer(0, 0, std::vector<double>{1.0}, 10950ms);
+  EXPECT_TRUE(barrier.expire(11900ms).empty());
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::command);
+  ASSERT_EQ(barrier.expire(12s).size(), 1u);
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
+  EXPECT_TRUE(barrier.expire(13s).empty());
+  barrier.open(1, 13s);
+  barrier.answer(0, 1, std::vector<double>{2.0}, 13s);
+  EXPECT_EQ(barrier.outcome(0).values[0], 2.0);
+  const auto misses = barrier.expire(15s);
+  ASSERT_EQ(misses.size(), 1u);
+  EXPECT_EQ(misses[0].waited, Time(2s));
+}
+
+TEST(Barrier, AsksARobotWithoutADriverNothing) {
+  Barrier barrier = barrier_of({policy(), policy(1, 0, 1)});
+  barrier.set_driven(0, false);
+  barrier.set_driven(1, false);
+  barrier.open(0, 0ns);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_FALSE(barrier.is_due(0, 0));
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
+  barrier.set_driven(0, true);
+  barrier.set_driven(1, true);
+  EXPECT_TRUE(barrier.complete()) << "not before the next boundary";
+  barrier.open(1, 0ns);
+  EXPECT_EQ(barrier.awaited(), Robots{0}) << "the other one's first answer acts a tick later";
+  answer(barrier, 0, 1, 1.0);
+  answer(barrier, 1, 1, 7.0);
+  EXPECT_EQ(barrier.outcome(1).kind, Kind::keep);
+  barrier.open(2, 0ns);
+  EXPECT_EQ(barrier.awaited(), Robots{0});
+  EXPECT_EQ(barrier.outcome(1).values[0], 7.0);
+  barrier.set_driven(0, false);
+  EXPECT_TRUE(barrier.complete()) << "the driver is lost in mid-tick";
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
+}
+
 TEST(Barrier, CountsAnAnswerThatCannotActAsAMissAtOnce) {
   Barrier barrier = barrier_of({policy(1, 0, 0, OnLate::zero, 1s)});
   barrier.open(0, 0ns);

@@ -23,6 +23,7 @@ using namespace std::chrono_literals;
 
 constexpr auto stop_is_polled_every = 100ms;
 constexpr auto patience_before_notice = 3s;
+constexpr auto joins_again_every = 1s;
 constexpr auto server_may_be_away = 2s;
 constexpr auto time_for_last_words = 500ms;
 constexpr int frames_kept_by_dds = 8;
@@ -139,12 +140,18 @@ Client::Client(const ControllerKind& kind, const ClientOptions& options, const s
                     wire::partition_of(id_), frames_kept_by_dds) {}
 
 ClientEnd Client::run() {
-  joins_.write({.client = id_,
-                .controller = name_,
-                .host = host_name(),
-                .process = static_cast<std::uint32_t>(::getpid()),
-                .robots = options_.robots});
+  const wire::Join join{.client = id_,
+                        .controller = name_,
+                        .host = host_name(),
+                        .process = static_cast<std::uint32_t>(::getpid()),
+                        .robots = options_.robots};
+  Clock::time_point joins_at = Clock::now();
   for (;;) {
+    // Again and again: a writer whose liveliness was lost for a moment is alive to DDS only when it writes.
+    if (Clock::now() >= joins_at) {
+      joins_.write(join);
+      joins_at = Clock::now() + joins_again_every;
+    }
     {
       const std::lock_guard driving(driving_);
       Lock lock(mutex_);

@@ -62,11 +62,13 @@ class Server {
   struct Client {
     wire::Join join;
     std::uint64_t arrival = 0;  // clients of a session in their order
+    std::uint64_t writer = 0;   // of its last Join
     std::string label;          // for people: controller, process and host
     wire::Writer<wire::Admit> admit;
     wire::Writer<wire::Observation> observation;
     wire::Writer<wire::Report> report;
     bool alive = true;
+    bool is_known = false;  // its Join was read
     // Of this run.
     std::vector<std::uint32_t> robots{};  // that it asked for
     bool claims = false;                  // and was neither granted nor refused

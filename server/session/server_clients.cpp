@@ -41,8 +41,11 @@ void Server::handle_inbox() {
   }
   for (const Arrival& arrival : inbox.arrivals) handle_arrival(arrival);
   for (const Liveliness& change : inbox.liveliness) {
+    // Of the writer of its last Join: one that was lost and found again has another, and the end of the former comes
+    // late.
     const auto found = client_of_writer_.find(change.sender.writer);
-    if (found != client_of_writer_.end()) handle_liveliness(found->second, change.alive);
+    if (found != client_of_writer_.end() && clients_.at(found->second).writer == change.sender.writer)
+      handle_liveliness(found->second, change.alive);
   }
   for (const std::uint32_t process : inbox.ended_processes) {
     static const std::string here = host_name();
@@ -114,8 +117,13 @@ void Server::forget(std::uint64_t client_id) {
 void Server::handle_arrival(const Arrival& arrival) {
   Client* client = attach(arrival);
   if (client == nullptr) return;
+  const bool is_news = !client->is_known || client->join.robots != arrival.join.robots;
+  client->is_known = true;
   client->join = arrival.join;
-  claim(arrival.join.client, *client);
+  client->writer = arrival.sender.writer;
+  handle_liveliness(arrival.join.client, true);
+  // Clients join once a second, which only says that they live.
+  if (is_news) claim(arrival.join.client, *client);
 }
 
 // What a client's selectors select in this run.

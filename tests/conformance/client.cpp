@@ -34,7 +34,8 @@ void say(const std::string& text) {
 
 }  // namespace
 
-Client::Client(Options options) : options_(std::move(options)), id_(random_id()), wire_(options_.domain, id_) {}
+Client::Client(Options options)
+    : options_(std::move(options)), id_(random_id()), wire_(options_.domain, id_), robots_(options_.plugin) {}
 
 End Client::run() {
   join();

@@ -16,6 +16,7 @@ namespace cohort::conformance {
 struct Options {
   std::uint32_t domain = 0;
   std::vector<std::string> robots{};
+  std::string plugin{};  ///< the controller's
   /// As on a bad network: every so many frames are lost on their way here, and as many answers on their way back, when
   /// they are sent for the first time. 0: none.
   std::uint64_t loses_every = 0;

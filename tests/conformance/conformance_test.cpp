@@ -2,12 +2,16 @@
 
 #include <csignal>
 #include <memory>
+#include <utility>
 
 #include "tests/support/process.hpp"
 
 namespace cohort::testing {
 namespace {
 
+constexpr const char* avoidance = COHORT_BUILD_DIR "/lib/controllers/obstacle_avoidance.so";
+constexpr const char* braitenberg = COHORT_BUILD_DIR "/lib/controllers/braitenberg.so";
+constexpr const char* remembering = COHORT_BUILD_DIR "/lib/test_controllers/remembering.so";
 constexpr const char* obstacles = COHORT_SOURCE_DIR "/worlds/arenas/obstacles.sdf";
 
 // A server, and clients of it on Fast DDS.
@@ -18,22 +22,26 @@ class Conformance : public ::testing::Test {
     command.insert(command.end(), more.begin(), more.end());
     return std::make_unique<Process>(command, Process::Environment{{"COHORT_LOG", "info"}});
   }
-  std::unique_ptr<Process> start_foreign(const std::string& robots, const std::string& loses_every = "0") {
+  std::unique_ptr<Process> start_foreign(const std::string& robots, const std::string& plugin = avoidance,
+                                         const std::string& loses_every = "0") {
     return std::make_unique<Process>(
-        std::vector<std::string>{COHORT_BUILD_DIR "/bin/fastdds_client", domain.text(), robots, loses_every});
+        std::vector<std::string>{COHORT_BUILD_DIR "/bin/fastdds_client", plugin, domain.text(), robots, loses_every});
   }
   std::unique_ptr<Process> start_own(const std::string& robots) {
     return std::make_unique<Process>(std::vector<std::string>{cohort_program(), "host", "obstacle_avoidance",
                                                               "--robots", robots, "--domain", domain.text()});
   }
-  // The demo's robots, asked at other ticks and with answers that act later.
+  // The demo's robots, by a controller for which every frame counts.
   std::string experiment_with(const std::string& timing) {
     const std::string file = (folder / "experiment.yaml").string();
-    write_file(file, std::string("world: ") + obstacles +
-                         "\nduration: 5\nseed: 1\nteams:\n  - name: explorers\n    robots: explorers/*\n"
-                         "    controller: obstacle_avoidance\n" +
-                         timing);
+    write_file(file,
+               std::string("world: ") + obstacles +
+                   "\nduration: 5\nseed: 1\nteams:\n  - name: explorers\n    robots: explorers/*\n    controller: " +
+                   remembering + "\n    parameters: {speed: 0.2}\n" + timing);
     return file;
+  }
+  static std::string hash_in_process(const std::string& experiment) {
+    return run_experiment(experiment, {"--controllers", "inprocess"})["state_hash"];
   }
   static void expect_end(Process& server, const std::string& hash) {
     EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
@@ -81,24 +89,32 @@ TEST_F(Conformance, AClientThatWantsARobotOfAnotherIsRefused) {
   expect_finished(*first);
 }
 
+TEST_F(Conformance, ParametersAndSeedsArriveAndGiveTheSameBits) {
+  const std::string weighted = COHORT_SOURCE_DIR "/worlds/experiments/braitenberg.yaml";
+  for (const auto& [experiment, plugin] : {std::pair(weighted, braitenberg), {experiment_with(""), remembering}}) {
+    const auto server = serve(experiment);
+    const auto client = start_foreign("all", plugin);
+    expect_end(*server, hash_in_process(experiment));
+    expect_finished(*client);
+  }
+}
+
 TEST_F(Conformance, AnswersToEverySecondTickThatActATickLaterGiveTheSameBits) {
   const std::string experiment = experiment_with("    period: 2\n    delay: 1\n");
-  const auto expected = run_experiment(experiment, {"--controllers", "inprocess"});
-  EXPECT_NE(expected["state_hash"], reference_hash(5));
   const auto server = serve(experiment);
-  const auto client = start_foreign("all");
-  expect_end(*server, expected["state_hash"]);
+  const auto client = start_foreign("all", remembering);
+  expect_end(*server, hash_in_process(experiment));
   expect_finished(*client);
+  EXPECT_NE(client->output().find("answered in all 250"), std::string::npos) << client->output();
 }
 
 // Of the frames every seventh, and as many answers. With a delay others come in between, and must wait.
 TEST_F(Conformance, FramesAndAnswersThatAreLostAreSentAgainAndGiveTheSameBits) {
-  for (const char* timing : {"", "    delay: 3\n"}) {
+  for (const char* timing : {"", "    delay: 3\n", "    period: 2\n    phase: 1\n    delay: 5\n"}) {
     const std::string experiment = experiment_with(timing);
-    const auto expected = run_experiment(experiment, {"--controllers", "inprocess"});
     const auto server = serve(experiment);
-    const auto client = start_foreign("all", "7");
-    expect_end(*server, expected["state_hash"]);
+    const auto client = start_foreign("all", remembering, "7");
+    expect_end(*server, hash_in_process(experiment));
     expect_finished(*client);
     EXPECT_EQ(client->output().find(", again 0"), std::string::npos) << client->output();
   }
@@ -138,10 +154,9 @@ TEST_F(Conformance, FramesAndAnswersOfAThousandRobotsGiveTheSameBits) {
              "world: world.yaml\nduration: 0.3\nseed: 1\nteams:\n  - name: swarm\n    robots: all\n"
              "    controller: obstacle_avoidance\n");
   const std::string experiment = (folder / "experiment.yaml").string();
-  const auto expected = run_experiment(experiment, {"--controllers", "inprocess"});
   const auto server = serve(experiment);
   const auto client = start_foreign("all");
-  expect_end(*server, expected["state_hash"]);
+  expect_end(*server, hash_in_process(experiment));
   expect_finished(*client);
 }
 

@@ -5,9 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-// Of client_sdk/examples/obstacle_avoidance.cpp, which is compiled into this program.
-extern "C" const cohort::Plugin cohort_plugin;
-
 namespace cohort::conformance {
 namespace {
 
@@ -67,7 +64,7 @@ void Robots::start(const message::Admit& admit,
   auto before = std::exchange(robots_, {});
   for (const message::AdmittedRobot& admitted : admit.robots()) {
     const Start start = start_of(admit, admitted, descriptions.at(admitted.description()));
-    Robot robot{{cohort_plugin.create(), cohort_plugin.destroy}, size_of(start.observation_channels), {}};
+    Robot robot{plugin_.create(), size_of(start.observation_channels), {}};
     const bool controllers_stay = start.reason == StartReason::reset || start.reason == StartReason::restored;
     if (const auto known = before.find(admitted.robot()); controllers_stay && known != before.end()) {
       robot.controller = std::move(known->second.controller);

@@ -33,7 +33,7 @@ class Conformance : public ::testing::Test {
   }
   // The demo's robots, by a controller for which every frame counts.
   std::string experiment_with(const std::string& timing) {
-    const std::string file = (folder / "experiment.yaml").string();
+    std::string file = (folder / "experiment.yaml").string();
     write_file(file,
                std::string("world: ") + obstacles +
                    "\nduration: 5\nseed: 1\nteams:\n  - name: explorers\n    robots: explorers/*\n    controller: " +

@@ -17,7 +17,7 @@ class PluginFile {
 
  private:
   std::unique_ptr<void, int (*)(void*)> library_;
-  const Plugin* plugin_;
+  const Plugin* plugin_ = nullptr;
 };
 
 }  // namespace cohort::conformance

@@ -65,8 +65,8 @@ dds::DomainParticipantQos participant_qos(std::uint32_t domain) {
 
 // Of a topic in the table of docs/protocol.md. All but WorldState are reliable.
 struct Quality {
-  bool transient_local;
-  int depth;
+  bool transient_local = false;
+  int depth = 1;
   bool leased = false;
 };
 constexpr Quality join_quality{true, 1, true};

@@ -198,6 +198,19 @@ TEST_F(Epuck2Bridge, AnswersWithWhatTheRequestAsksFor) {
   EXPECT_NEAR(proximity(program.receive_sensors())[2], 613, 5);
 }
 
+TEST_F(Epuck2Bridge, AnswersWithOneOfTwoPacketsWhereAProgramReadsOneAtATime) {
+  const auto simulated = simulate("1", {"--packets", "in-turn"});
+  EpuckProgram program(simulated->port("epuck"));
+  for (int i = 0; i < 4; ++i) {
+    program.send(EpuckProgram::command(0, 0, EpuckProgram::image | EpuckProgram::sensors));
+    const bool is_image = i % 2 == 0;
+    EXPECT_EQ(program.receive(1), is_image ? Bytes{0x01} : Bytes{0x02});
+    EXPECT_EQ(program.receive(is_image ? 38400 : 104).size(), is_image ? 38400U : 104U);
+  }
+  program.send(EpuckProgram::command(0, 0));
+  program.receive_sensors();
+}
+
 TEST_F(Epuck2Bridge, APacketThatIsNoneEndsItsConnectionByNameAndLeavesTheRunItsBits) {
   const std::string expected = hash_of_undisturbed_turn();
   const auto simulated = simulate("1");

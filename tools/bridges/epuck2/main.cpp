@@ -8,7 +8,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +48,7 @@ struct Options {
   std::vector<std::string> addresses{"127.0.0.1"};
   std::uint16_t port = 1000;
   epuck2::WithoutProgram without_program = epuck2::WithoutProgram::wait;
+  epuck2::Packets packets = epuck2::Packets::both;
 };
 
 class UsageError : public std::runtime_error {
@@ -86,7 +90,8 @@ class Bridge {
       : name_("robot " + std::move(robot)),
         port_(address, port,
               {[this] { return stop_requested || watch_.is_over(); }, [this](const std::string& text) { tell(text); }}),
-        without_program_(options.without_program) {
+        without_program_(options.without_program),
+        packets_(options.packets) {
     client_.server = options.server;
     client_.domain = options.domain;
     client_.robots = {name_.substr(name_.find(' ') + 1)};
@@ -107,7 +112,7 @@ class Bridge {
  private:
   void run() {
     const ControllerKind kind{client_.name, [this] {
-                                return OwnedController(new epuck2::Robot(port_, without_program_),
+                                return OwnedController(new epuck2::Robot(port_, without_program_, packets_),
                                                        [](Controller* controller) { delete controller; });
                               }};
     try {
@@ -125,6 +130,7 @@ class Bridge {
   RunWatch watch_;
   epuck2::Port port_;
   epuck2::WithoutProgram without_program_;
+  epuck2::Packets packets_;
   ClientOptions client_;
   std::thread thread_;
   ClientEnd end_ = ClientEnd::failed;
@@ -191,6 +197,12 @@ int main(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(std::map<std::string, epuck2::WithoutProgram>{
           {"wait", epuck2::WithoutProgram::wait}, {"stand", epuck2::WithoutProgram::stand}}))
       ->default_str("wait");
+  app.add_option("--packets", options.packets,
+                 "The answer where image and sensors are asked for: both, or one of them by turns (in-turn), for "
+                 "programs that read a single packet after each command")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, epuck2::Packets>{
+          {"both", epuck2::Packets::both}, {"in-turn", epuck2::Packets::in_turn}}))
+      ->default_str("both");
   app.footer("Example: cohort serve worlds/experiments/epuck2.yaml & cohort-epuck2-bridge --robots 0..3");
   try {
     app.parse(argc, argv);

@@ -97,9 +97,13 @@ void Robot::step(const Observation& observation, cohort::Command& command) {
 }
 
 void Robot::answer(const Observation& observation) {
-  if (last_.wants_image) port_.send(image_packet());
-  if (last_.wants_sensors) port_.send(sensors_packet(sense(observation)));
-  if (!last_.wants_image && !last_.wants_sensors) port_.send(empty_packet());
+  const bool one_of_two = packets_ == Packets::in_turn && last_.wants_image && last_.wants_sensors;
+  const bool sends_image = last_.wants_image && !(one_of_two && sent_image_);
+  const bool sends_sensors = last_.wants_sensors && !(one_of_two && sends_image);
+  sent_image_ = sends_image;
+  if (sends_image) port_.send(image_packet());
+  if (sends_sensors) port_.send(sensors_packet(sense(observation)));
+  if (!sends_image && !sends_sensors) port_.send(empty_packet());
 }
 
 void Robot::heed(const Command& received, const Observation& observation) {

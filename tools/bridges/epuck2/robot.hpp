@@ -15,10 +15,17 @@ enum class WithoutProgram {
   stand,  ///< it stops, and the run goes on; another one that connects drives on from there
 };
 
+/// What answers a command that asks for image and sensors.
+enum class Packets {
+  both,     ///< the image, then the sensors, as the robot sends them
+  in_turn,  ///< one of them, by turns, for programs that read a single packet after each command
+};
+
 /// An e-puck2 whose commands come from a program at a port, each of them answered at the next step. Waits in `step`.
 class Robot final : public Controller {
  public:
-  Robot(Port& port, WithoutProgram without_program) : port_(port), without_program_(without_program) {}
+  Robot(Port& port, WithoutProgram without_program, Packets packets)
+      : port_(port), without_program_(without_program), packets_(packets) {}
 
   /// The robot has the channels of worlds/robots/epuck2.
   void start(const Start& start) override;
@@ -33,6 +40,8 @@ class Robot final : public Controller {
 
   Port& port_;
   WithoutProgram without_program_;
+  Packets packets_;
+  bool sent_image_ = false;      // with the last answer
   bool driven_ = false;          // by a program, at some time
   bool owes_an_answer_ = false;  // to `last_`
   Command last_;

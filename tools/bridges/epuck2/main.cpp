@@ -136,6 +136,20 @@ class Bridge {
   ClientEnd end_ = ClientEnd::failed;
 };
 
+template <class Value>
+void add_choice(CLI::App& app, const std::string& name, Value& value, const std::map<std::string, Value>& choices,
+                const std::string& text) {
+  std::string names;
+  for (const auto& [choice, its_value] : choices) names += (names.empty() ? "" : "|") + choice;
+  const auto check = [choices, names](const std::string& given) {
+    return choices.contains(given) ? std::string() : "'" + given + "' is none of " + names;
+  };
+  app.add_option_function<std::string>(
+         name, [&value, choices](const std::string& given) { value = choices.at(given); }, text)
+      ->check(check, "", "")
+      ->type_name(names);
+}
+
 int exit_code(ClientEnd end) {
   switch (end) {
     case ClientEnd::finished: return exit_finished;
@@ -179,30 +193,34 @@ int main(int argc, char** argv) {
   if (const char* server = std::getenv("COHORT_SERVER"); server != nullptr) options.server = server;
   CLI::App app("Programs for the WiFi of an e-puck2 drive robots of a simulation.", "cohort-epuck2-bridge");
   app.add_option("--robots", options.robots, "Ids, ranges of ids and names, with commas between")
+      ->type_name("ROBOT[,ROBOT...]")
       ->capture_default_str();
-  app.add_option("--server", options.server, "The server's IPv4 address or host name")->capture_default_str();
+  app.add_option("--server", options.server, "The server's IPv4 address or host name")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
   app.add_option("--domain", options.domain, "The server's DDS domain")
+      ->type_name("N")
       ->envname("COHORT_DOMAIN")
       ->capture_default_str();
   app.add_option("--listen", options.addresses,
                  "Where programs connect: an IPv4 address of this machine, or one for each robot, with commas between")
       ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("ADDRESS[,ADDRESS...]")
       ->capture_default_str();
   app.add_option("--port", options.port,
                  "Of the first robot; with one address the others' count upwards. 0: any that are free")
+      ->type_name("N")
       ->capture_default_str();
-  app.add_option("--without-program", options.without_program,
-                 "When a program has left: time stands still until another one commands (wait), or its robot stands "
-                 "still and the run goes on (stand)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, epuck2::WithoutProgram>{
-          {"wait", epuck2::WithoutProgram::wait}, {"stand", epuck2::WithoutProgram::stand}}))
-      ->default_str("wait");
-  app.add_option("--packets", options.packets,
-                 "The answer where image and sensors are asked for: both, or one of them by turns (in-turn), for "
-                 "programs that read a single packet after each command")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, epuck2::Packets>{
-          {"both", epuck2::Packets::both}, {"in-turn", epuck2::Packets::in_turn}}))
-      ->default_str("both");
+  add_choice<epuck2::WithoutProgram>(
+      app, "--without-program", options.without_program,
+      {{"wait", epuck2::WithoutProgram::wait}, {"stand", epuck2::WithoutProgram::stand}},
+      "When a program has left: time stands still until another one commands (wait, the default), or its robot stops "
+      "and the run goes on (stand)");
+  add_choice<epuck2::Packets>(app, "--packets", options.packets,
+                              {{"both", epuck2::Packets::both}, {"in-turn", epuck2::Packets::in_turn}},
+                              "The answer where image and sensors are asked for: both (the default), or one of them by "
+                              "turns, for programs that read a single packet after each command");
   app.footer("Example: cohort serve worlds/experiments/epuck2.yaml & cohort-epuck2-bridge --robots 0..3");
   try {
     app.parse(argc, argv);

@@ -82,6 +82,7 @@ class Client {
 
   bool is_described(const wire::Admit& admit) const;
   std::optional<ClientEnd> reason_to_leave();
+  bool server_is_lost() const;
   ClientEnd fail(Lock& lock);
   void tell(Severity severity, const std::string& text) const;
 
@@ -183,6 +184,7 @@ void Client::receive(const wire::RobotDescription& description) {
 
 void Client::receive(const wire::Report& report) {
   if (report.client != id_) return;
+  if (options_.watch != nullptr && report.kind != wire::ReportKind::rejected) options_.watch->note_end();
   Lock lock(mutex_);
   reports_.push_back(report);
   wake(std::move(lock));
@@ -211,6 +213,7 @@ void Client::note_server(const wire::Sender& writer, bool alive) {
   } else if (servers_.erase(writer.writer) != 0 && servers_.empty()) {
     server_left_ = Clock::now();
   }
+  if (options_.watch != nullptr) options_.watch->note_server(!server_left_);
 }
 
 void Client::wake(Lock lock) {
@@ -225,7 +228,8 @@ void Client::drive(Lock& lock) {
     if (offered_ && is_described(offered_->admit)) heed(*std::exchange(offered_, std::nullopt), lock);
     answer_frames(lock);
   } catch (const LeaveRun&) {
-    end_ = ClientEnd::interrupted;
+    for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
+    if (!end_ && !server_is_lost()) end_ = ClientEnd::interrupted;
   } catch (const std::exception& error) {
     failure_ = error.what();
   }
@@ -299,17 +303,16 @@ bool Client::is_described(const wire::Admit& admit) const {
 }
 
 std::optional<ClientEnd> Client::reason_to_leave() {
-  const auto now = Clock::now();
   if (stop_) {
     tell(Severity::info, "interrupted");
     return ClientEnd::interrupted;
   }
-  if (server_left_ && now - *server_left_ > server_may_be_away) {
+  if (server_is_lost()) {
     tell(Severity::error,
          "the server at " + options_.server + ", domain " + std::to_string(options_.domain) + " is gone");
     return ClientEnd::server_lost;
   }
-  if (!current_ && !notice_given_ && now - since_ > patience_before_notice) {
+  if (!current_ && !notice_given_ && Clock::now() - since_ > patience_before_notice) {
     notice_given_ = true;
     tell(Severity::warning, joins_.matched() == 0 ? "waiting for a server at " + options_.server + ", domain " +
                                                         std::to_string(options_.domain)
@@ -317,6 +320,8 @@ std::optional<ClientEnd> Client::reason_to_leave() {
   }
   return std::nullopt;
 }
+
+bool Client::server_is_lost() const { return server_left_ && Clock::now() - *server_left_ > server_may_be_away; }
 
 ClientEnd Client::fail(Lock& lock) {
   tell(Severity::error, *failure_);
@@ -339,6 +344,24 @@ void Client::tell(Severity severity, const std::string& text) const {
 }
 
 }  // namespace
+
+bool RunWatch::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return ended_ || (away_since_ && Clock::now() - *away_since_ > server_may_be_away);
+}
+
+void RunWatch::note_end() {
+  const std::lock_guard lock(mutex_);
+  ended_ = true;
+}
+
+void RunWatch::note_server(bool there) {
+  const std::lock_guard lock(mutex_);
+  if (there)
+    away_since_.reset();
+  else if (!away_since_)
+    away_since_ = Clock::now();
+}
 
 std::vector<std::string> split_selectors(std::string_view list) {
   std::vector<std::string> parts;

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +16,24 @@ namespace cohort {
 
 enum class Severity { info, warning, error };
 
+/// For a controller that blocks in `step` until something else than the run lets it go on: whether anybody still wants
+/// its answer. Any thread.
+class RunWatch {
+ public:
+  /// The server has ended the run or the lease, or has been away for too long: the controller throws LeaveRun, and
+  /// `run_client` returns what has happened.
+  bool is_over() const;
+
+  /// By the client.
+  void note_end();
+  void note_server(bool there);
+
+ private:
+  mutable std::mutex mutex_;
+  bool ended_ = false;
+  std::optional<std::chrono::steady_clock::time_point> away_since_;
+};
+
 struct ClientOptions {
   std::string server = "127.0.0.1";
   std::uint32_t domain = 0;
@@ -22,6 +42,7 @@ struct ClientOptions {
   /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
   /// latency. Only for controllers that never block, since DDS stands still meanwhile.
   bool inline_step = false;
+  RunWatch* watch = nullptr;  ///< told when the run is over; outlives the client
   /// Receives what people should know, one text at a time, on any thread of the client. If empty it goes to standard
   /// error, after the name.
   std::function<void(Severity severity, const std::string& text)> tell{};

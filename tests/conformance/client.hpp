@@ -1,0 +1,60 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/conformance/frames.hpp"
+#include "tests/conformance/robots.hpp"
+#include "tests/conformance/wire.hpp"
+
+namespace cohort::conformance {
+
+struct Options {
+  std::uint32_t domain = 0;
+  std::vector<std::string> robots{};
+  std::string plugin{};  ///< the controller's
+  /// As on a bad network: every so many frames are lost on their way here, and as many answers on their way back, when
+  /// they are sent for the first time. 0: none.
+  std::uint64_t loses_every = 0;
+};
+
+enum class End { finished, refused, superseded, failed, server_lost };
+
+/// One client of docs/protocol.md from Join to its end. Says on standard output what happens to it.
+class Client {
+ public:
+  explicit Client(Options options);
+  End run();
+
+ private:
+  void join();
+  void take_reports();
+  void take_admits();
+  void begin_when_described();
+  void take_frames();
+  void take_frame(message::Observation frame);
+  void answer_frames();
+  void look_for_server();
+  void fail(const std::string& why);
+
+  Options options_;
+  std::uint64_t id_;
+  Wire wire_;
+  Robots robots_;
+  std::map<std::uint32_t, message::RobotDescription> descriptions_;
+  std::optional<message::Admit> offered_;  // waits for its descriptions
+  std::optional<message::Admit> admitted_;
+  std::optional<Frames> frames_;
+  std::vector<message::Observation> early_;  // frames whose Admit has not come
+  std::optional<std::chrono::steady_clock::time_point> without_server_since_;
+  std::uint64_t frames_seen_ = 0;
+  std::uint64_t answers_given_ = 0;
+  std::uint64_t answers_repeated_ = 0;
+  std::optional<End> end_;
+};
+
+}  // namespace cohort::conformance

@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <memory>
+#include <utility>
+
+#include "tests/support/process.hpp"
+
+namespace cohort::testing {
+namespace {
+
+constexpr const char* avoidance = COHORT_BUILD_DIR "/lib/controllers/obstacle_avoidance.so";
+constexpr const char* braitenberg = COHORT_BUILD_DIR "/lib/controllers/braitenberg.so";
+constexpr const char* remembering = COHORT_BUILD_DIR "/lib/test_controllers/remembering.so";
+constexpr const char* obstacles = COHORT_SOURCE_DIR "/worlds/arenas/obstacles.sdf";
+
+// A server, and clients of it on Fast DDS.
+class Conformance : public ::testing::Test {
+ protected:
+  std::unique_ptr<Process> serve(const std::string& experiment, std::vector<std::string> more = {}) {
+    std::vector<std::string> command = {cohort_program(), "serve", experiment, "--domain", domain.text()};
+    command.insert(command.end(), more.begin(), more.end());
+    return std::make_unique<Process>(command, Process::Environment{{"COHORT_LOG", "info"}});
+  }
+  std::unique_ptr<Process> start_foreign(const std::string& robots, const std::string& plugin = avoidance,
+                                         const std::string& loses_every = "0") {
+    return std::make_unique<Process>(
+        std::vector<std::string>{COHORT_BUILD_DIR "/bin/fastdds_client", plugin, domain.text(), robots, loses_every});
+  }
+  std::unique_ptr<Process> start_own(const std::string& robots) {
+    return std::make_unique<Process>(std::vector<std::string>{cohort_program(), "host", "obstacle_avoidance",
+                                                              "--robots", robots, "--domain", domain.text()});
+  }
+  // The demo's robots, by a controller for which every frame counts.
+  std::string experiment_with(const std::string& timing) {
+    std::string file = (folder / "experiment.yaml").string();
+    write_file(file,
+               std::string("world: ") + obstacles +
+                   "\nduration: 5\nseed: 1\nteams:\n  - name: explorers\n    robots: explorers/*\n    controller: " +
+                   remembering + "\n    parameters: {speed: 0.2}\n" + timing);
+    return file;
+  }
+  static std::string hash_in_process(const std::string& experiment) {
+    return run_experiment(experiment, {"--controllers", "inprocess"})["state_hash"];
+  }
+  static void expect_end(Process& server, const std::string& hash) {
+    EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+    EXPECT_NE(server.output().find(hash), std::string::npos) << server.output();
+  }
+  static void expect_finished(Process& client) { EXPECT_EQ(client.wait_for_exit(), 0) << client.output(); }
+
+  ReservedDomain domain;
+  ScratchFolder folder;
+};
+
+TEST_F(Conformance, AClientOnAnotherDdsGivesTheSameBits) {
+  const auto server = serve(demo_experiment(), {"--duration", "5"});
+  const auto client = start_foreign("all");
+  expect_end(*server, reference_hash(5));
+  expect_finished(*client);
+  EXPECT_NE(client->output().find("report 0 (complete)"), std::string::npos) << client->output();
+}
+
+TEST_F(Conformance, ClientsOfTwoDdsShareARunAndGiveTheSameBits) {
+  const auto server = serve(demo_experiment(), {"--duration", "5"});
+  const auto foreign = start_foreign("0..3,explorers/sbot_7,12..14");
+  const auto own = start_own("4..6,8..11,15");
+  expect_end(*server, reference_hash(5));
+  expect_finished(*foreign);
+  expect_finished(*own);
+}
+
+TEST_F(Conformance, AClientMayStartBeforeItsServer) {
+  const auto client = start_foreign("all");
+  ASSERT_TRUE(client->wait_for_output("looking for a server")) << client->output();
+  const auto server = serve(demo_experiment(), {"--duration", "5"});
+  expect_end(*server, reference_hash(5));
+  expect_finished(*client);
+}
+
+TEST_F(Conformance, AClientThatWantsARobotOfAnotherIsRefused) {
+  const auto server = serve(demo_experiment(), {"--duration", "5", "--speed", "2.5"});
+  const auto first = start_foreign("all");
+  ASSERT_TRUE(first->wait_for_output("answered 100 frames")) << first->output();
+  const auto second = start_foreign("explorers/sbot_1*");
+  EXPECT_EQ(second->wait_for_exit(), 1) << second->output();
+  EXPECT_NE(second->output().find("refused: "), std::string::npos) << second->output();
+  expect_end(*server, reference_hash(5));
+  expect_finished(*first);
+}
+
+TEST_F(Conformance, ParametersAndSeedsArriveAndGiveTheSameBits) {
+  const std::string weighted = COHORT_SOURCE_DIR "/worlds/experiments/braitenberg.yaml";
+  for (const auto& [experiment, plugin] : {std::pair(weighted, braitenberg), {experiment_with(""), remembering}}) {
+    const auto server = serve(experiment);
+    const auto client = start_foreign("all", plugin);
+    expect_end(*server, hash_in_process(experiment));
+    expect_finished(*client);
+  }
+}
+
+TEST_F(Conformance, AnswersToEverySecondTickThatActATickLaterGiveTheSameBits) {
+  const std::string experiment = experiment_with("    period: 2\n    delay: 1\n");
+  const auto server = serve(experiment);
+  const auto client = start_foreign("all", remembering);
+  expect_end(*server, hash_in_process(experiment));
+  expect_finished(*client);
+  EXPECT_NE(client->output().find("answered in all 250"), std::string::npos) << client->output();
+}
+
+// Of the frames every seventh, and as many answers. With a delay others come in between, and must wait.
+TEST_F(Conformance, FramesAndAnswersThatAreLostAreSentAgainAndGiveTheSameBits) {
+  for (const char* timing : {"", "    delay: 3\n", "    period: 2\n    phase: 1\n    delay: 5\n"}) {
+    const std::string experiment = experiment_with(timing);
+    const auto server = serve(experiment);
+    const auto client = start_foreign("all", remembering, "7");
+    expect_end(*server, hash_in_process(experiment));
+    expect_finished(*client);
+    EXPECT_EQ(client->output().find(", again 0"), std::string::npos) << client->output();
+  }
+}
+
+TEST_F(Conformance, AClientThatWasKilledAndStartedAgainGivesTheSameBits) {
+  const auto server = serve(demo_experiment(), {"--duration", "5", "--speed", "2.5"});
+  const auto own = start_own("8..15");
+  const auto killed = start_foreign("0..7");
+  ASSERT_TRUE(killed->wait_for_output("answered 200 frames")) << killed->output();
+  killed->signal(SIGKILL);
+  ASSERT_TRUE(server->wait_for_output("waiting for explorers/sbot_0 and 7 more")) << server->output();
+  const auto again = start_foreign("0..7");
+  expect_end(*server, reference_hash(5));
+  expect_finished(*again);
+  expect_finished(*own);
+  EXPECT_NE(again->output().find(", reason 1"), std::string::npos) << again->output();
+}
+
+TEST_F(Conformance, AClientLeavesWhenItsServerDies) {
+  const auto server = serve(demo_experiment());
+  const auto client = start_foreign("all");
+  ASSERT_TRUE(client->wait_for_output("admitted")) << client->output();
+  server->signal(SIGKILL);
+  EXPECT_EQ(client->wait_for_exit(), 4) << client->output();
+  EXPECT_NE(client->output().find("the server is gone"), std::string::npos) << client->output();
+}
+
+// Larger than a datagram: they go in fragments, both ways.
+TEST_F(Conformance, FramesAndAnswersOfAThousandRobotsGiveTheSameBits) {
+  write_file(folder / "world.yaml",
+             "world:\n  name: swarm\n"
+             "  model: {name: ground, static: true, link: {collision: {geometry: {plane: {}}}}}\n"
+             "  cohort:population:\n    name: swarm\n    uri: model://sbot\n    count: 1000\n"
+             "    placement: {grid: {spacing: 0.2}}\n");
+  write_file(folder / "experiment.yaml",
+             "world: world.yaml\nduration: 0.3\nseed: 1\nteams:\n  - name: swarm\n    robots: all\n"
+             "    controller: obstacle_avoidance\n");
+  const std::string experiment = (folder / "experiment.yaml").string();
+  const auto server = serve(experiment);
+  const auto client = start_foreign("all");
+  expect_end(*server, hash_in_process(experiment));
+  expect_finished(*client);
+}
+
+}  // namespace
+}  // namespace cohort::testing

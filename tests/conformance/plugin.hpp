@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cohort/controller.hpp>
+#include <memory>
+#include <string>
+
+namespace cohort::conformance {
+
+using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
+
+/// A controller's plugin. Its controllers must be gone before it is.
+class PluginFile {
+ public:
+  /// Throws std::runtime_error if there is none at `path`.
+  explicit PluginFile(const std::string& path);
+  OwnedController create() const { return {plugin_->create(), plugin_->destroy}; }
+
+ private:
+  std::unique_ptr<void, int (*)(void*)> library_;
+  const Plugin* plugin_ = nullptr;
+};
+
+}  // namespace cohort::conformance

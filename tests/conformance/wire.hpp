@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "cohort.h"  // made of idl/cohort.idl by fastddsgen
+
+/// The topics of docs/protocol.md on Fast DDS, as one client has them. All of Fast DDS is behind this.
+namespace cohort::conformance {
+
+namespace message = ::cohort::v1;
+
+class Wire {
+ public:
+  /// Makes the readers, then the writers; waits for no server. Throws std::runtime_error if Fast DDS refuses.
+  Wire(std::uint32_t domain, std::uint64_t client);
+  Wire(const Wire&) = delete;
+  Wire& operator=(const Wire&) = delete;
+  ~Wire();
+
+  /// Returns as soon as anything has come since the last call, or `at_most` later.
+  void wait_for_news(std::chrono::milliseconds at_most);
+
+  /// The next message of a kind, if there is one. Call from one thread.
+  std::optional<message::Admit> take_admit();
+  std::optional<message::RobotDescription> take_description();
+  std::optional<message::Observation> take_observation();
+  std::optional<message::Report> take_report();
+
+  /// A message that cannot be written in time counts as lost.
+  void write(message::Join join);
+  void write(message::Command command);
+  void write(message::Report report);
+  /// Waits until the server has the report, but not for long.
+  void wait_for_reports_to_arrive();
+
+  /// Whether a writer of this client's Admit is there.
+  bool sees_server() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cohort::conformance

@@ -24,8 +24,10 @@ class Conformance : public ::testing::Test {
   }
   std::unique_ptr<Process> start_foreign(const std::string& robots, const std::string& plugin = avoidance,
                                          const std::string& loses_every = "0") {
+    // Of Fast DDS's own, whose destructors AddressSanitizer finds fault with.
     return std::make_unique<Process>(
-        std::vector<std::string>{COHORT_BUILD_DIR "/bin/fastdds_client", plugin, domain.text(), robots, loses_every});
+        std::vector<std::string>{COHORT_BUILD_DIR "/bin/fastdds_client", plugin, domain.text(), robots, loses_every},
+        Process::Environment{{"ASAN_OPTIONS", "new_delete_type_mismatch=0"}});
   }
   std::unique_ptr<Process> start_own(const std::string& robots) {
     return std::make_unique<Process>(std::vector<std::string>{cohort_program(), "host", "obstacle_avoidance",

@@ -19,6 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto longest_sleep = 100ms;
 constexpr auto server_may_be_away = 2s;
+constexpr auto join_interval = 1s;
 constexpr std::size_t most_early_frames = 64;
 
 std::uint64_t random_id() {
@@ -38,8 +39,8 @@ Client::Client(Options options)
     : options_(std::move(options)), id_(random_id()), wire_(options_.domain, id_), robots_(options_.plugin) {}
 
 End Client::run() {
-  join();
   while (!end_) {
+    join_every_second();
     wire_.wait_for_news(longest_sleep);
     take_reports();
     if (end_) break;
@@ -60,7 +61,10 @@ End Client::run() {
   return *end_;
 }
 
-void Client::join() {
+void Client::join_every_second() {
+  if (joined_at_ && Clock::now() - *joined_at_ < join_interval) return;
+  if (!joined_at_) say("looking for a server");
+  joined_at_ = Clock::now();
   std::array<char, 256> host{};
   ::gethostname(host.data(), host.size() - 1);
   message::Join join;
@@ -71,7 +75,6 @@ void Client::join() {
   join.process(static_cast<std::uint32_t>(::getpid()));
   join.robots(options_.robots);
   wire_.write(std::move(join));
-  say("looking for a server");
 }
 
 void Client::take_reports() {
@@ -126,9 +129,12 @@ void Client::take_frame(message::Observation frame) {
   if (!frames_ || frames_->kind_of(frame) == Frames::Kind::of_a_later_one) {
     if (early_.size() < most_early_frames) early_.push_back(std::move(frame));
   } else if (frames_->kind_of(frame) == Frames::Kind::of_the_lease) {
-    if (const message::Command* answer = frames_->arrive(std::move(frame)); answer != nullptr) {
+    const std::uint32_t copy = frame.resent();
+    if (const message::Command* kept = frames_->arrive(std::move(frame)); kept != nullptr) {
       ++answers_repeated_;
-      wire_.write(*answer);
+      message::Command answer = *kept;
+      answer.resent(copy);
+      wire_.write(answer);
     }
   }
 }

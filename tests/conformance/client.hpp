@@ -31,7 +31,7 @@ class Client {
   End run();
 
  private:
-  void join();
+  void join_every_second();
   void take_reports();
   void take_admits();
   void begin_when_described();
@@ -50,6 +50,7 @@ class Client {
   std::optional<message::Admit> admitted_;
   std::optional<Frames> frames_;
   std::vector<message::Observation> early_;  // frames whose Admit has not come
+  std::optional<std::chrono::steady_clock::time_point> joined_at_;
   std::optional<std::chrono::steady_clock::time_point> without_server_since_;
   std::uint64_t frames_seen_ = 0;
   std::uint64_t answers_given_ = 0;

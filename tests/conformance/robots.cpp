@@ -82,7 +82,7 @@ message::Command Robots::answer(const message::Observation& frame) {
   message::Command answer;
   answer.client(frame.client());
   answer.run(frame.run());
-  answer.reserved(0);
+  answer.resent(frame.resent());
   answer.epoch(frame.epoch());
   answer.tick(frame.tick());
   answer.robots(frame.robots());

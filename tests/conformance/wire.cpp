@@ -63,21 +63,22 @@ dds::DomainParticipantQos participant_qos(std::uint32_t domain) {
   return qos;
 }
 
-// Of a topic in the table of docs/protocol.md. All but WorldState are reliable.
+// Of a topic in the table of docs/protocol.md.
 struct Quality {
   bool transient_local = false;
   int depth = 1;
   bool leased = false;
+  bool reliable = true;
 };
 constexpr Quality join_quality{true, 1, true};
 constexpr Quality admit_quality{true, 1};
 constexpr Quality description_quality{true, 1};
-constexpr Quality frame_quality{false, 8};
+constexpr Quality frame_quality{false, 8, false, false};
 constexpr Quality report_quality{true, 16};
 
 template <class Qos>
 Qos endpoint_qos(Qos qos, const Quality& quality) {
-  qos.reliability().kind = dds::RELIABLE_RELIABILITY_QOS;
+  qos.reliability().kind = quality.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = longest_write;
   qos.durability().kind = quality.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;

@@ -39,6 +39,11 @@ std::string host_name() {
   return name;
 }
 
+std::optional<wire::Identity> identity_of(const ClientOptions& options) {
+  if (options.secure.empty()) return std::nullopt;
+  return wire::read_identity(options.secure);
+}
+
 // Lets a lock go for a scope.
 class Unlocked {
  public:
@@ -81,6 +86,7 @@ class Client {
 
   bool is_described(const wire::Admit& admit) const;
   std::optional<ClientEnd> reason_to_leave();
+  std::string waiting_text() const;
   ClientEnd fail(Lock& lock);
   void tell(Severity severity, const std::string& text) const;
 
@@ -124,7 +130,7 @@ Client::Client(const ControllerKind& kind, const ClientOptions& options, const s
       name_(options.name.empty() ? kind.name : options.name),
       stop_(stop),
       host_(kind),
-      participant_(wire::Participant::client(options.domain, options.server)),
+      participant_(wire::Participant::client(options.domain, options.server, identity_of(options))),
       joins_(participant_),
       commands_(participant_, "", frames_kept_by_dds),
       own_reports_(participant_),
@@ -304,11 +310,19 @@ std::optional<ClientEnd> Client::reason_to_leave() {
   }
   if (!current_ && !notice_given_ && now - since_ > patience_before_notice) {
     notice_given_ = true;
-    tell(Severity::warning, joins_.matched() == 0 ? "waiting for a server at " + options_.server + ", domain " +
-                                                        std::to_string(options_.domain)
-                                                  : "waiting for the server to admit this client");
+    tell(Severity::warning, joins_.matched() == 0 ? waiting_text() : "waiting for the server to admit this client");
   }
   return std::nullopt;
+}
+
+std::string Client::waiting_text() const {
+  std::string text = "waiting for a server at " + options_.server + ", domain " + std::to_string(options_.domain);
+  const auto& identity = participant_.identity();
+  if (!identity) return text;
+  return text + ", as '" + identity->name + "' of " + identity->folder.string() +
+         ". Check that it serves with --secure, that its folder has server/" + identity->name +
+         " of the same making as this one ('cohort security list' there), and that no certificate has expired nor any "
+         "clock is wrong; 'cohort doctor' looks at all of it";
 }
 
 ClientEnd Client::fail(Lock& lock) {

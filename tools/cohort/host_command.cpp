@@ -9,6 +9,7 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
     ClientOptions options;
     options.server = command.server;
     options.domain = command.domain;
+    options.secure = command.secure;
     options.robots = command.robots;
     options.tell = [&](Severity severity, const std::string& text) {
       const std::string name = loaded.plugin().name;

@@ -6,6 +6,7 @@
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
 #include "tools/cohort/usage.hpp"
@@ -103,6 +104,10 @@ void add_log_options(CLI::App& app, LogFlags& flags) {
   app.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
 }
 
+void add_secure_option(CLI::App& app, std::filesystem::path& folder, const char* text) {
+  app.add_option("--secure", folder, text)->envname("COHORT_SECURE")->type_name("DIR");
+}
+
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
   app.add_option("FILE", options.file, "Experiment (YAML)")->required()->type_name("");
   app.add_option("--threads", options.threads,
@@ -131,24 +136,27 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->envname("COHORT_DOMAIN")
       ->check(whole_number(0, last_domain))
       ->type_name("N");
+  add_secure_option(app, options.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");
   add_log_options(app, flags);
   app.add_flag("--quiet", flags.quiet, "Print errors only");
 }
 
-void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::string& server, std::uint32_t& domain) {
-  app.add_option("--robots", robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
+template <class Command>
+void add_client_options(CLI::App& app, Command& command) {
+  app.add_option("--robots", command.robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("SEL[,SEL...]");
-  app.add_option("--server", server, "Address of the server")
+  app.add_option("--server", command.server, "Address of the server")
       ->envname("COHORT_SERVER")
       ->default_val("127.0.0.1")
       ->type_name("ADDRESS");
-  app.add_option("--domain", domain, "DDS domain of the server (default: 0)")
+  app.add_option("--domain", command.domain, "DDS domain of the server (default: 0)")
       ->envname("COHORT_DOMAIN")
       ->check(whole_number(0, last_domain))
       ->type_name("N");
+  add_secure_option(app, command.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
 }
 
 void add_samples_options(CLI::App& app, SamplesCommand& command) {
@@ -294,14 +302,14 @@ int main(int argc, char** argv) {
   host_app->add_option("PLUGIN", host_options.plugin, "Name of a controller, or path to its plugin")
       ->required()
       ->type_name("");
-  add_client_options(*host_app, host_options.robots, host_options.server, host_options.domain);
+  add_client_options(*host_app, host_options);
   add_log_options(*host_app, log_flags);
   host_app->add_flag("--for-run", host_options.for_run)->group("");  // `cohort run` starts it so
   host_app->footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
 
   TeleopCommand teleop_options;
   CLI::App* teleop_app = app.add_subcommand("teleop", "Drive robots of a server by keyboard");
-  add_client_options(*teleop_app, teleop_options.robots, teleop_options.server, teleop_options.domain);
+  add_client_options(*teleop_app, teleop_options);
   add_log_options(*teleop_app, log_flags);
   teleop_app->footer("Example: cohort teleop --robots 0");
 
@@ -328,6 +336,11 @@ int main(int argc, char** argv) {
   CLI::App* samples_app = app.add_subcommand("samples", "Write what a ring of proximity sensors reads of a cylinder");
   add_samples_options(*samples_app, samples_options);
   add_log_options(*samples_app, log_flags);
+
+  SecurityCommand security_command;
+  CLI::App* security_app = app.add_subcommand("security", "Make and list who may drive what, with certificates");
+  add_security_commands(*security_app, security_command);
+  add_log_options(*security_app, log_flags);
 
   std::string help_topic;
   CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
@@ -373,6 +386,7 @@ int main(int argc, char** argv) {
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
+  if (security_app->parsed()) return security(security_command, log);
   if (help_app->parsed()) return help(help_topic, log);
   if (thesis_app->parsed()) bench_command.thesis = thesis_options;
   if (bench_app->parsed()) return bench(bench_command, log, stop_requested);

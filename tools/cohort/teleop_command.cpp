@@ -87,6 +87,7 @@ int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop
     ClientOptions options;
     options.server = command.server;
     options.domain = command.domain;
+    options.secure = command.secure;
     options.robots = command.robots;
     options.name = "teleop";
     options.tell = [&](Severity severity, const std::string& text) {

@@ -1,0 +1,53 @@
+#include <dlfcn.h>
+
+#include <filesystem>
+
+#include "idl/dds.hpp"
+
+namespace cohort::wire {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Cyclone's plugins stand beside its library, in Debian in a folder of their own.
+fs::path plugin_folder() {
+  Dl_info library{};
+  if (::dladdr(reinterpret_cast<const void*>(&dds_create_participant), &library) == 0 || library.dli_fname == nullptr)
+    throw WireError("cannot tell where Cyclone DDS is installed");
+  const fs::path beside = fs::absolute(library.dli_fname).parent_path();
+  for (const fs::path& folder : {beside / "libddsc0debian", beside})
+    if (fs::exists(folder / "libdds_security_auth.so")) return folder;
+  throw WireError("the plugins of DDS Security (libdds_security_auth.so) are not beside " +
+                  std::string(library.dli_fname) + ": this Cyclone DDS was built without them");
+}
+
+}  // namespace
+
+Qos make_qos() {
+  return {dds_create_qos(), [](dds_qos_t* qos) { dds_delete_qos(qos); }};
+}
+
+void secure(dds_qos_t* qos, const Identity& identity) {
+  const fs::path plugins = plugin_folder();
+  const auto set = [&](const char* name, const std::string& value) { dds_qset_prop(qos, name, value.c_str()); };
+  const auto set_library = [&](const std::string& kind, const char* file, const std::string& function) {
+    const std::string prefix = "dds.sec." + kind + ".library.";
+    set((prefix + "path").c_str(), plugins / file);
+    set((prefix + "init").c_str(), "init_" + function);
+    set((prefix + "finalize").c_str(), "finalize_" + function);
+  };
+  const auto set_file = [&](const char* name, std::string_view file) {
+    set(name, "file:" + (identity.folder / file).string());
+  };
+  set_library("auth", "libdds_security_auth.so", "authentication");
+  set_library("crypto", "libdds_security_crypto.so", "crypto");
+  set_library("access", "libdds_security_ac.so", "access_control");
+  set_file("dds.sec.auth.identity_ca", authority_file);
+  set_file("dds.sec.auth.identity_certificate", certificate_file);
+  set_file("dds.sec.auth.private_key", key_file);
+  set_file("dds.sec.access.permissions_ca", authority_file);
+  set_file("dds.sec.access.governance", governance_file);
+  set_file("dds.sec.access.permissions", permissions_file);
+}
+
+}  // namespace cohort::wire

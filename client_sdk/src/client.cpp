@@ -41,7 +41,10 @@ std::string host_name() {
 
 std::optional<wire::Identity> identity_of(const ClientOptions& options) {
   if (options.secure.empty()) return std::nullopt;
-  return wire::read_identity(options.secure);
+  wire::Identity identity = wire::read_identity(options.secure);
+  if (identity.role == wire::Role::observer)
+    throw wire::WireError("the identity in " + options.secure + " may look on, and drive no robot");
+  return identity;
 }
 
 // Lets a lock go for a scope.

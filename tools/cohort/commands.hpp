@@ -32,7 +32,8 @@ enum class Controllers {
 };
 
 struct RunCommand {
-  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;  ///< experiments, one after the other
+  std::uint64_t repeat = 1;                  ///< how often all of them are run
   unsigned threads = 0;  ///< 0: one for each core
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
@@ -43,7 +44,7 @@ struct RunCommand {
   Viewpoint viewpoint = Viewpoint::above;  ///< of the plot
   std::filesystem::path csv;               ///< the same: what the experiment prints
   bool quiet = false;
-  std::optional<std::uint32_t> domain;
+  std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
   std::string network = "127.0.0.1";
   std::filesystem::path secure;  ///< folder of identities; empty: without security
 };
@@ -53,17 +54,17 @@ struct HostCommand {
   std::string plugin;
   std::vector<std::string> robots;
   std::string server;
-  std::uint32_t domain = 0;
-  std::filesystem::path secure;  ///< folder of an identity; empty: without security
-  bool for_run = false;          ///< started by `cohort run`, whose server tells what becomes of a client
+  std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
+  std::filesystem::path secure{};        ///< folder of an identity; empty: without security
+  bool for_run = false;                  ///< started by `cohort run`, whose server tells what becomes of a client
 };
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);
 
 struct TeleopCommand {
   std::vector<std::string> robots;
   std::string server;
-  std::uint32_t domain = 0;
-  std::filesystem::path secure;  ///< the same
+  std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
+  std::filesystem::path secure{};        ///< the same
 };
 int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop);
 

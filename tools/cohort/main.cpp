@@ -3,6 +3,7 @@
 #include <iostream>
 #include <limits>
 
+#include "client_sdk/src/domains.hpp"
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
 #include "tools/bench/bench.hpp"
@@ -16,7 +17,6 @@ namespace {
 using namespace cohort::tool;
 
 constexpr double most_seconds = 9e9;  // fits into nanoseconds
-constexpr std::uint32_t last_domain = 230;
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
 std::atomic<bool> stop_requested = false;
@@ -108,8 +108,19 @@ void add_secure_option(CLI::App& app, std::filesystem::path& folder, const char*
   app.add_option("--secure", folder, text)->envname("COHORT_SECURE")->type_name("DIR");
 }
 
+void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::string& text) {
+  app.add_option_function<std::string>(
+         "--domain", [&domains](const std::string& value) { domains = cohort::parse_domains(value); }, text)
+      ->envname("COHORT_DOMAIN")
+      ->check(domain_range())
+      ->type_name("N|A..B");
+}
+
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
-  app.add_option("FILE", options.file, "Experiment (YAML)")->required()->type_name("");
+  app.add_option("--repeat", options.repeat, "How often to run it, the world built anew each time, the controllers attached")
+      ->check(whole_number(1, 1'000'000))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--threads", options.threads,
                  "Threads that step the world, with the same results (default: the cores)")
       ->check(whole_number(1, 1024))
@@ -132,10 +143,7 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->check(one_of({"above", "side"}))
       ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
-  app.add_option("--domain", options.domain, "DDS domain (default: a free one, or 0 if others start controllers)")
-      ->envname("COHORT_DOMAIN")
-      ->check(whole_number(0, last_domain))
-      ->type_name("N");
+  add_domains(app, options.domains, "DDS domains to serve (default: free ones, or 0 if others start controllers)");
   add_secure_option(app, options.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");
   add_log_options(app, flags);
   app.add_flag("--quiet", flags.quiet, "Print errors only");
@@ -152,10 +160,7 @@ void add_client_options(CLI::App& app, Command& command) {
       ->envname("COHORT_SERVER")
       ->default_val("127.0.0.1")
       ->type_name("ADDRESS");
-  app.add_option("--domain", command.domain, "DDS domain of the server (default: 0)")
-      ->envname("COHORT_DOMAIN")
-      ->check(whole_number(0, last_domain))
-      ->type_name("N");
+  add_domains(app, command.domains, "DDS domain of the server, or a range: then one of it (default: 0)");
   add_secure_option(app, command.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
 }
 
@@ -280,6 +285,7 @@ int main(int argc, char** argv) {
                                                          {"per-robot", Controllers::per_robot},
                                                          {"external", Controllers::external}};
   CLI::App* run_app = app.add_subcommand("run", "Run an experiment with its controllers");
+  run_app->add_option("FILE", run_options.files, "Experiment (YAML)")->required()->expected(1)->type_name("");
   add_run_options(*run_app, run_options, speed, log_flags);
   run_app
       ->add_option("--controllers", controllers,
@@ -291,6 +297,9 @@ int main(int argc, char** argv) {
   RunCommand serve_options;
   serve_options.controllers = Controllers::external;
   CLI::App* serve_app = app.add_subcommand("serve", "Run an experiment alone and wait for controllers to attach");
+  serve_app->add_option("FILE", serve_options.files, "Experiments (YAML), run one after the other")
+      ->required()
+      ->type_name("");
   add_run_options(*serve_app, serve_options, speed, log_flags);
   serve_app->add_option("--network", serve_options.network, "Address of the interface to serve on")
       ->capture_default_str()

@@ -49,4 +49,7 @@ Qos make_qos();
 /// Makes a participant this identity. Throws WireError if the plugins of DDS Security are not installed.
 void secure(dds_qos_t* qos, const Identity& identity);
 
+/// Of a message of Cyclone's log that tells of a refused handshake, the text for people the first time that it comes.
+std::optional<std::string> refusal_told_first(std::string_view message);
+
 }  // namespace cohort::wire

@@ -26,17 +26,18 @@ constexpr std::uint32_t last_domain = 232;
 // The last one that DDS Security has permissions for.
 constexpr std::uint32_t last_secure_number = 230;
 
-void print_log(std::string_view message, bool fatal) noexcept {
+void print_log(std::string_view message, DdsLogKind kind) noexcept {
   static const bool shown = [] {
     const char* level = std::getenv("COHORT_LOG");
     return level != nullptr && std::string_view(level) == "debug";
   }();
-  if (shown || fatal) std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
+  if (shown || kind != DdsLogKind::detail)
+    std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
 }
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
 std::atomic<DdsLogReceiver> receive_log_now = &print_log;
-void receive_log(std::string_view message, bool fatal) noexcept { receive_log_now.load()(message, fatal); }
+void receive_log(std::string_view message, DdsLogKind kind) noexcept { receive_log_now.load()(message, kind); }
 
 // Cyclone has one log for the process, and says why it refused there only. While one of these lives, what the same
 // thread's calls log is kept.
@@ -69,7 +70,8 @@ class LogCapture {
       if (!current_->text_.empty()) current_->text_ += "; ";
       current_->text_ += message;
     }
-    receive_log(message, (entry->priority & DDS_LC_FATAL) != 0);
+    receive_log(message, (entry->priority & DDS_LC_FATAL) != 0 ? DdsLogKind::fatal : DdsLogKind::detail);
+    if (const auto refusal = refusal_told_first(message)) receive_log(*refusal, DdsLogKind::refusal);
   }
 
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one sink for the process.

@@ -1,6 +1,11 @@
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
+#include <functional>
+#include <mutex>
+#include <set>
 
 #include "idl/dds.hpp"
 
@@ -21,7 +26,24 @@ fs::path plugin_folder() {
                   std::string(library.dli_fname) + ": this Cyclone DDS was built without them");
 }
 
+// What Cyclone 0.10 writes when a peer does not pass: in the handshake, or by what it presents there.
+constexpr std::array refusals = {"andshake failed", "andshake request failed", "andshake reply failed",
+                                 "permissions from plugin", "does not allow remote participant"};
+
 }  // namespace
+
+std::optional<std::string> refusal_told_first(std::string_view message) {
+  const auto stands_in = [&](const char* text) { return message.find(text) != std::string_view::npos; };
+  if (std::ranges::none_of(refusals, stands_in)) return std::nullopt;
+  constexpr std::size_t most = 1000;  // that are remembered: a flood of peers must not fill the memory
+  static std::mutex mutex;
+  static std::set<std::string, std::less<>> told;
+  const std::lock_guard lock(mutex);
+  if (told.size() >= most || !told.emplace(message).second) return std::nullopt;
+  return "DDS Security refuses a peer: " + std::string(message) +
+         ". The folders of server and client have to come from one 'cohort security init' or 'add', certificates must "
+         "not have expired, and both clocks have to be right";
+}
 
 Qos make_qos() {
   return {dds_create_qos(), [](dds_qos_t* qos) { dds_delete_qos(qos); }};

@@ -28,11 +28,17 @@ class DomainTaken : public WireError {
   using WireError::WireError;
 };
 
-/// Receives what Cyclone DDS itself has to say, on any thread; after a fatal message it aborts.
-using DdsLogReceiver = void (*)(std::string_view message, bool fatal) noexcept;
+enum class DdsLogKind {
+  detail,   ///< for whoever looks for a fault
+  refusal,  ///< a handshake of DDS Security failed; told once for each peer and reason, in words for people
+  fatal,    ///< the process is about to be aborted
+};
 
-/// From now on, for the whole process: Cyclone has one log. Without a receiver (or with nullptr) fatal messages go to
-/// standard error, and all of them if the environment's COHORT_LOG is `debug`.
+/// Receives what Cyclone DDS itself has to say, on any thread.
+using DdsLogReceiver = void (*)(std::string_view message, DdsLogKind kind) noexcept;
+
+/// From now on, for the whole process: Cyclone has one log. Without a receiver (or with nullptr) all but details go to
+/// standard error, and these too if the environment's COHORT_LOG is `debug`.
 void set_dds_log(DdsLogReceiver receiver);
 
 /// The partition in which the server speaks to one client: `c` and the client's id as 16 hexadecimal digits.

@@ -167,9 +167,10 @@ void make_door(const NewIdentity& identity, const fs::path& server, const fs::pa
   const Workshop workshop(server.parent_path());
   const fs::path& making = workshop.path();
   const std::string validity = std::to_string(days);
+  const std::string validity_of_authority = std::to_string(days + 1);  // so that it does not end before
   openssl(making, {"req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-sha256",
-                   "-days", validity, "-keyout", authority_key, "-out", std::string(wire::authority_file), "-subj",
-                   subject_of(identity.name, "authority")});
+                   "-days", validity_of_authority, "-keyout", authority_key, "-out", std::string(wire::authority_file),
+                   "-subj", subject_of(identity.name, "authority")});
   sign(making, fmt::format(governance, identity.protection == "encrypt" ? "ENCRYPT" : "SIGN"), wire::governance_file);
   make_side(identity, wire::Role::server, making, validity);
   make_side(identity, identity.role, making, validity);

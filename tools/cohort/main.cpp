@@ -117,7 +117,8 @@ void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::
 }
 
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
-  app.add_option("--repeat", options.repeat, "How often to run it, the world built anew each time, the controllers attached")
+  app.add_option("--repeat", options.repeat,
+                 "How often to run it, the world built anew each time, the controllers attached")
       ->check(whole_number(1, 1'000'000))
       ->capture_default_str()
       ->type_name("N");
@@ -385,8 +386,10 @@ int main(int argc, char** argv) {
 
   Log log(*options);
   dds_log = &log;
-  cohort::wire::set_dds_log([](std::string_view message, bool fatal) noexcept {
-    dds_log->write(fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
+  cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
+    using cohort::wire::DdsLogKind;
+    if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
+    dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
   });
   stop_on_signals();
   if (run_app->parsed()) return run(run_options, log, stop_requested);

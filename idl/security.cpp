@@ -1,5 +1,3 @@
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -8,6 +6,7 @@
 #include <set>
 
 #include "idl/dds.hpp"
+#include "idl/survey.hpp"
 
 namespace cohort::wire {
 namespace {
@@ -16,14 +15,12 @@ namespace fs = std::filesystem;
 
 // Cyclone's plugins stand beside its library, in Debian in a folder of their own.
 fs::path plugin_folder() {
-  Dl_info library{};
-  if (::dladdr(reinterpret_cast<const void*>(&dds_create_participant), &library) == 0 || library.dli_fname == nullptr)
-    throw WireError("cannot tell where Cyclone DDS is installed");
-  const fs::path beside = fs::absolute(library.dli_fname).parent_path();
+  const fs::path library = dds_library();
+  const fs::path beside = library.parent_path();
   for (const fs::path& folder : {beside / "libddsc0debian", beside})
     if (fs::exists(folder / "libdds_security_auth.so")) return folder;
-  throw WireError("the plugins of DDS Security (libdds_security_auth.so) are not beside " +
-                  std::string(library.dli_fname) + ": this Cyclone DDS was built without them");
+  throw WireError("the plugins of DDS Security (libdds_security_auth.so) are not beside " + library.string() +
+                  ": this Cyclone DDS was built without them");
 }
 
 // What Cyclone 0.10 writes when a peer does not pass: in the handshake, or by what it presents there.

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/survey.hpp"
 #include "idl/wire.hpp"
 #include "server/lockstep/leases.hpp"
 #include "server/lockstep/resend_timer.hpp"
@@ -26,8 +27,8 @@ namespace cohort::session {
 /// else happens on the thread of `run`, which alone creates and destroys entities and steps the world.
 class Server {
  public:
-  /// `participants`: one for each DDS domain that is served, and with security one for each identity in each of them, at
-  /// least one; a client may be in any of them, observers are in the first. They must outlive this.
+  /// `participants`: one for each DDS domain that is served, and with security one for each identity in each of them,
+  /// at least one; a client may be in any of them, observers are in the first. They must outlive this.
   explicit Server(std::span<wire::Participant> participants);
   ~Server();
 
@@ -37,8 +38,8 @@ class Server {
   RunResult run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
                 const RunListener& listener, const std::atomic<bool>& stop);
 
-  /// Tells all who drive robots that there will be no further run, how the last one ended, and waits a little until they
-  /// have left.
+  /// Tells all who drive robots that there will be no further run, how the last one ended, and waits a little until
+  /// they have left.
   void dismiss(const RunResult& last);
 
   /// From any thread: ends the run with this error, unless a controller has reported one before.
@@ -49,7 +50,8 @@ class Server {
  private:
   using Clock = RunBook::Clock;
 
-  // A DDS domain that is served, or one identity's way into it. Readers last, so that no callback comes before all else is there.
+  // A DDS domain that is served, or one identity's way into it. Readers last, so that no callback comes before all else
+  // is there.
   struct Door {
     Door(Server& server, wire::Participant& participant);
     wire::Participant& participant;
@@ -57,13 +59,14 @@ class Server {
     wire::Reader<wire::Join> joins;
     wire::Reader<wire::Command> commands;
     wire::Reader<wire::Report> reports;
+    wire::VersionWatch versions;
   };
 
   struct Client {
     wire::Join join;
-    std::uint64_t arrival = 0;  // clients of a session in their order
+    std::uint64_t arrival = 0;                      // clients of a session in their order
     const std::optional<wire::Identity>& identity;  // of whoever it is, not of whom it says to be
-    std::string label;          // for people: controller, process and host
+    std::string label;                              // for people: controller, process and host
     wire::Writer<wire::Admit> admit;
     wire::Writer<wire::Observation> observation;
     wire::Writer<wire::Report> report;
@@ -92,8 +95,8 @@ class Server {
     bool started = false;  // from the first frame on
     lockstep::MedianDuration median_tick;
     std::vector<std::uint32_t> all_robots;
-    std::vector<std::uint32_t> undemanding;  // robots that do not require a controller
-    std::vector<bool> was_driven;            // by robot, whether somebody drove it in this run
+    std::vector<std::uint32_t> undemanding;   // robots that do not require a controller
+    std::vector<bool> was_driven;             // by robot, whether somebody drove it in this run
     std::vector<std::uint32_t> descriptions;  // on the wire, by kind
   };
 
@@ -116,11 +119,12 @@ class Server {
     std::vector<Liveliness> liveliness;
     std::vector<wire::Report> reports;
     std::vector<std::uint32_t> ended_processes;
-    std::string failure;                                                    // of something outside
+    std::string failure;                                                     // of something outside
+    std::set<std::uint32_t> foreign_versions{};                              // of the protocol, that clients have
     std::map<std::pair<std::uint64_t, std::string>, Rejections> rejected{};  // by who, or what participant, and reason
     bool empty() const {
       return arrivals.empty() && liveliness.empty() && reports.empty() && ended_processes.empty() && failure.empty() &&
-             rejected.empty();
+             foreign_versions.empty() && rejected.empty();
     }
   };
 
@@ -129,6 +133,7 @@ class Server {
   void on_liveliness(const wire::Sender& sender, bool alive);
   void on_command(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report, const wire::Sender& sender);
+  void on_foreign_version(std::uint32_t major);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
   void reject(std::uint64_t who, const char* reason, const std::string& text);
   void call_attention();
@@ -188,7 +193,8 @@ class Server {
   std::vector<double> poses_;  // reused
 
   wire::Writer<wire::WorldState> world_state_;
-  // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they are.
+  // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they
+  // are.
   std::list<Door> doors_;
 };
 

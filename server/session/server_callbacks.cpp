@@ -16,9 +16,10 @@ std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::t
 Server::Door::Door(Server& server, wire::Participant& its_participant)
     : participant(its_participant),
       descriptions(its_participant),
-      joins(its_participant,
-            {[&server, this](const wire::Join& join, const wire::Sender& sender) { server.on_join(*this, join, sender); },
-             [&server](const wire::Sender& sender, bool alive) { server.on_liveliness(sender, alive); }}),
+      joins(
+          its_participant,
+          {[&server, this](const wire::Join& join, const wire::Sender& sender) { server.on_join(*this, join, sender); },
+           [&server](const wire::Sender& sender, bool alive) { server.on_liveliness(sender, alive); }}),
       commands(
           its_participant,
           {[&server](const wire::Command& command, const wire::Sender& sender) { server.on_command(command, sender); },
@@ -26,7 +27,8 @@ Server::Door::Door(Server& server, wire::Participant& its_participant)
           "", answers_kept),
       reports(its_participant,
               {[&server](const wire::Report& report, const wire::Sender& sender) { server.on_report(report, sender); },
-               {}}) {}
+               {}}),
+      versions(its_participant, [&server](std::uint32_t major) { server.on_foreign_version(major); }) {}
 
 // Under the lock.
 void Server::call_attention() {
@@ -36,7 +38,8 @@ void Server::call_attention() {
 
 void Server::on_join(Door& door, const wire::Join& join, const wire::Sender& sender) {
   const std::lock_guard lock(mutex_);
-  if (inbox_.arrivals.size() >= most_arrivals) return reject(sender.participant, "flood", "more Joins than can be read");
+  if (inbox_.arrivals.size() >= most_arrivals)
+    return reject(sender.participant, "flood", "more Joins than can be read");
   inbox_.arrivals.push_back({join, sender, &door});
   call_attention();
 }
@@ -52,8 +55,16 @@ void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
   const std::lock_guard lock(mutex_);
   if (!is_in_own_name(report.client, sender))
     return reject(sender.participant, "foreign", "a Report comes in the name of " + wire::partition_of(report.client));
-  if (inbox_.reports.size() >= most_reports) return reject(sender.participant, "flood", "more Reports than can be read");
+  if (inbox_.reports.size() >= most_reports)
+    return reject(sender.participant, "flood", "more Reports than can be read");
   inbox_.reports.push_back(report);
+  call_attention();
+}
+
+void Server::on_foreign_version(std::uint32_t major) {
+  constexpr std::size_t most = 100;  // more are a stranger's joke
+  const std::lock_guard lock(mutex_);
+  if (inbox_.foreign_versions.size() >= most || !inbox_.foreign_versions.insert(major).second) return;
   call_attention();
 }
 
@@ -67,7 +78,8 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
   const std::lock_guard lock(mutex_);
   // By who sent it, not by whose name it has: strangers may have as many names as they like.
   if (!is_in_own_name(command.client, sender))
-    return reject(sender.participant, "foreign", "commands come from a client that has not joined, or in another's name");
+    return reject(sender.participant, "foreign",
+                  "commands come from a client that has not joined, or in another's name");
   const lockstep::Leases::Lease* lease = run_ == nullptr ? nullptr : run_->leases.lease(command.client);
   if (lease == nullptr) return reject(command.client, "foreign", "commands come from a client that drives no robot");
   if (command.run != run_number_) return reject(command.client, "stale", answer_to(command.tick) + " of another run");
@@ -75,8 +87,8 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
     return reject(command.client, "stale", answer_to(command.tick) + " of another lease");
 
   Run& run = *run_;
-  const Exchange::Taken taken = run.exchange.take(lease->robots, command.tick, command.robots, command.values,
-                                                  Clock::now().time_since_epoch());
+  const Exchange::Taken taken =
+      run.exchange.take(lease->robots, command.tick, command.robots, command.values, Clock::now().time_since_epoch());
   if (taken.accepted > 0) run.leases.note_answer(command.client);
   if (taken.rejection) reject(command.client, taken.rejection->reason.c_str(), taken.rejection->text);
   if (taken.ends_run && run.error.empty()) run.error = taken.rejection->text;

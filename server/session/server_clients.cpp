@@ -61,6 +61,10 @@ void Server::handle_inbox() {
     const std::lock_guard lock(mutex_);
     if (run_->error.empty()) run_->error = inbox.failure;
   }
+  for (const std::uint32_t major : inbox.foreign_versions)
+    run_->book.add_event("version", "a client speaks version " + std::to_string(major) +
+                                        " of the protocol, and this server version 1: they never meet. Install the "
+                                        "same major version of Cohort on both sides");
   handle_rejections(inbox);
 }
 

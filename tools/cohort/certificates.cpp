@@ -179,15 +179,18 @@ void make_door(const NewIdentity& identity, const fs::path& server, const fs::pa
   fs::rename(making / server_name, server);
 }
 
-std::int64_t end_of_certificate(const fs::path& certificate) {
+Validity validity_of(const fs::path& certificate) {
   const ProgramResult result =
-      run_program({"openssl", "x509", "-in", certificate.string(), "-noout", "-enddate", "-dateopt", "iso_8601"}, "/");
-  std::tm time{};
-  const std::string prefix = "notAfter=";
-  if (result.exit_code != 0 || !result.output.starts_with(prefix) ||
-      strptime(result.output.c_str() + prefix.size(), "%Y-%m-%d %H:%M:%SZ", &time) == nullptr)
-    throw std::runtime_error(fmt::format("{} is no certificate: {}", certificate.string(), result.errors));
-  return timegm(&time);
+      run_program({"openssl", "x509", "-in", certificate.string(), "-noout", "-dates", "-dateopt", "iso_8601"}, "/");
+  const auto time_after = [&](const std::string& name) {
+    std::tm time{};
+    const auto found = result.output.find(name + "=");
+    if (found == std::string::npos ||
+        strptime(result.output.c_str() + found + name.size() + 1, "%Y-%m-%d %H:%M:%SZ", &time) == nullptr)
+      throw std::runtime_error(fmt::format("{} is no certificate: {}", certificate.string(), result.errors));
+    return static_cast<std::int64_t>(timegm(&time));
+  };
+  return {time_after("notBefore"), time_after("notAfter")};
 }
 
 }  // namespace cohort::tool

@@ -24,7 +24,12 @@ struct NewIdentity {
 void make_door(const NewIdentity& identity, const std::filesystem::path& server, const std::filesystem::path& client,
                unsigned days);
 
-/// When a certificate ends, as seconds of Unix time. Throws std::runtime_error if it is no certificate.
-std::int64_t end_of_certificate(const std::filesystem::path& certificate);
+struct Validity {
+  std::int64_t begin = 0;  ///< seconds of Unix time
+  std::int64_t end = 0;
+};
+
+/// When a certificate is valid. Throws std::runtime_error if it is none.
+Validity validity_of(const std::filesystem::path& certificate);
 
 }  // namespace cohort::tool

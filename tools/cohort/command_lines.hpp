@@ -8,5 +8,6 @@
 namespace cohort::tool {
 
 void add_security_commands(CLI::App& app, SecurityCommand& command);
+void add_doctor_options(CLI::App& app, DoctorCommand& command);
 
 }  // namespace cohort::tool

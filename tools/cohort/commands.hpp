@@ -34,7 +34,7 @@ enum class Controllers {
 struct RunCommand {
   std::vector<std::filesystem::path> files;  ///< experiments, one after the other
   std::uint64_t repeat = 1;                  ///< how often all of them are run
-  unsigned threads = 0;  ///< 0: one for each core
+  unsigned threads = 0;                      ///< 0: one for each core
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   Controllers controllers = Controllers::process;
@@ -97,6 +97,17 @@ struct SecurityCommand {
   unsigned days = 365;
 };
 int security(const SecurityCommand& command, Log& log);
+
+/// `cohort doctor`: docs/troubleshooting.md.
+struct DoctorCommand {
+  std::string server;  ///< empty: one on this machine
+  bool expects_server = false;
+  std::uint32_t domain = 0;
+  std::string network = "127.0.0.1";
+  std::filesystem::path secure;  ///< of all identities, or of one; empty: without security
+  bool json = false;
+};
+int doctor(DoctorCommand command, Log& log);
 
 /// `topic`: empty for the list of topics.
 int help(const std::string& topic, Log& log);

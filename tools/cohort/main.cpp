@@ -352,6 +352,11 @@ int main(int argc, char** argv) {
   add_security_commands(*security_app, security_command);
   add_log_options(*security_app, log_flags);
 
+  DoctorCommand doctor_command;
+  CLI::App* doctor_app = app.add_subcommand("doctor", "Look for what usually goes wrong, and say what to do");
+  add_doctor_options(*doctor_app, doctor_command);
+  add_log_options(*doctor_app, log_flags);
+
   std::string help_topic;
   CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
   help_app->add_option("TOPIC", help_topic, "Such as sensors, placement, proximity_ring or events")->type_name("");
@@ -399,6 +404,7 @@ int main(int argc, char** argv) {
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
   if (security_app->parsed()) return security(security_command, log);
+  if (doctor_app->parsed()) return doctor(doctor_command, log);
   if (help_app->parsed()) return help(help_topic, log);
   if (thesis_app->parsed()) bench_command.thesis = thesis_options;
   if (bench_app->parsed()) return bench(bench_command, log, stop_requested);

@@ -107,7 +107,7 @@ void list(const SecurityCommand& command) {
   const std::vector<wire::Identity> doors = wire::read_doors(command.folder);
   std::cout << fmt::format("{:<20} {:<6} {:<11} {:<16} {}\n", "client", "door", "messages", "valid until", "may drive");
   for (const wire::Identity& door : doors) {
-    const std::int64_t end = end_of_certificate(door.folder / wire::certificate_file);
+    const std::int64_t end = validity_of(door.folder / wire::certificate_file).end;
     const std::string until = fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(end)));
     const bool is_over = end < std::time(nullptr);
     std::cout << fmt::format("{:<20} {:<6} {:<11} {:<16} {}{}\n", door.name, door.door,

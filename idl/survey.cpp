@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <condition_variable>
-#include <cstring>
 #include <mutex>
 #include <utility>
 
@@ -98,19 +97,7 @@ Survey survey(std::uint32_t domain, const std::string& address, const std::optio
     changed.notify_all();
   };
   Participant participant = Participant::client(domain, address, identity);
-  dds_guid_t self{};
-  dds_get_guid(participant.state().participant.handle(), &self);
-  const EndpointWatch watch(participant, [&](const dds_builtintopic_endpoint_t& endpoint) {
-    if (std::memcmp(endpoint.participant_key.v, self.v, sizeof self.v) == 0) return;
-    const auto major = major_version_of(endpoint.topic_name);
-    if (!major) return;
-    note([&] {
-      if (*major == own_major)
-        found.has_server = true;
-      else
-        found.majors.insert(*major);
-    });
-  });
+  const VersionWatch versions(participant, [&](std::uint32_t major) { note([&] { found.majors.insert(major); }); });
   const Reader<RobotDescription> descriptions(participant, {[&](const RobotDescription& description, const Sender&) {
                                                               note([&] { found.models.insert(description.model); });
                                                             },
@@ -133,8 +120,9 @@ Survey survey(std::uint32_t domain, const std::string& address, const std::optio
   if (states && !found.models.empty())
     changed.wait_until(lock, std::min(deadline, std::chrono::steady_clock::now() + 1s),
                        [&] { return found.run.has_value(); });
-  const Survey result = found;
+  Survey result = found;
   lock.unlock();
+  result.has_server = descriptions.matched() > 0;
   return result;
 }
 

@@ -33,7 +33,7 @@ class VersionWatch {
 };
 
 struct Survey {
-  bool has_server = false;             ///< of our major version
+  bool has_server = false;             ///< of our major version, and it lets us in
   std::set<std::uint32_t> majors{};    ///< others that are there
   std::set<std::string> models{};      ///< kinds of robots that the server has
   std::optional<std::uint32_t> run{};  ///< of the newest WorldState, if one came

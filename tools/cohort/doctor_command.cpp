@@ -56,8 +56,11 @@ std::vector<Finding> examine(const DoctorCommand& command) {
   }
   if (doors.empty()) doors.push_back(0);
   findings.push_back(check_ports(command.domain, command.network, doors));
-  if (has_network) {
-    findings.push_back(check_firewall(command.domain, command.network));
+  if (has_network) findings.push_back(check_firewall(command.domain, command.network));
+  // Where a machine cannot hear itself, DDS could not end its threads.
+  if (findings.back().health == Health::problem && findings.back().check == "firewall") {
+    findings.push_back({"server", Health::ok, "not looked for, since the firewall is in the way"});
+  } else if (has_network) {
     try {
       findings.push_back(check_server(command, identity_in(command.secure), command.expects_server));
     } catch (const std::exception& error) {

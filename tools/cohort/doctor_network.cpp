@@ -226,6 +226,10 @@ Finding check_firewall(std::uint32_t domain, const std::string& address) {
 Finding check_server(const DoctorCommand& command, const std::optional<wire::Identity>& identity, bool is_expected) {
   const std::uint16_t port = wire::discovery_port(command.domain, identity ? identity->door : 0);
   const std::string where = fmt::format("{}, domain {}", command.server, command.domain);
+  const Health bad = is_expected ? Health::problem : Health::ok;
+  if (says_that_it_is_closed(command.server, port))
+    return {"server", bad, fmt::format("at {} nobody has UDP port {}", where, port),
+            is_expected ? "Start the server, or give its --domain; a server on another machine needs --network." : ""};
   const wire::Survey survey = wire::survey(command.domain, command.server, identity, patience_with_server);
   if (!survey.majors.empty())
     return {"server", Health::problem,
@@ -240,13 +244,9 @@ Finding check_server(const DoctorCommand& command, const std::optional<wire::Ide
       found += "; no run goes on just now: it may wait for controllers";
     return {"server", Health::ok, found};
   }
-  const Health bad = is_expected ? Health::problem : Health::ok;
   if (survey.has_server)
     return {"server", Health::problem, fmt::format("at {} there is a server, but nothing that it sends arrives", where),
             "Large messages get lost on the way: look for a firewall that drops fragments, and at the buffers."};
-  if (says_that_it_is_closed(command.server, port))
-    return {"server", bad, fmt::format("at {} nobody has UDP port {}", where, port),
-            is_expected ? "Start the server, or give its --domain; a server on another machine needs --network." : ""};
   const std::string holder = is_own(command.server) ? holder_of_port(port) : "";
   if (holder.ends_with("(cohort)") || (!holder.empty() && identity))
     return {"server", Health::problem,

@@ -25,7 +25,7 @@ Finding check_identity(const wire::Identity& identity) {
       "Remove its folders in server/ and clients/, make them anew with 'cohort security "
       "add DIR {} --robots …', and hand the client's out again.",
       identity.name);
-  if (now > validity.end) return {"security", Health::problem, who + ": expired at " + date_of(validity.end), again};
+  if (now >= validity.end) return {"security", Health::problem, who + ": expired at " + date_of(validity.end), again};
   if (now < validity.begin)
     return {"security", Health::problem,
             fmt::format("{}: valid only from {} on, and it is {}", who, date_of(validity.begin), date_of(now)),

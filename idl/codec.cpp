@@ -62,8 +62,10 @@ const Topic Codec<RobotDescription>::topic = {.name = "cohort/v1/robot_descripti
                                               .type = &cohort_v1_RobotDescription_desc,
                                               .transient_local = true,
                                               .depth = 1};
-const Topic Codec<Observation>::topic = {.name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc};
-const Topic Codec<Command>::topic = {.name = "cohort/v1/command", .type = &cohort_v1_Command_desc};
+const Topic Codec<Observation>::topic = {
+    .name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc, .reliable = false};
+const Topic Codec<Command>::topic = {
+    .name = "cohort/v1/command", .type = &cohort_v1_Command_desc, .reliable = false};
 const Topic Codec<WorldState>::topic = {
     .name = "cohort/v1/world_state", .type = &cohort_v1_WorldState_desc, .reliable = false, .depth = 1};
 const Topic Codec<Report>::topic = {
@@ -174,6 +176,7 @@ Observation Codec<Observation>::decode(const Sample& sample) {
 Codec<Command>::Outgoing::Outgoing(const Command& message) {
   sample.client = message.client;
   sample.run = message.run;
+  sample.resent = message.resent;
   sample.epoch = message.epoch;
   sample.tick = message.tick;
   lend(message.robots, sample.robots);
@@ -181,7 +184,8 @@ Codec<Command>::Outgoing::Outgoing(const Command& message) {
 }
 
 Command Codec<Command>::decode(const Sample& sample) {
-  return {sample.client, sample.run, sample.epoch, sample.tick, to_span(sample.robots), to_span(sample.values)};
+  return {sample.client, sample.run, sample.epoch, sample.tick, to_span(sample.robots), to_span(sample.values),
+          sample.resent};
 }
 
 Codec<WorldState>::Outgoing::Outgoing(const WorldState& message) {

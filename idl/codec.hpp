@@ -15,6 +15,8 @@ namespace cohort::wire {
 struct Topic {
   const char* name = nullptr;
   const dds_topic_descriptor_t* type = nullptr;
+  /// Observations and commands are not: the protocol itself repairs losses, and sooner. Reliable, what is sent again
+  /// would be held back until DDS had repaired what nobody needs any more.
   bool reliable = true;
   bool transient_local = false;
   int depth = 0;                       ///< 0: the endpoint chooses

@@ -60,9 +60,10 @@ struct RunResult {
   std::chrono::nanoseconds wall_time{0};  ///< from the first frame to the last step
   std::uint64_t state_hash = 0;
   std::uint32_t robots = 0;
-  lockstep::LatencyHistogram barrier;  ///< from the first frame of a tick sent to the last answer needed
-  std::uint64_t late = 0;              ///< answers that missed their deadline
-  std::vector<Miss> misses;            ///< of these the first million, in order
+  lockstep::LatencyHistogram barrier;   ///< from the first frame of a tick sent to the last answer needed
+  std::uint64_t late = 0;               ///< answers that missed their deadline
+  std::uint64_t resent = 0;             ///< frames that were sent again
+  std::vector<Miss> misses;             ///< of these the first million, in order
   lockstep::LatencyHistogram lateness;  ///< at the asked speed, how late each tick began; empty if none is asked
   TouchCounts touches;
   std::vector<Event> events;
@@ -101,6 +102,7 @@ class RunBook {
   std::optional<Clock::time_point> due_time() const;
   void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
   void add_barrier(std::chrono::nanoseconds latency) { result_.barrier.add(latency); }
+  void add_resent(std::uint64_t frames) { result_.resent += frames; }
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
   void add_miss(const lockstep::Barrier::Miss& miss);
   /// Closes the books.

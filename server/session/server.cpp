@@ -123,9 +123,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
       attention_ = false;
       if (!run_->error.empty() || stop) return false;
       if (run_->exchange.barrier().complete()) {
-        const auto latency = Clock::now() - begin;
-        run_->book.add_barrier(latency);
-        run_->median_tick.add(latency);
+        run_->book.add_barrier(Clock::now() - begin);
         run_->exchange.apply();
         break;
       }
@@ -169,16 +167,18 @@ bool Server::is_awaited(std::uint64_t client) const {
          std::ranges::any_of(lease->robots, [&](auto robot) { return run_->exchange.barrier().is_awaited(robot); });
 }
 
-void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
+// Whether there is a frame of this tick for the client.
+bool Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
   wire::Observation observation;
   {
     const std::lock_guard lock(mutex_);
     const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
-    if (lease == nullptr) return;
+    if (lease == nullptr) return false;
+    if (!resent) client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
     run_->exchange.fill_frame(client.frame, lease->robots, tick);
     observation.epoch = lease->epoch;
   }
-  if (client.frame.robots.empty()) return;
+  if (client.frame.robots.empty()) return false;
   observation.client = client_id;
   observation.run = run_number_;
   observation.resent = resent ? client.times_resent : 0;
@@ -186,20 +186,20 @@ void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t t
   observation.time_ns = (run_->experiment.world.step * static_cast<std::int64_t>(tick)).count();
   observation.robots = client.frame.robots;
   observation.values = client.frame.values;
+  if (!resent) client.resend.start(tick, Clock::now().time_since_epoch());
   client.observation.write(observation);  // lost if DDS cannot take it: sent again then
+  return true;
 }
 
 void Server::send_frames() {
   for (auto& [id, client] : clients_) {
-    send_frame(id, client, run_->simulation.tick(), false);
-    client.resend.start(Clock::now().time_since_epoch(), run_->median_tick.value());
-    client.times_resent = 0;
+    if (send_frame(id, client, run_->simulation.tick(), false)) client.times_resent = 0;
   }
 }
 
 void Server::resend_frames(Clock::time_point now) {
   for (auto& [id, client] : clients_) {
-    if (now.time_since_epoch() < client.resend.due()) continue;
+    if (!client.resend.is_due(now.time_since_epoch())) continue;
     std::vector<std::uint64_t> ticks;
     {
       const std::lock_guard lock(mutex_);
@@ -208,6 +208,7 @@ void Server::resend_frames(Clock::time_point now) {
     }
     ++client.times_resent;
     for (const std::uint64_t tick : ticks) send_frame(id, client, tick, true);
+    run_->book.add_resent(ticks.size());
     client.resend.resent(now.time_since_epoch());
   }
 }

@@ -11,6 +11,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "idl/survey.hpp"
@@ -93,7 +94,6 @@ class Server {
     lockstep::Leases leases;
     std::string error;
     bool started = false;  // from the first frame on
-    lockstep::MedianDuration median_tick;
     std::vector<std::uint32_t> all_robots;
     std::vector<std::uint32_t> undemanding;   // robots that do not require a controller
     std::vector<bool> was_driven;             // by robot, whether somebody drove it in this run
@@ -135,14 +135,14 @@ class Server {
   void on_report(const wire::Report& report, const wire::Sender& sender);
   void on_foreign_version(std::uint32_t major);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
-  void reject(std::uint64_t who, const char* reason, const std::string& text);
+  void reject(std::uint64_t who, const char* reason, std::string_view text);
   void call_attention();
 
   // On the thread of `run`; those that take the lock must not hold it. One run, tick by tick (server.cpp):
   bool wait_for_controllers(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
   bool sleep_until_due(const std::atomic<bool>& stop);
-  void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
+  bool send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
   void send_frames();
   void resend_frames(Clock::time_point now);
   bool handle_misses(Clock::time_point now);

@@ -8,7 +8,6 @@ namespace {
 constexpr std::size_t most_arrivals = 4096;
 constexpr std::size_t most_reports = 4096;
 constexpr int answers_kept = 8;  // of each client, by DDS, until they are taken
-
 std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::to_string(tick); }
 
 }  // namespace
@@ -87,16 +86,16 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
     return reject(command.client, "stale", answer_to(command.tick) + " of another lease");
 
   Run& run = *run_;
-  const Exchange::Taken taken =
-      run.exchange.take(lease->robots, command.tick, command.robots, command.values, Clock::now().time_since_epoch());
-  if (taken.accepted > 0) run.leases.note_answer(command.client);
+  const lockstep::Time now = Clock::now().time_since_epoch();
+  const Exchange::Taken taken = run.exchange.take(lease->robots, command.tick, command.robots, command.values, now);
+  if (taken.accepted > 0) run.leases.note_answer(command.client, now, command.tick, command.resent);
   if (taken.rejection) reject(command.client, taken.rejection->reason.c_str(), taken.rejection->text);
   if (taken.ends_run && run.error.empty()) run.error = taken.rejection->text;
   if (run.exchange.barrier().complete() || !run.error.empty()) wake_.notify_all();
 }
 
 // Counted, and told by the thread of `run` when it next looks; a flood must not wake it for each message.
-void Server::reject(std::uint64_t who, const char* reason, const std::string& text) {
+void Server::reject(std::uint64_t who, const char* reason, std::string_view text) {
   Rejections& rejections = inbox_.rejected[{who, reason}];
   if (rejections.count++ == 0) rejections.text = text;
 }

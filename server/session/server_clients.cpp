@@ -162,24 +162,21 @@ std::string Server::why_forbidden(const Client& client, const std::set<std::uint
   return who + "drive " + list + ", not " + run_->simulation.robot_name(*forbidden);
 }
 
-// At the beginning of a run: those who are attached claim what they asked for when they came, in the order of their
+// At the beginning of a run: those who drove or waited claim what they asked for when they came, in the order of their
 // coming.
 void Server::claim_anew() {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> staying;  // by arrival
   std::vector<std::uint64_t> gone;
   for (auto& [id, client] : clients_) {
+    if (!client.alive) gone.push_back(id);
+    if (client.alive && (client.drove || client.claims)) staying.emplace_back(client.arrival, id);
     client.claims = false;
     client.robots.clear();
     client.reported_rejections.clear();
-    if (client.alive)
-      staying.emplace_back(client.arrival, id);
-    else
-      gone.push_back(id);
   }
   for (const std::uint64_t id : gone) forget(id);
   std::ranges::sort(staying);
-  for (const auto& [arrival, id] : staying)
-    if (clients_.at(id).drove) claim(id, clients_.at(id));
+  for (const auto& [arrival, id] : staying) claim(id, clients_.at(id));
 }
 
 // The client of this Join, with its writers. Null if somebody else has that id.
@@ -234,7 +231,7 @@ void Server::decide_claims() {
     if (!run_->leases.has_claims()) return;
     const lockstep::Barrier& barrier = run_->exchange.barrier();
     const bool at_boundary = barrier.complete();
-    decisions = run_->leases.decide([&](const std::vector<std::uint32_t>& robots) {
+    decisions = run_->leases.decide(Clock::now().time_since_epoch(), [&](const std::vector<std::uint32_t>& robots) {
       return at_boundary || std::ranges::any_of(robots, [&](auto robot) { return barrier.is_awaited(robot); });
     });
   }
@@ -274,7 +271,6 @@ void Server::admit(const lockstep::Leases::Granted& granted) {
   client.claims = false;
   client.admit.write(answer);
   for (const std::uint64_t tick : frames) send_frame(granted.client, client, tick, false);
-  client.resend.start(Clock::now().time_since_epoch(), run_->median_tick.value());
   client.times_resent = 0;
 }
 

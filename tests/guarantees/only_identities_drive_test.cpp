@@ -99,7 +99,7 @@ TEST(OnlyIdentitiesDrive, AndOthersLeaveTheRunItsBitsWhateverTheyTry) {
     // … and these get in, at their own doors: red, and an observer.
     std::vector<std::unique_ptr<Process>> inside;
     if (attacked) {
-      EXPECT_TRUE(server.wait_for_output("waiting for explorers/sbot_8")) << server.output();
+      EXPECT_TRUE(server.wait_for_output("waiting for explorers/sbot_8 and 7 more: hand-written")) << server.output();
       for (const std::string& identity : {std::string(), others.client_folder("blue"), keys.disguise("red", "blue")})
         outside.push_back(attacker(domain, identity));
       for (const char* name : {"red", "observer"}) inside.push_back(attacker(domain, keys.client_folder(name)));

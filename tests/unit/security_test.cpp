@@ -134,6 +134,11 @@ TEST_F(SecureDomain, AProgramIsToldWhatItsIdentityMayNotDo) {
   const Writer<Command> commands(red);
   const auto look_on = [&] { Reader<WorldState>(red, {[](const WorldState&, const Sender&) {}, {}}, "view"); };
   EXPECT_THROW(look_on(), WireError);
+  const auto admits_in = [&](const std::string& partition) {
+    Reader<Admit>(red, {[](const Admit&, const Sender&) {}, {}}, partition);
+  };
+  EXPECT_NO_THROW(admits_in(partition_of(1)));
+  EXPECT_THROW(admits_in("another"), WireError) << "partitions of permissions count too";
 }
 
 TEST_F(SecureDomain, ACertificateThatIsOverIsNamed) {

@@ -2,6 +2,8 @@
 
 #include <dds/dds.h>
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -34,8 +36,20 @@ class Entity {
 };
 
 struct Participant::State {
+  std::optional<Identity> identity;
   Entity domain;
   Entity participant;
 };
+
+using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
+
+/// No policies yet.
+Qos make_qos();
+
+/// Makes a participant this identity. Throws WireError if the plugins of DDS Security are not installed.
+void secure(dds_qos_t* qos, const Identity& identity);
+
+/// Of a message of Cyclone's log that tells of a refused handshake, the text for people the first time that it comes.
+std::optional<std::string> refusal_told_first(std::string_view message);
 
 }  // namespace cohort::wire

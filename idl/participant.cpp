@@ -23,18 +23,21 @@ namespace {
 
 // The last domain whose ports exist: the next one's lie beyond 65535.
 constexpr std::uint32_t last_domain = 232;
+// The last one that DDS Security has permissions for.
+constexpr std::uint32_t last_secure_number = 230;
 
-void print_log(std::string_view message, bool fatal) noexcept {
+void print_log(std::string_view message, DdsLogKind kind) noexcept {
   static const bool shown = [] {
     const char* level = std::getenv("COHORT_LOG");
     return level != nullptr && std::string_view(level) == "debug";
   }();
-  if (shown || fatal) std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
+  if (shown || kind != DdsLogKind::detail)
+    std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
 }
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
 std::atomic<DdsLogReceiver> receive_log_now = &print_log;
-void receive_log(std::string_view message, bool fatal) noexcept { receive_log_now.load()(message, fatal); }
+void receive_log(std::string_view message, DdsLogKind kind) noexcept { receive_log_now.load()(message, kind); }
 
 // Cyclone has one log for the process, and says why it refused there only. While one of these lives, what the same
 // thread's calls log is kept.
@@ -67,7 +70,8 @@ class LogCapture {
       if (!current_->text_.empty()) current_->text_ += "; ";
       current_->text_ += message;
     }
-    receive_log(message, (entry->priority & DDS_LC_FATAL) != 0);
+    receive_log(message, (entry->priority & DDS_LC_FATAL) != 0 ? DdsLogKind::fatal : DdsLogKind::detail);
+    if (const auto refusal = refusal_told_first(message)) receive_log(*refusal, DdsLogKind::refusal);
   }
 
   // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one sink for the process.
@@ -185,19 +189,36 @@ std::string configuration(std::uint32_t domain, in_addr own_address, const std::
 }
 
 // Cyclone allows one participant configuration for each domain number in a process. Others of the same domain use a
-// number of their own inside; on the network the domain is the one in the configuration.
-std::unique_ptr<Participant::State> join(std::uint32_t domain, const std::string& configuration) {
+// number of their own inside; on the network the domain is the one in the configuration. Null if DDS cannot, or does
+// not accept the identity: then its log says why.
+std::unique_ptr<Participant::State> join(std::uint32_t domain, const std::string& configuration,
+                                         const std::optional<Identity>& identity) {
   std::uint32_t number = domain;
   dds_entity_t handle = dds_create_domain(number, configuration.c_str());
   while (handle == DDS_RETCODE_PRECONDITION_NOT_MET) {
-    number += last_domain + 1;
+    // Security knows no numbers above those that a domain can have on the network.
+    number = identity ? (number + 1) % (last_secure_number + 1) : number + last_domain + 1;
+    if (number == domain) throw WireError("this process has too many participants");
     handle = dds_create_domain(number, configuration.c_str());
   }
   if (handle < 0) return nullptr;
   auto state = std::make_unique<Participant::State>();
+  state->identity = identity;
   state->domain = Entity(handle);
-  state->participant = Entity(check(dds_create_participant(number, nullptr, nullptr), "create", "a participant"));
+  const Qos qos = make_qos();
+  if (identity) secure(qos.get(), *identity);
+  handle = dds_create_participant(number, qos.get(), nullptr);
+  if (handle < 0) return nullptr;
+  state->participant = Entity(handle);
   return state;
+}
+
+std::string peer(in_addr address, std::uint16_t port) {
+  return "<Peer address=\"" + to_text(address) + ":" + std::to_string(port) + "\"/>";
+}
+
+std::string as_whom(const std::optional<Identity>& identity) {
+  return identity ? " with the identity in " + identity->folder.string() : std::string();
 }
 
 }  // namespace
@@ -215,21 +236,27 @@ std::string partition_of(std::uint64_t client) {
   return text;
 }
 
-std::uint16_t discovery_port(std::uint32_t domain) {
+std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t door) {
   if (domain > last_domain) {
     throw WireError("domain " + std::to_string(domain) + " does not exist: choose one from 0 to " +
                     std::to_string(last_domain) + ", best below 100");
   }
-  return static_cast<std::uint16_t>(7410 + 250 * domain);
+  return static_cast<std::uint16_t>(7410 + 250 * domain + 2 * door);
 }
 
-Participant Participant::server(std::uint32_t domain, const std::string& address) {
-  const std::uint16_t port = discovery_port(domain);
+Participant Participant::server(std::uint32_t domain, const std::string& address,
+                                const std::optional<Identity>& identity) {
+  const std::uint32_t door = identity ? identity->door : 0;
+  const std::uint16_t port = discovery_port(domain, door);
   const in_addr own_address = resolve(address);
   expect_own(own_address);
+  std::string discovery =
+      "<ParticipantIndex>" + std::to_string(door) + "</ParticipantIndex><SPDPInterval>5s</SPDPInterval>";
+  // Without a peer Cyclone announces itself to the first ports of this machine, where other doors would refuse it again
+  // and again. So it has itself.
+  if (identity) discovery += "<Peers>" + peer(own_address, port) + "</Peers>";
   LogCapture log;
-  auto state = join(domain, configuration(domain, own_address,
-                                          "<ParticipantIndex>0</ParticipantIndex><SPDPInterval>5s</SPDPInterval>"));
+  auto state = join(domain, configuration(domain, own_address, discovery), identity);
   if (state == nullptr) {
     const auto data_port = static_cast<std::uint16_t>(port + 1);
     if (is_taken(port) || is_taken(data_port)) {
@@ -237,25 +264,29 @@ Participant Participant::server(std::uint32_t domain, const std::string& address
                         std::to_string(port) + " or " + std::to_string(data_port) +
                         ", most likely another server. Stop it, or give this server and its clients another domain.");
     }
-    throw WireError("cannot serve domain " + std::to_string(domain) + " at " + address + ": " + log.text());
+    throw WireError("cannot serve domain " + std::to_string(domain) + " at " + address + as_whom(identity) + ": " +
+                    log.text());
   }
   return Participant(std::move(state));
 }
 
-Participant Participant::client(std::uint32_t domain, const std::string& address) {
-  const std::uint16_t port = discovery_port(domain);
+Participant Participant::client(std::uint32_t domain, const std::string& address,
+                                const std::optional<Identity>& identity) {
+  if (identity && identity->role == Role::server)
+    throw WireError(identity->folder.string() + " is the server's: a client has a folder in clients/");
+  const std::uint16_t port = discovery_port(domain, identity ? identity->door : 0);
   const in_addr server = resolve(address);
   // A client announces itself every second, to the server alone: so a server that starts later is found within one, and
   // one small packet each second harms nobody. The server need not repeat itself: it answers each announcement.
   const std::string discovery =
       "<ParticipantIndex>none</ParticipantIndex><SPDPInterval>1s</SPDPInterval>"
-      "<Peers><Peer address=\"" +
-      to_text(server) + ":" + std::to_string(port) + "\"/></Peers>";
+      "<Peers>" +
+      peer(server, port) + "</Peers>";
   LogCapture log;
-  auto state = join(domain, configuration(domain, own_address_towards(server, port), discovery));
+  auto state = join(domain, configuration(domain, own_address_towards(server, port), discovery), identity);
   if (state == nullptr) {
-    throw WireError("cannot join domain " + std::to_string(domain) + " of the server at " + address + ": " +
-                    log.text());
+    throw WireError("cannot join domain " + std::to_string(domain) + " of the server at " + address +
+                    as_whom(identity) + ": " + log.text());
   }
   return Participant(std::move(state));
 }
@@ -264,5 +295,7 @@ Participant::Participant(std::unique_ptr<State> state) : state_(std::move(state)
 Participant::Participant(Participant&&) noexcept = default;
 Participant& Participant::operator=(Participant&&) noexcept = default;
 Participant::~Participant() = default;
+
+const std::optional<Identity>& Participant::identity() const { return state_->identity; }
 
 }  // namespace cohort::wire

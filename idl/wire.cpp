@@ -15,7 +15,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 using Listener = std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)>;
 
 constexpr auto longest_write = 100ms;
@@ -23,7 +22,7 @@ constexpr auto longest_write = 100ms;
 constexpr dds_duration_t to_dds(std::chrono::nanoseconds duration) { return duration.count(); }
 
 Qos qos_of(const Topic& topic, const std::string& partition, int depth) {
-  Qos qos(dds_create_qos(), [](dds_qos_t* q) { dds_delete_qos(q); });
+  Qos qos = make_qos();
   dds_qset_reliability(qos.get(), topic.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        to_dds(longest_write));
   dds_qset_durability(qos.get(), topic.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
@@ -87,7 +86,9 @@ template <class Message>
 struct Reader<Message>::State {
   using Sample = typename Codec<Message>::Sample;
 
-  explicit State(Callbacks its_callbacks) : callbacks(std::move(its_callbacks)) {
+  State(Callbacks its_callbacks, const Participant& participant)
+      : callbacks(std::move(its_callbacks)),
+        door(static_cast<std::uint64_t>(participant.state().participant.handle()) * 0xbf58476d1ce4e5b9u) {
     // Zeroed, as dds_take wants it; it then grows their sequences and strings, and keeps them from take to take.
     for (void*& sample : samples) sample = dds_alloc(sizeof(Sample));
   }
@@ -133,7 +134,9 @@ struct Reader<Message>::State {
     // By its GUID, which stays when the participant is lost and found again.
     std::array<std::uint64_t, 2> guid{};
     std::memcpy(guid.data(), endpoint->participant_key.v, sizeof guid);
-    const Sender sender{writer, guid[0] * 0x9e3779b97f4a7c15u ^ guid[1]};
+    // And by where it came in: with security, who has authenticated at one door may call himself what he likes at
+    // another.
+    const Sender sender{writer, (guid[0] * 0x9e3779b97f4a7c15u ^ guid[1]) + door};
     dds_builtintopic_free_endpoint(endpoint);
     if (participants.size() >= most_participants) participants.clear();
     participants.emplace(writer, sender.participant);
@@ -143,6 +146,7 @@ struct Reader<Message>::State {
   static constexpr std::size_t most_participants = 10'000;  // looked up again if there were ever more
 
   Callbacks callbacks;
+  const std::uint64_t door;                                     // this reader's participant
   std::map<dds_instance_handle_t, std::uint64_t> participants;  // of writers
   std::array<void*, 8> samples{};
   std::array<dds_sample_info_t, 8> infos{};
@@ -152,7 +156,7 @@ struct Reader<Message>::State {
 
 template <class Message>
 Reader<Message>::Reader(Participant& participant, Callbacks callbacks, const std::string& partition, int depth)
-    : state_(std::make_unique<State>(std::move(callbacks))) {
+    : state_(std::make_unique<State>(std::move(callbacks), participant)) {
   const Topic& topic = Codec<Message>::topic;
   const Listener listener(dds_create_listener(state_.get()), [](dds_listener_t* l) { dds_delete_listener(l); });
   if (state_->callbacks.message) dds_lset_data_available(listener.get(), &State::on_data);

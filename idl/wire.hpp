@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "idl/identity.hpp"
 #include "idl/messages.hpp"
 
 /// A thin RAII layer over the Cyclone DDS C API: the only code that includes it. Topic names and quality of service are
@@ -26,18 +28,24 @@ class DomainTaken : public WireError {
   using WireError::WireError;
 };
 
-/// Receives what Cyclone DDS itself has to say, on any thread; after a fatal message it aborts.
-using DdsLogReceiver = void (*)(std::string_view message, bool fatal) noexcept;
+enum class DdsLogKind {
+  detail,   ///< for whoever looks for a fault
+  refusal,  ///< a handshake of DDS Security failed; told once for each peer and reason, in words for people
+  fatal,    ///< the process is about to be aborted
+};
 
-/// From now on, for the whole process: Cyclone has one log. Without a receiver (or with nullptr) fatal messages go to
-/// standard error, and all of them if the environment's COHORT_LOG is `debug`.
+/// Receives what Cyclone DDS itself has to say, on any thread.
+using DdsLogReceiver = void (*)(std::string_view message, DdsLogKind kind) noexcept;
+
+/// From now on, for the whole process: Cyclone has one log. Without a receiver (or with nullptr) all but details go to
+/// standard error, and these too if the environment's COHORT_LOG is `debug`.
 void set_dds_log(DdsLogReceiver receiver);
 
 /// The partition in which the server speaks to one client: `c` and the client's id as 16 hexadecimal digits.
 std::string partition_of(std::uint64_t client);
 
-/// The UDP port on which the server of a domain is found: 7410 + 250 * domain.
-std::uint16_t discovery_port(std::uint32_t domain);
+/// The UDP port on which the server of a domain is found: 7410 + 250 * domain, and 2 further for each door.
+std::uint16_t discovery_port(std::uint32_t domain, std::uint32_t door = 0);
 
 /// One participant in one DDS domain. Discovery is a star: only the server has a known port, clients have it as their
 /// only peer, nothing is multicast. A process may hold a server and any number of clients of the same domain; they meet
@@ -45,15 +53,22 @@ std::uint16_t discovery_port(std::uint32_t domain);
 class Participant {
  public:
   /// The server of `domain`, reachable on the interface that has `address` (an IPv4 address; loopback by default).
-  /// Throws DomainTaken if another server has the domain, WireError for anything else.
-  static Participant server(std::uint32_t domain, const std::string& address = "127.0.0.1");
+  /// Throws DomainTaken if another server has the domain, WireError for anything else. With `identity` (read_doors)
+  /// it is one of the server's doors, under DDS Security: nobody but the client of that identity gets in.
+  static Participant server(std::uint32_t domain, const std::string& address = "127.0.0.1",
+                            const std::optional<Identity>& identity = {});
   /// A client of the server of `domain` at `address` (an IPv4 address or a host name); the interface that routes there
-  /// is used. Does not wait for the server. Throws WireError.
-  static Participant client(std::uint32_t domain, const std::string& address = "127.0.0.1");
+  /// is used. Does not wait for the server. With `identity` (read_identity) under DDS Security, to its door. Throws
+  /// WireError.
+  static Participant client(std::uint32_t domain, const std::string& address = "127.0.0.1",
+                            const std::optional<Identity>& identity = {});
 
   Participant(Participant&&) noexcept;
   Participant& operator=(Participant&&) noexcept;
   ~Participant();
+
+  /// None without security.
+  const std::optional<Identity>& identity() const;
 
   struct State;
   State& state() const { return *state_; }

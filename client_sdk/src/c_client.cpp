@@ -132,6 +132,7 @@ ClientOptions options_of(const CohortOptions* given) {
   options.domain = given->domain;
   if (given->server != nullptr) options.server = given->server;
   if (given->name != nullptr) options.name = given->name;
+  if (given->secure != nullptr) options.secure = given->secure;
   if (given->robots != nullptr) options.robots = split_selectors(given->robots);
   if (options.robots.empty()) throw std::invalid_argument("the options name no robot");
   return options;

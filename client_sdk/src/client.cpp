@@ -40,6 +40,14 @@ std::string host_name() {
   return name;
 }
 
+std::optional<wire::Identity> identity_of(const ClientOptions& options) {
+  if (options.secure.empty()) return std::nullopt;
+  wire::Identity identity = wire::read_identity(options.secure);
+  if (identity.role == wire::Role::observer)
+    throw wire::WireError("the identity in " + options.secure + " may look on, and drive no robot");
+  return identity;
+}
+
 // Lets a lock go for a scope.
 class Unlocked {
  public:
@@ -83,6 +91,7 @@ class Client {
   bool is_described(const wire::Admit& admit) const;
   std::optional<ClientEnd> reason_to_leave();
   bool server_is_lost() const;
+  std::string waiting_text() const;
   ClientEnd fail(Lock& lock);
   void tell(Severity severity, const std::string& text) const;
 
@@ -126,7 +135,7 @@ Client::Client(const ControllerKind& kind, const ClientOptions& options, const s
       name_(options.name.empty() ? kind.name : options.name),
       stop_(stop),
       host_(kind),
-      participant_(wire::Participant::client(options.domain, options.server)),
+      participant_(wire::Participant::client(options.domain, options.server, identity_of(options))),
       joins_(participant_),
       commands_(participant_),
       own_reports_(participant_),
@@ -314,14 +323,21 @@ std::optional<ClientEnd> Client::reason_to_leave() {
   }
   if (!current_ && !notice_given_ && Clock::now() - since_ > patience_before_notice) {
     notice_given_ = true;
-    tell(Severity::warning, joins_.matched() == 0 ? "waiting for a server at " + options_.server + ", domain " +
-                                                        std::to_string(options_.domain)
-                                                  : "waiting for the server to admit this client");
+    tell(Severity::warning, joins_.matched() == 0 ? waiting_text() : "waiting for the server to admit this client");
   }
   return std::nullopt;
 }
 
 bool Client::server_is_lost() const { return server_left_ && Clock::now() - *server_left_ > server_may_be_away; }
+std::string Client::waiting_text() const {
+  std::string text = "waiting for a server at " + options_.server + ", domain " + std::to_string(options_.domain);
+  const auto& identity = participant_.identity();
+  if (!identity) return text;
+  return text + ", as '" + identity->name + "' of " + identity->folder.string() +
+         ". Check that it serves with --secure, that its folder has server/" + identity->name +
+         " of the same making as this one ('cohort security list' there), and that no certificate has expired nor any "
+         "clock is wrong; 'cohort doctor' looks at all of it";
+}
 
 ClientEnd Client::fail(Lock& lock) {
   tell(Severity::error, *failure_);

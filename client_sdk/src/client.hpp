@@ -39,6 +39,7 @@ struct ClientOptions {
   std::uint32_t domain = 0;
   std::vector<std::string> robots{"all"};  ///< selectors, see docs/protocol.md
   std::string name;                        ///< shown by the server; the controller's if empty
+  std::string secure{};                    ///< folder of an identity (docs/security.md); empty: without security
   /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
   /// latency. Only for controllers that never block, since DDS stands still meanwhile.
   bool inline_step = false;
@@ -62,8 +63,8 @@ enum class ClientEnd {
 
 /// Attaches to a server, drives robots until the run ends, and says why it ended; tells what anything but `finished` is
 /// about. Waits for a server that is not there yet. Blocks; controllers run on the calling thread, unless
-/// `inline_step`. `stop` may be set from a signal handler. Throws wire::WireError if the server's address cannot be
-/// used.
+/// `inline_step`. `stop` may be set from a signal handler. Throws wire::WireError if the server's address or the
+/// identity cannot be used.
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop);
 
 inline ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop) {

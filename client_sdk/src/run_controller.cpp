@@ -18,7 +18,7 @@ constexpr int exit_usage = 2;
 constexpr int exit_interrupted = 130;
 
 constexpr const char* help =
-    R"(Usage: %s [--robots SEL[,SEL...]] [--server ADDRESS] [--domain N]
+    R"(Usage: %s [--robots SEL[,SEL...]] [--server ADDRESS] [--domain N] [--secure DIR]
 
 Drives robots of a running simulation until the run ends.
 
@@ -26,6 +26,8 @@ Drives robots of a running simulation until the run ends.
                          with * in it (explorers/*). Default: all
   --server ADDRESS       the server's IPv4 address or host name. Default: $COHORT_SERVER, or 127.0.0.1
   --domain N|A..B        the server's DDS domain, or a range of which one is used. Default: $COHORT_DOMAIN, or 0
+  --secure DIR           folder of this client's identity, which 'cohort security' has made. Default: $COHORT_SECURE,
+                         or none
   --help                 this text
 
 Exit code: 0 when the run finished, 1 when it failed, the server was lost or another process took over, 2 for a mistake
@@ -69,6 +71,7 @@ Arguments parse(int argc, char** argv) {
   ClientOptions& options = arguments.options;
   if (const char* server = std::getenv("COHORT_SERVER"); server != nullptr) options.server = server;
   if (const char* domain = std::getenv("COHORT_DOMAIN"); domain != nullptr) options.domain = parse_domain(domain);
+  if (const char* secure = std::getenv("COHORT_SECURE"); secure != nullptr) options.secure = secure;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     const auto equals = argument.find('=');
@@ -87,6 +90,8 @@ Arguments parse(int argc, char** argv) {
       options.server = value();
     } else if (name == "--domain") {
       options.domain = parse_domain(value());
+    } else if (name == "--secure") {
+      options.secure = value();
     } else {
       throw UsageError("there is no option '" + std::string(name) + "'");
     }

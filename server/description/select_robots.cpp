@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "server/description/text.hpp"
@@ -87,6 +88,19 @@ std::vector<std::size_t> select_objects(const World& world, const std::string& s
   if (found.empty())
     throw std::invalid_argument("no object is called '" + std::string(text) + "'" + suggestion(text, names));
   return found;
+}
+
+std::vector<std::uint32_t> select_robots_of_any(const World& world, std::span<const std::string> selectors) {
+  std::set<std::uint32_t> robots;
+  for (const std::string& selector : selectors) {
+    try {
+      const auto selected = select_robots(world, selector);
+      robots.insert(selected.begin(), selected.end());
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+  }
+  return {robots.begin(), robots.end()};
 }
 
 }  // namespace cohort::description

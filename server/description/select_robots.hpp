@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ namespace cohort::description {
 /// - a scoped name, in which `*` stands for any characters or none, such as `explorers/*`.
 /// Throws std::invalid_argument, with a message for the user, if it is none of these or means no robot.
 std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector);
+
+/// All that any of `selectors` selects, ascending; one that selects nothing does not matter.
+std::vector<std::uint32_t> select_robots_of_any(const World& world, std::span<const std::string> selectors);
 
 /// Whether a name is `pattern`, in which `*` stands for any characters or none.
 bool matches(std::string_view name, std::string_view pattern);

@@ -7,12 +7,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "idl/survey.hpp"
 #include "idl/wire.hpp"
 #include "server/lockstep/leases.hpp"
 #include "server/lockstep/resend_timer.hpp"
@@ -26,8 +28,8 @@ namespace cohort::session {
 /// else happens on the thread of `run`, which alone creates and destroys entities and steps the world.
 class Server {
  public:
-  /// `participants`: one for each DDS domain that is served, at least one; a client may be in any of them, observers
-  /// are in the first. They must outlive this.
+  /// `participants`: one for each DDS domain that is served, and with security one for each identity in each of them,
+  /// at least one; a client may be in any of them, observers are in the first. They must outlive this.
   explicit Server(std::span<wire::Participant> participants);
   ~Server();
 
@@ -49,7 +51,8 @@ class Server {
  private:
   using Clock = RunBook::Clock;
 
-  // A DDS domain that is served. Readers last, so that no callback comes before all else is there.
+  // A DDS domain that is served, or one identity's way into it. Readers last, so that no callback comes before all else
+  // is there.
   struct Door {
     Door(Server& server, wire::Participant& participant);
     wire::Participant& participant;
@@ -57,13 +60,15 @@ class Server {
     wire::Reader<wire::Join> joins;
     wire::Reader<wire::Command> commands;
     wire::Reader<wire::Report> reports;
+    wire::VersionWatch versions;
   };
 
   struct Client {
     wire::Join join;
     std::uint64_t arrival = 0;  // clients of a session in their order
     std::uint64_t writer = 0;   // of its last Join
-    std::string label;          // for people: controller, process and host
+    const std::optional<wire::Identity>& identity;  // of whoever it is, not of whom it says to be
+    std::string label;                              // for people: controller, process and host
     wire::Writer<wire::Admit> admit;
     wire::Writer<wire::Observation> observation;
     wire::Writer<wire::Report> report;
@@ -117,10 +122,11 @@ class Server {
     std::vector<wire::Report> reports;
     std::vector<std::uint32_t> ended_processes;
     std::string failure;                                                     // of something outside
+    std::set<std::uint32_t> foreign_versions{};                              // of the protocol, that clients have
     std::map<std::pair<std::uint64_t, std::string>, Rejections> rejected{};  // by who, or what participant, and reason
     bool empty() const {
       return arrivals.empty() && liveliness.empty() && reports.empty() && ended_processes.empty() && failure.empty() &&
-             rejected.empty();
+             foreign_versions.empty() && rejected.empty();
     }
   };
 
@@ -129,6 +135,7 @@ class Server {
   void on_liveliness(const wire::Sender& sender, bool alive);
   void on_command(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report, const wire::Sender& sender);
+  void on_foreign_version(std::uint32_t major);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
   void reject(std::uint64_t who, const char* reason, std::string_view text);
   void call_attention();
@@ -156,6 +163,7 @@ class Server {
   Client* attach(const Arrival& arrival);
   void claim_anew();
   void claim(std::uint64_t client_id, Client& client);
+  std::string why_forbidden(const Client& client, const std::set<std::uint32_t>& robots) const;
   void forget(std::uint64_t client_id);
   void refuse(std::uint64_t client_id, Client& client, const std::string& reason);
   void decide_claims();

@@ -26,7 +26,8 @@ Server::Door::Door(Server& server, wire::Participant& its_participant)
           "", answers_kept),
       reports(its_participant,
               {[&server](const wire::Report& report, const wire::Sender& sender) { server.on_report(report, sender); },
-               {}}) {}
+               {}}),
+      versions(its_participant, [&server](std::uint32_t major) { server.on_foreign_version(major); }) {}
 
 // Under the lock.
 void Server::call_attention() {
@@ -56,6 +57,13 @@ void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
   if (inbox_.reports.size() >= most_reports)
     return reject(sender.participant, "flood", "more Reports than can be read");
   inbox_.reports.push_back(report);
+  call_attention();
+}
+
+void Server::on_foreign_version(std::uint32_t major) {
+  constexpr std::size_t most = 100;  // more are a stranger's joke
+  const std::lock_guard lock(mutex_);
+  if (inbox_.foreign_versions.size() >= most || !inbox_.foreign_versions.insert(major).second) return;
   call_attention();
 }
 

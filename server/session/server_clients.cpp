@@ -64,6 +64,10 @@ void Server::handle_inbox() {
     const std::lock_guard lock(mutex_);
     if (run_->error.empty()) run_->error = inbox.failure;
   }
+  for (const std::uint32_t major : inbox.foreign_versions)
+    run_->book.add_event("version", "a client speaks version " + std::to_string(major) +
+                                        " of the protocol, and this server version 1: they never meet. Install the "
+                                        "same major version of Cohort on both sides");
   handle_rejections(inbox);
 }
 
@@ -142,11 +146,28 @@ void Server::claim(std::uint64_t client_id, Client& client) {
     }
   }
   if (robots.empty() && refusal.empty()) refusal = "it asks for no robot";
+  if (refusal.empty()) refusal = why_forbidden(client, robots);
   if (!refusal.empty()) return refuse(client_id, client, refusal);
   client.robots.assign(robots.begin(), robots.end());
   client.claims = true;
   const std::lock_guard lock(mutex_);
   run_->leases.claim(client_id, client.robots);
+}
+
+// Empty if its identity may drive them all, or if there is no security.
+std::string Server::why_forbidden(const Client& client, const std::set<std::uint32_t>& robots) const {
+  if (!client.identity) return {};
+  const std::vector<std::string>& selectors = client.identity->robots;
+  const std::string who = "its identity '" + client.identity->name + "' may ";
+  if (selectors.empty()) return who + "look on, and drive no robot";
+  // The same identities may serve several experiments, of which this one need not have all their robots.
+  const auto allowed = description::select_robots_of_any(run_->experiment.world, selectors);
+  const auto forbidden =
+      std::ranges::find_if(robots, [&](std::uint32_t robot) { return !std::ranges::binary_search(allowed, robot); });
+  if (forbidden == robots.end()) return {};
+  std::string list;
+  for (const std::string& selector : selectors) list += (list.empty() ? "" : ",") + selector;
+  return who + "drive " + list + ", not " + run_->simulation.robot_name(*forbidden);
 }
 
 // At the beginning of a run: those who drove or waited claim what they asked for when they came, in the order of their
@@ -187,13 +208,15 @@ Server::Client* Server::attach(const Arrival& arrival) {
 
   wire::Participant& participant = arrival.door->participant;
   const std::string partition = wire::partition_of(join.client);
-  Client client{
-      .join = join,
-      .arrival = arrivals_++,
-      .label = clean(join.controller) + " (process " + std::to_string(join.process) + " on " + clean(join.host) + ")",
-      .admit = wire::Writer<wire::Admit>(participant, partition),
-      .observation = wire::Writer<wire::Observation>(participant, partition),
-      .report = wire::Writer<wire::Report>(participant, partition)};
+  Client client{.join = join,
+                .arrival = arrivals_++,
+                .identity = participant.identity(),
+                .label = clean(join.controller) + " (process " + std::to_string(join.process) + " on " +
+                         clean(join.host) +
+                         (participant.identity() ? ", '" + participant.identity()->name + "')" : ")"),
+                .admit = wire::Writer<wire::Admit>(participant, partition),
+                .observation = wire::Writer<wire::Observation>(participant, partition),
+                .report = wire::Writer<wire::Report>(participant, partition)};
   return &clients_.emplace(join.client, std::move(client)).first->second;
 }
 

@@ -250,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
         Typed{{},
-              "expected a command; known: run, serve, host, teleop, check, export, samples, help, bench. Try 'cohort "
+              "expected a command; known: run, serve, host, teleop, check, export, samples, security, doctor, help, bench. Try 'cohort "
               "--help'"},
         Typed{{"rn", "x"}, "there is no command 'rn'; did you mean 'run'?"},
         Typed{{"run"}, "FILE is required. Try 'cohort run --help'"}, Typed{{"run", "x", "y"}, "unexpected 'y'"},

@@ -10,7 +10,7 @@ enum { most_robots = 64 };
 int main(int argc, char** argv) {
   static ObstacleAvoidance robots[most_robots];
   if (argc != 3) return 2;
-  const CohortOptions options = {NULL, (uint32_t)strtoul(argv[1], NULL, 10), argv[2], "drive_in_a_loop"};
+  const CohortOptions options = {NULL, (uint32_t)strtoul(argv[1], NULL, 10), argv[2], "drive_in_a_loop", NULL};
   CohortClient* client = cohort_connect(&options);
   if (client == NULL) return 2;
   CohortEvent event;

@@ -1,5 +1,5 @@
 // A stranger on the network: sends every kind of bad command, Join and Report in the name of the given client, about a
-// thousand a second, until it is killed. send_bad_commands DOMAIN CLIENT
+// thousand a second, until it is killed. send_bad_commands DOMAIN CLIENT [FOLDER OF AN IDENTITY]
 
 #include <atomic>
 #include <chrono>
@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -16,12 +17,18 @@
 
 int main(int argc, char** argv) {
   using namespace cohort;
-  if (argc != 3) return 2;
+  if (argc != 3 && argc != 4) return 2;
   const std::uint64_t client = std::stoull(argv[2]);
-  auto participant = wire::Participant::client(static_cast<std::uint32_t>(std::stoul(argv[1])));
+  std::optional<wire::Identity> identity;
+  if (argc == 4) identity = wire::read_identity(argv[3]);
+  auto participant = wire::Participant::client(static_cast<std::uint32_t>(std::stoul(argv[1])), "127.0.0.1", identity);
   std::atomic<std::uint64_t> tick = 0;
-  wire::Reader<wire::WorldState> states(
-      participant, {[&](const wire::WorldState& state, const wire::Sender&) { tick = state.tick; }, {}}, "view");
+  std::optional<wire::Reader<wire::WorldState>> states;  // an identity may not know what others do
+  if (!identity)
+    states.emplace(participant,
+                   wire::Reader<wire::WorldState>::Callbacks{
+                       [&](const wire::WorldState& state, const wire::Sender&) { tick = state.tick; }, {}},
+                   "view");
   wire::Writer<wire::Command> commands(participant);
   wire::Writer<wire::Join> joins(participant);
   wire::Writer<wire::Report> reports(participant);

@@ -19,7 +19,7 @@ using test::eventually;
 class CClientTest : public testing::Test {
  protected:
   void SetUp() override {
-    const CohortOptions options = {nullptr, server.domain(), "0,team/*", "loop"};
+    const CohortOptions options = {nullptr, server.domain(), "0,team/*", "loop", nullptr};
     client = cohort_connect(&options);
     ASSERT_NE(client, nullptr);
     ASSERT_TRUE(server.accept());
@@ -134,18 +134,18 @@ TEST_F(CClientTest, ClosingInTheMiddleOfATickLeavesWithoutAnAnswerAndIsNoFailure
 }
 
 TEST(CClientAlone, CanBeClosedWhileItWaitsForAServer) {
-  const CohortOptions options = {nullptr, test::find_empty_domain(), nullptr, nullptr};
+  const CohortOptions options = {nullptr, test::find_empty_domain(), nullptr, nullptr, nullptr};
   cohort_close(cohort_connect(&options));
   cohort_close(nullptr);
 }
 
 TEST(CClientAlone, OptionsThatCannotBeUsedAreSaid) {
   const test::CapturedStderr told;
-  const CohortOptions nobody = {nullptr, 0, ",", nullptr};
+  const CohortOptions nobody = {nullptr, 0, ",", nullptr, nullptr};
   EXPECT_EQ(cohort_connect(&nobody), nullptr);
   EXPECT_STREQ(cohort_last_error(), "the options name no robot");
 
-  const CohortOptions nowhere = {"no such host", 1, nullptr, nullptr};
+  const CohortOptions nowhere = {"no such host", 1, nullptr, nullptr, nullptr};
   CohortClient* client = cohort_connect(&nowhere);
   CohortEvent event{};
   EXPECT_EQ(cohort_next(client, &event), cohort_event_end);

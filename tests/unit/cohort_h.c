@@ -3,7 +3,7 @@
 
 void drive_in_a_loop(void);
 void drive_in_a_loop(void) {
-  const CohortOptions options = {NULL, 1, "0..3", "loop"};
+  const CohortOptions options = {NULL, 1, "0..3", "loop", NULL};
   CohortClient* client = cohort_connect(&options);
   CohortEvent event;
   CohortCommandChannel channel = {0, 0, 0.0, 0.0};

@@ -46,6 +46,7 @@ struct RunCommand {
   bool quiet = false;
   std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
   std::string network = "127.0.0.1";
+  std::filesystem::path secure;  ///< folder of identities; empty: without security
 };
 int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop);
 
@@ -54,6 +55,7 @@ struct HostCommand {
   std::vector<std::string> robots;
   std::string server;
   std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
+  std::filesystem::path secure{};        ///< folder of an identity; empty: without security
   bool for_run = false;                  ///< started by `cohort run`, whose server tells what becomes of a client
 };
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);
@@ -62,6 +64,7 @@ struct TeleopCommand {
   std::vector<std::string> robots;
   std::string server;
   std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
+  std::filesystem::path secure{};        ///< the same
 };
 int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop);
 
@@ -81,6 +84,30 @@ struct SamplesCommand {
   sensing::SampleGrid grid;
 };
 int take_samples(const SamplesCommand& command, Log& log);
+
+/// `cohort security`: docs/security.md.
+struct SecurityCommand {
+  enum class What { init, add, list };
+  What what = What::list;
+  std::filesystem::path folder;      ///< of all identities
+  std::vector<std::string> clients;  ///< of init: NAME=SELECTORS
+  std::string name;                  ///< of add
+  std::vector<std::string> robots;   ///< of add: selectors
+  bool encrypt = false;
+  unsigned days = 365;
+};
+int security(const SecurityCommand& command, Log& log);
+
+/// `cohort doctor`: docs/troubleshooting.md.
+struct DoctorCommand {
+  std::string server;  ///< empty: one on this machine
+  bool expects_server = false;
+  std::uint32_t domain = 0;
+  std::string network = "127.0.0.1";
+  std::filesystem::path secure;  ///< of all identities, or of one; empty: without security
+  bool json = false;
+};
+int doctor(DoctorCommand command, Log& log);
 
 /// `topic`: empty for the list of topics.
 int help(const std::string& topic, Log& log);

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
+#include "server/description/select_robots.hpp"
 #include "tools/cohort/commands.hpp"
 
 namespace cohort::tool {
@@ -20,20 +23,34 @@ std::string selectors_of(const std::vector<std::uint32_t>& robots) {
   return selectors;
 }
 
+std::filesystem::path identity_for(const description::Experiment& experiment, const description::Team& team,
+                                   const std::filesystem::path& secure) {
+  for (const wire::Identity& door : wire::read_doors(secure)) {
+    const auto allowed = description::select_robots_of_any(experiment.world, door.robots);
+    if (std::ranges::includes(allowed, team.robots)) return std::filesystem::absolute(secure) / "clients" / door.name;
+  }
+  throw std::runtime_error(fmt::format(
+      "no client of {0} may drive all robots of team '{1}': 'cohort security add {0} {1} --robots {2}' makes one",
+      secure.string(), team.name, selectors_of(team.robots)));
+}
+
 std::vector<Children::Command> controller_processes(const description::Experiment& experiment,
                                                     const std::vector<TeamController>& controllers, bool per_robot,
-                                                    const std::vector<std::uint32_t>& domains, const Log& log) {
+                                                    const std::vector<std::uint32_t>& domains,
+                                                    const std::filesystem::path& secure, const Log& log) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
   std::vector<Children::Command> commands;
   for (std::size_t i = 0; i < experiment.teams.size(); ++i) {
     const description::Team& team = experiment.teams[i];
     if (controllers[i].is_keyboard()) continue;
+    const std::string identity = secure.empty() ? std::string() : identity_for(experiment, team, secure).string();
     const auto add = [&](const std::vector<std::uint32_t>& robots) {
       const std::uint32_t domain = domains[commands.size() % domains.size()];
       Children::Command command;
       command.arguments = {
           program,     "host",     controllers[i].plugin->path(), "--robots", selectors_of(robots), "--server",
           "127.0.0.1", "--domain", std::to_string(domain),        "--for-run"};
+      if (!identity.empty()) command.arguments.insert(command.arguments.end(), {"--secure", identity});
       if (log.format() == LogFormat::json) command.arguments.insert(command.arguments.end(), {"--log-format", "json"});
       if (log.shows(LogLevel::info)) command.arguments.push_back("--verbose");
       const std::string more = robots.size() == 1 ? "" : fmt::format(" and {} more", robots.size() - 1);

@@ -10,6 +10,7 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
     ClientOptions options;
     options.server = command.server;
     if (!command.domains.empty()) options.domain = domain_of_this_process(command.domains);
+    options.secure = command.secure;
     options.robots = command.robots;
     options.tell = [&](Severity severity, const std::string& text) {
       const std::string name = loaded.plugin().name;

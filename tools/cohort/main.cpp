@@ -7,6 +7,7 @@
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
 #include "tools/cohort/usage.hpp"
@@ -103,6 +104,10 @@ void add_log_options(CLI::App& app, LogFlags& flags) {
   app.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
 }
 
+void add_secure_option(CLI::App& app, std::filesystem::path& folder, const char* text) {
+  app.add_option("--secure", folder, text)->envname("COHORT_SECURE")->type_name("DIR");
+}
+
 void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::string& text) {
   app.add_option_function<std::string>(
          "--domain", [&domains](const std::string& value) { domains = cohort::parse_domains(value); }, text)
@@ -140,22 +145,24 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   add_domains(app, options.domains, "DDS domains to serve (default: free ones, or 0 if others start controllers)");
+  add_secure_option(app, options.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");
   add_log_options(app, flags);
   app.add_flag("--quiet", flags.quiet, "Print errors only");
 }
 
-void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::string& server,
-                        std::vector<std::uint32_t>& domains) {
-  app.add_option("--robots", robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
+template <class Command>
+void add_client_options(CLI::App& app, Command& command) {
+  app.add_option("--robots", command.robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("SEL[,SEL...]");
-  app.add_option("--server", server, "Address of the server")
+  app.add_option("--server", command.server, "Address of the server")
       ->envname("COHORT_SERVER")
       ->default_val("127.0.0.1")
       ->type_name("ADDRESS");
-  add_domains(app, domains, "DDS domain of the server, or a range: then one of it (default: 0)");
+  add_domains(app, command.domains, "DDS domain of the server, or a range: then one of it (default: 0)");
+  add_secure_option(app, command.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
 }
 
 void add_samples_options(CLI::App& app, SamplesCommand& command) {
@@ -305,14 +312,14 @@ int main(int argc, char** argv) {
   host_app->add_option("PLUGIN", host_options.plugin, "Name of a controller, or path to its plugin")
       ->required()
       ->type_name("");
-  add_client_options(*host_app, host_options.robots, host_options.server, host_options.domains);
+  add_client_options(*host_app, host_options);
   add_log_options(*host_app, log_flags);
   host_app->add_flag("--for-run", host_options.for_run)->group("");  // `cohort run` starts it so
   host_app->footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
 
   TeleopCommand teleop_options;
   CLI::App* teleop_app = app.add_subcommand("teleop", "Drive robots of a server by keyboard");
-  add_client_options(*teleop_app, teleop_options.robots, teleop_options.server, teleop_options.domains);
+  add_client_options(*teleop_app, teleop_options);
   add_log_options(*teleop_app, log_flags);
   teleop_app->footer("Example: cohort teleop --robots 0");
 
@@ -339,6 +346,16 @@ int main(int argc, char** argv) {
   CLI::App* samples_app = app.add_subcommand("samples", "Write what a ring of proximity sensors reads of a cylinder");
   add_samples_options(*samples_app, samples_options);
   add_log_options(*samples_app, log_flags);
+
+  SecurityCommand security_command;
+  CLI::App* security_app = app.add_subcommand("security", "Make and list who may drive what, with certificates");
+  add_security_commands(*security_app, security_command);
+  add_log_options(*security_app, log_flags);
+
+  DoctorCommand doctor_command;
+  CLI::App* doctor_app = app.add_subcommand("doctor", "Look for what usually goes wrong, and say what to do");
+  add_doctor_options(*doctor_app, doctor_command);
+  add_log_options(*doctor_app, log_flags);
 
   std::string help_topic;
   CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
@@ -374,8 +391,10 @@ int main(int argc, char** argv) {
 
   Log log(*options);
   dds_log = &log;
-  cohort::wire::set_dds_log([](std::string_view message, bool fatal) noexcept {
-    dds_log->write(fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
+  cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
+    using cohort::wire::DdsLogKind;
+    if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
+    dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
   });
   stop_on_signals();
   if (run_app->parsed()) return run(run_options, log, stop_requested);
@@ -384,6 +403,8 @@ int main(int argc, char** argv) {
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
+  if (security_app->parsed()) return security(security_command, log);
+  if (doctor_app->parsed()) return doctor(doctor_command, log);
   if (help_app->parsed()) return help(help_topic, log);
   if (thesis_app->parsed()) bench_command.thesis = thesis_options;
   if (bench_app->parsed()) return bench(bench_command, log, stop_requested);

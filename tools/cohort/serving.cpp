@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "tools/cohort/controller_processes.hpp"
@@ -28,14 +29,32 @@ std::size_t process_count(const RunCommand& command, const description::Experime
   return command.controllers == Controllers::per_robot ? experiment.world.robots.size() : experiment.teams.size();
 }
 
+// Without security one for all.
+std::vector<std::optional<wire::Identity>> doors_of(const RunCommand& command) {
+  if (command.secure.empty()) return {std::nullopt};
+  std::vector<std::optional<wire::Identity>> doors;
+  for (wire::Identity& door : wire::read_doors(command.secure)) doors.emplace_back(std::move(door));
+  return doors;
+}
+
+// All of its doors or none.
+void open_domain(std::uint32_t domain, const RunCommand& command,
+                 const std::vector<std::optional<wire::Identity>>& doors,
+                 std::vector<wire::Participant>& participants) {
+  std::vector<wire::Participant> opened;
+  opened.reserve(doors.size());
+  for (const auto& door : doors) opened.push_back(wire::Participant::server(domain, command.network, door));
+  std::ranges::move(opened, std::back_inserter(participants));
+}
+
 // Outsiders need to know the domains: those given, or 0. Nobody but our own children needs to know ours: they are any
 // free ones, so that several runs on one machine do not meet.
 void open_domains(const RunCommand& command, bool has_outsiders, std::size_t processes,
                   std::vector<std::uint32_t>& domains, std::vector<wire::Participant>& participants) {
+  const std::vector<std::optional<wire::Identity>> doors = doors_of(command);
   if (!command.domains.empty() || has_outsiders) {
     domains = command.domains.empty() ? std::vector<std::uint32_t>{0} : command.domains;
-    for (const std::uint32_t domain : domains)
-      participants.push_back(wire::Participant::server(domain, command.network));
+    for (const std::uint32_t domain : domains) open_domain(domain, command, doors, participants);
     return;
   }
   const std::size_t wanted = std::max<std::size_t>(1, (processes + processes_per_domain - 1) / processes_per_domain);
@@ -43,7 +62,7 @@ void open_domains(const RunCommand& command, bool has_outsiders, std::size_t pro
   for (std::uint32_t i = 0; domains.size() < wanted && i < own_domain_count; ++i) {
     const std::uint32_t domain = first_own_domain + (start + i) % own_domain_count;
     try {
-      participants.push_back(wire::Participant::server(domain, command.network));
+      open_domain(domain, command, doors, participants);
       domains.push_back(domain);
     } catch (const wire::DomainTaken&) {
       if (i + 1 == own_domain_count && domains.empty()) throw;
@@ -81,8 +100,14 @@ Serving::Serving(const RunCommand& command, const description::Experiment& exper
   const bool external = command.controllers == Controllers::external;
   open_domains(command, external || has_keyboard(experiment), processes, domains_, participants_);
   server_.emplace(participants_);
-  const std::string serving = fmt::format("serving {} on {}, {}", counted(experiment.world.robots.size(), "robot"),
-                                          command.network, domains_text(domains_));
+  if (command.secure.empty() && !command.network.starts_with("127.") && command.network != "localhost")
+    log.warning(
+        fmt::format("whoever reaches {} can drive robots and end this run: there is no security. 'cohort security "
+                    "init DIR' makes identities for --secure DIR; without them, only use a network of your own",
+                    command.network));
+  const std::string serving =
+      fmt::format("serving {} on {}, {}{}", counted(experiment.world.robots.size(), "robot"), command.network,
+                  domains_text(domains_), command.secure.empty() ? "" : ", secure");
   const LogFields where = {{"address", command.network}, {"domain", domains_.front()}};
   if (external)
     log.notice(serving, where);
@@ -97,11 +122,14 @@ void Serving::start_controllers(const description::Experiment& experiment,
   if (command_.controllers == Controllers::external) return;
   for (const description::Team& team : experiment.teams)
     if (team.controller == keyboard_controller)
-      log_.notice(fmt::format("to drive team '{}', in another terminal: cohort teleop --robots {} --domain {}",
-                              team.name, selectors_of(team.robots), domains_.front()));
+      log_.notice(fmt::format(
+          "to drive team '{}', in another terminal: cohort teleop --robots {} --domain {}{}", team.name,
+          selectors_of(team.robots), domains_.front(),
+          command_.secure.empty() ? "" : " --secure " + identity_for(experiment, team, command_.secure).string()));
   const bool per_robot = command_.controllers == Controllers::per_robot;
-  children_ = std::make_unique<Children>(controller_processes(experiment, controllers, per_robot, domains_, log_),
-                                         listener_of_controllers(*server_, log_));
+  children_ = std::make_unique<Children>(
+      controller_processes(experiment, controllers, per_robot, domains_, command_.secure, log_),
+      listener_of_controllers(*server_, log_));
 }
 
 session::RunResult Serving::run(const description::Experiment& experiment, Simulation& simulation,

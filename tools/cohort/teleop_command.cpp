@@ -88,6 +88,7 @@ int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop
     ClientOptions options;
     options.server = command.server;
     if (!command.domains.empty()) options.domain = domain_of_this_process(command.domains);
+    options.secure = command.secure;
     options.robots = command.robots;
     options.name = "teleop";
     options.tell = [&](Severity severity, const std::string& text) {

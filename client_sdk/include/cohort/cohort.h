@@ -171,9 +171,9 @@ typedef struct CohortPlugin {
 /* For COHORT_C_CONTROLLER. `controller` has to live as long as what is made. */
 void* cohort_make_controller(const CohortController* controller);
 void cohort_destroy_controller(void* made);
-/* The `main` of a controller that runs as a process of its own: `--robots`, `--server`, `--domain`, `--help`. Returns
- * the exit code: 0 when the run finished, 1 when it or a controller failed, 2 for a mistake in the options or a refused
- * claim, 130 when interrupted. */
+/* The `main` of a controller that runs as a process of its own: `--robots`, `--server`, `--domain`, `--secure`,
+ * `--help`. Returns the exit code: 0 when the run finished, 1 when it or a controller failed, 2 for a mistake in the
+ * options or a refused claim, 130 when interrupted. */
 int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
 
 #ifdef COHORT_BUILDS_PLUGIN
@@ -212,6 +212,7 @@ typedef struct CohortOptions {
   uint32_t domain;    /* the server's DDS domain */
   const char* robots; /* selectors with commas between, such as `0..3,explorers/sbot_7`; all if NULL */
   const char* name;   /* shown by the server; "controller" if NULL */
+  const char* secure; /* folder of an identity that `cohort security` has made; without security if NULL */
 } CohortOptions;
 
 typedef enum CohortEventKind {

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <memory>
+
+#include "idl/wire.hpp"
+#include "tests/support/keys.hpp"
+#include "tests/support/sbot_layout.hpp"
+
+// With security an identity drives its own robots, and nobody else has any effect.
+namespace cohort::testing {
+namespace {
+
+constexpr std::uint64_t blue_id = 0xb1e;  // of the client that these tests play themselves
+
+std::vector<std::string> host(const std::string& robots, const ReservedDomain& domain, const std::string& identity) {
+  return {cohort_program(), "host",        "obstacle_avoidance", "--robots", robots,
+          "--domain",       domain.text(), "--secure",           identity};
+}
+
+TEST(OnlyIdentitiesDrive, AndTheRunHasTheBitsThatItHasWithoutSecurity) {
+  const ScratchFolder folder;
+  const std::string keys = (folder / "keys").string();
+  const Ended made = run_to_end(
+      {cohort_program(), "security", "init", keys, "--client", "red=0..3,explorers/sbot_4", "--client", "blue=5..15"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string expected = reference_hash(3);
+  {
+    const ReservedDomain domain;
+    Process server({cohort_program(), "serve", demo_experiment(), "--duration", "3", "--domain", domain.text()},
+                   {{"COHORT_SECURE", keys}});
+    Process red(host("0..4", domain, keys + "/clients/red"));
+    Process blue({COHORT_BUILD_DIR "/bin/obstacle_avoidance", "--robots", "5..15", "--domain", domain.text(),
+                  "--secure", keys + "/clients/blue"});
+    EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+    EXPECT_EQ(red.wait_for_exit(), 0) << red.output();
+    EXPECT_EQ(blue.wait_for_exit(), 0) << blue.output();
+    EXPECT_NE(server.output().find(expected), std::string::npos) << server.output();
+  }
+  // Its own controllers need an identity that may drive their team.
+  const std::vector<std::string> run = {cohort_program(), "run", demo_experiment(), "--duration", "3",
+                                        "--secure",       keys};
+  const Ended refused = run_to_end(run);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("no client of " + keys + " may drive all robots of team 'explorers'"), std::string::npos)
+      << refused.err;
+  ASSERT_EQ(run_to_end({cohort_program(), "security", "add", keys, "all", "--robots", "all"}).exit_code, 0);
+  const Ended done = run_to_end(run);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_NE(done.out.find(expected), std::string::npos) << done.out;
+}
+
+// Blue, who drives 8 to 15 as it always does, and holds its answers back from tick 100 on until it is told to go on.
+class Blue {
+ public:
+  Blue(const ReservedDomain& domain, const Keys& keys, bool holds_back)
+      : goes_on(!holds_back),
+        participant_(wire::Participant::client(domain.number(), "127.0.0.1", keys.client("blue"))),
+        commands_(participant_),
+        join_(participant_),
+        observations_(participant_, {[this](const auto& frame, const auto&) { answer(frame); }, {}},
+                      wire::partition_of(blue_id)) {
+    join_.write({.client = blue_id, .controller = "hand-written", .host = "here", .robots = {"8..15"}});
+  }
+  std::atomic<bool> goes_on;
+
+ private:
+  void answer(const wire::Observation& frame) {
+    if (frame.tick >= 100 && !goes_on) return;
+    const std::vector<double> drive(frame.robots.size() * sbot_command_size, 0.05);
+    commands_.write({blue_id, frame.run, frame.epoch, frame.tick, frame.robots, drive});
+  }
+  wire::Participant participant_;
+  wire::Writer<wire::Command> commands_;
+  wire::Writer<wire::Join> join_;
+  wire::Reader<wire::Observation> observations_;
+};
+
+std::unique_ptr<Process> attacker(const ReservedDomain& domain, const std::string& identity) {
+  std::vector<std::string> command = {COHORT_BUILD_DIR "/bin/send_bad_commands", domain.text(),
+                                      std::to_string(blue_id)};
+  if (!identity.empty()) command.push_back(identity);
+  return std::make_unique<Process>(command);
+}
+
+TEST(OnlyIdentitiesDrive, AndOthersLeaveTheRunItsBitsWhateverTheyTry) {
+  // What observers may do is not left to the certificates of this one, nor is it to those of others' programs.
+  const Keys keys("sign", 30, wire::Role::controller), others;
+  const auto run = [&](bool attacked) {
+    const ReservedDomain domain;
+    const ScratchFolder folder;
+    Process server({cohort_program(), "serve", demo_experiment(), "--duration", "2", "--domain", domain.text(),
+                    "--secure", keys.folder(), "--summary", (folder / "summary.json").string()});
+    Process red(host("0..7", domain, keys.client_folder("red")));
+    Blue blue(domain, keys, attacked);
+    // All in blue's name: without an identity, with one of another making, with red's at blue's door …
+    std::vector<std::unique_ptr<Process>> outside;
+    // … and these get in, at their own doors: red, and an observer.
+    std::vector<std::unique_ptr<Process>> inside;
+    if (attacked) {
+      EXPECT_TRUE(server.wait_for_output("waiting for explorers/sbot_8 and 7 more: hand-written")) << server.output();
+      for (const std::string& identity : {std::string(), others.client_folder("blue"), keys.disguise("red", "blue")})
+        outside.push_back(attacker(domain, identity));
+      for (const char* name : {"red", "observer"}) inside.push_back(attacker(domain, keys.client_folder(name)));
+      for (const auto& each : inside) EXPECT_TRUE(each->wait_for_output("sent a thousand")) << each->output();
+      blue.goes_on = true;
+    }
+    EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+    for (const auto& each : outside) EXPECT_EQ(each->output().find("sending"), std::string::npos) << each->output();
+    return nlohmann::json::parse(std::ifstream(folder / "summary.json"));
+  };
+  const auto quiet = run(false);
+  const auto attacked = run(true);
+  EXPECT_EQ(attacked["state_hash"], quiet["state_hash"]);
+  EXPECT_EQ(attacked["ticks"], 200);
+  std::uint64_t foreign = 0;
+  for (const auto& event : attacked["events"])
+    if (event["kind"] == "rejected" && event["text"].get<std::string>().starts_with("foreign"))
+      foreign += event["count"].get<std::uint64_t>();
+  EXPECT_GT(foreign, 1000u) << attacked.dump(1);
+}
+
+TEST(OnlyIdentitiesDrive, AndWhoClaimsMoreThanItMayIsRefusedByName) {
+  const Keys keys("sign", 30, wire::Role::controller);
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", demo_experiment(), "--domain", domain.text(), "--secure", keys.folder()});
+  Process red(host("7,8", domain, keys.client_folder("red")));
+  EXPECT_EQ(red.wait_for_exit(), 2);
+  EXPECT_NE(red.output().find("its identity 'red' may drive 0..7, not explorers/sbot_8"), std::string::npos)
+      << red.output();
+  wire::Identity identity = keys.client("observer");
+  identity.role = wire::Role::controller;
+  write_file(keys.client_folder("observer") + "/identity", wire::identity_text(identity));
+  Process observer(host("0", domain, keys.client_folder("observer")));
+  EXPECT_EQ(observer.wait_for_exit(), 2);
+  EXPECT_NE(observer.output().find("its identity 'observer' may look on, and drive no robot"), std::string::npos)
+      << observer.output();
+  EXPECT_TRUE(server.wait_for_output("refused: ")) << server.output();
+}
+
+TEST(OnlyIdentitiesDrive, AndAServerOnANetworkWithoutSecurityWarns) {
+  const ReservedDomain domain;
+  const std::string script = "ip link set lo up && ip addr add 10.77.0.1/32 dev lo && exec \"$@\"";
+  if (run_to_end({"/bin/sh", "-c", "unshare -rn true"}).exit_code != 0) GTEST_SKIP() << "no network namespaces here";
+  for (const std::string address : {"10.77.0.1", "127.0.0.1"}) {
+    Process server({"/usr/bin/unshare", "-rn", "/bin/sh", "-c", script, "sh", cohort_program(), "serve",
+                    demo_experiment(), "--domain", domain.text(), "--network", address});
+    EXPECT_TRUE(server.wait_for_output("serving 16 robots")) << server.output();
+    const bool warns = server.output().find("warning: whoever reaches 10.77.0.1 can drive robots") != std::string::npos;
+    EXPECT_EQ(warns, address == "10.77.0.1") << server.output();
+  }
+}
+
+}  // namespace
+}  // namespace cohort::testing

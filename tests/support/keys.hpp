@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "idl/identity.hpp"
+#include "tests/support/process.hpp"
+#include "tools/cohort/certificates.hpp"
+
+namespace cohort::testing {
+
+/// Identities of one server, as `cohort security init` makes them: observer, red for the robots 0..7 and blue
+/// for 8..15.
+class Keys {
+ public:
+  /// `observers_side`: what an observer's certificates let it do. As a controller it stands for a program that does not
+  /// keep to what it may.
+  explicit Keys(const std::string& protection = "sign", unsigned days = 30,
+                wire::Role observers_side = wire::Role::observer) {
+    make({.name = "observer", .role = observers_side, .door = wire::observers_door}, protection, days);
+    make({.name = "red", .door = 1, .robots = {"0..7"}}, protection, days);
+    make({.name = "blue", .door = 2, .robots = {"8..15"}}, protection, days);
+  }
+
+  std::string folder() const { return folder_.path().string(); }
+  std::string client_folder(const std::string& name) const { return (folder_.path() / "clients" / name).string(); }
+  wire::Identity client(const std::string& name) const { return wire::read_identity(client_folder(name)); }
+  wire::Identity door(const std::string& name) const { return wire::read_identity(folder_.path() / "server" / name); }
+
+  /// What `name` holds, pretending to be for the door of `other`.
+  std::string disguise(const std::string& name, const std::string& other) const {
+    const std::filesystem::path to = folder_.path() / (name + "_at_" + other);
+    std::filesystem::copy(client_folder(name), to);
+    wire::Identity identity = client(name);
+    identity.door = client(other).door;
+    write_file(to / "identity", wire::identity_text(identity));
+    return to.string();
+  }
+
+ private:
+  void make(tool::NewIdentity identity, const std::string& protection, unsigned days) const {
+    identity.protection = protection;
+    tool::make_door(identity, folder_.path() / "server" / identity.name, folder_.path() / "clients" / identity.name,
+                    days);
+  }
+
+  ScratchFolder folder_;
+};
+
+}  // namespace cohort::testing

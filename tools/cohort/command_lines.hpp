@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "tools/cohort/commands.hpp"
+
+/// What the command lines of larger commands hold. `command` is filled in when they are parsed.
+namespace cohort::tool {
+
+void add_security_commands(CLI::App& app, SecurityCommand& command);
+void add_doctor_options(CLI::App& app, DoctorCommand& command);
+
+}  // namespace cohort::tool

@@ -34,6 +34,8 @@ struct RunListener {
   std::function<void(const Event&)> event{};        ///< the first of its kind and text
   std::function<void()> boundary{};                 ///< the first frame is about to go out, or a step is done
   std::function<void()> ending{};                   ///< the run is over, controllers are about to be told
+  /// A tick has its answers: the wall time since its first frame was sent.
+  std::function<void(std::chrono::nanoseconds)> barrier{};
 };
 
 struct RunResult {
@@ -87,7 +89,10 @@ class RunBook {
   /// When the next tick may begin at the asked speed.
   Clock::time_point due_time() const;
   void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
-  void add_barrier(std::chrono::nanoseconds latency) { result_.barrier.add(latency); }
+  void add_barrier(std::chrono::nanoseconds latency) {
+    result_.barrier.add(latency);
+    if (listener_.barrier) listener_.barrier(latency);
+  }
   void add_late() { ++result_.late; }
   /// Closes the books.
   RunResult finish(RunResult::End end, std::string error = {});

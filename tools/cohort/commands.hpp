@@ -12,6 +12,8 @@
 #include "tools/bench/thesis.hpp"
 #include "tools/cohort/log.hpp"
 #include "tools/cohort/run_trace.hpp"
+#include "tools/lockstep/bench_client.hpp"
+#include "tools/lockstep/lockstep.hpp"
 
 /// The commands of `cohort`, one file each. Every command returns the process's exit code.
 namespace cohort::tool {
@@ -86,8 +88,11 @@ int help(const std::string& topic, Log& log);
 
 struct BenchCommand {
   bench::Options options;
-  std::optional<bench::ThesisOptions> thesis;  ///< the thesis's tables, in place of the scenes
-  std::filesystem::path json;                  ///< file to write; empty: none
+  std::optional<bench::ThesisOptions> thesis;      ///< the thesis's tables, in place of the scenes
+  std::optional<bench::LockstepOptions> lockstep;  ///< the barrier, in place of the scenes
+  std::optional<bench::BenchClient> client;        ///< be one of its processes
+  std::filesystem::path json;                      ///< file to write; empty: none
+  std::filesystem::path svg;                       ///< the same: lockstep's graph
 };
 int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop);
 

@@ -106,7 +106,7 @@ Codec<Admit>::Outgoing::Outgoing(const Admit& message) {
   }
   for (const AdmittedRobot& robot : message.robots) {
     robots.push_back({robot.robot, lent(robot.name), robot.team, robot.description, robot.seed, robot.period,
-                      robot.phase, robot.delay});
+                      robot.phase, robot.delay, static_cast<std::uint32_t>(robot.mode)});
   }
   sample.client = message.client;
   sample.status = static_cast<std::uint32_t>(message.status);
@@ -137,7 +137,7 @@ Admit Codec<Admit>::decode(const Sample& sample) {
   }
   for (const cohort_v1_AdmittedRobot& robot : to_span(sample.robots)) {
     message.robots.push_back({robot.robot, to_string(robot.name), robot.team, robot.description, robot.seed,
-                              robot.period, robot.phase, robot.delay});
+                              robot.period, robot.phase, robot.delay, static_cast<Mode>(robot.mode)});
   }
   return message;
 }

@@ -18,6 +18,7 @@ struct Channel {
   double lower = 0.0;
   double upper = 0.0;
   double neutral = 0.0;
+  bool operator==(const Channel&) const = default;
 };
 
 struct Join {
@@ -40,6 +41,8 @@ struct Team {
   std::vector<Parameter> parameters{};
 };
 
+enum class Mode : std::uint32_t { lockstep = 0, free = 1 };
+
 struct AdmittedRobot {
   std::uint32_t robot = 0;
   std::string name{};
@@ -49,6 +52,7 @@ struct AdmittedRobot {
   std::uint32_t period = 1;
   std::uint32_t phase = 0;
   std::uint32_t delay = 0;
+  Mode mode = Mode::lockstep;
 };
 
 enum class AdmitStatus : std::uint32_t { admitted = 0, refused = 1 };

@@ -1,6 +1,7 @@
 #include "client_sdk/src/frame_queue.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace cohort {
@@ -20,6 +21,7 @@ void FrameQueue::begin(const wire::Admit& admit) {
   client_ = admit.client;
   next_tick_ = admit.tick;
   longest_delay_ = 0;
+  newest_only_ = std::ranges::all_of(admit.robots, [](auto& robot) { return robot.mode == wire::Mode::free; });
   schedules_.clear();
   for (const wire::AdmittedRobot& robot : admit.robots) {
     longest_delay_ = std::max<std::uint64_t>(longest_delay_, robot.delay);
@@ -70,12 +72,23 @@ void FrameQueue::arrive(const wire::Observation& frame) {
 
 const wire::Observation* FrameQueue::next() {
   if (!lease_ || waiting_.empty()) return nullptr;
+  if (newest_only_) drop_older();
   Frame& first = waiting_.front();
   if (Lease(first.head.run, first.head.epoch) != *lease_ || !in_order(first)) return nullptr;
   next_tick_ = first.head.tick + 1;
   under_way_ = std::move(first);
   waiting_.erase(waiting_.begin());
   return &under_way_.head;
+}
+
+// Of the frames of this lease all but the last.
+void FrameQueue::drop_older() {
+  const auto end = std::find_if(waiting_.begin(), waiting_.end(), [&](const Frame& frame) {
+    return Lease(frame.head.run, frame.head.epoch) != *lease_;
+  });
+  if (end - waiting_.begin() < 2) return;
+  std::move(waiting_.begin(), end - 1, std::back_inserter(spare_));
+  waiting_.erase(waiting_.begin(), end - 1);
 }
 
 wire::Command FrameQueue::finish(std::span<const double> values) {
@@ -111,6 +124,7 @@ const FrameQueue::Answer* FrameQueue::find_answer(std::uint64_t tick) const {
 // While it has the newest frame out, the server waits for the answers of the `delay` ticks before it; older ones it has
 // got or given up.
 bool FrameQueue::in_order(const Frame& frame) const {
+  if (newest_only_) return true;
   if (frame.came_again >= patience) return true;
   std::uint64_t newest = frame.head.tick;
   for (const Frame& other : waiting_) {

@@ -12,8 +12,9 @@
 namespace cohort {
 
 /// The frames of one client between arrival and answer (docs/protocol.md, "Frames and answers"): answers each one of a
-/// lease once, in tick order, and keeps the latest answers for frames that the server sends again. Pure logic, no
-/// thread of its own, no clock; allocates nothing once the frames have their size.
+/// lease once, in tick order, and keeps the latest answers for frames that the server sends again. Of a lease whose
+/// robots are all free, only the newest. Pure logic, no thread of its own, no clock; allocates nothing once the frames
+/// have their size.
 class FrameQueue {
  public:
   /// A lease begins: forgets the answers, and drops the frames of other leases but those of later ones.
@@ -50,6 +51,7 @@ class FrameQueue {
   };
   using Lease = std::tuple<std::uint32_t, std::uint64_t>;  // run, epoch
 
+  void drop_older();
   bool in_order(const Frame& frame) const;
   std::uint64_t next_due(std::uint64_t tick) const;
   const Answer* find_answer(std::uint64_t tick) const;
@@ -59,6 +61,7 @@ class FrameQueue {
   std::uint64_t client_ = 0;
   std::uint64_t next_tick_ = 0;  // all before it are answered or under way
   std::uint64_t longest_delay_ = 0;
+  bool newest_only_ = false;  // nobody waits for answers: older frames are not worth one
   std::vector<Schedule> schedules_;
   std::size_t answers_kept_ = 0;
 

@@ -1,5 +1,4 @@
 #include <atomic>
-#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +7,7 @@
 #include <string_view>
 
 #include "client_sdk/src/client.hpp"
+#include "client_sdk/src/domains.hpp"
 
 namespace cohort {
 namespace {
@@ -25,7 +25,7 @@ Drives robots of a running simulation until the run ends.
   --robots SEL[,SEL...]  which robots: all, an id (3), a range of ids (0..7), a name (explorers/sbot_7), or a name
                          with * in it (explorers/*). Default: all
   --server ADDRESS       the server's IPv4 address or host name. Default: $COHORT_SERVER, or 127.0.0.1
-  --domain N             the server's DDS domain. Default: $COHORT_DOMAIN, or 0
+  --domain N|A..B        the server's DDS domain, or a range of which one is used. Default: $COHORT_DOMAIN, or 0
   --help                 this text
 
 Exit code: 0 when the run finished, 1 when it failed, the server was lost or another process took over, 2 for a mistake
@@ -52,12 +52,11 @@ class UsageError : public std::runtime_error {
 };
 
 std::uint32_t parse_domain(std::string_view text) {
-  std::uint32_t domain = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw UsageError("'" + std::string(text) + "' is not the number of a domain");
+  try {
+    return domain_of_this_process(parse_domains(text));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
   }
-  return domain;
 }
 
 struct Arguments {

@@ -14,13 +14,21 @@ namespace cohort::description {
 
 enum class OnLate { wait, hold, zero, detach, stop };
 
+enum class Mode {
+  lockstep,  ///< the world waits for each answer, as `on_late` says
+  free,      ///< never waited for; the newest answer acts from the tick after which it came
+};
+
 /// When a robot's controller is asked, and what happens when it does not answer (docs/semantics.md).
 struct Policy {
   std::uint32_t period = 1;  ///< asked every `period` ticks, >= 1
   std::uint32_t phase = 0;   ///< first asked at this tick, < period
   std::uint32_t delay = 0;   ///< the answer to frame k acts at tick k + delay
   OnLate on_late = OnLate::wait;
-  std::chrono::nanoseconds deadline{0};  ///< wall-clock patience per tick; only read if on_late is not wait
+  /// Wall-clock patience: per tick; if free, since the last answer, zero being for ever. Not read under `wait`.
+  std::chrono::nanoseconds deadline{0};
+  Mode mode = Mode::lockstep;
+  bool required = true;  ///< the run does not start, or go on, without a controller
 };
 
 /// What to do about a controller process that dies.

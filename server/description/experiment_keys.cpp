@@ -25,6 +25,7 @@ constexpr ExtensionKey experiment[] = {
 };
 
 constexpr std::string_view late_policies[] = {"wait", "hold", "zero", "detach", "stop"};
+constexpr std::string_view modes[] = {"lockstep", "free"};
 constexpr std::string_view restarts[] = {"on_failure", "never"};
 
 constexpr ExtensionKey team[] = {
@@ -35,9 +36,14 @@ constexpr ExtensionKey team[] = {
     {"period", count, "ticks", "1", "asked every so many ticks"},
     {"phase", whole, "ticks", "0", "first asked at this tick; less than the period"},
     {"delay", whole, "ticks", "0", "the answer to tick k acts at k + delay"},
-    {"on_late", choice, "", "wait", "`wait`, `hold`, `zero`, `detach` or `stop`", false, late_policies},
+    {"mode", choice, "", "lockstep", "`lockstep`, or `free`: never waited for, for people and hardware; see below", false,
+     modes},
+    {"on_late", choice, "", "wait", "`wait`, `hold`, `zero`, `detach` or `stop`; `hold` by default if free", false,
+     late_policies},
     {"deadline", positive, "s", no_value,
-     "wall-clock patience per tick; required unless `wait`, under which it has no place"},
+     "wall-clock patience per tick; required unless `wait`, under which it has no place. If free, since the last answer"},
+    {"required", flag, "", "true",
+     "whether the run waits for a controller to begin, and for a new one when it is lost; `false` by default if free"},
     {"restart", choice, "", "on_failure",
      "a controller process of `cohort run` that dies is started again, up to three times (`on_failure`), or ends the "
      "run (`never`)",

@@ -55,6 +55,19 @@ std::optional<std::chrono::nanoseconds> read_seconds(const YamlMap& map, const s
   return std::nullopt;
 }
 
+Mode read_mode(const YamlMap& team) {
+  const std::string mode = team.text("mode").value_or("lockstep");
+  if (mode == "free") return Mode::free;
+  if (mode != "lockstep") team.problem("mode", "unknown mode '" + mode + "'" + suggestion(mode, {"lockstep", "free"}));
+  return Mode::lockstep;
+}
+
+bool read_required(const YamlMap& team, bool if_absent) {
+  const std::string required = team.text("required").value_or(if_absent ? "true" : "false");
+  if (required != "true" && required != "false") team.problem("required", "expected true or false, not '" + required + "'");
+  return required == "true";
+}
+
 Policy read_policy(const YamlMap& team) {
   Policy policy;
   // False if the key is there and its value is wrong.
@@ -69,7 +82,12 @@ Policy read_policy(const YamlMap& team) {
   if (period_is_right && policy.phase >= policy.period)
     team.problem("phase", "expected less than the period, " + std::to_string(policy.period));
 
-  const std::string on_late = team.text("on_late").value_or("wait");
+  policy.mode = read_mode(team);
+  const bool is_free = policy.mode == Mode::free;
+  if (is_free && policy.delay != 0) team.problem("delay", "has no meaning with mode: free, whose answers act as they come");
+  policy.required = read_required(team, !is_free);
+
+  const std::string on_late = team.text("on_late").value_or(is_free ? "hold" : "wait");
   const auto found =
       std::find_if(late_policies.begin(), late_policies.end(), [&](const auto& each) { return each.first == on_late; });
   if (found == late_policies.end()) {
@@ -78,7 +96,12 @@ Policy read_policy(const YamlMap& team) {
   }
   policy.on_late = found->second;
   if (policy.on_late == OnLate::wait) {
+    if (is_free) team.problem("on_late", "nobody waits under mode: free; expected hold, zero, detach or stop");
     if (team.has("deadline")) team.problem("deadline", "has no meaning with on_late: wait, which waits for ever");
+    return policy;
+  }
+  if (is_free && policy.on_late == OnLate::hold) {
+    if (team.has("deadline")) team.problem("deadline", "has no meaning with mode: free, which holds the last command anyway");
     return policy;
   }
   team.require("deadline", "how long to wait before '" + on_late + "', in seconds");

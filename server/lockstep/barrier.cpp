@@ -16,14 +16,31 @@ Barrier::Barrier(std::vector<description::Policy> policies, const std::vector<st
   }
 }
 
+void Barrier::set_driven(std::uint32_t robot, bool driven) {
+  Robot& r = robots_[robot];
+  if (r.driven == driven) return;
+  r.driven = driven;
+  if (driven) {
+    // What it was asked when somebody else drove it is forgotten.
+    for (Answer& answer : r.answers) answer = {Answer::State::none, false, std::move(answer.values)};
+    r.answered.reset();
+    r.silent = false;
+    r.heard_at = opened_at_;
+  } else {
+    settle(r);
+  }
+}
+
 void Barrier::open(std::uint64_t tick, Time now) {
+  if (tick == 0)
+    for (Robot& robot : robots_) robot.heard_at = now;
   tick_ = tick;
   opened_at_ = now;
   awaited_count_ = 0;
   for (Robot& robot : robots_) {
     Answer& answer = answer_of(robot, tick);  // to the frame that goes out now
     answer.state = Answer::State::none;
-    answer.asked = robot.present && is_asked(robot, tick);
+    answer.asked = robot.present && robot.driven && is_asked(robot, tick);
     const auto frame = acting_frame(robot);
     robot.awaited = frame && answer_of(robot, *frame).state == Answer::State::none;
     if (robot.awaited) ++awaited_count_;
@@ -32,13 +49,13 @@ void Barrier::open(std::uint64_t tick, Time now) {
 
 bool Barrier::is_due(std::uint32_t robot, std::uint64_t tick) const {
   const Robot& r = robots_[robot];
-  if (r.detached) return false;
+  if (r.detached || !r.driven) return false;
   const bool is_under_way = tick <= tick_ && tick + r.policy.delay >= tick_;
   return is_under_way ? answer_of(r, tick).asked : is_asked(r, tick);
 }
 
 std::optional<std::uint64_t> Barrier::acting_frame(const Robot& robot) const {
-  if (tick_ < robot.policy.delay) return std::nullopt;
+  if (tick_ < robot.policy.delay || is_free(robot)) return std::nullopt;
   const std::uint64_t frame = tick_ - robot.policy.delay;
   if (!is_due(static_cast<std::uint32_t>(&robot - robots_.data()), frame)) return std::nullopt;
   return frame;
@@ -47,6 +64,11 @@ std::optional<std::uint64_t> Barrier::acting_frame(const Robot& robot) const {
 Barrier::Verdict Barrier::judge(std::uint32_t robot, std::uint64_t frame_tick) const {
   const Robot& r = robots_[robot];
   if (frame_tick > tick_) return Verdict::early;
+  if (is_free(r)) {
+    if (r.detached || (r.answered && frame_tick < *r.answered)) return Verdict::stale;
+    if (r.answered == frame_tick) return Verdict::repeated;
+    return is_due(robot, frame_tick) ? Verdict::accepted : Verdict::early;
+  }
   if (frame_tick + r.policy.delay < tick_ || r.detached) return Verdict::stale;
   if (!is_due(robot, frame_tick)) return Verdict::early;
   switch (answer_of(r, frame_tick).state) {
@@ -56,7 +78,14 @@ Barrier::Verdict Barrier::judge(std::uint32_t robot, std::uint64_t frame_tick) c
   }
 }
 
-void Barrier::answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values) {
+void Barrier::answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values, Time now) {
+  if (Robot& r = robots_[robot]; is_free(r)) {
+    std::ranges::copy(values, r.answers.front().values.begin());
+    r.answered = frame_tick;
+    r.heard_at = now;
+    r.silent = false;
+    return;
+  }
   Answer& slot = answer_of(robots_[robot], frame_tick);
   slot.state = Answer::State::given;
   std::ranges::copy(values, slot.values.begin());
@@ -65,7 +94,10 @@ void Barrier::answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<co
 
 void Barrier::refuse(std::uint32_t robot, std::uint64_t frame_tick) {
   Robot& r = robots_[robot];
-  answer_of(r, frame_tick).state = Answer::State::refused;
+  if (is_free(r))
+    r.silent = true;
+  else
+    answer_of(r, frame_tick).state = Answer::State::refused;
   if (acting_frame(r) == frame_tick) settle(r);
   if (r.policy.on_late == OnLate::detach) {
     settle(r);
@@ -104,24 +136,40 @@ std::optional<Time> Barrier::next_deadline() const {
   return next;
 }
 
+bool Barrier::is_too_late(const Robot& robot, Time now) const {
+  return robot.awaited && robot.policy.on_late != OnLate::wait && now >= opened_at_ + robot.policy.deadline;
+}
+
+bool Barrier::is_too_silent(const Robot& robot, Time now) {
+  const bool is_told = robot.silent || robot.detached || !robot.driven || !robot.present;
+  return !is_told && robot.policy.deadline.count() != 0 && now >= robot.heard_at + robot.policy.deadline;
+}
+
 std::vector<Barrier::Miss> Barrier::expire(Time now) {
   std::vector<Miss> misses;
   for (std::uint32_t id = 0; id < robots_.size(); ++id) {
     Robot& robot = robots_[id];
-    if (!robot.awaited || robot.policy.on_late == OnLate::wait) continue;
-    if (now < opened_at_ + robot.policy.deadline) continue;
-    const std::uint64_t frame = *acting_frame(robot);
-    answer_of(robot, frame).state = Answer::State::missed;
+    if (is_free(robot) ? !is_too_silent(robot, now) : !is_too_late(robot, now)) continue;
+    const std::uint64_t frame = acting_frame(robot).value_or(tick_);
+    if (is_free(robot))
+      robot.silent = true;
+    else
+      answer_of(robot, frame).state = Answer::State::missed;
     settle(robot);
     robot.detached = robot.policy.on_late == OnLate::detach;
-    misses.push_back({id, frame, robot.policy.on_late, now - opened_at_});
+    misses.push_back({id, frame, robot.policy.on_late, now - (is_free(robot) ? robot.heard_at : opened_at_)});
   }
   return misses;
 }
 
 Barrier::Outcome Barrier::outcome(std::uint32_t robot) const {
   const Robot& r = robots_[robot];
-  if (r.detached) return {Outcome::Kind::neutral, {}};
+  if (r.detached || !r.driven) return {Outcome::Kind::neutral, {}};
+  if (is_free(r)) {
+    if (r.silent && r.policy.on_late != OnLate::hold) return {Outcome::Kind::neutral, {}};
+    if (!r.answered) return {};
+    return {Outcome::Kind::command, r.answers.front().values};
+  }
   const auto frame = acting_frame(r);
   if (!frame) return {};
   const Answer& answer = answer_of(r, *frame);

@@ -17,7 +17,7 @@ using Time = std::chrono::nanoseconds;
 /// clock, knows no network and never blocks. Not thread-safe.
 ///
 /// At tick k a robot's answer to frame k - delay is needed, if that frame was due; up to delay + 1 frames are under
-/// way.
+/// way. A robot that is free is asked too, but nothing is needed of it: the newest answer that has come acts.
 class Barrier {
  public:
   /// `policies` and `command_sizes` (float64 values) by robot.
@@ -27,12 +27,16 @@ class Barrier {
   /// all are. Frames under way stay as they are.
   void set_present(std::uint32_t robot, bool present) { robots_[robot].present = present; }
 
+  /// Whether somebody drives the robot, from the tick on that is opened next; taken away, from now on: then it is no
+  /// longer awaited, and has its neutral values. At first all are driven.
+  void set_driven(std::uint32_t robot, bool driven);
+
   /// Starts tick `tick` at time `now`; the first call has tick 0, each further one the next tick. The tick before must
   /// be complete.
   void open(std::uint64_t tick, Time now);
 
   std::uint64_t tick() const { return tick_; }
-  /// Whether the robot is asked at this tick, detached ones and those that are not in the world then aside.
+  /// Whether the robot is asked at this tick: one that is detached, not driven or not in the world is not.
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   enum class Verdict {
@@ -43,8 +47,8 @@ class Barrier {
   };
   /// Whether an answer to the frame of `frame_tick` would be accepted.
   Verdict judge(std::uint32_t robot, std::uint64_t frame_tick) const;
-  /// Takes an answer that `judge` accepts.
-  void answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values);
+  /// Takes an answer that `judge` accepts. `now` counts for those that are free.
+  void answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values, Time now = Time{0});
   /// An answer that cannot act: a miss at once. Under `wait` nothing else can come of it, so the run has to stop.
   void refuse(std::uint32_t robot, std::uint64_t frame_tick);
 
@@ -63,9 +67,11 @@ class Barrier {
     description::OnLate consequence;
     Time waited;
   };
-  /// When `expire` has something to do next; never if nobody who is awaited has a deadline.
+  /// When `expire` has something to do next while the tick is not complete; never if nobody who is awaited has a
+  /// deadline.
   std::optional<Time> next_deadline() const;
-  /// Gives up on those whose deadline has passed. Each is a miss, and no longer awaited.
+  /// Gives up on those whose deadline has passed. Each is a miss, and no longer awaited. One that is free misses once for
+  /// each silence.
   std::vector<Miss> expire(Time now);
 
   struct Outcome {
@@ -90,8 +96,13 @@ class Barrier {
     description::Policy policy;
     std::vector<Answer> answers;  // by frame tick, modulo delay + 1
     bool present = true;
+    bool driven = true;
     bool awaited = false;
     bool detached = false;
+    // Of a free one.
+    std::optional<std::uint64_t> answered{};  // the frame whose answer acts, in the first of `answers`
+    Time heard_at{0};                         // of the last answer, or the opening before the first
+    bool silent = false;                      // for too long
   };
   static Answer& answer_of(Robot& robot, std::uint64_t frame_tick) {
     return robot.answers[frame_tick % robot.answers.size()];
@@ -102,6 +113,9 @@ class Barrier {
   /// The frame whose answer acts at this tick, if there is one.
   std::optional<std::uint64_t> acting_frame(const Robot& robot) const;
   void settle(Robot& robot);
+  bool is_too_late(const Robot& robot, Time now) const;
+  static bool is_too_silent(const Robot& robot, Time now);
+  static bool is_free(const Robot& robot) { return robot.policy.mode == description::Mode::free; }
   /// By the robot's policy alone.
   static bool is_asked(const Robot& robot, std::uint64_t tick) {
     return tick >= robot.policy.phase && (tick - robot.policy.phase) % robot.policy.period == 0;

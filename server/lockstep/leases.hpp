@@ -16,7 +16,8 @@ namespace cohort::lockstep {
 /// started again before its death is noticed, and nobody takes robots from a controller that works.
 class Leases {
  public:
-  explicit Leases(std::uint32_t robot_count) : holder_(robot_count) {}
+  explicit Leases(std::uint32_t robot_count, std::uint64_t first_epoch = 1)
+      : holder_(robot_count), next_epoch_(first_epoch) {}
 
   struct Lease {
     std::uint64_t epoch = 0;
@@ -53,6 +54,7 @@ class Leases {
   const Lease* lease(std::uint64_t client) const;
   const std::map<std::uint64_t, Lease>& all() const { return leases_; }
   std::optional<std::uint64_t> holder(std::uint32_t robot) const { return holder_[robot]; }
+  std::uint64_t next_epoch() const { return next_epoch_; }
   bool has_claims() const { return !claims_.empty(); }
 
   /// The client, which has a lease, answered a frame: it lives, whatever liveliness said last.
@@ -76,7 +78,7 @@ class Leases {
   std::map<std::uint64_t, Lease> leases_;             // by client
   std::map<std::uint64_t, std::uint64_t> answers_;    // by client
   std::vector<Claim> claims_;
-  std::uint64_t next_epoch_ = 1;
+  std::uint64_t next_epoch_;
 };
 
 }  // namespace cohort::lockstep

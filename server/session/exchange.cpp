@@ -67,7 +67,8 @@ void Exchange::fill_frame(Frame& frame, std::span<const std::uint32_t> robots, s
 }
 
 Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_t frame_tick,
-                               std::span<const std::uint32_t> robots, std::span<const double> values) {
+                               std::span<const std::uint32_t> robots, std::span<const double> values,
+                               lockstep::Time now) {
   Taken taken;
   const auto reject = [&](std::string reason, std::string text) {
     if (!taken.rejection) taken.rejection = Rejection{std::move(reason), std::move(text)};
@@ -108,7 +109,7 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
           taken.ends_run |= on_late == description::OnLate::wait || on_late == description::OnLate::stop;
           barrier_.refuse(robot, frame_tick);
         } else {
-          barrier_.answer(robot, frame_tick, values.first(size));
+          barrier_.answer(robot, frame_tick, values.first(size), now);
           ++taken.accepted;
         }
         break;

@@ -40,9 +40,9 @@ class Exchange {
     bool is_fault = false;               ///< the values cannot act on some robot: a miss at once
     bool ends_run = false;               ///< and that robot's policy has no way to go on
   };
-  /// Takes the answer to a frame that was sent to the holder of `held`.
+  /// Takes the answer to a frame that was sent to the holder of `held`, at time `now`.
   Taken take(std::span<const std::uint32_t> held, std::uint64_t frame_tick, std::span<const std::uint32_t> robots,
-             std::span<const double> values);
+             std::span<const double> values, lockstep::Time now = lockstep::Time{0});
 
   /// Gives the complete tick's outcomes to the simulation, in the order of the robots.
   void apply();

@@ -57,7 +57,10 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       }
       book.stepped();
       book.report(false, [](Progress&) {});
-      std::this_thread::sleep_until(book.due_time());
+      if (const auto due = book.due_time()) {
+        std::this_thread::sleep_until(*due);
+        book.add_lateness(RunBook::Clock::now() - *due);
+      }
     }
   } catch (const ControllerFailure& failure) {
     book.add_event("failed", failure.what());

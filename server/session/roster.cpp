@@ -40,7 +40,8 @@ void admit_robots(wire::Admit& admit, const description::Experiment& experiment,
     const description::Policy& policy = simulation.policy(robot);
     admit.robots.push_back({robot, name, 0, simulation.kind_of(robot),
                             RandomStream(experiment.seed, name, "controller").bits(0, 0), policy.period, policy.phase,
-                            policy.delay});
+                            policy.delay,
+                            policy.mode == description::Mode::free ? wire::Mode::free : wire::Mode::lockstep});
   }
   for (const description::Team& team : experiment.teams) {
     const auto index = static_cast<std::uint32_t>(admit.teams.size());

@@ -21,13 +21,12 @@ void RunBook::start() {
 }
 
 void RunBook::stop() {
-  if (!stopped_ && listener_.ending) listener_.ending();
   if (started_ && !stopped_) result_.wall_time = Clock::now() - start_;
   stopped_ = true;
 }
 
-RunBook::Clock::time_point RunBook::due_time() const {
-  if (options_.speed <= 0.0) return start_;
+std::optional<RunBook::Clock::time_point> RunBook::due_time() const {
+  if (options_.speed <= 0.0) return std::nullopt;
   const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulation_.time().count()) / options_.speed);
   return start_ + std::chrono::duration_cast<Clock::duration>(wall);
 }
@@ -48,6 +47,14 @@ Progress RunBook::progress_at(Clock::time_point now) {
 void RunBook::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
   if (log_.add(simulation_.tick(), kind, text, count) && listener_.event)
     listener_.event({simulation_.tick(), kind, text, count});
+}
+
+void RunBook::add_miss(const lockstep::Barrier::Miss& miss) {
+  constexpr std::size_t most_misses = 1'000'000;
+  ++result_.late;
+  if (result_.misses.size() < most_misses)
+    result_.misses.push_back({simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited});
+  add_event("missed", simulation_.robot_name(miss.robot) + " did not answer in time");
 }
 
 RunResult RunBook::finish(RunResult::End end, std::string error) {

@@ -3,9 +3,11 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "server/lockstep/barrier.hpp"
 #include "server/lockstep/latency_histogram.hpp"
 #include "server/session/events.hpp"
 #include "server/simulation/simulation.hpp"
@@ -33,9 +35,17 @@ struct RunListener {
   std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
   std::function<void(const Event&)> event{};        ///< the first of its kind and text
   std::function<void()> boundary{};                 ///< the first frame is about to go out, or a step is done
-  std::function<void()> ending{};                   ///< the run is over, controllers are about to be told
   /// A tick has its answers: the wall time since its first frame was sent.
   std::function<void(std::chrono::nanoseconds)> barrier{};
+};
+
+/// An answer that missed its deadline.
+struct Miss {
+  std::uint64_t tick = 0;        ///< at which it was needed
+  std::uint64_t frame_tick = 0;  ///< of the frame that it would have answered
+  std::uint32_t robot = 0;
+  description::OnLate consequence = description::OnLate::hold;
+  std::chrono::nanoseconds waited{0};  ///< wall time
 };
 
 struct RunResult {
@@ -54,6 +64,8 @@ struct RunResult {
   std::uint32_t robots = 0;
   lockstep::LatencyHistogram barrier;  ///< from the first frame of a tick sent to the last answer needed
   std::uint64_t late = 0;              ///< answers that missed their deadline
+  std::vector<Miss> misses;            ///< of these the first million, in order
+  lockstep::LatencyHistogram lateness;  ///< at the asked speed, how late each tick began; empty if none is asked
   TouchCounts touches;
   std::vector<Event> events;
 };
@@ -86,14 +98,16 @@ class RunBook {
     listener_.progress(progress);
   }
   Clock::time_point next_report() const { return last_report_ + report_interval; }
-  /// When the next tick may begin at the asked speed.
-  Clock::time_point due_time() const;
+  /// When the next tick may begin at the asked speed; nothing if none is asked. From the run's beginning, so that
+  /// simulated and wall time never drift apart.
+  std::optional<Clock::time_point> due_time() const;
   void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
   void add_barrier(std::chrono::nanoseconds latency) {
     result_.barrier.add(latency);
     if (listener_.barrier) listener_.barrier(latency);
   }
-  void add_late() { ++result_.late; }
+  void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
+  void add_miss(const lockstep::Barrier::Miss& miss);
   /// Closes the books.
   RunResult finish(RunResult::End end, std::string error = {});
 

@@ -1,97 +1,104 @@
 #include "server/session/server.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <thread>
 
 #include "server/session/roster.hpp"
 
+// One run, tick by tick.
 namespace cohort::session {
 namespace {
 
 constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by a signal, which wakes nobody
 constexpr std::chrono::milliseconds observer_count_interval{100};
-constexpr int answers_kept = 8;  // of each client, by DDS, until they are taken
 const std::string view_partition = "view";
 
 }  // namespace
 
-Server::Server(const description::Experiment& experiment, Simulation& simulation, wire::Participant& participant,
-               const RunOptions& options, RunListener listener)
-    : experiment_(experiment),
-      simulation_(simulation),
-      participant_(participant),
-      book_(experiment, simulation, options, std::move(listener)),
-      exchange_(simulation),
-      leases_(simulation.robot_count()),
-      all_robots_(simulation.robot_count()),
-      descriptions_(participant),
-      world_state_(participant, view_partition),
-      joins_(participant, {[this](const wire::Join& join, const wire::Sender& sender) { on_join(join, sender); },
-                           [this](const wire::Sender& sender, bool alive) { on_liveliness(sender, alive); }}),
-      commands_(participant,
-                {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); }, {}},
-                "", answers_kept),
-      reports_(participant,
-               {[this](const wire::Report& report, const wire::Sender& sender) { on_report(report, sender); }, {}}) {
-  std::iota(all_robots_.begin(), all_robots_.end(), 0u);
-  for (const wire::RobotDescription& description : describe_kinds(simulation)) descriptions_.write(description);
+Server::Run::Run(const description::Experiment& its_experiment, Simulation& its_simulation, const RunOptions& options,
+                 const RunListener& listener, std::uint64_t first_epoch)
+    : experiment(its_experiment),
+      simulation(its_simulation),
+      book(its_experiment, its_simulation, options, listener),
+      exchange(its_simulation),
+      leases(its_simulation.robot_count(), first_epoch),
+      all_robots(its_simulation.robot_count()),
+      was_driven(its_simulation.robot_count()) {
+  std::iota(all_robots.begin(), all_robots.end(), 0u);
+  std::ranges::copy_if(all_robots, std::back_inserter(undemanding),
+                       [&](std::uint32_t robot) { return !its_simulation.policy(robot).required; });
+}
+
+Server::Server(std::span<wire::Participant> participants) : world_state_(participants.front(), view_partition) {
+  for (wire::Participant& participant : participants) doors_.emplace_back(*this, participant);
 }
 
 Server::~Server() = default;
 
-void Server::fail(const std::string& error) {
-  const std::lock_guard lock(mutex_);
-  if (inbox_.failure.empty()) inbox_.failure = error;
-  attention_ = true;
-  wake_.notify_all();
-}
-
 std::string Server::error() {
   const std::lock_guard lock(mutex_);
-  return error_;
+  return run_->error;
 }
 
-RunResult Server::run(const std::atomic<bool>& stop) {
+RunResult Server::run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
+                      const RunListener& listener, const std::atomic<bool>& stop) {
   using End = RunResult::End;
+  {
+    auto next = std::make_unique<Run>(experiment, simulation, options, listener, next_epoch_);
+    const std::lock_guard lock(mutex_);
+    ++run_number_;
+    run_ = std::move(next);
+  }
+  Run& run = *run_;
+  publish_descriptions();
+  claim_anew();
+
   const auto end = [&](End how, const std::string& error = {}) {
-    book_.stop();
+    run.book.stop();
     handle_inbox();
-    end_clients(how, error);
     report_progress(true);
-    return book_.finish(how, error);
+    RunResult result = run.book.finish(how, error);
+    const std::lock_guard lock(mutex_);
+    next_epoch_ = run.leases.next_epoch();
+    for (auto& [id, client] : clients_) client.drove = run.leases.lease(id) != nullptr;
+    run_.reset();
+    return result;
   };
   const auto end_early = [&] {
     const std::string error = this->error();
     return error.empty() ? end(End::interrupted) : end(End::failed, error);
   };
   if (!wait_for_controllers(stop)) return end_early();
-  book_.start();
-  running_ = true;
-  while (!book_.is_over()) {
+  run.book.start();
+  run.started = true;
+  while (!run.book.is_over()) {
     if (!run_tick(stop)) return end_early();
     try {
-      simulation_.step();
+      simulation.step();
     } catch (const std::runtime_error& error) {
-      book_.add_event("stopped", error.what());
+      run.book.add_event("stopped", error.what());
       return end(End::failed, error.what());
     }
-    book_.stepped();
+    run.book.stepped();
     publish_world_state();
-    std::this_thread::sleep_until(book_.due_time());
+    if (!sleep_until_due(stop)) return end_early();
   }
   return end(End::finished);
 }
 
 bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
+  const auto is_ready = [&](std::uint32_t robot) {
+    return run_->leases.holder(robot).has_value() || !run_->simulation.policy(robot).required;
+  };
   for (;;) {
     handle_inbox();
     decide_claims();
     report_progress(false);
     std::unique_lock lock(mutex_);
-    if (!error_.empty() || stop) return false;
-    if (std::ranges::all_of(all_robots_, [&](std::uint32_t robot) { return leases_.holder(robot).has_value(); }))
-      return true;
+    if (!run_->error.empty() || stop) return false;
+    if (std::ranges::all_of(run_->all_robots, is_ready)) return true;
     wake_.wait_for(lock, longest_sleep, [&] { return attention_; });
     attention_ = false;
   }
@@ -101,23 +108,25 @@ bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
 bool Server::run_tick(const std::atomic<bool>& stop) {
   handle_inbox();
   decide_claims();
+  see_who_drives();
   const Clock::time_point begin = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    exchange_.open(begin.time_since_epoch());
+    run_->exchange.open(begin.time_since_epoch());
   }
   send_frames();
+  if (!handle_misses(begin)) return false;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_until(lock, next_wake(), [&] { return exchange_.barrier().complete() || attention_; });
+      wake_.wait_until(lock, next_wake(), [&] { return run_->exchange.barrier().complete() || attention_; });
       attention_ = false;
-      if (!error_.empty() || stop) return false;
-      if (exchange_.barrier().complete()) {
+      if (!run_->error.empty() || stop) return false;
+      if (run_->exchange.barrier().complete()) {
         const auto latency = Clock::now() - begin;
-        book_.add_barrier(latency);
-        median_tick_.add(latency);
-        exchange_.apply();
+        run_->book.add_barrier(latency);
+        run_->median_tick.add(latency);
+        run_->exchange.apply();
         break;
       }
     }
@@ -132,9 +141,22 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
   return true;
 }
 
+// False if the run has to end meanwhile.
+bool Server::sleep_until_due(const std::atomic<bool>& stop) {
+  const auto due = run_->book.due_time();
+  if (!due) return true;
+  while (Clock::now() < *due) {
+    if (stop) return false;
+    std::this_thread::sleep_until(std::min(*due, Clock::now() + longest_sleep));
+  }
+  run_->book.add_lateness(Clock::now() - *due);
+  return true;
+}
+
 Server::Clock::time_point Server::next_wake() const {
-  Clock::time_point wake = std::min(Clock::now() + longest_sleep, book_.next_report());
-  if (const auto deadline = exchange_.barrier().next_deadline()) wake = std::min(wake, Clock::time_point(*deadline));
+  Clock::time_point wake = std::min(Clock::now() + longest_sleep, run_->book.next_report());
+  if (const auto deadline = run_->exchange.barrier().next_deadline())
+    wake = std::min(wake, Clock::time_point(*deadline));
   for (const auto& [id, client] : clients_)
     if (is_awaited(id)) wake = std::min(wake, Clock::time_point(client.resend.due()));
   return wake;
@@ -142,18 +164,18 @@ Server::Clock::time_point Server::next_wake() const {
 
 // Under the lock.
 bool Server::is_awaited(std::uint64_t client) const {
-  const lockstep::Leases::Lease* lease = leases_.lease(client);
+  const lockstep::Leases::Lease* lease = run_->leases.lease(client);
   return lease != nullptr &&
-         std::ranges::any_of(lease->robots, [&](auto robot) { return exchange_.barrier().is_awaited(robot); });
+         std::ranges::any_of(lease->robots, [&](auto robot) { return run_->exchange.barrier().is_awaited(robot); });
 }
 
 void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
   wire::Observation observation;
   {
     const std::lock_guard lock(mutex_);
-    const lockstep::Leases::Lease* lease = leases_.lease(client_id);
+    const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
     if (lease == nullptr) return;
-    exchange_.fill_frame(client.frame, lease->robots, tick);
+    run_->exchange.fill_frame(client.frame, lease->robots, tick);
     observation.epoch = lease->epoch;
   }
   if (client.frame.robots.empty()) return;
@@ -161,7 +183,7 @@ void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t t
   observation.run = run_number_;
   observation.resent = resent ? client.times_resent : 0;
   observation.tick = tick;
-  observation.time_ns = (experiment_.world.step * static_cast<std::int64_t>(tick)).count();
+  observation.time_ns = (run_->experiment.world.step * static_cast<std::int64_t>(tick)).count();
   observation.robots = client.frame.robots;
   observation.values = client.frame.values;
   client.observation.write(observation);  // lost if DDS cannot take it: sent again then
@@ -169,8 +191,8 @@ void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t t
 
 void Server::send_frames() {
   for (auto& [id, client] : clients_) {
-    send_frame(id, client, simulation_.tick(), false);
-    client.resend.start(Clock::now().time_since_epoch(), median_tick_.value());
+    send_frame(id, client, run_->simulation.tick(), false);
+    client.resend.start(Clock::now().time_since_epoch(), run_->median_tick.value());
     client.times_resent = 0;
   }
 }
@@ -182,7 +204,7 @@ void Server::resend_frames(Clock::time_point now) {
     {
       const std::lock_guard lock(mutex_);
       if (!is_awaited(id)) continue;
-      ticks = frames_under_way(leases_.lease(id)->robots);
+      ticks = frames_under_way(run_->leases.lease(id)->robots);
     }
     ++client.times_resent;
     for (const std::uint64_t tick : ticks) send_frame(id, client, tick, true);
@@ -194,40 +216,41 @@ bool Server::handle_misses(Clock::time_point now) {
   std::set<std::uint64_t> detached;
   {
     const std::lock_guard lock(mutex_);
-    for (const lockstep::Barrier::Miss& miss : exchange_.barrier().expire(now.time_since_epoch())) {
-      const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(miss.waited);
-      const std::string text = simulation_.robot_name(miss.robot) + " did not answer tick " +
-                               std::to_string(miss.frame_tick) + " within " + std::to_string(waited.count()) + " ms";
-      book_.add_event("missed", text);
-      book_.add_late();
-      if (miss.consequence == description::OnLate::stop && error_.empty()) error_ = text;
-      if (const auto holder = leases_.holder(miss.robot); miss.consequence == description::OnLate::detach && holder) {
-        leases_.release(*holder);
+    for (const lockstep::Barrier::Miss& miss : run_->exchange.barrier().expire(now.time_since_epoch())) {
+      run_->book.add_miss(miss);
+      if (miss.consequence == description::OnLate::stop && run_->error.empty())
+        run_->error = run_->simulation.robot_name(miss.robot) + " did not answer tick " +
+                      std::to_string(miss.frame_tick) + " within " +
+                      std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(miss.waited).count()) +
+                      " ms";
+      if (const auto holder = run_->leases.holder(miss.robot);
+          miss.consequence == description::OnLate::detach && holder) {
+        run_->leases.release(*holder);
         detached.insert(*holder);
       }
     }
-    if (!error_.empty()) return false;
+    if (!run_->error.empty()) return false;
   }
   for (const std::uint64_t client : detached)
-    clients_.at(client).report.write({client, run_number_, wire::ReportKind::superseded, simulation_.tick(), "detached",
-                                      "it missed a deadline, and its policy is to detach it"});
+    clients_.at(client).report.write({client, run_number_, wire::ReportKind::superseded, run_->simulation.tick(),
+                                      "detached", "it missed a deadline, and its policy is to detach it"});
   return true;
 }
 
 void Server::report_progress(bool now_anyway) {
-  book_.report(now_anyway, [&](Progress& progress) {
+  run_->book.report(now_anyway, [&](Progress& progress) {
     const std::lock_guard lock(mutex_);
     std::vector<std::uint32_t> awaited;
-    if (running_) {
-      awaited = exchange_.barrier().awaited();
-      progress.waiting = Clock::now().time_since_epoch() - exchange_.barrier().opened_at();
+    if (run_->started) {
+      awaited = run_->exchange.barrier().awaited();
+      progress.waiting = Clock::now().time_since_epoch() - run_->exchange.barrier().opened_at();
     } else {
-      for (const std::uint32_t robot : all_robots_)
-        if (!leases_.holder(robot)) awaited.push_back(robot);
+      for (const std::uint32_t robot : run_->all_robots)
+        if (!run_->leases.holder(robot) && run_->simulation.policy(robot).required) awaited.push_back(robot);
     }
-    for (const std::uint32_t robot : awaited) progress.awaited.push_back(simulation_.robot_name(robot));
+    for (const std::uint32_t robot : awaited) progress.awaited.push_back(run_->simulation.robot_name(robot));
     if (!awaited.empty())
-      if (const auto holder = leases_.holder(awaited.front())) progress.awaited_from = label_of(*holder);
+      if (const auto holder = run_->leases.holder(awaited.front())) progress.awaited_from = label_of(*holder);
   });
 }
 
@@ -238,71 +261,19 @@ void Server::publish_world_state() {
     observed_ = world_state_.matched() > 0;
   }
   if (!observed_) return;
+  const Simulation& simulation = run_->simulation;
   poses_.clear();
   std::vector<std::uint32_t> present;
-  for (const std::uint32_t robot : all_robots_) {
-    if (!simulation_.is_present(robot)) continue;
+  for (const std::uint32_t robot : run_->all_robots) {
+    if (!simulation.is_present(robot)) continue;
     present.push_back(robot);
-    const Pose X_WL = simulation_.robot_pose(robot);
+    const Pose X_WL = simulation.robot_pose(robot);
     const auto& p = X_WL.position;
     const auto& q = X_WL.orientation;
     poses_.insert(poses_.end(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
   }
   world_state_.write(
-      {run_number_, simulation_.tick(), simulation_.time().count(), simulation_.state_hash(), present, poses_});
-}
-
-void Server::on_join(const wire::Join& join, const wire::Sender& sender) {
-  const std::lock_guard lock(mutex_);
-  inbox_.joins.emplace_back(join, sender);
-  attention_ = true;
-  wake_.notify_all();
-}
-
-void Server::on_liveliness(const wire::Sender& sender, bool alive) {
-  const std::lock_guard lock(mutex_);
-  inbox_.liveliness.push_back({sender, alive});
-  attention_ = true;
-  wake_.notify_all();
-}
-
-void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
-  if (report.kind != wire::ReportKind::failed) return;  // a client has nothing else to report
-  const std::lock_guard lock(mutex_);
-  if (!is_in_own_name(report.client, sender))
-    return reject(sender.participant, "foreign", "a Report comes in the name of " + wire::partition_of(report.client));
-  inbox_.reports.push_back(report);
-  attention_ = true;
-  wake_.notify_all();
-}
-
-// Under the lock: whether DDS says that this comes from the process that joined under that id.
-bool Server::is_in_own_name(std::uint64_t client, const wire::Sender& sender) const {
-  const auto joined = participant_of_client_.find(client);
-  return joined != participant_of_client_.end() && joined->second == sender.participant;
-}
-
-void Server::on_command(const wire::Command& command, const wire::Sender& sender) {
-  const std::lock_guard lock(mutex_);
-  const lockstep::Leases::Lease* lease = leases_.lease(command.client);
-  const std::string answer = "an answer to tick " + std::to_string(command.tick);
-  if (lease == nullptr) return reject(command.client, "foreign", "commands come from a client that drives no robot");
-  if (!is_in_own_name(command.client, sender))
-    return reject(sender.participant, "foreign", "commands come in the name of " + wire::partition_of(command.client));
-  if (command.run != run_number_) return reject(command.client, "stale", answer + " of another run");
-  if (command.epoch != lease->epoch) return reject(command.client, "stale", answer + " of another lease");
-
-  const Exchange::Taken taken = exchange_.take(lease->robots, command.tick, command.robots, command.values);
-  if (taken.accepted > 0) leases_.note_answer(command.client);
-  if (taken.rejection) reject(command.client, taken.rejection->reason, taken.rejection->text);
-  if (taken.ends_run && error_.empty()) error_ = taken.rejection->text;
-  if (exchange_.barrier().complete() || !error_.empty()) wake_.notify_all();
-}
-
-// Counted, and told by the thread of `run` when it next looks; a flood must not wake it for each message.
-void Server::reject(std::uint64_t client, const std::string& reason, const std::string& text) {
-  auto& [first_text, count] = inbox_.rejected[{client, reason}];
-  if (count++ == 0) first_text = text;
+      {run_number_, simulation.tick(), simulation.time().count(), simulation.state_hash(), present, poses_});
 }
 
 }  // namespace cohort::session

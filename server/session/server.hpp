@@ -3,9 +3,12 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <list>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,73 +20,121 @@
 
 namespace cohort::session {
 
-/// Runs an experiment whose controllers are DDS clients: docs/protocol.md, the server's side. Callbacks of DDS put
-/// control messages aside and take answers at once under one lock; everything else happens on the thread of `run`,
-/// which alone creates and destroys entities and steps the world.
+/// Runs experiments whose controllers are DDS clients: docs/protocol.md, the server's side. Clients stay attached from
+/// one run to the next. Callbacks of DDS put control messages aside and take answers at once under one lock; everything
+/// else happens on the thread of `run`, which alone creates and destroys entities and steps the world.
 class Server {
  public:
-  Server(const description::Experiment& experiment, Simulation& simulation, wire::Participant& participant,
-         const RunOptions& options, RunListener listener);
+  /// `participants`: one for each DDS domain that is served, at least one; a client may be in any of them, observers are
+  /// in the first. They must outlive this.
+  explicit Server(std::span<wire::Participant> participants);
   ~Server();
 
-  /// Waits for a controller for every robot, runs, and tells the controllers when it is over. Returns soon after `stop`
-  /// is set, also while it waits.
-  RunResult run(const std::atomic<bool>& stop);
+  /// Waits for a controller for every robot that requires one, and runs. Clients that were attached before are admitted
+  /// to the new run, as far as their selectors select robots of it. Returns soon after `stop` is set, also while it
+  /// waits. Experiment and simulation must outlive this call only.
+  RunResult run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
+                const RunListener& listener, const std::atomic<bool>& stop);
 
-  /// Ends the run with this error, from any thread, unless a controller has reported one before.
+  /// Tells all who drive robots that there will be no further run, how the last one ended, and waits a little until they
+  /// have left.
+  void dismiss(const RunResult& last);
+
+  /// From any thread: ends the run with this error, unless a controller has reported one before.
   void fail(const std::string& error);
+  /// From any thread: a process of this machine has ended, so the client in it is dead, whatever liveliness says.
+  void note_process_end(std::uint32_t process);
 
  private:
-  std::string error();
-
   using Clock = RunBook::Clock;
 
+  // A DDS domain that is served. Readers last, so that no callback comes before all else is there.
+  struct Door {
+    Door(Server& server, wire::Participant& participant);
+    wire::Participant& participant;
+    wire::Writer<wire::RobotDescription> descriptions;
+    wire::Reader<wire::Join> joins;
+    wire::Reader<wire::Command> commands;
+    wire::Reader<wire::Report> reports;
+  };
+
   struct Client {
-    std::string label;                    // for people: controller, process and host
-    std::vector<std::uint32_t> robots{};  // that it last asked for
-    bool claims = false;                  // and was neither granted nor refused
+    wire::Join join;
+    std::uint64_t arrival = 0;  // clients of a session in their order
+    std::string label;          // for people: controller, process and host
     wire::Writer<wire::Admit> admit;
     wire::Writer<wire::Observation> observation;
     wire::Writer<wire::Report> report;
+    bool alive = true;
+    // Of this run.
+    std::vector<std::uint32_t> robots{};  // that it asked for
+    bool claims = false;                  // and was neither granted nor refused
     lockstep::ResendTimer resend{};
     std::uint32_t times_resent = 0;
     Exchange::Frame frame{};                      // reused
     std::set<std::string> reported_rejections{};  // reasons that it was told of
+    // Of earlier ones.
+    bool drove = false;  // so that a new run is a reset to it
+  };
+
+  // One experiment's. Under the lock: exchange, leases, error.
+  struct Run {
+    Run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
+        const RunListener& listener, std::uint64_t first_epoch);
+    const description::Experiment& experiment;
+    Simulation& simulation;
+    RunBook book;
+    Exchange exchange;
+    lockstep::Leases leases;
+    std::string error;
+    bool started = false;  // from the first frame on
+    lockstep::MedianDuration median_tick;
+    std::vector<std::uint32_t> all_robots;
+    std::vector<std::uint32_t> undemanding;  // robots that do not require a controller
+    std::vector<bool> was_driven;            // by robot, whether somebody drove it in this run
+    std::vector<std::uint32_t> descriptions;  // on the wire, by kind
+  };
+
+  struct Arrival {
+    wire::Join join;
+    wire::Sender sender;
+    Door* door = nullptr;
   };
   struct Liveliness {
     wire::Sender sender;
     bool alive = false;
   };
+  struct Rejections {
+    std::string text;  // of the first
+    std::uint64_t count = 0;
+  };
   // What DDS's threads leave for the thread of `run`.
   struct Inbox {
-    std::vector<std::pair<wire::Join, wire::Sender>> joins;
+    std::vector<Arrival> arrivals;
     std::vector<Liveliness> liveliness;
     std::vector<wire::Report> reports;
-    std::string failure;  // of something outside
-    std::map<std::pair<std::uint64_t, std::string>, std::pair<std::string, std::uint64_t>> rejected;  // text, count
+    std::vector<std::uint32_t> ended_processes;
+    std::string failure;                                                    // of something outside
+    std::map<std::pair<std::uint64_t, std::string>, Rejections> rejected{};  // by who, or what participant, and reason
     bool empty() const {
-      return joins.empty() && liveliness.empty() && reports.empty() && failure.empty() && rejected.empty();
+      return arrivals.empty() && liveliness.empty() && reports.empty() && ended_processes.empty() && failure.empty() &&
+             rejected.empty();
     }
   };
 
-  // On DDS's threads.
-  void on_join(const wire::Join& join, const wire::Sender& sender);
+  // On DDS's threads (server_callbacks.cpp).
+  void on_join(Door& door, const wire::Join& join, const wire::Sender& sender);
   void on_liveliness(const wire::Sender& sender, bool alive);
   void on_command(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report, const wire::Sender& sender);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
-  void reject(std::uint64_t client, const std::string& reason, const std::string& text);
+  void reject(std::uint64_t who, const char* reason, const std::string& text);
+  void call_attention();
 
-  // On the thread of `run`; those that take the lock must not hold it.
+  // On the thread of `run`; those that take the lock must not hold it. One run, tick by tick (server.cpp):
   bool wait_for_controllers(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
-  void handle_inbox();
-  void handle_join(const wire::Join& join, const wire::Sender& sender);
-  void handle_liveliness(std::uint64_t client, bool alive);
-  Client* attach(const wire::Join& join, const wire::Sender& sender, const std::set<std::uint32_t>& robots);
-  void refuse(std::uint64_t client_id, Client& client, const std::string& reason);
-  void decide_claims();
-  void admit(const lockstep::Leases::Granted& granted);
+  bool sleep_until_due(const std::atomic<bool>& stop);
   void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
   void send_frames();
   void resend_frames(Clock::time_point now);
@@ -93,43 +144,49 @@ class Server {
   std::vector<std::uint64_t> frames_under_way(const std::vector<std::uint32_t>& robots) const;
   void report_progress(bool now_anyway);
   void publish_world_state();
-  void end_clients(RunResult::End end, const std::string& text);
+  std::string error();
+
+  // Who is attached (server_clients.cpp):
+  void handle_inbox();
+  void handle_arrival(const Arrival& arrival);
+  void handle_liveliness(std::uint64_t client_id, bool alive);
+  void handle_rejections(const Inbox& inbox);
+  Client* attach(const Arrival& arrival);
+  void claim_anew();
+  void claim(std::uint64_t client_id, Client& client);
+  void forget(std::uint64_t client_id);
+  void refuse(std::uint64_t client_id, Client& client, const std::string& reason);
+  void decide_claims();
+  void admit(const lockstep::Leases::Granted& granted);
+  wire::StartReason why_it_starts(const std::vector<std::uint32_t>& robots, const Client& client) const;
+  void see_who_drives();
+  void publish_descriptions();
   std::string robots_text(const std::vector<std::uint32_t>& robots) const;
   std::string label_of(std::uint64_t client) const;
 
-  const description::Experiment& experiment_;
-  Simulation& simulation_;
-  wire::Participant& participant_;
-  RunBook book_;
-  std::uint32_t run_number_ = 1;
-  bool running_ = false;  // from the first frame on
+  std::uint32_t run_number_ = 0;
+  std::uint64_t next_epoch_ = 1;
+  std::uint64_t arrivals_ = 0;
+  std::unique_ptr<Run> run_;  // set under the lock; null between runs
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  // Under the lock: what answers need, and the inbox. `participant_of_client_`: who joined under an id; DDS says it, so
-  // that nobody can answer in another's name.
-  Exchange exchange_;
-  lockstep::Leases leases_;
+  // Under the lock. `participant_of_client_`: who joined under an id; DDS says it, so that nobody can answer in
+  // another's name.
   Inbox inbox_;
   bool attention_ = false;  // wake up before the tick is complete
-  std::string error_;
-
   std::map<std::uint64_t, std::uint64_t> participant_of_client_;
 
   std::map<std::uint64_t, Client> clients_;                  // by id
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of Join
-  lockstep::MedianDuration median_tick_;
-  std::vector<std::uint32_t> all_robots_;
+  std::vector<wire::RobotDescription> descriptions_;         // on the wire so far
   Clock::time_point observers_counted_at_{};
   bool observed_ = false;
   std::vector<double> poses_;  // reused
 
-  wire::Writer<wire::RobotDescription> descriptions_;
   wire::Writer<wire::WorldState> world_state_;
-  // Last, so that no callback comes before all else is there or after it is gone.
-  wire::Reader<wire::Join> joins_;
-  wire::Reader<wire::Command> commands_;
-  wire::Reader<wire::Report> reports_;
+  // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they are.
+  std::list<Door> doors_;
 };
 
 }  // namespace cohort::session

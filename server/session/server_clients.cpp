@@ -1,14 +1,33 @@
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "server/description/select_robots.hpp"
 #include "server/session/roster.hpp"
 #include "server/session/server.hpp"
 
-// Who is attached: joining, leaving, taking over, and what clients are told.
+// Who is attached: joining, leaving, taking over, staying from run to run, and what clients are told.
 namespace cohort::session {
 namespace {
 
 constexpr std::chrono::seconds farewell{2};
+// What a client may ask for and how many there may be, so that no stranger fills the memory or costs a tick's time.
+constexpr std::size_t most_selectors = 4096;
+constexpr std::size_t most_clients = 8192;
+
+std::string host_name() {
+  char name[256] = {};
+  ::gethostname(name, sizeof(name) - 1);
+  return name;
+}
+
+// What a client says of itself ends up in logs.
+std::string clean(const std::string& text) {
+  constexpr std::size_t longest = 100;
+  std::string result = text.substr(0, longest);
+  std::ranges::replace_if(result, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
+  return result;
+}
 
 }  // namespace
 
@@ -19,105 +38,154 @@ void Server::handle_inbox() {
     if (inbox_.empty()) return;
     std::swap(inbox, inbox_);
   }
-  for (const auto& [join, sender] : inbox.joins) handle_join(join, sender);
+  for (const Arrival& arrival : inbox.arrivals) handle_arrival(arrival);
   for (const Liveliness& change : inbox.liveliness) {
     const auto found = client_of_writer_.find(change.sender.writer);
     if (found != client_of_writer_.end()) handle_liveliness(found->second, change.alive);
   }
+  for (const std::uint32_t process : inbox.ended_processes) {
+    static const std::string here = host_name();
+    std::vector<std::uint64_t> dead;
+    for (const auto& [id, client] : clients_)
+      if (client.join.process == process && client.join.host == here) dead.push_back(id);
+    for (const std::uint64_t id : dead) handle_liveliness(id, false);
+  }
   for (const wire::Report& report : inbox.reports) {
     const std::lock_guard lock(mutex_);
-    if (leases_.lease(report.client) == nullptr) continue;  // it drives nothing: its troubles are its own
-    book_.add_event("failed", label_of(report.client) + ": " + report.text);
-    if (error_.empty()) error_ = report.text;
+    if (run_->leases.lease(report.client) == nullptr) continue;  // it drives nothing: its troubles are its own
+    run_->book.add_event("failed", label_of(report.client) + ": " + clean(report.text));
+    if (run_->error.empty()) run_->error = report.text;
   }
   if (!inbox.failure.empty()) {
     const std::lock_guard lock(mutex_);
-    if (error_.empty()) error_ = inbox.failure;
+    if (run_->error.empty()) run_->error = inbox.failure;
   }
-  for (const auto& [key, value] : inbox.rejected) {
+  handle_rejections(inbox);
+}
+
+void Server::handle_rejections(const Inbox& inbox) {
+  for (const auto& [key, rejections] : inbox.rejected) {
     const auto& [client_id, reason] = key;
-    const auto& [text, count] = value;
-    book_.add_event("rejected", reason + " from " + label_of(client_id) + ": " + text, count);
+    run_->book.add_event("rejected", reason + " from " + label_of(client_id) + ": " + rejections.text,
+                         rejections.count);
     if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
     const auto client = clients_.find(client_id);
     if (client == clients_.end() || !client->second.reported_rejections.insert(reason).second) continue;
-    client->second.report.write({client_id, run_number_, wire::ReportKind::rejected, simulation_.tick(), reason, text});
+    client->second.report.write(
+        {client_id, run_number_, wire::ReportKind::rejected, run_->simulation.tick(), reason, rejections.text});
   }
 }
 
 void Server::handle_liveliness(std::uint64_t client_id, bool alive) {
-  const auto client = clients_.find(client_id);
-  if (client == clients_.end()) return;
+  const auto found = clients_.find(client_id);
+  if (found == clients_.end()) return;
+  Client& client = found->second;
+  client.alive = alive;
   bool useless = false;
   {
     const std::lock_guard lock(mutex_);
-    if (const lockstep::Leases::Lease* lease = leases_.lease(client_id)) {
+    if (const lockstep::Leases::Lease* lease = run_->leases.lease(client_id)) {
       if (lease->alive == alive) return;
-      leases_.set_alive(client_id, alive);
-      book_.add_event(alive ? "back" : "lost", client->second.label + " with " + robots_text(lease->robots) +
-                                                   (alive ? " is back" : " is gone or does not respond"));
-    } else if (client->second.claims) {
+      run_->leases.set_alive(client_id, alive);
+      run_->book.add_event(alive ? "back" : "lost", client.label + " with " + robots_text(lease->robots) +
+                                                        (alive ? " is back" : " is gone or does not respond"));
+      // Nobody waits for a robot that does not need its controller.
+      for (const std::uint32_t robot : lease->robots)
+        if (!alive && !run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);
+    } else if (client.claims) {
       // A claim counts only while its client lives; a stopped process that goes on has it back.
-      if (alive) leases_.claim(client_id, client->second.robots);
-      if (!alive) leases_.release(client_id);
+      if (alive) run_->leases.claim(client_id, client.robots);
+      if (!alive) run_->leases.release(client_id);
     } else {
       useless = !alive;
     }
   }
-  if (!useless) return;
-  clients_.erase(client);
+  if (useless) forget(client_id);
+}
+
+void Server::forget(std::uint64_t client_id) {
+  clients_.erase(client_id);
   std::erase_if(client_of_writer_, [&](const auto& writer) { return writer.second == client_id; });
   const std::lock_guard lock(mutex_);
   participant_of_client_.erase(client_id);
 }
 
-void Server::handle_join(const wire::Join& join, const wire::Sender& sender) {
+void Server::handle_arrival(const Arrival& arrival) {
+  Client* client = attach(arrival);
+  if (client == nullptr) return;
+  client->join = arrival.join;
+  claim(arrival.join.client, *client);
+}
+
+// What a client's selectors select in this run.
+void Server::claim(std::uint64_t client_id, Client& client) {
   std::set<std::uint32_t> robots;
   std::string refusal;
-  for (const std::string& selector : join.robots) {
+  if (client.join.robots.size() > most_selectors)
+    refusal = "it asks with more than " + std::to_string(most_selectors) + " selectors: ranges say more in one";
+  for (const std::string& selector : client.join.robots) {
+    if (!refusal.empty()) break;
     try {
-      const auto selected = description::select_robots(experiment_.world, selector);
+      const auto selected = description::select_robots(run_->experiment.world, selector);
       robots.insert(selected.begin(), selected.end());
     } catch (const std::invalid_argument& error) {
       refusal = error.what();
     }
   }
   if (robots.empty() && refusal.empty()) refusal = "it asks for no robot";
-
-  Client* client = attach(join, sender, robots);
-  if (client == nullptr) return;
-  if (!refusal.empty()) {
-    refuse(join.client, *client, refusal);
-    return;
-  }
-  client->robots.assign(robots.begin(), robots.end());
-  client->claims = true;
+  if (!refusal.empty()) return refuse(client_id, client, refusal);
+  client.robots.assign(robots.begin(), robots.end());
+  client.claims = true;
   const std::lock_guard lock(mutex_);
-  leases_.claim(join.client, client->robots);
+  run_->leases.claim(client_id, client.robots);
+}
+
+// At the beginning of a run: those who are attached claim what they asked for when they came, in the order of their
+// coming.
+void Server::claim_anew() {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> staying;  // by arrival
+  std::vector<std::uint64_t> gone;
+  for (auto& [id, client] : clients_) {
+    client.claims = false;
+    client.robots.clear();
+    client.reported_rejections.clear();
+    if (client.alive) staying.emplace_back(client.arrival, id);
+    else gone.push_back(id);
+  }
+  for (const std::uint64_t id : gone) forget(id);
+  std::ranges::sort(staying);
+  for (const auto& [arrival, id] : staying)
+    if (clients_.at(id).drove) claim(id, clients_.at(id));
 }
 
 // The client of this Join, with its writers. Null if somebody else has that id.
-Server::Client* Server::attach(const wire::Join& join, const wire::Sender& sender,
-                               const std::set<std::uint32_t>& robots) {
+Server::Client* Server::attach(const Arrival& arrival) {
+  const wire::Join& join = arrival.join;
   {
     const std::lock_guard lock(mutex_);
-    const auto [known, is_new] = participant_of_client_.emplace(join.client, sender.participant);
-    if (!is_new && known->second != sender.participant) {
-      book_.add_event("rejected", "foreign: a Join comes in the name of " + label_of(join.client));
+    const auto [known, is_new] = participant_of_client_.emplace(join.client, arrival.sender.participant);
+    if (!is_new && known->second != arrival.sender.participant) {
+      run_->book.add_event("rejected", "foreign: a Join comes in the name of " + label_of(join.client));
+      return nullptr;
+    }
+    if (is_new && clients_.size() >= most_clients) {
+      participant_of_client_.erase(known);
+      run_->book.add_event("rejected", "flood: there are " + std::to_string(most_clients) + " clients already");
       return nullptr;
     }
   }
-  client_of_writer_[sender.writer] = join.client;
+  client_of_writer_[arrival.sender.writer] = join.client;
   if (const auto known = clients_.find(join.client); known != clients_.end()) return &known->second;
 
-  int depth = 1;  // as many frames as can be under way
-  for (const std::uint32_t robot : robots)
-    depth = std::max(depth, static_cast<int>(simulation_.policy(robot).delay) + 1);
+  wire::Participant& participant = arrival.door->participant;
   const std::string partition = wire::partition_of(join.client);
-  Client client{.label = join.controller + " (process " + std::to_string(join.process) + " on " + join.host + ")",
-                .admit = wire::Writer<wire::Admit>(participant_, partition),
-                .observation = wire::Writer<wire::Observation>(participant_, partition, depth),
-                .report = wire::Writer<wire::Report>(participant_, partition)};
+  Client client{.join = join,
+                .arrival = arrivals_++,
+                .label = clean(join.controller) + " (process " + std::to_string(join.process) + " on " +
+                         clean(join.host) + ")",
+                .admit = wire::Writer<wire::Admit>(participant, partition),
+                .observation = wire::Writer<wire::Observation>(participant, partition),
+                .report = wire::Writer<wire::Report>(participant, partition)};
   return &clients_.emplace(join.client, std::move(client)).first->second;
 }
 
@@ -129,7 +197,7 @@ void Server::refuse(std::uint64_t client_id, Client& client, const std::string& 
   answer.run = run_number_;
   client.admit.write(answer);
   client.claims = false;
-  book_.add_event("refused", client.label + ": " + reason);
+  run_->book.add_event("refused", client.label + ": " + reason);
 }
 
 // Claims are granted at boundaries, and in the midst of a tick to whoever takes over a robot that it waits for.
@@ -137,16 +205,16 @@ void Server::decide_claims() {
   lockstep::Leases::Decisions decisions;
   {
     const std::lock_guard lock(mutex_);
-    if (!leases_.has_claims()) return;
-    const lockstep::Barrier& barrier = exchange_.barrier();
+    if (!run_->leases.has_claims()) return;
+    const lockstep::Barrier& barrier = run_->exchange.barrier();
     const bool at_boundary = barrier.complete();
-    decisions = leases_.decide([&](const std::vector<std::uint32_t>& robots) {
+    decisions = run_->leases.decide([&](const std::vector<std::uint32_t>& robots) {
       return at_boundary || std::ranges::any_of(robots, [&](auto robot) { return barrier.is_awaited(robot); });
     });
   }
   for (const auto& refused : decisions.refused)
     refuse(refused.client, clients_.at(refused.client),
-           simulation_.robot_name(refused.robot) + " is driven by " + label_of(refused.holder));
+           run_->simulation.robot_name(refused.robot) + " is driven by " + label_of(refused.holder));
   for (const auto& granted : decisions.granted) admit(granted);
 }
 
@@ -154,59 +222,64 @@ void Server::admit(const lockstep::Leases::Granted& granted) {
   for (const std::uint64_t loser : granted.superseded) {
     const std::string text = label_of(granted.client) + " has taken its robots over";
     clients_.at(loser).report.write(
-        {loser, run_number_, wire::ReportKind::superseded, simulation_.tick(), "superseded", text});
-    book_.add_event("superseded", label_of(loser) + ": " + text);
+        {loser, run_number_, wire::ReportKind::superseded, run_->simulation.tick(), "superseded", text});
+    run_->book.add_event("superseded", label_of(loser) + ": " + text);
   }
 
   std::vector<std::uint64_t> frames;  // under way: asked of whoever had the robots before, and not answered
   wire::Admit answer;
   {
     const std::lock_guard lock(mutex_);
-    const lockstep::Leases::Lease& lease = *leases_.lease(granted.client);
-    if (running_) frames = frames_under_way(lease.robots);
+    const lockstep::Leases::Lease& lease = *run_->leases.lease(granted.client);
+    if (run_->started) frames = frames_under_way(lease.robots);
     answer.client = granted.client;
     answer.run = run_number_;
     answer.epoch = lease.epoch;
-    answer.start_reason = running_ ? wire::StartReason::takeover : wire::StartReason::first;
-    answer.tick = frames.empty() ? simulation_.tick() : frames.front();
-    answer.step_ns = experiment_.world.step.count();
-    admit_robots(answer, experiment_, simulation_, lease.robots);
-    if (!granted.again) book_.add_event("joined", label_of(granted.client) + " drives " + robots_text(lease.robots));
+    answer.start_reason = why_it_starts(lease.robots, clients_.at(granted.client));
+    for (const std::uint32_t robot : lease.robots) run_->was_driven[robot] = true;
+    answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
+    answer.step_ns = run_->experiment.world.step.count();
+    admit_robots(answer, run_->experiment, run_->simulation, lease.robots);
+    for (wire::AdmittedRobot& robot : answer.robots) robot.description = run_->descriptions[robot.description];
+    if (!granted.again) run_->book.add_event("joined", label_of(granted.client) + " drives " + robots_text(lease.robots));
   }
   Client& client = clients_.at(granted.client);
   client.claims = false;
   client.admit.write(answer);
   for (const std::uint64_t tick : frames) send_frame(granted.client, client, tick, false);
-  client.resend.start(Clock::now().time_since_epoch(), median_tick_.value());
+  client.resend.start(Clock::now().time_since_epoch(), run_->median_tick.value());
   client.times_resent = 0;
+}
+
+// Under the lock.
+wire::StartReason Server::why_it_starts(const std::vector<std::uint32_t>& robots, const Client& client) const {
+  const bool takes_over = std::ranges::any_of(robots, [&](auto robot) { return run_->was_driven[robot]; });
+  if (run_->started && takes_over) return wire::StartReason::takeover;
+  return client.drove ? wire::StartReason::reset : wire::StartReason::first;
 }
 
 // Unanswered frames whose answers can still act. Under the lock.
 std::vector<std::uint64_t> Server::frames_under_way(const std::vector<std::uint32_t>& robots) const {
   std::set<std::uint64_t> ticks;
   for (const std::uint32_t robot : robots)
-    for (const std::uint64_t tick : exchange_.barrier().unanswered(robot))
-      if (tick + simulation_.policy(robot).delay >= simulation_.tick()) ticks.insert(tick);
+    for (const std::uint64_t tick : run_->exchange.barrier().unanswered(robot))
+      if (tick + run_->simulation.policy(robot).delay >= run_->simulation.tick()) ticks.insert(tick);
   return {ticks.begin(), ticks.end()};
 }
 
-// Says that the run is over, and waits a little until the clients have left: what is not delivered when the participant
-// goes is lost.
-void Server::end_clients(RunResult::End end, const std::string& text) {
-  const bool failed = end == RunResult::End::failed;
+// What is not delivered when the participant goes is lost: hence the wait.
+void Server::dismiss(const RunResult& last) {
+  const bool failed = last.end == RunResult::End::failed;
   const wire::ReportKind kind = failed ? wire::ReportKind::failed : wire::ReportKind::finished;
-  const std::string reason = failed ? "failed" : end == RunResult::End::finished ? "complete" : "interrupted";
-  std::set<std::uint64_t> drivers;
-  std::set<std::uint64_t> staying;  // of those, the ones that can hear it
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [id, lease] : leases_.all()) {
-      drivers.insert(id);
-      if (lease.alive) staying.insert(id);
-    }
+  const std::string reason = failed                                      ? "failed"
+                             : last.end == RunResult::End::finished ? "complete"
+                                                                    : "interrupted";
+  std::set<std::uint64_t> staying;  // of those who drove, the ones that can hear it
+  for (auto& [id, client] : clients_) {
+    if (!client.drove) continue;
+    client.report.write({id, run_number_, kind, last.ticks, reason, last.error});
+    if (client.alive) staying.insert(id);
   }
-  for (const std::uint64_t id : drivers)
-    clients_.at(id).report.write({id, run_number_, kind, simulation_.tick(), reason, text});
 
   const Clock::time_point until = Clock::now() + farewell;
   std::unique_lock lock(mutex_);
@@ -220,16 +293,41 @@ void Server::end_clients(RunResult::End end, const std::string& text) {
   }
 }
 
+// Tells of the robots' kinds. An id is never used for two things, since clients keep what they were told in earlier runs.
+void Server::publish_descriptions() {
+  run_->descriptions.clear();
+  for (wire::RobotDescription& kind : describe_kinds(run_->simulation)) {
+    const auto known = std::ranges::find_if(descriptions_, [&](const wire::RobotDescription& other) {
+      return other.model == kind.model && other.observation == kind.observation && other.command == kind.command;
+    });
+    kind.description = static_cast<std::uint32_t>(known - descriptions_.begin());
+    run_->descriptions.push_back(kind.description);
+    if (known != descriptions_.end()) continue;
+    for (Door& door : doors_) door.descriptions.write(kind);
+    descriptions_.push_back(std::move(kind));
+  }
+}
+
+// At a boundary: robots that do not require a controller are asked from now on if they have one.
+void Server::see_who_drives() {
+  if (run_->undemanding.empty()) return;
+  const std::lock_guard lock(mutex_);
+  for (const std::uint32_t robot : run_->undemanding) {
+    const auto holder = run_->leases.holder(robot);
+    run_->exchange.barrier().set_driven(robot, holder && run_->leases.lease(*holder)->alive);
+  }
+}
+
 std::string Server::robots_text(const std::vector<std::uint32_t>& robots) const {
   if (robots.empty()) return "no robot";
-  std::string text = simulation_.robot_name(robots.front());
+  std::string text = run_->simulation.robot_name(robots.front());
   if (robots.size() > 1) text += " and " + std::to_string(robots.size() - 1) + " more";
   return text;
 }
 
 std::string Server::label_of(std::uint64_t client) const {
   const auto found = clients_.find(client);
-  return found == clients_.end() ? "unknown client " + wire::partition_of(client) : found->second.label;
+  return found == clients_.end() ? "an unknown client" : found->second.label;
 }
 
 }  // namespace cohort::session

@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
         Typed{{"run", "x", "--duration", "1e300"}, "--duration: expected a number above 0"},
         Typed{{"run", "x", "--seed", "-1"}, "--seed: expected a whole number"},
         Typed{{"run", "x", "--speed", "fast"}, "--speed: expected max, or a number above 0"},
-        Typed{{"run", "x", "--domain", "231"}, "--domain: expected a whole number from 0 to 230, not '231'"},
+        Typed{{"run", "x", "--domain", "231"}, "--domain: expected a domain from 0 to 230, or a range such as 7..14, not '231'"},
         Typed{{"run", "x"}, "not 'five' (COHORT_DOMAIN is 'five')", {{"COHORT_DOMAIN", "five"}}},
         Typed{{"run", "x", "--controllers", "proces"}, "there is no 'proces'; did you mean 'process'?"},
         Typed{{"run", "x", "--quiet", "--verbose"}, "choose one of --verbose and --quiet"},

@@ -186,6 +186,7 @@ void Children::handle_end(Child& child, int status) {
   if (!child.line.empty()) listener_.wrote(child.command, std::exchange(child.line, {}));
   close_if_open(child.output);
   close_if_open(child.pidfd);
+  if (listener_.ended) listener_.ended(child.pid);
   const std::string text = child.command.name + ": " + end_of(std::exchange(child.pid, -1), status);
   // Even without an error: as long as there is something to do, a controller has no reason to end.
   if (!restarting_ || finishing_) return;

@@ -27,6 +27,7 @@ class Children {
   /// Called on a thread of this, one at a time. `gave_up`, `restarted` and `killed` have a text for people.
   struct Listener {
     std::function<void(const Command& command, pid_t pid)> started{};
+    std::function<void(pid_t pid)> ended{};  ///< before anything else is said of it
     std::function<void(const Command& command, const std::string& text)> restarted{};
     std::function<void(const std::string& text)> gave_up{};  ///< a child died that is not started again
     std::function<void(const Command& command, const std::string& text)>

@@ -34,7 +34,8 @@ enum class Controllers {
 };
 
 struct RunCommand {
-  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;  ///< experiments, one after the other
+  std::uint64_t repeat = 1;                  ///< how often all of them are run
   unsigned threads = 0;  ///< 0: one for each core
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
@@ -45,7 +46,7 @@ struct RunCommand {
   Viewpoint viewpoint = Viewpoint::above;  ///< of the plot
   std::filesystem::path csv;               ///< the same: what the experiment prints
   bool quiet = false;
-  std::optional<std::uint32_t> domain;
+  std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
   std::string network = "127.0.0.1";
 };
 int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop);
@@ -54,7 +55,7 @@ struct HostCommand {
   std::string plugin;
   std::vector<std::string> robots;
   std::string server;
-  std::uint32_t domain = 0;
+  std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
   bool for_run = false;  ///< started by `cohort run`, whose server tells what becomes of a client
 };
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);
@@ -62,7 +63,7 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);
 struct TeleopCommand {
   std::vector<std::string> robots;
   std::string server;
-  std::uint32_t domain = 0;
+  std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
 };
 int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop);
 

@@ -22,13 +22,14 @@ std::string selectors_of(const std::vector<std::uint32_t>& robots) {
 
 std::vector<Children::Command> controller_processes(const description::Experiment& experiment,
                                                     const std::vector<TeamController>& controllers, bool per_robot,
-                                                    std::uint32_t domain, const Log& log) {
+                                                    const std::vector<std::uint32_t>& domains, const Log& log) {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
   std::vector<Children::Command> commands;
   for (std::size_t i = 0; i < experiment.teams.size(); ++i) {
     const description::Team& team = experiment.teams[i];
     if (controllers[i].is_keyboard()) continue;
     const auto add = [&](const std::vector<std::uint32_t>& robots) {
+      const std::uint32_t domain = domains[commands.size() % domains.size()];
       Children::Command command;
       command.arguments = {
           program,     "host",     controllers[i].plugin->path(), "--robots", selectors_of(robots), "--server",
@@ -57,6 +58,7 @@ Children::Listener listener_of_controllers(session::Server& server, Log& log) {
   listener.restarted = listener.killed = [&](const Children::Command& command, const std::string& text) {
     log.warning(text, {{"controller_of", command.name}});
   };
+  listener.ended = [&](pid_t pid) { server.note_process_end(static_cast<std::uint32_t>(pid)); };
   listener.gave_up = [&](const std::string& text) { server.fail(text); };
   listener.may_end_with = [](int exit_code) { return exit_code == exit_superseded; };
   // A host writes JSON itself if it is to, but not its controllers, nor what a runtime says of a process that it

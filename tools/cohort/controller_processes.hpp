@@ -18,7 +18,7 @@ std::string selectors_of(const std::vector<std::uint32_t>& robots);
 /// teams that people drive. `controllers`: one for each team, in order.
 std::vector<Children::Command> controller_processes(const description::Experiment& experiment,
                                                     const std::vector<TeamController>& controllers, bool per_robot,
-                                                    std::uint32_t domain, const Log& log);
+                                                    const std::vector<std::uint32_t>& domains, const Log& log);
 
 /// Logs what becomes of them; one that fails for good ends the server's run. Both must outlive it.
 Children::Listener listener_of_controllers(session::Server& server, Log& log);

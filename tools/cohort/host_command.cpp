@@ -1,4 +1,5 @@
 #include "client_sdk/src/client.hpp"
+#include "client_sdk/src/domains.hpp"
 #include "client_sdk/src/plugin_loader.hpp"
 #include "tools/cohort/commands.hpp"
 
@@ -8,7 +9,7 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
     const LoadedPlugin loaded(command.plugin, default_plugin_directories());
     ClientOptions options;
     options.server = command.server;
-    options.domain = command.domain;
+    if (!command.domains.empty()) options.domain = domain_of_this_process(command.domains);
     options.robots = command.robots;
     options.tell = [&](Severity severity, const std::string& text) {
       const std::string name = loaded.plugin().name;

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <limits>
 
+#include "client_sdk/src/domains.hpp"
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
 #include "tools/cohort/bench_options.hpp"
@@ -15,7 +16,6 @@ namespace {
 using namespace cohort::tool;
 
 constexpr double most_seconds = 9e9;  // fits into nanoseconds
-constexpr std::uint32_t last_domain = 230;
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
 std::atomic<bool> stop_requested = false;
@@ -103,8 +103,19 @@ void add_log_options(CLI::App& app, LogFlags& flags) {
   app.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
 }
 
+void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::string& text) {
+  app.add_option_function<std::string>(
+         "--domain", [&domains](const std::string& value) { domains = cohort::parse_domains(value); }, text)
+      ->envname("COHORT_DOMAIN")
+      ->check(domain_range())
+      ->type_name("N|A..B");
+}
+
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
-  app.add_option("FILE", options.file, "Experiment (YAML)")->required()->type_name("");
+  app.add_option("--repeat", options.repeat, "How often to run it, the world built anew each time, the controllers attached")
+      ->check(whole_number(1, 1'000'000))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_option("--threads", options.threads,
                  "Threads that step the world, with the same results (default: the cores)")
       ->check(whole_number(1, 1024))
@@ -127,15 +138,13 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->check(one_of({"above", "side"}))
       ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
-  app.add_option("--domain", options.domain, "DDS domain (default: a free one, or 0 if others start controllers)")
-      ->envname("COHORT_DOMAIN")
-      ->check(whole_number(0, last_domain))
-      ->type_name("N");
+  add_domains(app, options.domains, "DDS domains to serve (default: free ones, or 0 if others start controllers)");
   add_log_options(app, flags);
   app.add_flag("--quiet", flags.quiet, "Print errors only");
 }
 
-void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::string& server, std::uint32_t& domain) {
+void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::string& server,
+                        std::vector<std::uint32_t>& domains) {
   app.add_option("--robots", robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
       ->required()
       ->delimiter(',')
@@ -145,10 +154,7 @@ void add_client_options(CLI::App& app, std::vector<std::string>& robots, std::st
       ->envname("COHORT_SERVER")
       ->default_val("127.0.0.1")
       ->type_name("ADDRESS");
-  app.add_option("--domain", domain, "DDS domain of the server (default: 0)")
-      ->envname("COHORT_DOMAIN")
-      ->check(whole_number(0, last_domain))
-      ->type_name("N");
+  add_domains(app, domains, "DDS domain of the server, or a range: then one of it (default: 0)");
 }
 
 void add_samples_options(CLI::App& app, SamplesCommand& command) {
@@ -198,6 +204,7 @@ int main(int argc, char** argv) {
                                                          {"per-robot", Controllers::per_robot},
                                                          {"external", Controllers::external}};
   CLI::App* run_app = app.add_subcommand("run", "Run an experiment with its controllers");
+  run_app->add_option("FILE", run_options.files, "Experiment (YAML)")->required()->expected(1)->type_name("");
   add_run_options(*run_app, run_options, speed, log_flags);
   run_app
       ->add_option("--controllers", controllers,
@@ -209,6 +216,9 @@ int main(int argc, char** argv) {
   RunCommand serve_options;
   serve_options.controllers = Controllers::external;
   CLI::App* serve_app = app.add_subcommand("serve", "Run an experiment alone and wait for controllers to attach");
+  serve_app->add_option("FILE", serve_options.files, "Experiments (YAML), run one after the other")
+      ->required()
+      ->type_name("");
   add_run_options(*serve_app, serve_options, speed, log_flags);
   serve_app->add_option("--network", serve_options.network, "Address of the interface to serve on")
       ->capture_default_str()
@@ -220,14 +230,14 @@ int main(int argc, char** argv) {
   host_app->add_option("PLUGIN", host_options.plugin, "Name of a controller, or path to its plugin")
       ->required()
       ->type_name("");
-  add_client_options(*host_app, host_options.robots, host_options.server, host_options.domain);
+  add_client_options(*host_app, host_options.robots, host_options.server, host_options.domains);
   add_log_options(*host_app, log_flags);
   host_app->add_flag("--for-run", host_options.for_run)->group("");  // `cohort run` starts it so
   host_app->footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
 
   TeleopCommand teleop_options;
   CLI::App* teleop_app = app.add_subcommand("teleop", "Drive robots of a server by keyboard");
-  add_client_options(*teleop_app, teleop_options.robots, teleop_options.server, teleop_options.domain);
+  add_client_options(*teleop_app, teleop_options.robots, teleop_options.server, teleop_options.domains);
   add_log_options(*teleop_app, log_flags);
   teleop_app->footer("Example: cohort teleop --robots 0");
 

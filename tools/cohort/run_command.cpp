@@ -1,23 +1,22 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "client_sdk/math/portable_math.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/session/in_process.hpp"
-#include "server/session/server.hpp"
-#include "tools/cohort/children.hpp"
 #include "tools/cohort/commands.hpp"
-#include "tools/cohort/controller_processes.hpp"
 #include "tools/cohort/installed_models.hpp"
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
 #include "tools/cohort/printed_table.hpp"
 #include "tools/cohort/run_trace.hpp"
+#include "tools/cohort/serving.hpp"
 #include "tools/cohort/summary_file.hpp"
 #include "tools/cohort/team_controllers.hpp"
 #include "tools/cohort/terminal.hpp"
@@ -27,10 +26,6 @@ namespace cohort::tool {
 namespace {
 
 using session::RunResult;
-
-// Domains that a run picks from for itself and the controllers that it starts.
-constexpr std::uint32_t first_own_domain = 1;
-constexpr std::uint32_t own_domain_count = 59;
 
 double cpu_seconds() {
   double total = 0.0;
@@ -51,34 +46,18 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-struct Served {
-  wire::Participant participant;
-  std::uint32_t domain;
-};
-
-// Outsiders need to know the domain: it is the one given, or 0. Nobody but our own children needs to know ours: it is
-// any free one, so that several runs on one machine do not meet.
-Served open_domain(const RunCommand& command, bool has_outsiders) {
-  if (command.domain || has_outsiders) {
-    const std::uint32_t domain = command.domain.value_or(0);
-    return {wire::Participant::server(domain, command.network), domain};
-  }
-  const auto start = static_cast<std::uint32_t>(getpid());
-  for (std::uint32_t i = 0;; ++i) {
-    const std::uint32_t domain = first_own_domain + (start + i) % own_domain_count;
-    try {
-      return {wire::Participant::server(domain, command.network), domain};
-    } catch (const wire::DomainTaken&) {
-      if (i + 1 == own_domain_count) throw;
-    } catch (const wire::WireError& error) {
-      throw wire::WireError(std::string(error.what()) + ". --controllers inprocess needs no network");
-    }
-  }
+// People cannot follow what is faster than life, nor can hardware, which nobody waits for.
+double speed_of(const RunCommand& command, const description::Experiment& experiment) {
+  const bool has_free = std::ranges::any_of(experiment.teams, [](const description::Team& team) {
+    return team.policy.mode == description::Mode::free;
+  });
+  return command.speed.value_or(has_keyboard(experiment) || has_free ? 1.0 : 0.0);
 }
 
-// People cannot follow what is faster than life.
-double speed_of(const RunCommand& command, const description::Experiment& experiment) {
-  return command.speed.value_or(has_keyboard(experiment) ? 1.0 : 0.0);
+// Of several runs each has a file of its own: `summary.json` of the second is `summary-2.json`.
+std::filesystem::path numbered(const std::filesystem::path& file, std::size_t number, std::size_t count) {
+  if (file.empty() || count == 1) return file;
+  return file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
 }
 
 void refuse_keyboard(const description::Experiment& experiment) {
@@ -88,47 +67,13 @@ void refuse_keyboard(const description::Experiment& experiment) {
                                       "people drive over DDS: run this without --controllers inprocess"}});
 }
 
-RunResult run_over_dds(const RunCommand& command, const description::Experiment& experiment, Simulation& simulation,
-                       const std::vector<TeamController>& controllers, Log& log, const session::RunListener& listener,
-                       const std::atomic<bool>& stop, bool& has_begun) {
-  Served served = open_domain(command, command.controllers == Controllers::external || has_keyboard(experiment));
-  Children* own_controllers = nullptr;
-  session::RunListener own_listener = listener;
-  own_listener.ending = [&] {
-    if (own_controllers != nullptr) own_controllers->stop_restarting();
-  };
-  session::Server server(experiment, simulation, served.participant, {speed_of(command, experiment)}, own_listener);
-  const bool external = command.controllers == Controllers::external;
-  const std::string serving = fmt::format("serving {} on {}, domain {}", counted(simulation.robot_count(), "robot"),
-                                          command.network, served.domain);
-  const LogFields where = {{"address", command.network}, {"domain", served.domain}};
-  if (external) {
-    log.notice(serving, where);
-    has_begun = true;
-    return server.run(stop);
-  }
-  log.info(serving, where);
-  for (const description::Team& team : experiment.teams)
-    if (team.controller == keyboard_controller)
-      log.notice(fmt::format("to drive team '{}', in another terminal: cohort teleop --robots {} --domain {}",
-                             team.name, selectors_of(team.robots), served.domain));
-  const bool per_robot = command.controllers == Controllers::per_robot;
-  Children children(controller_processes(experiment, controllers, per_robot, served.domain, log),
-                    listener_of_controllers(server, log));
-  own_controllers = &children;
-  has_begun = true;
-  RunResult result = server.run(stop);
-  children.let_finish();
-  return result;
-}
-
-RunResult run_here(const RunCommand& command, const description::Experiment& experiment, Simulation& simulation,
-                   const std::vector<TeamController>& controllers, const session::RunListener& listener,
-                   const std::atomic<bool>& stop) {
+RunResult run_here(const description::Experiment& experiment, Simulation& simulation,
+                   const std::vector<TeamController>& controllers, const session::RunOptions& options,
+                   const session::RunListener& listener, const std::atomic<bool>& stop) {
   std::vector<ControllerKind> teams;
   teams.reserve(controllers.size());
   for (const TeamController& controller : controllers) teams.push_back(controller.kind());
-  return session::run_in_process(experiment, simulation, teams, {speed_of(command, experiment)}, listener, stop);
+  return session::run_in_process(experiment, simulation, teams, options, listener, stop);
 }
 
 void warn_if_not_portable(Log& log) {
@@ -138,98 +83,155 @@ void warn_if_not_portable(Log& log) {
     log.warning("this run's hash may differ on another CPU: the C library's" + names + " are in use instead of ours");
 }
 
-// Whether all that was asked for is written.
-bool write_files(const RunCommand& command, const description::Experiment& experiment, const RunResult& result,
-                 double cpu, std::optional<TraceRecorder>& recorder, const std::optional<PrintedTable>& table,
-                 Log& log) {
-  const auto try_to = [&](const auto& write) {
-    try {
-      write();
-      return true;
-    } catch (const std::exception& error) {
-      log.error(error.what());
-      return false;
+// One experiment, with all that people see of it.
+class OneRun {
+ public:
+  OneRun(const RunCommand& command, std::size_t number, std::size_t count, const description::Experiment& experiment,
+         Simulation& simulation, Log& log)
+      : command_(command),
+        experiment_(experiment),
+        log_(log),
+        summary_(numbered(command.summary, number, count)),
+        plot_(numbered(command.plot, number, count)),
+        csv_(numbered(command.csv, number, count)),
+        own_controllers_(command.controllers != Controllers::external && !has_keyboard(experiment)),
+        terminal_(log, {.quiet = command.quiet, .own_controllers = own_controllers_}) {
+    if (!plot_.empty()) recorder_.emplace(experiment.world, simulation, command.viewpoint);
+    if (!experiment.prints.empty()) table_.emplace(experiment, simulation, csv_.empty() && !command.quiet);
+  }
+
+  session::RunListener listener() {
+    return {
+        .progress = [&](const session::Progress& progress) { terminal_.progress(progress); },
+        .event = [&](const session::Event& event) { terminal_.event(event); },
+        .boundary =
+            [&] {
+              if (recorder_) recorder_->boundary();
+              if (table_) table_->boundary();
+            },
+    };
+  }
+
+  /// Prints and writes what was asked for. The exit code.
+  int finish(const RunResult& result, double cpu) {
+    terminal_.summary(result, cpu);
+    const bool written = write_files(result, cpu);
+    switch (result.end) {
+      case RunResult::End::finished: return written ? exit_ok : exit_failed;
+      case RunResult::End::interrupted: return exit_interrupted;
+      case RunResult::End::failed:
+        log_.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
     }
-  };
-  bool written = true;
-  if (!command.summary.empty()) written &= try_to([&] { write_summary(command.summary, result, cpu); });
-  if (recorder)
-    written &= try_to([&] {
-      const PlotCaption caption = {experiment.name, result.sim_time, result.state_hash};
-      write_file("the plot", command.plot, draw_plot(recorder->finish(), caption));
-    });
-  if (!command.csv.empty())
-    written &= try_to([&] { write_file("the table", command.csv, table ? table->text() : std::string()); });
-  return written;
+    return exit_failed;
+  }
+
+ private:
+  bool write_files(const RunResult& result, double cpu) {
+    const auto try_to = [&](const auto& write) {
+      try {
+        write();
+        return true;
+      } catch (const std::exception& error) {
+        log_.error(error.what());
+        return false;
+      }
+    };
+    bool written = true;
+    if (!summary_.empty()) written &= try_to([&] { write_summary(summary_, experiment_, result, cpu); });
+    if (recorder_)
+      written &= try_to([&] {
+        const PlotCaption caption = {experiment_.name, result.sim_time, result.state_hash};
+        write_file("the plot", plot_, draw_plot(recorder_->finish(), caption));
+      });
+    if (!csv_.empty())
+      written &= try_to([&] { write_file("the table", csv_, table_ ? table_->text() : std::string()); });
+    return written;
+  }
+
+  const RunCommand& command_;
+  const description::Experiment& experiment_;
+  Log& log_;
+  std::filesystem::path summary_, plot_, csv_;
+  bool own_controllers_;
+  Terminal terminal_;
+  std::optional<TraceRecorder> recorder_;
+  std::optional<PrintedTable> table_;
+};
+
+description::Experiment read(const RunCommand& command, const std::filesystem::path& file, Log& log) {
+  std::optional<std::chrono::nanoseconds> duration;
+  if (command.duration)
+    duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
+  const Stopwatch reading;
+  description::Experiment experiment =
+      description::read_experiment(file, command.seed, duration, installed_model_folders());
+  for (const description::Problem& warning : experiment.world.warnings) log.problem(LogLevel::warning, warning);
+  log.info(fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", file.string(), experiment.world.file.string(),
+                       counted(experiment.world.instances.size(), "model"),
+                       counted(experiment.world.robots.size(), "robot"), counted(experiment.teams.size(), "team"),
+                       reading.seconds()),
+           {{"models", experiment.world.instances.size()},
+            {"robots", experiment.world.robots.size()},
+            {"teams", experiment.teams.size()},
+            {"seconds", reading.seconds()}});
+  return experiment;
+}
+
+std::unique_ptr<Simulation> build(const RunCommand& command, const description::Experiment& experiment, Log& log) {
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  const unsigned wanted = command.threads == 0 ? experiment.threads : command.threads;
+  const unsigned threads = wanted == 0 ? cores : wanted;
+  const Stopwatch building;
+  auto simulation = std::make_unique<Simulation>(experiment, threads);
+  log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
+           {{"threads", threads}, {"seconds", building.seconds()}});
+  return simulation;
 }
 
 }  // namespace
 
 int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
-  const double cpu_before = cpu_seconds();  // a shell that became this process may have had children
+  double cpu_before = cpu_seconds();  // a shell that became this process may have had children
   bool has_begun = false;
   try {
-    if (!command.summary.empty()) check_writable("the summary", command.summary);
-    if (!command.plot.empty()) check_writable("the plot", command.plot);
-    if (!command.csv.empty()) check_writable("the table", command.csv);
-    std::optional<std::chrono::nanoseconds> duration;
-    if (command.duration)
-      duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
-    Stopwatch reading;
-    const description::Experiment experiment =
-        description::read_experiment(command.file, command.seed, duration, installed_model_folders());
-    for (const description::Problem& warning : experiment.world.warnings) log.problem(LogLevel::warning, warning);
-    log.info(fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", command.file.string(),
-                         experiment.world.file.string(), counted(experiment.world.instances.size(), "model"),
-                         counted(experiment.world.robots.size(), "robot"), counted(experiment.teams.size(), "team"),
-                         reading.seconds()),
-             {{"models", experiment.world.instances.size()},
-              {"robots", experiment.world.robots.size()},
-              {"teams", experiment.teams.size()},
-              {"seconds", reading.seconds()}});
+    const std::size_t count = command.files.size() * command.repeat;
+    for (std::size_t number = 1; number <= count; ++number) {
+      if (!command.summary.empty()) check_writable("the summary", numbered(command.summary, number, count));
+      if (!command.plot.empty()) check_writable("the plot", numbered(command.plot, number, count));
+      if (!command.csv.empty()) check_writable("the table", numbered(command.csv, number, count));
+    }
+    std::vector<description::Experiment> experiments;
+    for (const std::filesystem::path& file : command.files) experiments.push_back(read(command, file, log));
 
-    if (command.controllers == Controllers::in_process) refuse_keyboard(experiment);
+    const bool in_process = command.controllers == Controllers::in_process;
+    if (in_process) refuse_keyboard(experiments.front());
     std::vector<TeamController> controllers;
-    if (command.controllers != Controllers::external) controllers = load_controllers(experiment);
-    const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-    const unsigned wanted = command.threads == 0 ? experiment.threads : command.threads;
-    const unsigned threads = wanted == 0 ? cores : wanted;
-    Stopwatch building;
-    Simulation simulation(experiment, threads);
-    log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
-             {{"threads", threads}, {"seconds", building.seconds()}});
-    if (command.controllers != Controllers::external) try_controllers(experiment, simulation, controllers);
+    if (command.controllers != Controllers::external) controllers = load_controllers(experiments.front());
+    auto simulation = build(command, experiments.front(), log);
+    if (command.controllers != Controllers::external)
+      try_controllers(experiments.front(), *simulation, controllers);
     warn_if_not_portable(log);
 
-    std::optional<TraceRecorder> recorder;
-    if (!command.plot.empty()) recorder.emplace(experiment.world, simulation, command.viewpoint);
-    const bool own_controllers = command.controllers != Controllers::external && !has_keyboard(experiment);
-    std::optional<PrintedTable> table;
-    if (!experiment.prints.empty()) table.emplace(experiment, simulation, command.csv.empty() && !command.quiet);
-    Terminal terminal(log, {.quiet = command.quiet, .own_controllers = own_controllers});
-    const session::RunListener listener = {
-        .progress = [&](const session::Progress& progress) { terminal.progress(progress); },
-        .event = [&](const session::Event& event) { terminal.event(event); },
-        .boundary =
-            [&] {
-              if (recorder) recorder->boundary();
-              if (table) table->boundary();
-            },
-    };
-    has_begun = command.controllers == Controllers::in_process;
-    const RunResult result =
-        has_begun ? run_here(command, experiment, simulation, controllers, listener, stop)
-                  : run_over_dds(command, experiment, simulation, controllers, log, listener, stop, has_begun);
-    const double cpu = cpu_seconds() - cpu_before;
-    terminal.summary(result, cpu);
-    const bool written = write_files(command, experiment, result, cpu, recorder, table, log);
-    switch (result.end) {
-      case RunResult::End::finished: return written ? exit_ok : exit_failed;
-      case RunResult::End::interrupted: return exit_interrupted;
-      case RunResult::End::failed:
-        log.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
+    std::optional<Serving> serving;
+    if (!in_process) serving.emplace(command, experiments.front(), log);
+    int code = exit_ok;
+    for (std::size_t number = 1; number <= count && code == exit_ok; ++number) {
+      const description::Experiment& experiment = experiments[(number - 1) % experiments.size()];
+      // A reset is a world that is built anew.
+      if (simulation == nullptr) simulation = build(command, experiment, log);
+      OneRun one(command, number, count, experiment, *simulation, log);
+      if (count > 1) log.notice(fmt::format("run {} of {}: {}", number, count, experiment.name));
+      if (number == 1 && serving) serving->start_controllers(experiment, controllers);
+      has_begun = true;
+      const session::RunOptions options = {speed_of(command, experiment)};
+      const RunResult result =
+          serving ? serving->run(experiment, *simulation, options, one.listener(), stop, number == count)
+                  : run_here(experiment, *simulation, controllers, options, one.listener(), stop);
+      const double cpu = cpu_seconds();
+      code = one.finish(result, cpu - std::exchange(cpu_before, cpu));
+      simulation.reset();
     }
-    return exit_failed;
+    return code;
   } catch (const description::InputError& error) {
     log.problems(error);
   } catch (const std::exception& error) {

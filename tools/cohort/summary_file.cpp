@@ -14,13 +14,38 @@ double microseconds(std::chrono::nanoseconds duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }
 
+nlohmann::ordered_json quantiles(const lockstep::LatencyHistogram& histogram) {
+  return {{"p50", microseconds(histogram.quantile(0.5))},
+          {"p99", microseconds(histogram.quantile(0.99))},
+          {"max", microseconds(histogram.max())}};
+}
+
+const char* word_of(description::OnLate consequence) {
+  switch (consequence) {
+    case description::OnLate::wait: return "wait";
+    case description::OnLate::hold: return "hold";
+    case description::OnLate::zero: return "zero";
+    case description::OnLate::detach: return "detach";
+    case description::OnLate::stop: return "stop";
+  }
+  return "unknown";
+}
+
 }  // namespace
 
-void write_summary(const std::filesystem::path& file, const session::RunResult& result, double cpu_seconds) {
+void write_summary(const std::filesystem::path& file, const description::Experiment& experiment,
+                   const session::RunResult& result, double cpu_seconds) {
   const double wall = seconds(result.wall_time);
   nlohmann::ordered_json events = nlohmann::ordered_json::array();
   for (const session::Event& event : result.events)
     events.push_back({{"tick", event.tick}, {"kind", event.kind}, {"text", event.text}, {"count", event.count}});
+  nlohmann::ordered_json misses = nlohmann::ordered_json::array();
+  for (const session::Miss& miss : result.misses)
+    misses.push_back({{"tick", miss.tick},
+                      {"frame", miss.frame_tick},
+                      {"robot", experiment.world.robot(miss.robot).name},
+                      {"on_late", word_of(miss.consequence)},
+                      {"waited_s", seconds(miss.waited)}});
   const nlohmann::ordered_json summary = {
       {"ticks", result.ticks},
       {"sim_time_ns", result.sim_time.count()},
@@ -29,11 +54,10 @@ void write_summary(const std::filesystem::path& file, const session::RunResult& 
       {"real_time_factor", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0},
       {"state_hash", fmt::format("{:016x}", result.state_hash)},
       {"robots", result.robots},
-      {"barrier_us",
-       {{"p50", microseconds(result.barrier.quantile(0.5))},
-        {"p99", microseconds(result.barrier.quantile(0.99))},
-        {"max", microseconds(result.barrier.max())}}},
+      {"barrier_us", quantiles(result.barrier)},
       {"late", result.late},
+      {"misses", misses},
+      {"lateness_us", quantiles(result.lateness)},
       {"events", events},
       {"stop_reason", result.stop_reason},
       {"touches",

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "client_sdk/src/client.hpp"
+#include "client_sdk/src/domains.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/key_reader.hpp"
 #include "tools/cohort/keyboard.hpp"
@@ -86,7 +87,7 @@ int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop
     std::atomic<bool> leave = false;
     ClientOptions options;
     options.server = command.server;
-    options.domain = command.domain;
+    if (!command.domains.empty()) options.domain = domain_of_this_process(command.domains);
     options.robots = command.robots;
     options.name = "teleop";
     options.tell = [&](Severity severity, const std::string& text) {

@@ -92,6 +92,10 @@ void Terminal::summary(const session::RunResult& result, double cpu_seconds) {
               wall, cpu_seconds);
   std::printf("barrier latency   p50 %s us, p99 %s us, max %s us\n", microseconds(result.barrier.quantile(0.5)).c_str(),
               microseconds(result.barrier.quantile(0.99)).c_str(), microseconds(result.barrier.max()).c_str());
+  if (result.lateness.count() > 0)
+    std::printf("tick lateness     p50 %s us, p99 %s us, max %s us\n",
+                microseconds(result.lateness.quantile(0.5)).c_str(),
+                microseconds(result.lateness.quantile(0.99)).c_str(), microseconds(result.lateness.max()).c_str());
   std::printf("contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
               percent(result.touches.obstacles, result.touches.robot_ticks),
               percent(result.touches.robots, result.touches.robot_ticks));

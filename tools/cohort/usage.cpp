@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "client_sdk/src/domains.hpp"
 #include "server/description/text.hpp"
 
 namespace cohort::tool {
@@ -89,6 +90,18 @@ CLI::Validator max_or_number_above_zero(double greatest) {
             return text == "max" || is_above_zero(text, greatest)
                        ? std::string()
                        : fmt::format("expected max, or a number above 0 and up to {}, not '{}'", greatest, text);
+          },
+          ""};
+}
+
+CLI::Validator domain_range() {
+  return {[](std::string& text) -> std::string {
+            try {
+              parse_domains(text);
+              return {};
+            } catch (const std::invalid_argument& error) {
+              return error.what();
+            }
           },
           ""};
 }

@@ -12,6 +12,7 @@ namespace cohort::tool {
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest);
 CLI::Validator number_above_zero(double greatest);
 CLI::Validator max_or_number_above_zero(double greatest);
+CLI::Validator domain_range();
 CLI::Validator one_of(std::vector<std::string> names);
 
 /// What is wrong, in one sentence with the nearest known name, and which help to ask for.

@@ -41,11 +41,13 @@ class LockstepRun {
   void stop() { stop_ = true; }
 
  private:
+  void open_domains(std::size_t wanted);
+
   const description::Experiment experiment_;
   Simulation simulation_;
   std::atomic<bool> stop_ = false;
-  const std::atomic<bool>* interrupted_ = nullptr;
-  std::pair<wire::Participant, std::uint32_t> domain_;
+  std::vector<std::uint32_t> domains_;
+  std::vector<wire::Participant> participants_;
   std::unique_ptr<session::Server> server_;
   std::unique_ptr<BenchProcesses> clients_;
 };

@@ -52,7 +52,9 @@ class Exchange {
 
   Simulation& simulation_;
   lockstep::Barrier barrier_;
-  std::vector<std::vector<double>> history_;  // by robot: delay + 1 observations, by tick modulo delay + 1
+  // By robot: delay + 1 observations, by tick modulo delay + 1. None without a delay: the simulation has the only one.
+  std::vector<std::vector<double>> history_;
+  std::vector<std::uint32_t> due_;  // reused
 };
 
 }  // namespace cohort::session

@@ -154,11 +154,9 @@ bool Server::sleep_until_due(const std::atomic<bool>& stop) {
 }
 
 Server::Clock::time_point Server::next_wake() const {
-  Clock::time_point wake = std::min(Clock::now() + longest_sleep, run_->book.next_report());
+  Clock::time_point wake = std::min({Clock::now() + longest_sleep, run_->book.next_report(), next_resend_});
   if (const auto deadline = run_->exchange.barrier().next_deadline())
     wake = std::min(wake, Clock::time_point(*deadline));
-  for (const auto& [id, client] : clients_)
-    if (is_awaited(id)) wake = std::min(wake, Clock::time_point(client.resend.due()));
   return wake;
 }
 
@@ -169,19 +167,22 @@ bool Server::is_awaited(std::uint64_t client) const {
          std::ranges::any_of(lease->robots, [&](auto robot) { return run_->exchange.barrier().is_awaited(robot); });
 }
 
-void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
+// Under the lock: the client's frame of that tick. False if it has none.
+bool Server::fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick) {
+  const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
+  client.frame.robots.clear();
+  if (lease == nullptr) return false;
+  run_->exchange.fill_frame(client.frame, lease->robots, tick);
+  client.epoch = lease->epoch;
+  return !client.frame.robots.empty();
+}
+
+void Server::write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick) {
   wire::Observation observation;
-  {
-    const std::lock_guard lock(mutex_);
-    const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
-    if (lease == nullptr) return;
-    run_->exchange.fill_frame(client.frame, lease->robots, tick);
-    observation.epoch = lease->epoch;
-  }
-  if (client.frame.robots.empty()) return;
   observation.client = client_id;
   observation.run = run_number_;
-  observation.resent = resent ? client.times_resent : 0;
+  observation.resent = client.times_resent;
+  observation.epoch = client.epoch;
   observation.tick = tick;
   observation.time_ns = (run_->experiment.world.step * static_cast<std::int64_t>(tick)).count();
   observation.robots = client.frame.robots;
@@ -189,27 +190,55 @@ void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t t
   client.observation.write(observation);  // lost if DDS cannot take it: sent again then
 }
 
-void Server::send_frames() {
-  for (auto& [id, client] : clients_) {
-    send_frame(id, client, run_->simulation.tick(), false);
-    client.resend.start(Clock::now().time_since_epoch(), run_->median_tick.value());
-    client.times_resent = 0;
+void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!fill_frame(client_id, client, tick)) return;
   }
+  write_frame(client_id, client, tick);
+}
+
+// All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
+void Server::send_frames() {
+  const std::uint64_t tick = run_->simulation.tick();
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, client] : clients_) fill_frame(id, client, tick);
+  }
+  for (auto& [id, client] : clients_) {
+    client.times_resent = 0;
+    if (!client.frame.robots.empty()) write_frame(id, client, tick);
+  }
+  const auto now = Clock::now().time_since_epoch();
+  const auto median_tick = run_->median_tick.value();
+  next_resend_ = Clock::time_point::max();
+  for (auto& [id, client] : clients_) start_resending(client, now, median_tick);
+}
+
+void Server::start_resending(Client& client, lockstep::Time now, lockstep::Time median_tick) {
+  client.resend.start(now, median_tick);
+  next_resend_ = std::min(next_resend_, Clock::time_point(client.resend.due()));
 }
 
 void Server::resend_frames(Clock::time_point now) {
+  if (now < next_resend_) return;
+  next_resend_ = Clock::time_point::max();
   for (auto& [id, client] : clients_) {
-    if (now.time_since_epoch() < client.resend.due()) continue;
-    std::vector<std::uint64_t> ticks;
-    {
-      const std::lock_guard lock(mutex_);
-      if (!is_awaited(id)) continue;
-      ticks = frames_under_way(run_->leases.lease(id)->robots);
+    if (now.time_since_epoch() >= client.resend.due()) {
+      const std::vector<std::uint64_t> ticks = awaited_frames(id);
+      if (!ticks.empty()) ++client.times_resent;
+      for (const std::uint64_t tick : ticks) send_frame(id, client, tick);
+      client.resend.resent(now.time_since_epoch());
     }
-    ++client.times_resent;
-    for (const std::uint64_t tick : ticks) send_frame(id, client, tick, true);
-    client.resend.resent(now.time_since_epoch());
+    next_resend_ = std::min(next_resend_, Clock::time_point(client.resend.due()));
   }
+}
+
+// What is to be sent again to a client that is waited for.
+std::vector<std::uint64_t> Server::awaited_frames(std::uint64_t client) {
+  const std::lock_guard lock(mutex_);
+  if (!is_awaited(client)) return {};
+  return frames_under_way(run_->leases.lease(client)->robots);
 }
 
 bool Server::handle_misses(Clock::time_point now) {

@@ -71,7 +71,8 @@ class Server {
     bool claims = false;                  // and was neither granted nor refused
     lockstep::ResendTimer resend{};
     std::uint32_t times_resent = 0;
-    Exchange::Frame frame{};                      // reused
+    Exchange::Frame frame{};                      // reused: the last one
+    std::uint64_t epoch = 0;                      // of the lease that it went to
     std::set<std::string> reported_rejections{};  // reasons that it was told of
     // Of earlier ones.
     bool drove = false;  // so that a new run is a reset to it
@@ -126,6 +127,7 @@ class Server {
   void on_join(Door& door, const wire::Join& join, const wire::Sender& sender);
   void on_liveliness(const wire::Sender& sender, bool alive);
   void on_command(const wire::Command& command, const wire::Sender& sender);
+  bool take_answer(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report, const wire::Sender& sender);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
   void reject(std::uint64_t who, const char* reason, const std::string& text);
@@ -135,9 +137,13 @@ class Server {
   bool wait_for_controllers(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
   bool sleep_until_due(const std::atomic<bool>& stop);
-  void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
+  bool fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick);
+  void write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick);
+  void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick);
   void send_frames();
+  void start_resending(Client& client, lockstep::Time now, lockstep::Time median_tick);
   void resend_frames(Clock::time_point now);
+  std::vector<std::uint64_t> awaited_frames(std::uint64_t client);
   bool handle_misses(Clock::time_point now);
   Clock::time_point next_wake() const;
   bool is_awaited(std::uint64_t client) const;
@@ -180,6 +186,7 @@ class Server {
   std::map<std::uint64_t, Client> clients_;                  // by id
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of Join
   std::vector<wire::RobotDescription> descriptions_;         // on the wire so far
+  Clock::time_point next_resend_ = Clock::time_point::max();  // of all clients
   Clock::time_point observers_counted_at_{};
   bool observed_ = false;
   std::vector<double> poses_;  // reused

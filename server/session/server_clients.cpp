@@ -246,9 +246,9 @@ void Server::admit(const lockstep::Leases::Granted& granted) {
   Client& client = clients_.at(granted.client);
   client.claims = false;
   client.admit.write(answer);
-  for (const std::uint64_t tick : frames) send_frame(granted.client, client, tick, false);
-  client.resend.start(Clock::now().time_since_epoch(), run_->median_tick.value());
   client.times_resent = 0;
+  for (const std::uint64_t tick : frames) send_frame(granted.client, client, tick);
+  start_resending(client, Clock::now().time_since_epoch(), run_->median_tick.value());
 }
 
 // Under the lock.

@@ -62,8 +62,10 @@ const Topic Codec<RobotDescription>::topic = {.name = "cohort/v1/robot_descripti
                                               .type = &cohort_v1_RobotDescription_desc,
                                               .transient_local = true,
                                               .depth = 1};
-const Topic Codec<Observation>::topic = {.name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc};
-const Topic Codec<Command>::topic = {.name = "cohort/v1/command", .type = &cohort_v1_Command_desc};
+const Topic Codec<Observation>::topic = {
+    .name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc, .wants_repair = false};
+const Topic Codec<Command>::topic = {
+    .name = "cohort/v1/command", .type = &cohort_v1_Command_desc, .wants_repair = false};
 const Topic Codec<WorldState>::topic = {
     .name = "cohort/v1/world_state", .type = &cohort_v1_WorldState_desc, .reliable = false, .depth = 1};
 const Topic Codec<Report>::topic = {

@@ -43,7 +43,8 @@ int measure_lockstep(const BenchCommand& command, Log& log, const bench::Surroun
     log.clear_progress();
     std::cout << line << std::flush;
   });
-  if (!command.json.empty()) write_file(what, command.json, results.dump(2) + "\n");
+  if (!command.json.empty()) write_file(what, command.json, results.json.dump(2) + "\n");
+  if (!command.svg.empty()) write_file(graph, command.svg, results.graph);
   return exit_ok;
 }
 

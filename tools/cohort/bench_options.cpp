@@ -104,10 +104,15 @@ void add_lockstep_options(CLI::App& app, BenchOptions& all) {
       ->check(whole_number(1, 1000))
       ->capture_default_str()
       ->type_name("N");
-  app.add_flag("--look-ahead", options.look_ahead,
-               "Measure a physics and a controller that compute for the same time, with and without a delay");
+  app.add_flag("--own-thread{false}", options.inline_step,
+               "Clients step on a thread of their own, as 'cohort host' does without --inline");
+  CLI::Option* look_ahead =
+      app.add_flag("--look-ahead", options.look_ahead,
+                   "Measure a physics and a controller that compute for the same time, with and without a delay");
   app.add_option("--json", all.scenes.json, "Write the results to this file as JSON")->type_name("FILE");
-  app.add_option("--svg", all.scenes.svg, "Draw the results to this file as SVG")->type_name("FILE");
+  app.add_option("--svg", all.scenes.svg, "Draw the results to this file as SVG")
+      ->type_name("FILE")
+      ->excludes(look_ahead);
   app.footer(
       "A server and its clients in lockstep over DDS, beside the same bytes between as many processes over raw UDP, "
       "in\n"

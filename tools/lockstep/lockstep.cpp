@@ -211,11 +211,12 @@ Spread LockstepRow::barrier_ratio() const {
   return spread_of(std::move(ratios));
 }
 
-nlohmann::ordered_json measure_lockstep(const LockstepOptions& options, const Surroundings& surroundings,
-                                        const std::function<void(const std::string&)>& print) {
+LockstepResults measure_lockstep(const LockstepOptions& options, const Surroundings& surroundings,
+                                 const std::function<void(const std::string&)>& print) {
   nlohmann::ordered_json all = {{"seconds", options.seconds},
                                 {"repetitions", options.repetitions},
                                 {"cores", std::thread::hardware_concurrency()},
+                                {"inline", options.inline_step},
                                 {"results", nlohmann::ordered_json::array()}};
   if (options.look_ahead) {
     print(look_ahead_heading());
@@ -223,16 +224,17 @@ nlohmann::ordered_json measure_lockstep(const LockstepOptions& options, const Su
       print(line_of(row));
       all["results"].push_back(to_json(row));
     }
-    return all;
+    return {all, {}};
   }
+  std::vector<LockstepRow> rows;
   print(lockstep_heading());
   for (const ClientPlacement placement : options.placements)
     for (const std::uint32_t robots : options.robots) {
-      const LockstepRow row = RowMeasurement(placement, robots, options, surroundings).measure();
-      print(line_of(row));
-      all["results"].push_back(to_json(row));
+      rows.push_back(RowMeasurement(placement, robots, options, surroundings).measure());
+      print(line_of(rows.back()));
+      all["results"].push_back(to_json(rows.back()));
     }
-  return all;
+  return {all, draw_rows(rows)};
 }
 
 }  // namespace cohort::bench

@@ -29,7 +29,7 @@ struct LockstepOptions {
   double seconds = 1.0;  ///< wall time of each repetition of each way
   unsigned repetitions = 5;
   bool inline_step = true;  ///< of the clients (ClientOptions)
-  bool look_ahead = false;  ///< measure that, in place of the rows
+  bool look_ahead = false;  ///< measure that, in place of the rows; there is no graph of it
 };
 
 /// One repetition of one way. Times in seconds of the wall clock.
@@ -68,9 +68,13 @@ struct LookAheadRow {
   std::vector<double> median;  ///< wall time of a tick, one for each repetition [s]
 };
 
+struct LockstepResults {
+  nlohmann::ordered_json json;
+  std::string graph;  ///< an SVG document
+};
 /// Measures row by row; `print` gets each row as soon as it is there. Throws Interrupted, and std::runtime_error if a
 /// process fails.
-nlohmann::ordered_json measure_lockstep(const LockstepOptions& options, const Surroundings& surroundings,
-                                        const std::function<void(const std::string&)>& print);
+LockstepResults measure_lockstep(const LockstepOptions& options, const Surroundings& surroundings,
+                                 const std::function<void(const std::string&)>& print);
 
 }  // namespace cohort::bench

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
+
+#include "tools/figures/chart.hpp"
 
 namespace cohort::bench {
 namespace {
@@ -37,7 +40,42 @@ Json turns_json(const std::vector<LockstepTurn>& turns) {
 
 std::string rate_of(double ticks_a_second) { return fmt::format("{:.0f}", ticks_a_second); }
 
+using Quantity = double (*)(const LockstepRow&);
+
+// A dot for each number of robots, a line for each placement.
+std::vector<figures::Series> series_of(const std::vector<LockstepRow>& rows, const std::string& name,
+                                       Quantity quantity) {
+  std::vector<figures::Series> all;
+  for (const auto& [place, placement] : placements()) {
+    figures::Series series;
+    series.name = name + place;
+    series.is_joined = true;
+    for (const LockstepRow& row : rows)
+      if (row.placement == placement) series.measured.emplace_back(row.robots, quantity(row));
+    std::ranges::sort(series.measured, {}, [](const auto& point) { return point.x(); });
+    if (!series.measured.empty()) all.push_back(std::move(series));
+  }
+  return all;
+}
+
 }  // namespace
+
+std::string draw_rows(const std::vector<LockstepRow>& rows) {
+  const char* what = "all in one process, in eights, each in one";
+  figures::Page page{"lockstep", "The barrier over DDS, and the same bytes over raw UDP", {}};
+  page.panels.push_back(
+      {"Barrier over DDS", what, "robots", "median, microseconds", series_of(rows, "", [](const LockstepRow& row) {
+         return micro * median_of(row.cohort, &LockstepTurn::barrier_median);
+       })});
+  page.panels.push_back(
+      {"Raw UDP", what, "robots", "median, microseconds", series_of(rows, "", [](const LockstepRow& row) {
+         return micro * median_of(row.udp, &LockstepTurn::barrier_median);
+       })});
+  page.panels.push_back({"Ratio of tick rates", "Cohort to raw UDP, the world's step included", "robots", "1",
+                         series_of(rows, "", [](const LockstepRow& row) { return row.ratio().median; })});
+  for (figures::Panel& panel : page.panels) panel.is_logarithmic = true;
+  return figures::draw(page);
+}
 
 std::string lockstep_heading() {
   return fmt::format("{:<8}{:>7}{:>10} |{:>9}{:>9}{:>9}{:>7}{:>16} |{:>9}{:>9}{:>16} |{:>7}{:>13}{:>9}\n", "place",

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tools/lockstep/lockstep.hpp"
 
@@ -11,6 +12,9 @@ namespace cohort::bench {
 std::string lockstep_heading();
 std::string line_of(const LockstepRow& row);
 nlohmann::ordered_json to_json(const LockstepRow& row);
+
+/// The graph of rows of any placements: an SVG document.
+std::string draw_rows(const std::vector<LockstepRow>& rows);
 
 std::string look_ahead_heading();
 std::string line_of(const LookAheadRow& row);

@@ -20,7 +20,8 @@ struct ClientOptions {
   std::vector<std::string> robots{"all"};  ///< selectors, see docs/protocol.md
   std::string name;                        ///< shown by the server; the controller's if empty
   /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
-  /// latency. Only for controllers that never block, since DDS stands still meanwhile.
+  /// latency. `step` then runs on either thread, on one at a time. DDS stands still meanwhile: after eight frames in a
+  /// row that take more than a millisecond, all further ones are the calling thread's.
   bool inline_step = false;
   /// Receives what people should know, one text at a time, on any thread of the client. If empty it goes to standard
   /// error, after the name.

@@ -33,8 +33,8 @@ Exchange::Exchange(Simulation& simulation)
     : simulation_(simulation), barrier_(policies_of(simulation), command_sizes_of(simulation)) {
   for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
     const std::uint32_t delay = simulation.policy(robot).delay;
-    history_.emplace_back(
-        delay == 0 ? 0 : simulation.kinds()[simulation.kind_of(robot)].observation_size * (delay + 1));
+    history_.emplace_back(delay == 0 ? 0
+                                     : simulation.kinds()[simulation.kind_of(robot)].observation_size * (delay + 1));
   }
 }
 
@@ -60,13 +60,23 @@ std::span<const double> Exchange::kept(std::uint32_t robot, std::uint64_t tick) 
 
 void Exchange::fill_frame(Frame& frame, std::span<const std::uint32_t> robots, std::uint64_t tick) const {
   frame.robots.clear();
-  frame.values.clear();
+  frame.values = {};
+  bool in_a_row = true;
   for (const std::uint32_t robot : robots) {
     if (!barrier_.is_due(robot, tick)) continue;
+    const std::span<const double> values = kept(robot, tick);
+    if (frame.robots.empty()) frame.values = values.first(0);
+    in_a_row = in_a_row && frame.values.data() + frame.values.size() == values.data();
+    if (in_a_row) frame.values = {frame.values.data(), frame.values.size() + values.size()};
     frame.robots.push_back(robot);
-    const auto values = kept(robot, tick);
-    frame.values.insert(frame.values.end(), values.begin(), values.end());
   }
+  if (in_a_row) return;
+  frame.gathered.clear();
+  for (const std::uint32_t robot : frame.robots) {
+    const std::span<const double> values = kept(robot, tick);
+    frame.gathered.insert(frame.gathered.end(), values.begin(), values.end());
+  }
+  frame.values = frame.gathered;
 }
 
 Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_t frame_tick,

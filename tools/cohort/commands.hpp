@@ -56,6 +56,7 @@ struct HostCommand {
   std::vector<std::string> robots;
   std::string server;
   std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
+  bool inline_step = false;              ///< ClientOptions
   bool for_run = false;  ///< started by `cohort run`, whose server tells what becomes of a client
 };
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);

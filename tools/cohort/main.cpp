@@ -232,6 +232,8 @@ int main(int argc, char** argv) {
       ->type_name("");
   add_client_options(*host_app, host_options.robots, host_options.server, host_options.domains);
   add_log_options(*host_app, log_flags);
+  host_app->add_flag("--inline", host_options.inline_step,
+                     "Step on the thread that receives, while steps take less than 1 ms: a quicker answer");
   host_app->add_flag("--for-run", host_options.for_run)->group("");  // `cohort run` starts it so
   host_app->footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
 

@@ -30,8 +30,9 @@ struct Panel {
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
-  Image image{};                ///< drawn in the place of series, with x from 0 to 360 degrees
-  bool is_logarithmic = false;  ///< both axes; all that is measured is above zero, and there is no closed form
+  Image image{};          ///< drawn in the place of series, with x from 0 to 360 degrees
+  bool is_log_x = false;  ///< logarithmic: all that is measured is above zero, and there is no closed form
+  bool is_log_y = false;  ///< the same
 };
 
 struct Page {

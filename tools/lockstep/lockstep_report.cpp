@@ -73,7 +73,8 @@ std::string draw_rows(const std::vector<LockstepRow>& rows) {
        })});
   page.panels.push_back({"Ratio of tick rates", "Cohort to raw UDP, the world's step included", "robots", "1",
                          series_of(rows, "", [](const LockstepRow& row) { return row.ratio().median; })});
-  for (figures::Panel& panel : page.panels) panel.is_logarithmic = true;
+  for (figures::Panel& panel : page.panels) panel.is_log_x = true;
+  page.panels[0].is_log_y = page.panels[1].is_log_y = true;
   return figures::draw(page);
 }
 

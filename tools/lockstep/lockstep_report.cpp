@@ -71,7 +71,7 @@ std::string draw_rows(const std::vector<LockstepRow>& rows) {
       {"Raw UDP", what, "robots", "median, microseconds", series_of(rows, "", [](const LockstepRow& row) {
          return micro * median_of(row.udp, &LockstepTurn::barrier_median);
        })});
-  page.panels.push_back({"Ratio of tick rates", "Cohort to raw UDP, the world's step included", "robots", "1",
+  page.panels.push_back({"Ratio of tick rates", "with the world's step", "robots", "Cohort to raw UDP",
                          series_of(rows, "", [](const LockstepRow& row) { return row.ratio().median; })});
   for (figures::Panel& panel : page.panels) panel.is_log_x = true;
   page.panels[0].is_log_y = page.panels[1].is_log_y = true;

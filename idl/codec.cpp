@@ -63,9 +63,9 @@ const Topic Codec<RobotDescription>::topic = {.name = "cohort/v1/robot_descripti
                                               .transient_local = true,
                                               .depth = 1};
 const Topic Codec<Observation>::topic = {
-    .name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc, .wants_repair = false};
+    .name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc, .reliable = false};
 const Topic Codec<Command>::topic = {
-    .name = "cohort/v1/command", .type = &cohort_v1_Command_desc, .wants_repair = false};
+    .name = "cohort/v1/command", .type = &cohort_v1_Command_desc, .reliable = false};
 const Topic Codec<WorldState>::topic = {
     .name = "cohort/v1/world_state", .type = &cohort_v1_WorldState_desc, .reliable = false, .depth = 1};
 const Topic Codec<Report>::topic = {
@@ -176,6 +176,7 @@ Observation Codec<Observation>::decode(const Sample& sample) {
 Codec<Command>::Outgoing::Outgoing(const Command& message) {
   sample.client = message.client;
   sample.run = message.run;
+  sample.resent = message.resent;
   sample.epoch = message.epoch;
   sample.tick = message.tick;
   lend(message.robots, sample.robots);
@@ -183,7 +184,8 @@ Codec<Command>::Outgoing::Outgoing(const Command& message) {
 }
 
 Command Codec<Command>::decode(const Sample& sample) {
-  return {sample.client, sample.run, sample.epoch, sample.tick, to_span(sample.robots), to_span(sample.values)};
+  return {sample.client, sample.run, sample.epoch, sample.tick, to_span(sample.robots), to_span(sample.values),
+          sample.resent};
 }
 
 Codec<WorldState>::Outgoing::Outgoing(const WorldState& message) {

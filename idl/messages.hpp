@@ -96,6 +96,7 @@ struct Command {
   std::uint64_t tick = 0;
   std::span<const std::uint32_t> robots{};
   std::span<const double> values{};
+  std::uint32_t resent = 0;
 };
 
 struct WorldState {

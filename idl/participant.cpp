@@ -169,8 +169,10 @@ in_addr own_address_towards(in_addr server, std::uint16_t port) {
 std::string configuration(std::uint32_t domain, in_addr own_address, const std::string& discovery) {
   std::string xml = R"(<CycloneDDS><Domain Id="any"><General><AllowMulticast>false</AllowMulticast>)";
   xml += R"(<Interfaces><NetworkInterface address=")" + to_text(own_address) + R"("/></Interfaces>)";
-  // Large fragments are good on the loopback only: on a network a lost packet would cost the whole of one.
-  if (is_loopback(own_address)) xml += "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>60000B</FragmentSize>";
+  // Large datagrams are good on the loopback only. On a network they fit into a packet each: the kernel keeps the rest of
+  // one that lost a part for 30 s, and once it has kept too much takes no more of any.
+  xml += is_loopback(own_address) ? "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>60000B</FragmentSize>"
+                                  : "<MaxMessageSize>1472B</MaxMessageSize><FragmentSize>1344B</FragmentSize>";
   xml += "</General><Discovery><LeaseDuration>5s</LeaseDuration>" + discovery;
   xml += "<ExternalDomainId>" + std::to_string(domain) + "</ExternalDomainId></Discovery><Internal>";
   // Below the watermark a write never waits for acknowledgements, which arrive on the thread that may be writing.

@@ -22,9 +22,9 @@ constexpr auto longest_write = 100ms;
 
 constexpr dds_duration_t to_dds(std::chrono::nanoseconds duration) { return duration.count(); }
 
-Qos qos_of(const Topic& topic, bool reliable, const std::string& partition, int depth) {
+Qos qos_of(const Topic& topic, const std::string& partition, int depth) {
   Qos qos(dds_create_qos(), [](dds_qos_t* q) { dds_delete_qos(q); });
-  dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+  dds_qset_reliability(qos.get(), topic.reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        to_dds(longest_write));
   dds_qset_durability(qos.get(), topic.transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, topic.depth != 0 ? topic.depth : depth);
@@ -58,7 +58,7 @@ Writer<Message>::Writer(Participant& participant, const std::string& partition, 
   const Topic& topic = Codec<Message>::topic;
   state_->topic = create_topic(participant, topic);
   state_->writer = Entity(check(dds_create_writer(participant.state().participant.handle(), state_->topic.handle(),
-                                                  qos_of(topic, topic.reliable, partition, depth).get(), nullptr),
+                                                  qos_of(topic, partition, depth).get(), nullptr),
                                 "write", topic.name));
 }
 
@@ -159,9 +159,8 @@ Reader<Message>::Reader(Participant& participant, Callbacks callbacks, const std
   if (state_->callbacks.liveliness) dds_lset_liveliness_changed(listener.get(), &State::on_liveliness);
   state_->topic = create_topic(participant, topic);
   // With the listener from the first moment, no message and no change is missed.
-  const Qos qos = qos_of(topic, topic.reliable && topic.wants_repair, partition, depth);
   state_->reader = Entity(check(dds_create_reader(participant.state().participant.handle(), state_->topic.handle(),
-                                                  qos.get(), listener.get()),
+                                                  qos_of(topic, partition, depth).get(), listener.get()),
                                 "read", topic.name));
 }
 

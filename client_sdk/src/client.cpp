@@ -132,7 +132,7 @@ Client::Client(const ControllerKind& kind, const ClientOptions& options, const s
       host_(kind),
       participant_(wire::Participant::client(options.domain, options.server)),
       joins_(participant_),
-      commands_(participant_, "", frames_kept_by_dds),
+      commands_(participant_),
       own_reports_(participant_),
       description_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr}),
       admit_reader_(participant_,

@@ -43,8 +43,9 @@ void FrameQueue::arrive(const wire::Observation& frame) {
   const Lease lease(frame.run, frame.epoch);
   if (lease_ && lease < *lease_) return;
   if (lease_ && lease == *lease_ && frame.tick < next_tick_) {
-    const bool asked = std::find(repeats_.begin(), repeats_.end(), frame.tick) != repeats_.end();
-    if (!asked && find_answer(frame.tick) != nullptr) repeats_.push_back(frame.tick);
+    const bool asked =
+        std::ranges::any_of(repeats_, [&](const Repeat& repeat) { return repeat.tick == frame.tick; });
+    if (!asked && find_answer(frame.tick) != nullptr) repeats_.push_back({frame.tick, frame.resent});
     return;
   }
   const auto key = [](const wire::Observation& head) { return std::tuple(head.run, head.epoch, head.tick); };
@@ -83,9 +84,8 @@ const wire::Observation* FrameQueue::next() {
 
 // Of the frames of this lease all but the last.
 void FrameQueue::drop_older() {
-  const auto end = std::find_if(waiting_.begin(), waiting_.end(), [&](const Frame& frame) {
-    return Lease(frame.head.run, frame.head.epoch) != *lease_;
-  });
+  const auto end = std::find_if(waiting_.begin(), waiting_.end(),
+                                [&](const Frame& frame) { return Lease(frame.head.run, frame.head.epoch) != *lease_; });
   if (end - waiting_.begin() < 2) return;
   std::move(waiting_.begin(), end - 1, std::back_inserter(spare_));
   waiting_.erase(waiting_.begin(), end - 1);
@@ -99,6 +99,7 @@ wire::Command FrameQueue::finish(std::span<const double> values) {
   Answer& answer = answers_[oldest_answer_];
   oldest_answer_ = (oldest_answer_ + 1) % answers_kept_;
   answer.tick = under_way_.head.tick;
+  answer.resent = under_way_.head.resent;
   answer.values.assign(values.begin(), values.end());
   std::swap(answer.robots, under_way_.robots);
   spare_.push_back(std::move(under_way_));
@@ -107,9 +108,13 @@ wire::Command FrameQueue::finish(std::span<const double> values) {
 
 std::optional<wire::Command> FrameQueue::next_repeat() {
   while (!repeats_.empty()) {
-    const std::uint64_t tick = repeats_.back();
+    const Repeat repeat = repeats_.back();
     repeats_.pop_back();
-    if (const Answer* answer = find_answer(tick); answer != nullptr) return command_of(*answer);
+    const Answer* answer = find_answer(repeat.tick);
+    if (answer == nullptr) continue;
+    wire::Command command = command_of(*answer);
+    command.resent = repeat.resent;
+    return command;
   }
   return std::nullopt;
 }
@@ -145,7 +150,7 @@ std::uint64_t FrameQueue::next_due(std::uint64_t tick) const {
 
 wire::Command FrameQueue::command_of(const Answer& answer) const {
   const auto [run, epoch] = *lease_;
-  return {client_, run, epoch, answer.tick, answer.robots, answer.values};
+  return {client_, run, epoch, answer.tick, answer.robots, answer.values, answer.resent};
 }
 
 }  // namespace cohort

@@ -41,6 +41,7 @@ class FrameQueue {
   };
   struct Answer {
     std::uint64_t tick = 0;
+    std::uint32_t resent = 0;
     std::vector<std::uint32_t> robots;
     std::vector<double> values;
   };
@@ -70,7 +71,11 @@ class FrameQueue {
   Frame under_way_;
   std::vector<Answer> answers_;  // a ring once it is full
   std::size_t oldest_answer_ = 0;
-  std::vector<std::uint64_t> repeats_;  // ticks
+  struct Repeat {
+    std::uint64_t tick;
+    std::uint32_t resent;
+  };
+  std::vector<Repeat> repeats_;
 };
 
 }  // namespace cohort

@@ -64,7 +64,8 @@ Mode read_mode(const YamlMap& team) {
 
 bool read_required(const YamlMap& team, bool if_absent) {
   const std::string required = team.text("required").value_or(if_absent ? "true" : "false");
-  if (required != "true" && required != "false") team.problem("required", "expected true or false, not '" + required + "'");
+  if (required != "true" && required != "false")
+    team.problem("required", "expected true or false, not '" + required + "'");
   return required == "true";
 }
 
@@ -84,7 +85,8 @@ Policy read_policy(const YamlMap& team) {
 
   policy.mode = read_mode(team);
   const bool is_free = policy.mode == Mode::free;
-  if (is_free && policy.delay != 0) team.problem("delay", "has no meaning with mode: free, whose answers act as they come");
+  if (is_free && policy.delay != 0)
+    team.problem("delay", "has no meaning with mode: free, whose answers act as they come");
   policy.required = read_required(team, !is_free);
 
   const std::string on_late = team.text("on_late").value_or(is_free ? "hold" : "wait");
@@ -101,7 +103,8 @@ Policy read_policy(const YamlMap& team) {
     return policy;
   }
   if (is_free && policy.on_late == OnLate::hold) {
-    if (team.has("deadline")) team.problem("deadline", "has no meaning with mode: free, which holds the last command anyway");
+    if (team.has("deadline"))
+      team.problem("deadline", "has no meaning with mode: free, which holds the last command anyway");
     return policy;
   }
   team.require("deadline", "how long to wait before '" + on_late + "', in seconds");

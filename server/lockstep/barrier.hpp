@@ -70,8 +70,8 @@ class Barrier {
   /// When `expire` has something to do next while the tick is not complete; never if nobody who is awaited has a
   /// deadline.
   std::optional<Time> next_deadline() const;
-  /// Gives up on those whose deadline has passed. Each is a miss, and no longer awaited. One that is free misses once for
-  /// each silence.
+  /// Gives up on those whose deadline has passed. Each is a miss, and no longer awaited. One that is free misses once
+  /// for each silence.
   std::vector<Miss> expire(Time now);
 
   struct Outcome {

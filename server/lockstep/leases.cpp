@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace cohort::lockstep {
+namespace {
+
+constexpr std::chrono::seconds trusted_for{1};  // as long as the lease of liveliness
+
+}  // namespace
 
 std::uint64_t Leases::answers_of_holder(std::uint32_t robot) const {
   if (!holder_[robot]) return 0;
@@ -17,13 +22,13 @@ void Leases::claim(std::uint64_t client, std::vector<std::uint32_t> robots) {
   claims_.push_back(std::move(claim));
 }
 
-bool Leases::decide_one(const Claim& claim, bool may_grant, Decisions& decisions) {
+bool Leases::decide_one(const Claim& claim, Time now, bool may_grant, Decisions& decisions) {
   std::vector<std::uint64_t> superseded;
   bool waits = false;
   for (std::size_t i = 0; i < claim.robots.size(); ++i) {
     const std::uint32_t robot = claim.robots[i];
     if (!holder_[robot] || holder_[robot] == claim.client) continue;
-    if (!leases_.at(*holder_[robot]).alive) {
+    if (is_dead(leases_.at(*holder_[robot]), now)) {
       if (std::ranges::find(superseded, *holder_[robot]) == superseded.end()) superseded.push_back(*holder_[robot]);
       continue;
     }
@@ -40,7 +45,7 @@ bool Leases::decide_one(const Claim& claim, bool may_grant, Decisions& decisions
   const std::uint64_t epoch = again ? before->epoch : next_epoch_++;
   for (const std::uint64_t client : superseded) end_lease(client);
   end_lease(claim.client);
-  leases_[claim.client] = {epoch, claim.robots, true};
+  leases_[claim.client] = {.epoch = epoch, .robots = claim.robots};
   for (const std::uint32_t robot : claim.robots) holder_[robot] = claim.client;
   decisions.granted.push_back({claim.client, std::move(superseded), again});
   return true;
@@ -51,13 +56,21 @@ const Leases::Lease* Leases::lease(std::uint64_t client) const {
   return found == leases_.end() ? nullptr : &found->second;
 }
 
-void Leases::note_answer(std::uint64_t client) {
+void Leases::note_answer(std::uint64_t client, Time now, std::uint64_t tick, std::uint32_t copy) {
   ++answers_[client];
-  set_alive(client, true);
+  const auto found = leases_.find(client);
+  if (found == leases_.end()) return;
+  if (!found->second.alive) found->second.heard_until = now + trusted_for;
+  found->second.answered_at = now;
+  found->second.answered_tick = tick;
+  found->second.answered_copy = copy;
 }
 
 void Leases::set_alive(std::uint64_t client, bool alive) {
-  if (const auto found = leases_.find(client); found != leases_.end()) found->second.alive = alive;
+  const auto found = leases_.find(client);
+  if (found == leases_.end()) return;
+  found->second.alive = alive;
+  found->second.heard_until = Time{0};
 }
 
 void Leases::release(std::uint64_t client) {

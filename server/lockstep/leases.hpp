@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "server/lockstep/barrier.hpp"
+
 namespace cohort::lockstep {
 
 /// Who drives which robots. One client has one lease for all its robots, with an epoch that is never used again; a
@@ -22,7 +24,12 @@ class Leases {
   struct Lease {
     std::uint64_t epoch = 0;
     std::vector<std::uint32_t> robots;  ///< ascending
-    bool alive = true;
+    bool alive = true;  ///< says liveliness
+    Time heard_until{0};  ///< what liveliness calls dead and yet answers counts as alive until then
+    /// The last answer: when it came, to which frame, and which of the copies that were sent of it.
+    Time answered_at{0};
+    std::uint64_t answered_tick = 0;
+    std::uint32_t answered_copy = 0;
   };
 
   /// `robots`: ascending, at least one. A client's new claim stands in for its earlier one that still waits.
@@ -44,9 +51,10 @@ class Leases {
   };
   /// Decides the claims that can be decided now and `may_grant(robots)` allows, in the order they came.
   template <class MayGrant>
-  Decisions decide(MayGrant&& may_grant) {
+  Decisions decide(Time now, MayGrant&& may_grant) {
     Decisions decisions;
-    std::erase_if(claims_, [&](const Claim& claim) { return decide_one(claim, may_grant(claim.robots), decisions); });
+    std::erase_if(claims_,
+                  [&](const Claim& claim) { return decide_one(claim, now, may_grant(claim.robots), decisions); });
     return decisions;
   }
 
@@ -57,8 +65,9 @@ class Leases {
   std::uint64_t next_epoch() const { return next_epoch_; }
   bool has_claims() const { return !claims_.empty(); }
 
-  /// The client, which has a lease, answered a frame: it lives, whatever liveliness said last.
-  void note_answer(std::uint64_t client);
+  /// The client, which has a lease, answered a frame. If liveliness called it dead, it lives for a second more: one that
+  /// was stopped and goes on may die for good before liveliness has called it alive again, and then says nothing more.
+  void note_answer(std::uint64_t client, Time now = Time{0}, std::uint64_t tick = 0, std::uint32_t copy = 0);
   /// What liveliness says.
   void set_alive(std::uint64_t client, bool alive);
   /// The client left for good: its robots are free, its claim is gone.
@@ -71,7 +80,8 @@ class Leases {
     std::vector<std::uint64_t> answers_before;  // of each robot's holder, when the claim came
   };
   void end_lease(std::uint64_t client);
-  bool decide_one(const Claim& claim, bool may_grant, Decisions& decisions);
+  static bool is_dead(const Lease& lease, Time now) { return !lease.alive && now >= lease.heard_until; }
+  bool decide_one(const Claim& claim, Time now, bool may_grant, Decisions& decisions);
   std::uint64_t answers_of_holder(std::uint32_t robot) const;
 
   std::vector<std::optional<std::uint64_t>> holder_;  // by robot

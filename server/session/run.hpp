@@ -62,9 +62,10 @@ struct RunResult {
   std::chrono::nanoseconds wall_time{0};  ///< from the first frame to the last step
   std::uint64_t state_hash = 0;
   std::uint32_t robots = 0;
-  lockstep::LatencyHistogram barrier;  ///< from the first frame of a tick sent to the last answer needed
-  std::uint64_t late = 0;              ///< answers that missed their deadline
-  std::vector<Miss> misses;            ///< of these the first million, in order
+  lockstep::LatencyHistogram barrier;   ///< from the first frame of a tick sent to the last answer needed
+  std::uint64_t late = 0;               ///< answers that missed their deadline
+  std::uint64_t resent = 0;             ///< frames that were sent again
+  std::vector<Miss> misses;             ///< of these the first million, in order
   lockstep::LatencyHistogram lateness;  ///< at the asked speed, how late each tick began; empty if none is asked
   TouchCounts touches;
   std::vector<Event> events;
@@ -106,6 +107,7 @@ class RunBook {
     result_.barrier.add(latency);
     if (listener_.barrier) listener_.barrier(latency);
   }
+  void add_resent(std::uint64_t frames) { result_.resent += frames; }
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
   void add_miss(const lockstep::Barrier::Miss& miss);
   /// Closes the books.

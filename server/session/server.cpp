@@ -123,9 +123,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
       attention_ = false;
       if (!run_->error.empty() || stop) return false;
       if (run_->exchange.barrier().complete()) {
-        const auto latency = Clock::now() - begin;
-        run_->book.add_barrier(latency);
-        run_->median_tick.add(latency);
+        run_->book.add_barrier(Clock::now() - begin);
         run_->exchange.apply();
         break;
       }
@@ -154,9 +152,11 @@ bool Server::sleep_until_due(const std::atomic<bool>& stop) {
 }
 
 Server::Clock::time_point Server::next_wake() const {
-  Clock::time_point wake = std::min({Clock::now() + longest_sleep, run_->book.next_report(), next_resend_});
+  Clock::time_point wake = std::min(Clock::now() + longest_sleep, run_->book.next_report());
   if (const auto deadline = run_->exchange.barrier().next_deadline())
     wake = std::min(wake, Clock::time_point(*deadline));
+  for (const auto& [id, client] : clients_)
+    if (is_awaited(id)) wake = std::min(wake, Clock::time_point(client.resend.due()));
   return wake;
 }
 
@@ -167,35 +167,37 @@ bool Server::is_awaited(std::uint64_t client) const {
          std::ranges::any_of(lease->robots, [&](auto robot) { return run_->exchange.barrier().is_awaited(robot); });
 }
 
-// Under the lock: the client's frame of that tick. False if it has none.
-bool Server::fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick) {
-  const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
+// Under the lock: the client's frame of this tick. Whether there is one.
+bool Server::fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
   client.frame.robots.clear();
+  const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
   if (lease == nullptr) return false;
+  if (!resent) client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
   run_->exchange.fill_frame(client.frame, lease->robots, tick);
   client.epoch = lease->epoch;
   return !client.frame.robots.empty();
 }
 
-void Server::write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick) {
+void Server::write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
   wire::Observation observation;
   observation.client = client_id;
   observation.run = run_number_;
-  observation.resent = client.times_resent;
+  observation.resent = resent ? client.times_resent : 0;
   observation.epoch = client.epoch;
   observation.tick = tick;
   observation.time_ns = (run_->experiment.world.step * static_cast<std::int64_t>(tick)).count();
   observation.robots = client.frame.robots;
   observation.values = client.frame.values;
+  if (!resent) client.resend.start(tick, Clock::now().time_since_epoch());
   client.observation.write(observation);  // lost if DDS cannot take it: sent again then
 }
 
-void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick) {
+void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
   {
     const std::lock_guard lock(mutex_);
-    if (!fill_frame(client_id, client, tick)) return;
+    if (!fill_frame(client_id, client, tick, resent)) return;
   }
-  write_frame(client_id, client, tick);
+  write_frame(client_id, client, tick, resent);
 }
 
 // All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
@@ -203,42 +205,29 @@ void Server::send_frames() {
   const std::uint64_t tick = run_->simulation.tick();
   {
     const std::lock_guard lock(mutex_);
-    for (auto& [id, client] : clients_) fill_frame(id, client, tick);
+    for (auto& [id, client] : clients_) fill_frame(id, client, tick, false);
   }
   for (auto& [id, client] : clients_) {
+    if (client.frame.robots.empty()) continue;
+    write_frame(id, client, tick, false);
     client.times_resent = 0;
-    if (!client.frame.robots.empty()) write_frame(id, client, tick);
   }
-  const auto now = Clock::now().time_since_epoch();
-  const auto median_tick = run_->median_tick.value();
-  next_resend_ = Clock::time_point::max();
-  for (auto& [id, client] : clients_) start_resending(client, now, median_tick);
-}
-
-void Server::start_resending(Client& client, lockstep::Time now, lockstep::Time median_tick) {
-  client.resend.start(now, median_tick);
-  next_resend_ = std::min(next_resend_, Clock::time_point(client.resend.due()));
 }
 
 void Server::resend_frames(Clock::time_point now) {
-  if (now < next_resend_) return;
-  next_resend_ = Clock::time_point::max();
   for (auto& [id, client] : clients_) {
-    if (now.time_since_epoch() >= client.resend.due()) {
-      const std::vector<std::uint64_t> ticks = awaited_frames(id);
-      if (!ticks.empty()) ++client.times_resent;
-      for (const std::uint64_t tick : ticks) send_frame(id, client, tick);
-      client.resend.resent(now.time_since_epoch());
+    if (!client.resend.is_due(now.time_since_epoch())) continue;
+    std::vector<std::uint64_t> ticks;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!is_awaited(id)) continue;
+      ticks = frames_under_way(run_->leases.lease(id)->robots);
     }
-    next_resend_ = std::min(next_resend_, Clock::time_point(client.resend.due()));
+    ++client.times_resent;
+    for (const std::uint64_t tick : ticks) send_frame(id, client, tick, true);
+    run_->book.add_resent(ticks.size());
+    client.resend.resent(now.time_since_epoch());
   }
-}
-
-// What is to be sent again to a client that is waited for.
-std::vector<std::uint64_t> Server::awaited_frames(std::uint64_t client) {
-  const std::lock_guard lock(mutex_);
-  if (!is_awaited(client)) return {};
-  return frames_under_way(run_->leases.lease(client)->robots);
 }
 
 bool Server::handle_misses(Clock::time_point now) {

@@ -10,6 +10,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "idl/wire.hpp"
@@ -25,8 +26,8 @@ namespace cohort::session {
 /// else happens on the thread of `run`, which alone creates and destroys entities and steps the world.
 class Server {
  public:
-  /// `participants`: one for each DDS domain that is served, at least one; a client may be in any of them, observers are
-  /// in the first. They must outlive this.
+  /// `participants`: one for each DDS domain that is served, at least one; a client may be in any of them, observers
+  /// are in the first. They must outlive this.
   explicit Server(std::span<wire::Participant> participants);
   ~Server();
 
@@ -36,8 +37,8 @@ class Server {
   RunResult run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
                 const RunListener& listener, const std::atomic<bool>& stop);
 
-  /// Tells all who drive robots that there will be no further run, how the last one ended, and waits a little until they
-  /// have left.
+  /// Tells all who drive robots that there will be no further run, how the last one ended, and waits a little until
+  /// they have left.
   void dismiss(const RunResult& last);
 
   /// From any thread: ends the run with this error, unless a controller has reported one before.
@@ -89,10 +90,9 @@ class Server {
     lockstep::Leases leases;
     std::string error;
     bool started = false;  // from the first frame on
-    lockstep::MedianDuration median_tick;
     std::vector<std::uint32_t> all_robots;
-    std::vector<std::uint32_t> undemanding;  // robots that do not require a controller
-    std::vector<bool> was_driven;            // by robot, whether somebody drove it in this run
+    std::vector<std::uint32_t> undemanding;   // robots that do not require a controller
+    std::vector<bool> was_driven;             // by robot, whether somebody drove it in this run
     std::vector<std::uint32_t> descriptions;  // on the wire, by kind
   };
 
@@ -115,7 +115,7 @@ class Server {
     std::vector<Liveliness> liveliness;
     std::vector<wire::Report> reports;
     std::vector<std::uint32_t> ended_processes;
-    std::string failure;                                                    // of something outside
+    std::string failure;                                                     // of something outside
     std::map<std::pair<std::uint64_t, std::string>, Rejections> rejected{};  // by who, or what participant, and reason
     bool empty() const {
       return arrivals.empty() && liveliness.empty() && reports.empty() && ended_processes.empty() && failure.empty() &&
@@ -130,20 +130,18 @@ class Server {
   bool take_answer(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report, const wire::Sender& sender);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
-  void reject(std::uint64_t who, const char* reason, const std::string& text);
+  void reject(std::uint64_t who, const char* reason, std::string_view text);
   void call_attention();
 
   // On the thread of `run`; those that take the lock must not hold it. One run, tick by tick (server.cpp):
   bool wait_for_controllers(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
   bool sleep_until_due(const std::atomic<bool>& stop);
-  bool fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick);
-  void write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick);
-  void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick);
+  bool fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
+  void write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
+  void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
   void send_frames();
-  void start_resending(Client& client, lockstep::Time now, lockstep::Time median_tick);
   void resend_frames(Clock::time_point now);
-  std::vector<std::uint64_t> awaited_frames(std::uint64_t client);
   bool handle_misses(Clock::time_point now);
   Clock::time_point next_wake() const;
   bool is_awaited(std::uint64_t client) const;
@@ -186,13 +184,13 @@ class Server {
   std::map<std::uint64_t, Client> clients_;                  // by id
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of Join
   std::vector<wire::RobotDescription> descriptions_;         // on the wire so far
-  Clock::time_point next_resend_ = Clock::time_point::max();  // of all clients
   Clock::time_point observers_counted_at_{};
   bool observed_ = false;
   std::vector<double> poses_;  // reused
 
   wire::Writer<wire::WorldState> world_state_;
-  // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they are.
+  // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they
+  // are.
   std::list<Door> doors_;
 };
 

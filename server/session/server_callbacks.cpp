@@ -8,7 +8,6 @@ namespace {
 constexpr std::size_t most_arrivals = 4096;
 constexpr std::size_t most_reports = 4096;
 constexpr int answers_kept = 8;  // of each client, by DDS, until they are taken
-
 std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::to_string(tick); }
 
 }  // namespace
@@ -16,9 +15,10 @@ std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::t
 Server::Door::Door(Server& server, wire::Participant& its_participant)
     : participant(its_participant),
       descriptions(its_participant),
-      joins(its_participant,
-            {[&server, this](const wire::Join& join, const wire::Sender& sender) { server.on_join(*this, join, sender); },
-             [&server](const wire::Sender& sender, bool alive) { server.on_liveliness(sender, alive); }}),
+      joins(
+          its_participant,
+          {[&server, this](const wire::Join& join, const wire::Sender& sender) { server.on_join(*this, join, sender); },
+           [&server](const wire::Sender& sender, bool alive) { server.on_liveliness(sender, alive); }}),
       commands(
           its_participant,
           {[&server](const wire::Command& command, const wire::Sender& sender) { server.on_command(command, sender); },
@@ -36,7 +36,8 @@ void Server::call_attention() {
 
 void Server::on_join(Door& door, const wire::Join& join, const wire::Sender& sender) {
   const std::lock_guard lock(mutex_);
-  if (inbox_.arrivals.size() >= most_arrivals) return reject(sender.participant, "flood", "more Joins than can be read");
+  if (inbox_.arrivals.size() >= most_arrivals)
+    return reject(sender.participant, "flood", "more Joins than can be read");
   inbox_.arrivals.push_back({join, sender, &door});
   call_attention();
 }
@@ -52,7 +53,8 @@ void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
   const std::lock_guard lock(mutex_);
   if (!is_in_own_name(report.client, sender))
     return reject(sender.participant, "foreign", "a Report comes in the name of " + wire::partition_of(report.client));
-  if (inbox_.reports.size() >= most_reports) return reject(sender.participant, "flood", "more Reports than can be read");
+  if (inbox_.reports.size() >= most_reports)
+    return reject(sender.participant, "flood", "more Reports than can be read");
   inbox_.reports.push_back(report);
   call_attention();
 }
@@ -73,7 +75,7 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
 
 // Under the lock. True if the run's thread has to go on.
 bool Server::take_answer(const wire::Command& command, const wire::Sender& sender) {
-  const auto reject_it = [&](std::uint64_t who, const char* reason, const std::string& text) {
+  const auto reject_it = [&](std::uint64_t who, const char* reason, std::string_view text) {
     reject(who, reason, text);
     return false;
   };
@@ -89,16 +91,16 @@ bool Server::take_answer(const wire::Command& command, const wire::Sender& sende
     return reject_it(command.client, "stale", answer_to(command.tick) + " of another lease");
 
   Run& run = *run_;
-  const Exchange::Taken taken = run.exchange.take(lease->robots, command.tick, command.robots, command.values,
-                                                  Clock::now().time_since_epoch());
-  if (taken.accepted > 0) run.leases.note_answer(command.client);
+  const lockstep::Time now = Clock::now().time_since_epoch();
+  const Exchange::Taken taken = run.exchange.take(lease->robots, command.tick, command.robots, command.values, now);
+  if (taken.accepted > 0) run.leases.note_answer(command.client, now, command.tick, command.resent);
   if (taken.rejection) reject(command.client, taken.rejection->reason.c_str(), taken.rejection->text);
   if (taken.ends_run && run.error.empty()) run.error = taken.rejection->text;
   return run.exchange.barrier().complete() || !run.error.empty();
 }
 
 // Counted, and told by the thread of `run` when it next looks; a flood must not wake it for each message.
-void Server::reject(std::uint64_t who, const char* reason, const std::string& text) {
+void Server::reject(std::uint64_t who, const char* reason, std::string_view text) {
   Rejections& rejections = inbox_.rejected[{who, reason}];
   if (rejections.count++ == 0) rejections.text = text;
 }

@@ -25,7 +25,8 @@ std::string host_name() {
 std::string clean(const std::string& text) {
   constexpr std::size_t longest = 100;
   std::string result = text.substr(0, longest);
-  std::ranges::replace_if(result, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
+  std::ranges::replace_if(
+      result, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
   return result;
 }
 
@@ -140,22 +141,21 @@ void Server::claim(std::uint64_t client_id, Client& client) {
   run_->leases.claim(client_id, client.robots);
 }
 
-// At the beginning of a run: those who are attached claim what they asked for when they came, in the order of their
+// At the beginning of a run: those who drove or waited claim what they asked for when they came, in the order of their
 // coming.
 void Server::claim_anew() {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> staying;  // by arrival
   std::vector<std::uint64_t> gone;
   for (auto& [id, client] : clients_) {
+    if (!client.alive) gone.push_back(id);
+    if (client.alive && (client.drove || client.claims)) staying.emplace_back(client.arrival, id);
     client.claims = false;
     client.robots.clear();
     client.reported_rejections.clear();
-    if (client.alive) staying.emplace_back(client.arrival, id);
-    else gone.push_back(id);
   }
   for (const std::uint64_t id : gone) forget(id);
   std::ranges::sort(staying);
-  for (const auto& [arrival, id] : staying)
-    if (clients_.at(id).drove) claim(id, clients_.at(id));
+  for (const auto& [arrival, id] : staying) claim(id, clients_.at(id));
 }
 
 // The client of this Join, with its writers. Null if somebody else has that id.
@@ -179,13 +179,13 @@ Server::Client* Server::attach(const Arrival& arrival) {
 
   wire::Participant& participant = arrival.door->participant;
   const std::string partition = wire::partition_of(join.client);
-  Client client{.join = join,
-                .arrival = arrivals_++,
-                .label = clean(join.controller) + " (process " + std::to_string(join.process) + " on " +
-                         clean(join.host) + ")",
-                .admit = wire::Writer<wire::Admit>(participant, partition),
-                .observation = wire::Writer<wire::Observation>(participant, partition),
-                .report = wire::Writer<wire::Report>(participant, partition)};
+  Client client{
+      .join = join,
+      .arrival = arrivals_++,
+      .label = clean(join.controller) + " (process " + std::to_string(join.process) + " on " + clean(join.host) + ")",
+      .admit = wire::Writer<wire::Admit>(participant, partition),
+      .observation = wire::Writer<wire::Observation>(participant, partition),
+      .report = wire::Writer<wire::Report>(participant, partition)};
   return &clients_.emplace(join.client, std::move(client)).first->second;
 }
 
@@ -208,7 +208,7 @@ void Server::decide_claims() {
     if (!run_->leases.has_claims()) return;
     const lockstep::Barrier& barrier = run_->exchange.barrier();
     const bool at_boundary = barrier.complete();
-    decisions = run_->leases.decide([&](const std::vector<std::uint32_t>& robots) {
+    decisions = run_->leases.decide(Clock::now().time_since_epoch(), [&](const std::vector<std::uint32_t>& robots) {
       return at_boundary || std::ranges::any_of(robots, [&](auto robot) { return barrier.is_awaited(robot); });
     });
   }
@@ -241,14 +241,14 @@ void Server::admit(const lockstep::Leases::Granted& granted) {
     answer.step_ns = run_->experiment.world.step.count();
     admit_robots(answer, run_->experiment, run_->simulation, lease.robots);
     for (wire::AdmittedRobot& robot : answer.robots) robot.description = run_->descriptions[robot.description];
-    if (!granted.again) run_->book.add_event("joined", label_of(granted.client) + " drives " + robots_text(lease.robots));
+    if (!granted.again)
+      run_->book.add_event("joined", label_of(granted.client) + " drives " + robots_text(lease.robots));
   }
   Client& client = clients_.at(granted.client);
   client.claims = false;
   client.admit.write(answer);
+  for (const std::uint64_t tick : frames) send_frame(granted.client, client, tick, false);
   client.times_resent = 0;
-  for (const std::uint64_t tick : frames) send_frame(granted.client, client, tick);
-  start_resending(client, Clock::now().time_since_epoch(), run_->median_tick.value());
 }
 
 // Under the lock.
@@ -271,9 +271,7 @@ std::vector<std::uint64_t> Server::frames_under_way(const std::vector<std::uint3
 void Server::dismiss(const RunResult& last) {
   const bool failed = last.end == RunResult::End::failed;
   const wire::ReportKind kind = failed ? wire::ReportKind::failed : wire::ReportKind::finished;
-  const std::string reason = failed                                      ? "failed"
-                             : last.end == RunResult::End::finished ? "complete"
-                                                                    : "interrupted";
+  const std::string reason = failed ? "failed" : last.end == RunResult::End::finished ? "complete" : "interrupted";
   std::set<std::uint64_t> staying;  // of those who drove, the ones that can hear it
   for (auto& [id, client] : clients_) {
     if (!client.drove) continue;
@@ -293,7 +291,8 @@ void Server::dismiss(const RunResult& last) {
   }
 }
 
-// Tells of the robots' kinds. An id is never used for two things, since clients keep what they were told in earlier runs.
+// Tells of the robots' kinds. An id is never used for two things, since clients keep what they were told in earlier
+// runs.
 void Server::publish_descriptions() {
   run_->descriptions.clear();
   for (wire::RobotDescription& kind : describe_kinds(run_->simulation)) {

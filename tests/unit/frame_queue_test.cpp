@@ -171,6 +171,31 @@ TEST_F(FrameQueueTest, TicksAtWhichNoRobotIsDueAreNotAwaited) {
   EXPECT_EQ(answer_all(), (Ticks{6, 9}));
 }
 
+TEST_F(FrameQueueTest, OfAFreeRobotsFramesTheNewestIsAnswered) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3, .mode = wire::Mode::free}}));
+  arrive(2);
+  arrive(5);
+  arrive(4);
+  EXPECT_EQ(answer_all(), Ticks{5});
+  arrive(9);
+  EXPECT_EQ(answer_all(), Ticks{9});
+}
+
+TEST_F(FrameQueueTest, AnAnswerNamesTheCopyOfTheFrameThatItIsTo) {
+  queue.begin(lease(0, 1, 0, {{.robot = 3}}));
+  const std::vector<std::uint32_t> robots{3};
+  const std::vector<double> values{0.0};
+  const auto arrive_as_copy = [&](std::uint32_t copy) {
+    queue.arrive({.client = client, .resent = copy, .epoch = 1, .robots = robots, .values = values});
+  };
+  arrive_as_copy(2);
+  arrive_as_copy(3);
+  ASSERT_NE(queue.next(), nullptr);
+  EXPECT_EQ(queue.finish(values).resent, 2u) << "the first that came";
+  arrive_as_copy(4);
+  EXPECT_EQ(queue.next_repeat()->resent, 4u);
+}
+
 TEST_F(FrameQueueTest, AFloodOfFramesIsBounded) {
   for (std::uint64_t tick = 0; tick < 1000; ++tick) arrive(tick);
   queue.begin(lease(0, 1, 0, {{.robot = 3}}));

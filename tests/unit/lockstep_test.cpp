@@ -166,6 +166,72 @@ INSTANTIATE_TEST_SUITE_P(All, MissedDeadline,
                                            std::pair{OnLate::stop, Kind::neutral}),
                          [](const auto& tested) { return name_of(tested.param.first); });
 
+Policy free_policy(OnLate on_late = OnLate::hold, Time silence = 0ns) {
+  Policy free = policy(1, 0, 0, on_late, silence);
+  free.mode = description::Mode::free;
+  return free;
+}
+
+TEST(Barrier, NeverWaitsForAFreeRobotWhoseNewestAnswerActs) {
+  Barrier barrier = barrier_of({free_policy()});
+  barrier.open(0, 0ns);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_TRUE(barrier.is_due(0, 0));
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::keep);
+  for (std::uint64_t tick = 1; tick < 5; ++tick) barrier.open(tick, 0ns);
+  answer(barrier, 0, 3, 3.0);
+  EXPECT_EQ(barrier.outcome(0).values[0], 3.0);
+  EXPECT_EQ(barrier.judge(0, 2), Verdict::stale);
+  EXPECT_EQ(barrier.judge(0, 3), Verdict::repeated);
+  EXPECT_EQ(barrier.judge(0, 5), Verdict::early);
+  barrier.open(5, 0ns);
+  EXPECT_EQ(barrier.outcome(0).values[0], 3.0) << "it holds";
+  answer(barrier, 0, 5, 5.0);
+  EXPECT_EQ(barrier.outcome(0).values[0], 5.0);
+}
+
+TEST(Barrier, AFreeRobotMissesOncePerSilence) {
+  Barrier barrier = barrier_of({free_policy(OnLate::zero, 1s)});
+  barrier.open(0, 10s);
+  EXPECT_TRUE(barrier.expire(10900ms).empty());
+  barrier.answer(0, 0, std::vector<double>{1.0}, 10950ms);
+  EXPECT_TRUE(barrier.expire(11900ms).empty());
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::command);
+  ASSERT_EQ(barrier.expire(12s).size(), 1u);
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
+  EXPECT_TRUE(barrier.expire(13s).empty());
+  barrier.open(1, 13s);
+  barrier.answer(0, 1, std::vector<double>{2.0}, 13s);
+  EXPECT_EQ(barrier.outcome(0).values[0], 2.0);
+  const auto misses = barrier.expire(15s);
+  ASSERT_EQ(misses.size(), 1u);
+  EXPECT_EQ(misses[0].waited, Time(2s));
+}
+
+TEST(Barrier, AsksARobotWithoutADriverNothing) {
+  Barrier barrier = barrier_of({policy(), policy(1, 0, 1)});
+  barrier.set_driven(0, false);
+  barrier.set_driven(1, false);
+  barrier.open(0, 0ns);
+  EXPECT_TRUE(barrier.complete());
+  EXPECT_FALSE(barrier.is_due(0, 0));
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
+  barrier.set_driven(0, true);
+  barrier.set_driven(1, true);
+  EXPECT_TRUE(barrier.complete()) << "not before the next boundary";
+  barrier.open(1, 0ns);
+  EXPECT_EQ(barrier.awaited(), Robots{0}) << "the other one's first answer acts a tick later";
+  answer(barrier, 0, 1, 1.0);
+  answer(barrier, 1, 1, 7.0);
+  EXPECT_EQ(barrier.outcome(1).kind, Kind::keep);
+  barrier.open(2, 0ns);
+  EXPECT_EQ(barrier.awaited(), Robots{0});
+  EXPECT_EQ(barrier.outcome(1).values[0], 7.0);
+  barrier.set_driven(0, false);
+  EXPECT_TRUE(barrier.complete()) << "the driver is lost in mid-tick";
+  EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
+}
+
 TEST(Barrier, CountsAnAnswerThatCannotActAsAMissAtOnce) {
   Barrier barrier = barrier_of({policy(1, 0, 0, OnLate::zero, 1s)});
   barrier.open(0, 0ns);
@@ -175,8 +241,8 @@ TEST(Barrier, CountsAnAnswerThatCannotActAsAMissAtOnce) {
   EXPECT_EQ(barrier.judge(0, 0), Verdict::repeated);
 }
 
-Leases::Decisions decide(Leases& leases) {
-  return leases.decide([](const Robots&) { return true; });
+Leases::Decisions decide(Leases& leases, Time now = 10s) {
+  return leases.decide(now, [](const Robots&) { return true; });
 }
 
 TEST(Leases, GrantsFreeRobots) {
@@ -192,7 +258,7 @@ TEST(Leases, GrantsFreeRobots) {
 TEST(Leases, GrantsNothingUntilItMay) {
   Leases leases(1);
   leases.claim(100, {0});
-  EXPECT_TRUE(leases.decide([](const Robots&) { return false; }).granted.empty());
+  EXPECT_TRUE(leases.decide(10s, [](const Robots&) { return false; }).granted.empty());
   EXPECT_TRUE(leases.has_claims());
   EXPECT_EQ(decide(leases).granted.size(), 1u);
 }
@@ -229,14 +295,26 @@ TEST(Leases, HandsTheRobotsOfADeadHolderOverWithANewEpoch) {
   EXPECT_FALSE(leases.holder(0)) << "losing one robot ends the whole lease";
 }
 
+// It was stopped, went on, answered once, and was killed before liveliness had noticed that it went on.
+TEST(Leases, AnAnswerIsNoSignOfLifeForEver) {
+  Leases leases(1);
+  leases.claim(100, {0});
+  decide(leases);
+  leases.set_alive(100, false);
+  leases.note_answer(100, 10s);
+  leases.claim(200, {0});
+  EXPECT_TRUE(decide(leases, 10900ms).granted.empty());
+  EXPECT_EQ(decide(leases, 11s).granted.size(), 1u);
+}
+
 TEST(Leases, TakesAnAnswerAsASignOfLifeThoughLivelinessSaidOtherwise) {
   Leases leases(1);
   leases.claim(100, {0});
   decide(leases);
   leases.set_alive(100, false);
   leases.claim(200, {0});
-  leases.note_answer(100);
-  const auto decisions = decide(leases);
+  leases.note_answer(100, 10s);
+  const auto decisions = decide(leases, 10s);
   EXPECT_TRUE(decisions.granted.empty());
   ASSERT_EQ(decisions.refused.size(), 1u);
   EXPECT_EQ(decisions.refused[0].client, 200u);
@@ -254,25 +332,52 @@ TEST(Leases, KeepsTheEpochOfAClientThatAsksForItsOwnRobotsAgain) {
   EXPECT_EQ(leases.lease(100)->epoch, epoch);
 }
 
-TEST(ResendTimer, WaitsThreeTicksButAtLeastThreeMillisecondsAndThenBacksOff) {
+TEST(ResendTimer, WaitsTwoMillisecondsAtFirstAndThenLongerAndLonger) {
   ResendTimer timer;
-  timer.start(0ns, 100us);
-  EXPECT_EQ(timer.due(), Time(3ms));
-  timer.start(0ns, 4ms);
-  EXPECT_EQ(timer.due(), Time(12ms));
-  timer.resent(12ms);
-  EXPECT_EQ(timer.due(), Time(36ms));
-  for (int i = 0; i < 20; ++i) timer.resent(1s);
-  EXPECT_EQ(timer.due(), Time(1500ms));
+  timer.start(0, 1s);
+  EXPECT_EQ(timer.due(), Time(1002ms));
+  EXPECT_FALSE(timer.is_due(1001ms));
+  EXPECT_TRUE(timer.is_due(1002ms));
+  timer.resent(1002ms);
+  EXPECT_EQ(timer.due(), Time(1004250us));
+  for (int i = 0; i < 50; ++i) timer.resent(2s);
+  EXPECT_EQ(timer.due(), Time(2500ms));
 }
 
-TEST(MedianDuration, IsTheMiddleOfTheLastOnes) {
-  MedianDuration median;
-  EXPECT_EQ(median.value(), 0ns);
-  for (const auto value : {5ms, 1ms, 3ms}) median.add(value);
-  EXPECT_EQ(median.value(), Time(3ms));
-  for (int i = 0; i < 63; ++i) median.add(9ms);
-  EXPECT_EQ(median.value(), Time(9ms));
+TEST(ResendTimer, WaitsThreeRoundTripsOfASlowClient) {
+  ResendTimer timer;
+  Time now = 1s;
+  for (std::uint64_t tick = 0; tick < 5; ++tick) {
+    if (tick > 0) timer.note_answer(tick - 1, 0, now - 30ms);
+    timer.start(tick, now);
+    now += 50ms;
+  }
+  now -= 50ms;
+  EXPECT_FALSE(timer.is_due(now + 59ms));
+  EXPECT_TRUE(timer.is_due(now + 60ms));
+}
+
+TEST(ResendTimer, WhatWasLostIsNotTheClientsSlowness) {
+  ResendTimer timer;
+  Time now = 1s;
+  for (std::uint64_t tick = 0; tick < 5; ++tick) {
+    timer.start(tick, now);
+    ASSERT_TRUE(timer.is_due(now + 40ms));
+    timer.resent(now + 40ms);  // this is the one that comes
+    timer.note_answer(tick, 1, now + 41ms);
+    now += 50ms;
+  }
+  timer.start(5, now);
+  EXPECT_TRUE(timer.is_due(now + 3ms));
+}
+
+TEST(RoundTrips, AMedian) {
+  RoundTrips round_trips;
+  EXPECT_EQ(round_trips.median(), 0ns);
+  for (const auto value : {5ms, 1ms, 3ms}) round_trips.add(value);
+  EXPECT_EQ(round_trips.median(), Time(3ms));
+  for (int i = 0; i < 31; ++i) round_trips.add(9ms);
+  EXPECT_EQ(round_trips.median(), Time(9ms));
 }
 
 TEST(LatencyHistogram, GivesQuantilesToWithinThreePercent) {

@@ -36,7 +36,7 @@ enum class Controllers {
 struct RunCommand {
   std::vector<std::filesystem::path> files;  ///< experiments, one after the other
   std::uint64_t repeat = 1;                  ///< how often all of them are run
-  unsigned threads = 0;  ///< 0: one for each core
+  unsigned threads = 0;                      ///< 0: one for each core
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   Controllers controllers = Controllers::process;
@@ -57,7 +57,7 @@ struct HostCommand {
   std::string server;
   std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
   bool inline_step = false;              ///< ClientOptions
-  bool for_run = false;  ///< started by `cohort run`, whose server tells what becomes of a client
+  bool for_run = false;                  ///< started by `cohort run`, whose server tells what becomes of a client
 };
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);
 

@@ -112,7 +112,8 @@ void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::
 }
 
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
-  app.add_option("--repeat", options.repeat, "How often to run it, the world built anew each time, the controllers attached")
+  app.add_option("--repeat", options.repeat,
+                 "How often to run it, the world built anew each time, the controllers attached")
       ->check(whole_number(1, 1'000'000))
       ->capture_default_str()
       ->type_name("N");

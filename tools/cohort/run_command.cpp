@@ -48,9 +48,8 @@ class Stopwatch {
 
 // People cannot follow what is faster than life, nor can hardware, which nobody waits for.
 double speed_of(const RunCommand& command, const description::Experiment& experiment) {
-  const bool has_free = std::ranges::any_of(experiment.teams, [](const description::Team& team) {
-    return team.policy.mode == description::Mode::free;
-  });
+  const bool has_free = std::ranges::any_of(
+      experiment.teams, [](const description::Team& team) { return team.policy.mode == description::Mode::free; });
   return command.speed.value_or(has_keyboard(experiment) || has_free ? 1.0 : 0.0);
 }
 
@@ -166,14 +165,14 @@ description::Experiment read(const RunCommand& command, const std::filesystem::p
   description::Experiment experiment =
       description::read_experiment(file, command.seed, duration, installed_model_folders());
   for (const description::Problem& warning : experiment.world.warnings) log.problem(LogLevel::warning, warning);
-  log.info(fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", file.string(), experiment.world.file.string(),
-                       counted(experiment.world.instances.size(), "model"),
-                       counted(experiment.world.robots.size(), "robot"), counted(experiment.teams.size(), "team"),
-                       reading.seconds()),
-           {{"models", experiment.world.instances.size()},
-            {"robots", experiment.world.robots.size()},
-            {"teams", experiment.teams.size()},
-            {"seconds", reading.seconds()}});
+  log.info(
+      fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", file.string(), experiment.world.file.string(),
+                  counted(experiment.world.instances.size(), "model"), counted(experiment.world.robots.size(), "robot"),
+                  counted(experiment.teams.size(), "team"), reading.seconds()),
+      {{"models", experiment.world.instances.size()},
+       {"robots", experiment.world.robots.size()},
+       {"teams", experiment.teams.size()},
+       {"seconds", reading.seconds()}});
   return experiment;
 }
 
@@ -208,8 +207,7 @@ int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
     std::vector<TeamController> controllers;
     if (command.controllers != Controllers::external) controllers = load_controllers(experiments.front());
     auto simulation = build(command, experiments.front(), log);
-    if (command.controllers != Controllers::external)
-      try_controllers(experiments.front(), *simulation, controllers);
+    if (command.controllers != Controllers::external) try_controllers(experiments.front(), *simulation, controllers);
     warn_if_not_portable(log);
 
     std::optional<Serving> serving;

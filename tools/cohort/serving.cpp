@@ -61,9 +61,10 @@ void raise_file_limit(std::size_t processes, Log& log) {
   const rlim_t wanted = limit.rlim_max == RLIM_INFINITY ? needed : std::min<rlim_t>(needed, limit.rlim_max);
   limit.rlim_cur = wanted;
   if (setrlimit(RLIMIT_NOFILE, &limit) != 0 || wanted < needed)
-    log.warning(fmt::format("{} need {} open files, and {} are allowed: 'ulimit -Hn {}' in the shell that starts this, as "
-                            "root, allows more",
-                            counted(processes, "process"), needed, limit.rlim_cur, needed));
+    log.warning(
+        fmt::format("{} need {} open files, and {} are allowed: 'ulimit -Hn {}' in the shell that starts this, as "
+                    "root, allows more",
+                    counted(processes, "process"), needed, limit.rlim_cur, needed));
 }
 
 std::string domains_text(const std::vector<std::uint32_t>& domains) {

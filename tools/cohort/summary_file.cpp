@@ -56,6 +56,7 @@ void write_summary(const std::filesystem::path& file, const description::Experim
       {"robots", result.robots},
       {"barrier_us", quantiles(result.barrier)},
       {"late", result.late},
+      {"resent", result.resent},
       {"misses", misses},
       {"lateness_us", quantiles(result.lateness)},
       {"events", events},

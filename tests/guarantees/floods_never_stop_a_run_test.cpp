@@ -1,0 +1,141 @@
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "idl/wire.hpp"
+#include "tests/support/field_of_robots.hpp"
+
+namespace cohort::testing {
+namespace {
+
+// Ticks of a run as an observer sees them.
+class Ticks {
+ public:
+  explicit Ticks(std::uint32_t domain)
+      : participant_(wire::Participant::client(domain)),
+        reader_(participant_, {[this](const wire::WorldState& state, const wire::Sender&) { tick_ = state.tick; }, {}},
+                "view") {}
+  bool have_begun() const {
+    const auto until = std::chrono::steady_clock::now() + patience;
+    while (tick_ == 0 && std::chrono::steady_clock::now() < until) std::this_thread::sleep_for(1ms);
+    return tick_ > 0;
+  }
+  double per_second(std::chrono::milliseconds time) const {
+    const std::uint64_t before = tick_;
+    const auto start = std::chrono::steady_clock::now();
+    std::this_thread::sleep_for(time);
+    return static_cast<double>(tick_ - before) /
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+ private:
+  std::atomic<std::uint64_t> tick_ = 0;
+  wire::Participant participant_;
+  wire::Reader<wire::WorldState> reader_;
+};
+
+double median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+// The flood is stopped and continued, so that both are measured side by side, whatever else this machine does.
+TEST(FloodsNeverStopARun, OfCommandsSlowOthersByLessThanHalf) {
+  const FieldOfRobots field(64, 1e6);
+  const ReservedDomain domain;
+  Process server(field.serve(domain));
+  Process controllers(FieldOfRobots::host(domain, "all"));
+  Process flood({COHORT_BUILD_DIR "/bin/flood", domain.text(), "100000"});
+  const Ticks ticks(domain.number());
+  ASSERT_TRUE(ticks.have_begun()) << server.output();
+  ASSERT_TRUE(flood.wait_for_output("flooding")) << flood.output();
+  std::vector<double> flooded, quiet;
+  for (int round = 0; round < 5; ++round) {
+    flood.signal(SIGCONT);
+    std::this_thread::sleep_for(100ms);
+    flooded.push_back(ticks.per_second(500ms));
+    flood.signal(SIGSTOP);
+    std::this_thread::sleep_for(300ms);
+    quiet.push_back(ticks.per_second(500ms));
+  }
+  RecordProperty("ticks_per_second", std::to_string(median(flooded)) + " of " + std::to_string(median(quiet)));
+  EXPECT_GT(std::ranges::min(flooded), 0.0) << "it never stops";
+  EXPECT_GT(median(flooded), 0.5 * median(quiet)) << median(flooded) << " ticks/s of " << median(quiet);
+  server.signal(SIGINT);
+  EXPECT_EQ(server.wait_for_exit(), 130) << server.output();
+  EXPECT_GT(events_of(field.summary(), "rejected").size(), 0u) << "it is named";
+}
+
+// What is no DDS at all, and what nearly is: packets of the protocol below with bytes changed.
+TEST(FloodsNeverStopARun, OfPacketsThatMakeNoSense) {
+  const FieldOfRobots field(4, 20.0);
+  const std::string expected = run_experiment(field.file(), {"--controllers", "inprocess"})["state_hash"];
+  const ReservedDomain domain;
+  Process server(field.serve(domain, {"--speed", "10"}));
+  Process controllers(FieldOfRobots::host(domain, "all"));
+  ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
+  const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  std::mt19937 random(7);
+  const auto below = [&](std::size_t end) { return std::uniform_int_distribution<std::size_t>(0, end - 1)(random); };
+  // The header of RTPS 2.1 and some submessages: INFO_TS, DATA, HEARTBEAT, ACKNACK, DATA_FRAG.
+  const std::string header("RTPS\2\1\1\20abcdefghijkl", 20);
+  const std::string submessages[] = {
+      std::string("\x09\x01\x08\x00\0\0\0\0\0\0\0\0", 12),
+      std::string(
+          "\x15\x05\x2c\x00\0\0\x10\0\0\0\0\0\0\x01\0\xc2\0\0\0\0\x01\0\0\0\0\x03\0\0\x50\0\x10\0abcdefghijklmnop", 48),
+      std::string("\x07\x01\x1c\x00\0\0\0\0\0\x01\0\xc2\0\0\0\0\x01\0\0\0\0\0\0\0\x05\0\0\0\x01\0\0\0", 32),
+      std::string("\x06\x03\x18\x00\0\0\0\0\0\x01\0\xc2\0\0\0\0\x01\0\0\0\x20\0\0\0\xff\xff\xff\xff", 28),
+      std::string("\x16\x01\x2c\x00\0\0\x1c\0\0\0\0\0\0\x01\0\xc2\0\0\0\0\x01\0\0\0\x01\0\0\0\x01\0\xff\xff\xff\xff\x7f"
+                  "\0abcdefghij",
+                  46)};
+  for (int i = 0; i < 20000; ++i) {
+    std::string packet;
+    if (below(4) == 0) {
+      packet.resize(below(1400));
+      for (char& byte : packet) byte = static_cast<char>(below(256));
+    } else {
+      packet = header;
+      for (std::size_t part = below(6); part > 0; --part) packet += submessages[below(std::size(submessages))];
+      for (std::size_t change = below(8); change > 0; --change)
+        packet[below(packet.size())] = static_cast<char>(below(256));
+      packet.resize(packet.size() - below(std::min<std::size_t>(packet.size(), 12)));
+    }
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(static_cast<std::uint16_t>(wire::discovery_port(domain.number()) + below(2)));
+    sendto(sender, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    if (i % 100 == 0) std::this_thread::sleep_for(1ms);
+  }
+  close(sender);
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(controllers.wait_for_exit(), 0) << controllers.output();
+  EXPECT_EQ(field.summary()["state_hash"], expected);
+}
+
+// A client that is stopped reads nothing. Its robots are held; the server goes on at its pace, and nothing piles up.
+TEST(FloodsNeverStopARun, OfFramesToAClientThatNeverReads) {
+  const FieldOfRobots field(16, 60.0, ", on_late: hold, deadline: 0.005");
+  const ReservedDomain domain;
+  Process server(field.serve(domain));
+  Process reads(FieldOfRobots::host(domain, "0..7"));
+  Process never_reads(FieldOfRobots::host(domain, "8..15"));
+  const Ticks ticks(domain.number());
+  ASSERT_TRUE(ticks.have_begun()) << server.output();
+  never_reads.signal(SIGSTOP);
+  const double rate = ticks.per_second(1000ms);
+  EXPECT_GT(rate, 50.0) << "each tick waits 5 ms for the one that is stopped, and no longer";
+  server.signal(SIGINT);
+  EXPECT_EQ(server.wait_for_exit(), 130) << server.output();
+  never_reads.signal(SIGCONT);
+  EXPECT_GT(field.summary()["misses"].size(), 8u * 50u);
+}
+
+}  // namespace
+}  // namespace cohort::testing

@@ -1,0 +1,61 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "tests/support/field_of_robots.hpp"
+
+namespace cohort::testing {
+namespace {
+
+std::string hash_in(const std::filesystem::path& summary) {
+  return nlohmann::json::parse(std::ifstream(summary)).value("state_hash", "none");
+}
+
+// Aggregation's controllers remember what they did: a reset has to reach them too.
+TEST(SameHashAfterReset, RunsInARowWithTheSameControllersGiveTheSameBits) {
+  const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/aggregation.yaml";
+  const ScratchFolder folder;
+  for (const char* placement : {"process", "per-robot", "inprocess"}) {
+    const auto ended = run_to_end({cohort_program(), "run", experiment, "--duration", "3", "--repeat", "3",
+                                   "--controllers", placement, "--summary", (folder / "summary.json").string()});
+    ASSERT_EQ(ended.exit_code, 0) << ended.err;
+    const std::set<std::string> hashes = {hash_in(folder / "summary-1.json"), hash_in(folder / "summary-2.json"),
+                                          hash_in(folder / "summary-3.json")};
+    EXPECT_EQ(hashes.size(), 1u) << placement << ": " << *hashes.begin() << " " << *hashes.rbegin();
+  }
+}
+
+TEST(SameHashAfterReset, ASessionOfSeveralExperimentsKeepsItsControllersAndGivesEachItsBits) {
+  const std::string changes = COHORT_SOURCE_DIR "/worlds/experiments/changes.yaml";
+  const auto demo = run_demo({"--controllers", "inprocess", "--duration", "5"});
+  const auto changed = run_experiment(changes, {"--controllers", "inprocess", "--duration", "5"});
+  const ScratchFolder folder;
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", demo_experiment(), changes, "--repeat", "2", "--duration", "5", "--domain",
+                  domain.text(), "--summary", (folder / "summary.json").string()});
+  Process controllers({cohort_program(), "host", "obstacle_avoidance", "--robots", "all", "--domain", domain.text()});
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(controllers.wait_for_exit(), 0) << controllers.output();
+  for (const char* number : {"1", "3"})
+    EXPECT_EQ(hash_in(folder / ("summary-" + std::string(number) + ".json")), demo["state_hash"]) << number;
+  for (const char* number : {"2", "4"})
+    EXPECT_EQ(hash_in(folder / ("summary-" + std::string(number) + ".json")), changed["state_hash"]) << number;
+}
+
+// Of the next experiment there are fewer robots: who asks for others has to go, and says why.
+TEST(SameHashAfterReset, AClientWhoseRobotsAreNotInTheNextExperimentIsRefusedThereByName) {
+  const FieldOfRobots fewer(15, 1.0);
+  const ReservedDomain domain;
+  Process server(
+      {cohort_program(), "serve", demo_experiment(), fewer.file(), "--duration", "1", "--domain", domain.text()});
+  Process first({cohort_program(), "host", "obstacle_avoidance", "--robots", "0..14", "--domain", domain.text()});
+  Process last({cohort_program(), "host", "obstacle_avoidance", "--robots", "15", "--domain", domain.text()});
+  EXPECT_EQ(last.wait_for_exit(), 2) << last.output();
+  EXPECT_NE(last.output().find("refused"), std::string::npos) << last.output();
+  EXPECT_EQ(server.wait_for_exit(), 0) << "the others go on: " << server.output();
+  EXPECT_EQ(first.wait_for_exit(), 0) << first.output();
+}
+
+}  // namespace
+}  // namespace cohort::testing

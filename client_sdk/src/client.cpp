@@ -26,6 +26,10 @@ constexpr auto patience_before_notice = 3s;
 constexpr auto joins_again_every = 1s;
 constexpr auto server_may_be_away = 2s;
 constexpr auto time_for_last_words = 500ms;
+// Where steps are longer, what a hand-over costs does not matter, and DDS must not stand still. A few may be long
+// because others had the processor.
+constexpr auto longest_inline_frame = 1ms;
+constexpr int most_long_frames = 8;  // in a row
 constexpr int frames_kept_by_dds = 8;
 
 std::uint64_t random_id() {
@@ -84,6 +88,7 @@ class Client {
 
   // Below: with `driving_` and `lock` held; `lock` is let go while controllers and DDS are called.
   void drive(Lock& lock);
+  void drive_inline(Lock& lock);
   void heed(const wire::Report& report);
   void heed(Offer offer, Lock& lock);
   void answer_frames(Lock& lock);
@@ -106,6 +111,7 @@ class Client {
   std::mutex mutex_;  // guards all down to the participant
   std::condition_variable wake_;
   bool news_ = false;
+  int long_frames_ = 0;           // in a row, of those that a thread of DDS has answered
   std::optional<Offer> offered_;  // an Admit not yet acted on
   std::optional<Offer> current_;
   std::vector<wire::RobotDescription> descriptions_;
@@ -203,12 +209,12 @@ void Client::receive(const wire::Observation& frame) {
   if (frame.client != id_) return;
   Lock lock(mutex_);
   frames_.arrive(frame);
-  if (options_.inline_step && !offered_) {
+  if (options_.inline_step && long_frames_ < most_long_frames && !offered_) {
     news_ = true;  // for the thread in `run`: if it is at the controllers now, it looks again before it sleeps
     lock.unlock();
     const std::unique_lock driving(driving_, std::try_to_lock);
     lock.lock();
-    if (driving) drive(lock);
+    if (driving) drive_inline(lock);
     if (driving && !failure_ && !end_) return;
   }
   wake(std::move(lock));
@@ -242,6 +248,12 @@ void Client::drive(Lock& lock) {
   } catch (const std::exception& error) {
     failure_ = error.what();
   }
+}
+
+void Client::drive_inline(Lock& lock) {
+  const auto begin = Clock::now();
+  drive(lock);
+  long_frames_ = Clock::now() - begin > longest_inline_frame ? long_frames_ + 1 : 0;
 }
 
 void Client::heed(const wire::Report& report) {

@@ -41,7 +41,8 @@ struct ClientOptions {
   std::string name;                        ///< shown by the server; the controller's if empty
   std::string secure{};                    ///< folder of an identity (docs/security.md); empty: without security
   /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
-  /// latency. Only for controllers that never block, since DDS stands still meanwhile.
+  /// latency. `step` then runs on either thread, on one at a time. DDS stands still meanwhile: after eight frames in a
+  /// row that take more than a millisecond, all further ones are the calling thread's.
   bool inline_step = false;
   RunWatch* watch = nullptr;  ///< told when the run is over; outlives the client
   /// Receives what people should know, one text at a time, on any thread of the client. If empty it goes to standard

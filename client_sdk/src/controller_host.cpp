@@ -102,10 +102,15 @@ struct ControllerHost::Robot {
 ControllerHost::ControllerHost(ControllerKind kind) : kind_(std::move(kind)) {}
 ControllerHost::~ControllerHost() = default;
 
+// Mostly the one after the last that was found: frames have robots in order.
 ControllerHost::Robot* ControllerHost::find(std::uint32_t id) {
+  if (next_ >= robots_.size()) next_ = 0;
+  if (next_ < robots_.size() && robots_[next_].id == id) return &robots_[next_++];
   const auto place = std::lower_bound(robots_.begin(), robots_.end(), id,
                                       [](const Robot& robot, std::uint32_t wanted) { return robot.id < wanted; });
-  return place != robots_.end() && place->id == id ? &*place : nullptr;
+  if (place == robots_.end() || place->id != id) return nullptr;
+  next_ = static_cast<std::size_t>(place - robots_.begin()) + 1;
+  return &*place;
 }
 
 void ControllerHost::start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions) {

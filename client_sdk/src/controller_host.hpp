@@ -59,6 +59,7 @@ class ControllerHost {
 
   ControllerKind kind_;
   std::vector<Robot> robots_;  // ascending ids
+  std::size_t next_ = 0;       // where `find` looks first
   std::vector<double> values_;
 };
 

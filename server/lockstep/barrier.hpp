@@ -104,11 +104,13 @@ class Barrier {
     Time heard_at{0};                         // of the last answer, or the opening before the first
     bool silent = false;                      // for too long
   };
-  static Answer& answer_of(Robot& robot, std::uint64_t frame_tick) {
-    return robot.answers[frame_tick % robot.answers.size()];
-  }
+  static Answer& answer_of(Robot& robot, std::uint64_t frame_tick) { return robot.answers[place_of(robot, frame_tick)]; }
   static const Answer& answer_of(const Robot& robot, std::uint64_t frame_tick) {
-    return robot.answers[frame_tick % robot.answers.size()];
+    return robot.answers[place_of(robot, frame_tick)];
+  }
+  // Divisions by a number that is mostly 1 would be the better part of a tick's cost here.
+  static std::size_t place_of(const Robot& robot, std::uint64_t frame_tick) {
+    return robot.policy.delay == 0 ? 0 : frame_tick % robot.answers.size();
   }
   /// The frame whose answer acts at this tick, if there is one.
   std::optional<std::uint64_t> acting_frame(const Robot& robot) const;
@@ -118,7 +120,8 @@ class Barrier {
   static bool is_free(const Robot& robot) { return robot.policy.mode == description::Mode::free; }
   /// By the robot's policy alone.
   static bool is_asked(const Robot& robot, std::uint64_t tick) {
-    return tick >= robot.policy.phase && (tick - robot.policy.phase) % robot.policy.period == 0;
+    if (tick < robot.policy.phase) return false;
+    return robot.policy.period == 1 || (tick - robot.policy.phase) % robot.policy.period == 0;
   }
 
   std::vector<Robot> robots_;

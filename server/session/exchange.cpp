@@ -31,9 +31,11 @@ std::string reason_word(CommandFault::Reason reason) {
 
 Exchange::Exchange(Simulation& simulation)
     : simulation_(simulation), barrier_(policies_of(simulation), command_sizes_of(simulation)) {
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
-    history_.emplace_back(simulation.kinds()[simulation.kind_of(robot)].observation_size *
-                          (simulation.policy(robot).delay + 1));
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
+    const std::uint32_t delay = simulation.policy(robot).delay;
+    history_.emplace_back(delay == 0 ? 0
+                                     : simulation.kinds()[simulation.kind_of(robot)].observation_size * (delay + 1));
+  }
 }
 
 void Exchange::open(lockstep::Time now) {
@@ -42,7 +44,7 @@ void Exchange::open(lockstep::Time now) {
     barrier_.set_present(robot, simulation_.is_present(robot));
   barrier_.open(tick, now);
   for (std::uint32_t robot = 0; robot < history_.size(); ++robot) {
-    if (!barrier_.is_due(robot, tick)) continue;
+    if (history_[robot].empty() || !barrier_.is_due(robot, tick)) continue;
     const auto values = kept(robot, tick);
     std::ranges::copy(simulation_.observation(robot),
                       history_[robot].begin() + (values.data() - history_[robot].data()));
@@ -50,6 +52,7 @@ void Exchange::open(lockstep::Time now) {
 }
 
 std::span<const double> Exchange::kept(std::uint32_t robot, std::uint64_t tick) const {
+  if (history_[robot].empty()) return simulation_.observation(robot);
   const std::size_t slots = simulation_.policy(robot).delay + 1;
   const std::size_t size = history_[robot].size() / slots;
   return {history_[robot].data() + size * (tick % slots), size};
@@ -57,13 +60,23 @@ std::span<const double> Exchange::kept(std::uint32_t robot, std::uint64_t tick) 
 
 void Exchange::fill_frame(Frame& frame, std::span<const std::uint32_t> robots, std::uint64_t tick) const {
   frame.robots.clear();
-  frame.values.clear();
+  frame.values = {};
+  bool in_a_row = true;
   for (const std::uint32_t robot : robots) {
     if (!barrier_.is_due(robot, tick)) continue;
+    const std::span<const double> values = kept(robot, tick);
+    if (frame.robots.empty()) frame.values = values.first(0);
+    in_a_row = in_a_row && frame.values.data() + frame.values.size() == values.data();
+    if (in_a_row) frame.values = {frame.values.data(), frame.values.size() + values.size()};
     frame.robots.push_back(robot);
-    const auto values = kept(robot, tick);
-    frame.values.insert(frame.values.end(), values.begin(), values.end());
   }
+  if (in_a_row) return;
+  frame.gathered.clear();
+  for (const std::uint32_t robot : frame.robots) {
+    const std::span<const double> values = kept(robot, tick);
+    frame.gathered.insert(frame.gathered.end(), values.begin(), values.end());
+  }
+  frame.values = frame.gathered;
 }
 
 Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_t frame_tick,
@@ -73,31 +86,31 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
   const auto reject = [&](std::string reason, std::string text) {
     if (!taken.rejection) taken.rejection = Rejection{std::move(reason), std::move(text)};
   };
-  const std::string frame_text = "the answer to tick " + std::to_string(frame_tick);
+  const auto frame_text = [&] { return "the answer to tick " + std::to_string(frame_tick); };
   if (frame_tick > barrier_.tick()) {
-    reject("early", frame_text + " came at tick " + std::to_string(barrier_.tick()));
+    reject("early", frame_text() + " came at tick " + std::to_string(barrier_.tick()));
     return taken;
   }
-  std::vector<std::uint32_t> due;
+  due_.clear();
   std::size_t expected_size = 0;
   for (const std::uint32_t robot : held) {
     if (!barrier_.is_due(robot, frame_tick)) continue;
-    due.push_back(robot);
+    due_.push_back(robot);
     expected_size += simulation_.kinds()[simulation_.kind_of(robot)].command_size;
   }
-  if (!std::ranges::equal(due, robots)) {
-    reject("malformed", frame_text + " is not for the robots of that frame");
+  if (!std::ranges::equal(due_, robots)) {
+    reject("malformed", frame_text() + " is not for the robots of that frame");
     return taken;
   }
   const bool sizes_fit = values.size() == expected_size;
-  for (const std::uint32_t robot : due) {
+  for (const std::uint32_t robot : due_) {
     const std::size_t size = simulation_.kinds()[simulation_.kind_of(robot)].command_size;
     switch (barrier_.judge(robot, frame_tick)) {
       case lockstep::Barrier::Verdict::accepted: {
         std::optional<CommandFault> fault;
         if (!sizes_fit) {
           fault = CommandFault{CommandFault::Reason::wrong_size, "",
-                               frame_text + " has " + std::to_string(values.size()) + " values, expected " +
+                               frame_text() + " has " + std::to_string(values.size()) + " values, expected " +
                                    std::to_string(expected_size)};
         } else {
           fault = simulation_.check_command(robot, values.first(size));
@@ -114,10 +127,10 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
         }
         break;
       }
-      case lockstep::Barrier::Verdict::repeated: reject("repeated", frame_text + " came twice"); break;
-      case lockstep::Barrier::Verdict::early: reject("early", frame_text + " came before its frame"); break;
+      case lockstep::Barrier::Verdict::repeated: reject("repeated", frame_text() + " came twice"); break;
+      case lockstep::Barrier::Verdict::early: reject("early", frame_text() + " came before its frame"); break;
       case lockstep::Barrier::Verdict::stale:
-        reject("stale", frame_text + " came at tick " + std::to_string(barrier_.tick()));
+        reject("stale", frame_text() + " came at tick " + std::to_string(barrier_.tick()));
         break;
     }
     if (sizes_fit) values = values.subspan(size);

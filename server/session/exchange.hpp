@@ -25,8 +25,9 @@ class Exchange {
   /// The robots of `robots` that are due at `tick`, and their observations in a row. `tick` is the current one or one
   /// of the delay before it.
   struct Frame {
-    std::vector<std::uint32_t> robots;
-    std::vector<double> values;
+    std::vector<std::uint32_t> robots{};
+    std::span<const double> values{};  ///< good until the next step, or the next `fill_frame` of this frame
+    std::vector<double> gathered{};    ///< where they are, unless they lie in a row elsewhere
   };
   void fill_frame(Frame& frame, std::span<const std::uint32_t> robots, std::uint64_t tick) const;
 
@@ -52,7 +53,9 @@ class Exchange {
 
   Simulation& simulation_;
   lockstep::Barrier barrier_;
-  std::vector<std::vector<double>> history_;  // by robot: delay + 1 observations, by tick modulo delay + 1
+  // By robot: delay + 1 observations, by tick modulo delay + 1. None without a delay: the simulation has the only one.
+  std::vector<std::vector<double>> history_;
+  std::vector<std::uint32_t> due_;  // reused
 };
 
 }  // namespace cohort::session

@@ -35,6 +35,8 @@ struct RunListener {
   std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
   std::function<void(const Event&)> event{};        ///< the first of its kind and text
   std::function<void()> boundary{};                 ///< the first frame is about to go out, or a step is done
+  /// A tick has its answers: the wall time since its first frame was sent.
+  std::function<void(std::chrono::nanoseconds)> barrier{};
 };
 
 /// An answer that missed its deadline.
@@ -101,7 +103,10 @@ class RunBook {
   /// simulated and wall time never drift apart.
   std::optional<Clock::time_point> due_time() const;
   void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
-  void add_barrier(std::chrono::nanoseconds latency) { result_.barrier.add(latency); }
+  void add_barrier(std::chrono::nanoseconds latency) {
+    result_.barrier.add(latency);
+    if (listener_.barrier) listener_.barrier(latency);
+  }
   void add_resent(std::uint64_t frames) { result_.resent += frames; }
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
   void add_miss(const lockstep::Barrier::Miss& miss);

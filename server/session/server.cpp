@@ -167,33 +167,50 @@ bool Server::is_awaited(std::uint64_t client) const {
          std::ranges::any_of(lease->robots, [&](auto robot) { return run_->exchange.barrier().is_awaited(robot); });
 }
 
-// Whether there is a frame of this tick for the client.
-bool Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
+// Under the lock: the client's frame of this tick. Whether there is one.
+bool Server::fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
+  client.frame.robots.clear();
+  const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
+  if (lease == nullptr) return false;
+  if (!resent) client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
+  run_->exchange.fill_frame(client.frame, lease->robots, tick);
+  client.epoch = lease->epoch;
+  return !client.frame.robots.empty();
+}
+
+void Server::write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
   wire::Observation observation;
-  {
-    const std::lock_guard lock(mutex_);
-    const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
-    if (lease == nullptr) return false;
-    if (!resent) client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
-    run_->exchange.fill_frame(client.frame, lease->robots, tick);
-    observation.epoch = lease->epoch;
-  }
-  if (client.frame.robots.empty()) return false;
   observation.client = client_id;
   observation.run = run_number_;
   observation.resent = resent ? client.times_resent : 0;
+  observation.epoch = client.epoch;
   observation.tick = tick;
   observation.time_ns = (run_->experiment.world.step * static_cast<std::int64_t>(tick)).count();
   observation.robots = client.frame.robots;
   observation.values = client.frame.values;
   if (!resent) client.resend.start(tick, Clock::now().time_since_epoch());
   client.observation.write(observation);  // lost if DDS cannot take it: sent again then
-  return true;
 }
 
+void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!fill_frame(client_id, client, tick, resent)) return;
+  }
+  write_frame(client_id, client, tick, resent);
+}
+
+// All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
 void Server::send_frames() {
+  const std::uint64_t tick = run_->simulation.tick();
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, client] : clients_) fill_frame(id, client, tick, false);
+  }
   for (auto& [id, client] : clients_) {
-    if (send_frame(id, client, run_->simulation.tick(), false)) client.times_resent = 0;
+    if (client.frame.robots.empty()) continue;
+    write_frame(id, client, tick, false);
+    client.times_resent = 0;
   }
 }
 

@@ -79,7 +79,8 @@ class Server {
     bool claims = false;                  // and was neither granted nor refused
     lockstep::ResendTimer resend{};
     std::uint32_t times_resent = 0;
-    Exchange::Frame frame{};                      // reused
+    Exchange::Frame frame{};                      // reused: the last one
+    std::uint64_t epoch = 0;                      // of the lease that it went to
     std::set<std::string> reported_rejections{};  // reasons that it was told of
     // Of earlier ones.
     bool drove = false;  // so that a new run is a reset to it
@@ -134,6 +135,7 @@ class Server {
   void on_join(Door& door, const wire::Join& join, const wire::Sender& sender);
   void on_liveliness(const wire::Sender& sender, bool alive);
   void on_command(const wire::Command& command, const wire::Sender& sender);
+  bool take_answer(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report, const wire::Sender& sender);
   void on_foreign_version(std::uint32_t major);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
@@ -144,7 +146,9 @@ class Server {
   bool wait_for_controllers(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
   bool sleep_until_due(const std::atomic<bool>& stop);
-  bool send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
+  bool fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
+  void write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
+  void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
   void send_frames();
   void resend_frames(Clock::time_point now);
   bool handle_misses(Clock::time_point now);

@@ -74,16 +74,29 @@ bool Server::is_in_own_name(std::uint64_t client, const wire::Sender& sender) co
 }
 
 void Server::on_command(const wire::Command& command, const wire::Sender& sender) {
-  const std::lock_guard lock(mutex_);
+  {
+    const std::lock_guard lock(mutex_);
+    if (!take_answer(command, sender)) return;
+  }
+  wake_.notify_all();  // without the lock, which the one who wakes up needs
+}
+
+// Under the lock. True if the run's thread has to go on.
+bool Server::take_answer(const wire::Command& command, const wire::Sender& sender) {
+  const auto reject_it = [&](std::uint64_t who, const char* reason, std::string_view text) {
+    reject(who, reason, text);
+    return false;
+  };
   // By who sent it, not by whose name it has: strangers may have as many names as they like.
   if (!is_in_own_name(command.client, sender))
-    return reject(sender.participant, "foreign",
-                  "commands come from a client that has not joined, or in another's name");
+    return reject_it(sender.participant, "foreign",
+                     "commands come from a client that has not joined, or in another's name");
   const lockstep::Leases::Lease* lease = run_ == nullptr ? nullptr : run_->leases.lease(command.client);
-  if (lease == nullptr) return reject(command.client, "foreign", "commands come from a client that drives no robot");
-  if (command.run != run_number_) return reject(command.client, "stale", answer_to(command.tick) + " of another run");
+  if (lease == nullptr) return reject_it(command.client, "foreign", "commands come from a client that drives no robot");
+  if (command.run != run_number_)
+    return reject_it(command.client, "stale", answer_to(command.tick) + " of another run");
   if (command.epoch != lease->epoch)
-    return reject(command.client, "stale", answer_to(command.tick) + " of another lease");
+    return reject_it(command.client, "stale", answer_to(command.tick) + " of another lease");
 
   Run& run = *run_;
   const lockstep::Time now = Clock::now().time_since_epoch();
@@ -91,7 +104,7 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
   if (taken.accepted > 0) run.leases.note_answer(command.client, now, command.tick, command.resent);
   if (taken.rejection) reject(command.client, taken.rejection->reason.c_str(), taken.rejection->text);
   if (taken.ends_run && run.error.empty()) run.error = taken.rejection->text;
-  if (run.exchange.barrier().complete() || !run.error.empty()) wake_.notify_all();
+  return run.exchange.barrier().complete() || !run.error.empty();
 }
 
 // Counted, and told by the thread of `run` when it next looks; a flood must not wake it for each message.

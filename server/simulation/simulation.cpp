@@ -115,25 +115,31 @@ std::span<const double> Simulation::observation(std::uint32_t robot) const {
 }
 
 std::optional<CommandFault> Simulation::check_command(std::uint32_t robot, std::span<const double> values) const {
-  using Reason = CommandFault::Reason;
   const RobotKind& kind = kinds_[robots_[robot].kind];
-  std::ostringstream text;
-  if (values.size() != kind.command_size) {
-    text << "the command of " << robot_name(robot) << " has " << values.size() << " values, expected "
-         << kind.command_size;
-    return CommandFault{Reason::wrong_size, "", text.str()};
-  }
+  if (values.size() != kind.command_size) return wrong_size(robot, values.size());
   std::size_t i = 0;
   for (const Channel& channel : kind.command) {
     for (std::uint32_t k = 0; k < channel.size; ++k, ++i) {
-      const bool finite = std::isfinite(values[i]);
-      if (finite && values[i] >= channel.lower && values[i] <= channel.upper) continue;
-      text << robot_name(robot) << ": " << channel.name << " is " << values[i] << " " << channel.unit << ", expected "
-           << channel.lower << " to " << channel.upper;
-      return CommandFault{finite ? Reason::out_of_range : Reason::not_finite, channel.name, text.str()};
+      const bool can_act = values[i] >= channel.lower && values[i] <= channel.upper && std::isfinite(values[i]);
+      if (!can_act) return unfit(robot, channel, values[i]);
     }
   }
   return std::nullopt;
+}
+
+CommandFault Simulation::wrong_size(std::uint32_t robot, std::size_t size) const {
+  std::ostringstream text;
+  text << "the command of " << robot_name(robot) << " has " << size << " values, expected "
+       << kinds_[robots_[robot].kind].command_size;
+  return {CommandFault::Reason::wrong_size, "", text.str()};
+}
+
+CommandFault Simulation::unfit(std::uint32_t robot, const Channel& channel, double value) const {
+  std::ostringstream text;
+  text << robot_name(robot) << ": " << channel.name << " is " << value << " " << channel.unit << ", expected "
+       << channel.lower << " to " << channel.upper;
+  const bool finite = std::isfinite(value);
+  return {finite ? CommandFault::Reason::out_of_range : CommandFault::Reason::not_finite, channel.name, text.str()};
 }
 
 void Simulation::set_command(std::uint32_t robot, std::span<const double> values) {

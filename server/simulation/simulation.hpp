@@ -159,6 +159,8 @@ class Simulation {
   };
 
   void build_robot(std::uint32_t id);
+  CommandFault wrong_size(std::uint32_t robot, std::size_t size) const;
+  CommandFault unfit(std::uint32_t robot, const Channel& channel, double value) const;
   void sense();
   void look_at_lamps();
   static void sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due, std::span<double> values,

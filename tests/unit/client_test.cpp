@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <future>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/support/captured_stderr.hpp"
@@ -177,6 +180,48 @@ TEST_P(ClientTest, AStopEndsTheClient) {
   ask(0, 0.5);
   client->stop = true;
   EXPECT_EQ(client->end(), ClientEnd::interrupted);
+}
+
+// Takes its time, and remembers where.
+class SlowController final : public Controller {
+ public:
+  explicit SlowController(std::vector<std::thread::id>& threads) : threads_(threads) {}
+  void start(const Start&) override {}
+  void step(const Observation&, Command&) override {
+    threads_.push_back(std::this_thread::get_id());
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(2);
+    while (std::chrono::steady_clock::now() < end) continue;
+  }
+
+ private:
+  std::vector<std::thread::id>& threads_;
+};
+
+TEST(ClientAlone, LongStepsAreNotLeftToTheThreadOfDds) {
+  std::vector<std::thread::id> threads;  // of each step, one at a time
+  const ControllerKind slow{
+      "slow",
+      [&] { return OwnedController(new SlowController(threads), [](Controller* controller) { delete controller; }); }};
+  test::FakeServer server;
+  ClientOptions options;
+  options.domain = server.domain();
+  options.inline_step = true;
+  const std::atomic<bool> stop{false};
+  std::thread::id own;
+  auto end = std::async(std::launch::async, [&] {
+    own = std::this_thread::get_id();
+    return run_client(slow, options, stop);
+  });
+  ASSERT_TRUE(server.accept());
+  server.describe(CountingController::description());
+  server.admit({.epoch = 1, .step_ns = 10'000'000, .robots = {{.robot = 0, .name = "r0"}}});
+  constexpr std::uint64_t frames = 20;
+  for (std::uint64_t tick = 0; tick < frames; ++tick) ASSERT_TRUE(server.ask(tick, {0.5}, 1).has_value());
+  server.report({.kind = wire::ReportKind::finished});
+  ASSERT_EQ(end.get(), ClientEnd::finished);
+  ASSERT_EQ(threads.size(), frames);
+  EXPECT_NE(std::count(threads.begin(), threads.end(), own), static_cast<std::ptrdiff_t>(frames));
+  EXPECT_EQ(std::count(threads.end() - 5, threads.end(), own), 5);
 }
 
 TEST(ClientAlone, WaitsForAServerSaysSoAndFindsItWhenItComes) {

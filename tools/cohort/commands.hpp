@@ -12,6 +12,8 @@
 #include "tools/bench/thesis.hpp"
 #include "tools/cohort/log.hpp"
 #include "tools/cohort/run_trace.hpp"
+#include "tools/lockstep/bench_client.hpp"
+#include "tools/lockstep/lockstep.hpp"
 
 /// The commands of `cohort`, one file each. Every command returns the process's exit code.
 namespace cohort::tool {
@@ -56,6 +58,7 @@ struct HostCommand {
   std::string server;
   std::vector<std::uint32_t> domains{};  ///< of the server; one of them is used. Empty: 0
   std::filesystem::path secure{};        ///< folder of an identity; empty: without security
+  bool inline_step = false;              ///< ClientOptions
   bool for_run = false;                  ///< started by `cohort run`, whose server tells what becomes of a client
 };
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop);
@@ -114,8 +117,11 @@ int help(const std::string& topic, Log& log);
 
 struct BenchCommand {
   bench::Options options;
-  std::optional<bench::ThesisOptions> thesis;  ///< the thesis's tables, in place of the scenes
-  std::filesystem::path json;                  ///< file to write; empty: none
+  std::optional<bench::ThesisOptions> thesis;      ///< the thesis's tables, in place of the scenes
+  std::optional<bench::LockstepOptions> lockstep;  ///< the barrier, in place of the scenes
+  std::optional<bench::BenchClient> client;        ///< be one of its processes
+  std::filesystem::path json;                      ///< file to write; empty: none
+  std::filesystem::path svg;                       ///< the same: lockstep's graph
 };
 int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop);
 

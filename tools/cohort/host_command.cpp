@@ -12,6 +12,7 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
     if (!command.domains.empty()) options.domain = domain_of_this_process(command.domains);
     options.secure = command.secure;
     options.robots = command.robots;
+    options.inline_step = command.inline_step;
     options.tell = [&](Severity severity, const std::string& text) {
       const std::string name = loaded.plugin().name;
       log.write(command.for_run ? LogLevel::debug : level_of(severity), name + ": " + text, {{"controller", name}});

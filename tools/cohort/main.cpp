@@ -6,7 +6,7 @@
 #include "client_sdk/src/domains.hpp"
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
-#include "tools/bench/bench.hpp"
+#include "tools/cohort/bench_options.hpp"
 #include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
@@ -189,80 +189,6 @@ void add_samples_options(CLI::App& app, SamplesCommand& command) {
   app.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
 }
 
-void add_bench_options(CLI::App& app, BenchCommand& command) {
-  cohort::bench::Options& options = command.options;
-  const auto list = [&](const char* name, auto& values, const char* text) {
-    return app.add_option(name, values, text)->delimiter(',')->allow_extra_args(false);
-  };
-  list("--scene", options.scenes, "Scenes (default: all)")
-      ->check(one_of(cohort::bench::scene_names()))
-      ->type_name("NAME[,NAME...]");
-  list("--engines", options.engines, "Engines to compare (default: all in this build)")
-      ->check(one_of(cohort::bench::engine_names()))
-      ->type_name("NAME[,NAME...]");
-  list("--robots", options.robots, "How many robots, one run for each number (default: some for each scene)")
-      ->check(whole_number(1, 100'000))
-      ->type_name("N[,N...]");
-  app.add_option("--seconds", options.seconds, "Simulated seconds of each repetition")
-      ->check(number_above_zero(1e6))
-      ->capture_default_str()
-      ->type_name("S");
-  app.add_option("--repetitions", options.repetitions, "Repetitions, the engines in turns")
-      ->check(whole_number(1, 1000))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--threads", options.threads, "Run Cohort with this many threads too, in turns with one")
-      ->check(whole_number(1, 1024))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--seed", options.seed, "Seed of places and commands")
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
-  app.footer(
-      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies),\n"
-      "crowd_planar (Cohort in the plane only), chain (connected robots), rays, build (time and memory),\n"
-      "accuracy (against closed forms).\n"
-      "Engines: cohort, and as Debian ships them ode-worldstep, ode-quickstep, mujoco and enki.\n"
-      "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
-      "they can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with\n"
-      "speed; Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
-      "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
-}
-
-void add_thesis_options(CLI::App& app, cohort::bench::ThesisOptions& options, BenchCommand& command) {
-  app.add_option("--seconds", options.seconds, "Simulated seconds of each cell")
-      ->check(number_above_zero(1e6))
-      ->capture_default_str()
-      ->type_name("S");
-  app.add_option("--budget", options.budget, "CPU seconds that a cell may take; the rest is extrapolated")
-      ->check(number_above_zero(1e6))
-      ->capture_default_str()
-      ->type_name("S");
-  app.add_option("--seed", options.seed, "Seed of places and commands")
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      ->capture_default_str()
-      ->type_name("N");
-  app.add_option("--table", options.tables, "Tables (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(one_of(cohort::bench::thesis_tables()))
-      ->type_name("NAME[,NAME...]");
-  app.add_option("--robots", options.robots, "How many robots, a row for each number (default: the thesis's, and more)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(whole_number(1, 100'000))
-      ->type_name("N[,N...]");
-  app.add_option("--json", command.json, "Write the results to this file as JSON")->type_name("FILE");
-  app.footer(
-      "Tables 5.1 (random movement) and 5.2 (connected robots): the thesis's own seconds, and beside them Cohort and\n"
-      "ODE, the thesis's engine, run here and now with steps of 10 ms; ODE also with the thesis's 100 ms, and what "
-      "its\n"
-      "robots then do (behaviour). Tables 5.3 (proximity sensors) and 5.4 (light and sound): robots that stand still,\n"
-      "beside rays of ODE. docs/bench.md says all of it.");
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -286,7 +212,7 @@ int main(int argc, char** argv) {
                                                          {"per-robot", Controllers::per_robot},
                                                          {"external", Controllers::external}};
   CLI::App* run_app = app.add_subcommand("run", "Run an experiment with its controllers");
-  run_app->add_option("FILE", run_options.files, "Experiment (YAML)")->required()->expected(1)->type_name("");
+  run_app->add_option("FILE", run_options.files.emplace_back(), "Experiment (YAML)")->required()->type_name("");
   add_run_options(*run_app, run_options, speed, log_flags);
   run_app
       ->add_option("--controllers", controllers,
@@ -314,6 +240,8 @@ int main(int argc, char** argv) {
       ->type_name("");
   add_client_options(*host_app, host_options);
   add_log_options(*host_app, log_flags);
+  host_app->add_flag("--inline", host_options.inline_step,
+                     "Step on the thread that receives, while steps take less than 1 ms: a quicker answer");
   host_app->add_flag("--for-run", host_options.for_run)->group("");  // `cohort run` starts it so
   host_app->footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
 
@@ -363,12 +291,8 @@ int main(int argc, char** argv) {
   add_log_options(*help_app, log_flags);
   help_app->footer("Example: cohort help sensors");
 
-  BenchCommand bench_command;
-  CLI::App* bench_app = app.add_subcommand("bench", "Measure Cohort and other physics engines on the same scenes");
-  add_bench_options(*bench_app, bench_command);
-  cohort::bench::ThesisOptions thesis_options;
-  CLI::App* thesis_app = bench_app->add_subcommand("thesis", "Run the tables of the thesis of 2005 again");
-  add_thesis_options(*thesis_app, thesis_options, bench_command);
+  BenchOptions bench_options;
+  CLI::App* bench_app = add_bench(app, bench_options);
   add_log_options(*bench_app, log_flags);
 
   std::optional<LogOptions> options;
@@ -406,7 +330,6 @@ int main(int argc, char** argv) {
   if (security_app->parsed()) return security(security_command, log);
   if (doctor_app->parsed()) return doctor(doctor_command, log);
   if (help_app->parsed()) return help(help_topic, log);
-  if (thesis_app->parsed()) bench_command.thesis = thesis_options;
-  if (bench_app->parsed()) return bench(bench_command, log, stop_requested);
+  if (bench_app->parsed()) return bench(bench_options.command(), log, stop_requested);
   return check(checked_file, log);
 }

@@ -36,12 +36,30 @@ constexpr std::string_view frame_colour = "#c8ced6";
 constexpr std::string_view grid_colour = "#e6e9ed";
 constexpr std::array<std::string_view, 5> colours = {"#0b62c4", "#c4480b", "#0a7d55", "#8a3ab9", "#8a6d00"};
 
+bool is_log(const Panel& panel, int axis) { return axis == 0 ? panel.is_log_x : panel.is_log_y; }
+
+// Logarithms, where the axes are logarithmic.
+Vector2d on_axes(const Panel& panel, const Vector2d& point) {
+  return {panel.is_log_x ? std::log10(point.x()) : point.x(), panel.is_log_y ? std::log10(point.y()) : point.y()};
+}
+
 tool::Range range_of(const Panel& panel) {
   tool::Range range;
   for (const Series& series : panel.series)
-    for (const Vector2d& point : series.measured) range.add(point);
+    for (const Vector2d& point : series.measured) range.add(on_axes(panel, point));
+  constexpr double around = 0.15;  // of a power of ten
+  if (panel.is_log_x) {
+    range.lower.x() -= around;
+    range.upper.x() += around;
+  }
+  if (panel.is_log_y) {
+    range.lower.y() -= around;
+    range.upper.y() += around;
+    return range;
+  }
   // Zero is shown if it is not far, and nothing lies on the upper edge.
   for (const int axis : {0, 1}) {
+    if (is_log(panel, axis)) continue;
     const double size = range.upper[axis] - range.lower[axis];
     if (range.lower[axis] > 0.0 && range.lower[axis] < 0.5 * size) range.lower[axis] = 0.0;
     if (range.upper[axis] < 0.0 && range.upper[axis] > -0.5 * size) range.upper[axis] = 0.0;
@@ -72,45 +90,55 @@ class PanelDrawing {
       return;
     }
     range_ = range_of(panel_);
-    draw_x_axis(tool::round_length((range_.upper.x() - range_.lower.x()) / 2.5));
-    draw_y_axis();
+    draw_x_axis(step_of(0));
+    draw_y_axis(step_of(1));
     for (std::size_t i = 0; i < panel_.series.size(); ++i) draw_line(panel_.series[i], colours[i % colours.size()]);
     for (std::size_t i = 0; i < panel_.series.size(); ++i) draw_dots(panel_.series[i], colours[i % colours.size()]);
     draw_legend();
   }
 
  private:
-  Vector2d on_page(const Vector2d& point) const {
-    const Vector2d share = (point - range_.lower).cwiseQuotient(range_.upper - range_.lower);
+  Vector2d on_page(const Vector2d& at) const {
+    const Vector2d share = (on_axes(panel_, at) - range_.lower).cwiseQuotient(range_.upper - range_.lower);
     return corner_ + plot_at + Vector2d(share.x() * plot_size.x(), (1.0 - share.y()) * height_);
+  }
+
+  double step_of(int axis) const {
+    return is_log(panel_, axis) ? 1.0 : tool::round_length((range_.upper[axis] - range_.lower[axis]) / 2.5);
+  }
+  // What a tick stands for, and how it is labelled.
+  double value_at(const tool::Ticks& ticks, std::int64_t i, int axis) const {
+    return is_log(panel_, axis) ? std::pow(10.0, static_cast<double>(i)) : ticks.at(i);
+  }
+  std::string label_at(const tool::Ticks& ticks, std::int64_t i, int axis) const {
+    return is_log(panel_, axis) ? fmt::format("{:g}", value_at(ticks, i, axis)) : ticks.label(i);
   }
 
   void draw_x_axis(double step) {
     const double bottom = corner_.y() + plot_at.y() + height_;
     const tool::Ticks ticks(range_.lower.x(), range_.upper.x(), step);
     for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
-      const double x = on_page({ticks.at(i), range_.lower.y()}).x();
+      const double x = on_page({value_at(ticks, i, 0), 1.0}).x();
       if (panel_.image.width == 0)
         fmt::format_to(out_, "<path d=\"M{} {}v{}\" stroke=\"{}\"/>\n", number(x), number(bottom), number(-height_),
                        grid_colour);
       fmt::format_to(out_, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"{}\">{}</text>\n", number(x),
-                     number(bottom + 15.0), soft_ink, ticks.label(i));
+                     number(bottom + 15.0), soft_ink, label_at(ticks, i, 0));
     }
     fmt::format_to(out_, "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                    number(corner_.x() + plot_at.x() + 0.5 * plot_size.x()), number(bottom + 32.0),
                    escaped(panel_.x_label));
   }
 
-  void draw_y_axis() {
+  void draw_y_axis(double step) {
     const Vector2d at = corner_ + plot_at;
-    const tool::Ticks ticks(range_.lower.y(), range_.upper.y(),
-                            tool::round_length((range_.upper.y() - range_.lower.y()) / 2.5));
+    const tool::Ticks ticks(range_.lower.y(), range_.upper.y(), step);
     for (std::int64_t i = ticks.first; i <= ticks.last; ++i) {
-      const double y = on_page({range_.lower.x(), ticks.at(i)}).y();
+      const double y = on_page({1.0, value_at(ticks, i, 1)}).y();
       fmt::format_to(out_, "<path d=\"M{} {}h{}\" stroke=\"{}\"/>\n", number(at.x()), number(y), number(plot_size.x()),
                      grid_colour);
       fmt::format_to(out_, "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{}\">{}</text>\n", number(at.x() - 6.0),
-                     number(y + 4.0), soft_ink, ticks.label(i));
+                     number(y + 4.0), soft_ink, label_at(ticks, i, 1));
     }
     fmt::format_to(out_, "<text transform=\"translate({} {}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
                    number(corner_.x() + 12.0), number(at.y() + 0.5 * height_), escaped(panel_.y_label));
@@ -132,6 +160,11 @@ class PanelDrawing {
   // Lines of no length with round ends.
   void draw_dots(const Series& series, std::string_view colour) {
     std::string data;
+    if (series.is_joined) {
+      tool::svg::Points points;
+      for (const Vector2d& point : series.measured) points.push_back(on_page(point));
+      fmt::format_to(out_, "<path fill=\"none\" stroke=\"{}\" d=\"{}\"/>\n", colour, tool::svg::path_data(points));
+    }
     for (const Vector2d& point : series.measured) {
       const Vector2d at = on_page(point);
       data += fmt::format("M{:.1f} {:.1f}h0", at.x(), at.y());

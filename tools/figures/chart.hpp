@@ -15,6 +15,7 @@ struct Series {
   std::vector<Eigen::Vector2d> measured;        ///< ascending in x
   std::function<double(double)> closed_form{};  ///< what theory says at x; empty if there is nothing to compare with
   double tolerance = 0.0;                       ///< how far the measured may be off it, of y
+  bool is_joined = false;                       ///< a line goes from each point to the next
 };
 
 struct Image {
@@ -29,7 +30,9 @@ struct Panel {
   std::string x_label;
   std::string y_label;
   std::vector<Series> series;
-  Image image{};  ///< drawn in the place of series, with x from 0 to 360 degrees
+  Image image{};          ///< drawn in the place of series, with x from 0 to 360 degrees
+  bool is_log_x = false;  ///< logarithmic: all that is measured is above zero, and there is no closed form
+  bool is_log_y = false;  ///< the same
 };
 
 struct Page {

@@ -17,7 +17,7 @@
 ///
 /// Values are float64 in SI units; what a channel measures or moves, and in which frame, is said where its device is
 /// (docs/worlds.md). Nothing here is safe to share between threads, and nothing needs to be: the SDK calls all
-/// controllers of a process on one thread, one after the other.
+/// controllers of a process on one thread, one after the other (with `cohort host --inline` on one of two at a time).
 namespace cohort {
 
 /// A channel as the server describes it: `size` float64 values in a robot's observation or command.

@@ -42,7 +42,8 @@ struct ClientOptions {
   /// Runs `step` on the thread of DDS that brings the frame: no hand-over to the calling thread, so less CPU and
   /// latency. Only for controllers that never block, since DDS stands still meanwhile.
   bool inline_step = false;
-  RunWatch* watch = nullptr;  ///< told when the run is over; outlives the client
+  /// Told when the run is over; outlives the client.
+  RunWatch* watch = nullptr;
   /// Receives what people should know, one text at a time, on any thread of the client. If empty it goes to standard
   /// error, after the name.
   std::function<void(Severity severity, const std::string& text)> tell{};

@@ -44,7 +44,8 @@ struct ClientOptions {
   /// latency. `step` then runs on either thread, on one at a time. DDS stands still meanwhile: after eight frames in a
   /// row that take more than a millisecond, all further ones are the calling thread's.
   bool inline_step = false;
-  RunWatch* watch = nullptr;  ///< told when the run is over; outlives the client
+  /// Told when the run is over; outlives the client.
+  RunWatch* watch = nullptr;
   /// Receives what people should know, one text at a time, on any thread of the client. If empty it goes to standard
   /// error, after the name.
   std::function<void(Severity severity, const std::string& text)> tell{};

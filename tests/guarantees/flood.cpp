@@ -1,6 +1,9 @@
-// A stranger that floods a server: flood DOMAIN RATE. Sends RATE commands a second in nobody's name until it is killed.
+// A stranger that floods one of two servers: flood DOMAIN DOMAIN RATE. Sends RATE commands a second in nobody's name to
+// the first, after SIGUSR1 to the other one, and so on, until it is killed. So its own share of the machine stays.
 
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <string>
 #include <thread>
@@ -8,21 +11,37 @@
 
 #include "idl/wire.hpp"
 
+namespace {
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
+volatile std::sig_atomic_t target = 0;
+
+struct Target {
+  explicit Target(const char* domain)
+      : participant(cohort::wire::Participant::client(static_cast<std::uint32_t>(std::stoul(domain)))),
+        commands(participant) {
+    while (commands.matched() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  cohort::wire::Participant participant;
+  cohort::wire::Writer<cohort::wire::Command> commands;
+};
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace cohort;
   using Clock = std::chrono::steady_clock;
-  if (argc != 3) return 2;
-  auto participant = wire::Participant::client(static_cast<std::uint32_t>(std::stoul(argv[1])));
-  const double rate = std::stod(argv[2]);
-  wire::Writer<wire::Command> commands(participant);
-  while (commands.matched() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (argc != 4) return 2;
+  std::signal(SIGUSR1, [](int) { target = 1 - target; });
+  std::array<Target, 2> targets = {Target(argv[1]), Target(argv[2])};
+  const double rate = std::stod(argv[3]);
   std::puts("flooding");
   std::fflush(stdout);
   const std::vector<std::uint32_t> robots = {0};
   const std::vector<double> values(8, 0.1);
   for (;;) {
-    // In bursts of a millisecond; what was missed while it was stopped is not made up for.
+    // In bursts of a millisecond; one that took longer is not made up for.
     const auto begin = Clock::now();
+    auto& commands = targets.at(static_cast<std::size_t>(target)).commands;
     for (int i = 0; i < static_cast<int>(rate / 1000.0); ++i) commands.write({1, 1, 1, 0, robots, values});
     std::this_thread::sleep_until(begin + std::chrono::milliseconds(1));
   }

@@ -58,7 +58,7 @@ double seconds_of(clockid_t clock) {
 }  // namespace
 
 Finding check_buffers(const fs::path& proc) {
-  constexpr std::uint64_t wanted = 4 * 1024 * 1024;  // as Cohort asks for
+  constexpr std::uint64_t wanted = 4'194'304;  // as Cohort asks for
   const auto most = number_of(proc / "sys/net/core/rmem_max");
   if (!most) return {"buffers", Health::ok, "the kernel does not tell how large UDP receive buffers may be"};
   const std::string found =

@@ -17,7 +17,7 @@ std::string date_of(std::int64_t time) {
 }
 
 Finding check_identity(const wire::Identity& identity) {
-  constexpr std::int64_t soon = 14 * 24 * 3600;  // [s]
+  constexpr std::int64_t soon = 1'209'600;  // two weeks [s]
   const Validity validity = validity_of(identity.folder / wire::certificate_file);
   const std::int64_t now = std::time(nullptr);
   const std::string who = fmt::format("{} ({}), door {}", identity.name, identity.folder.string(), identity.door);

@@ -55,6 +55,7 @@ void read_both(const Pipe& out, const Pipe& err, ProgramResult& result) {
 
 ProgramResult run_program(const std::vector<std::string>& command, const std::filesystem::path& folder) {
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
   arguments.push_back(nullptr);
   Pipe out;

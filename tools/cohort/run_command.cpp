@@ -187,11 +187,37 @@ std::unique_ptr<Simulation> build(const RunCommand& command, const description::
   return simulation;
 }
 
+// One after the other, each as often as asked for, until one does not finish. The exit code.
+int run_each(const RunCommand& command, const std::vector<description::Experiment>& experiments,
+             const std::vector<TeamController>& controllers, std::unique_ptr<Simulation> first,
+             std::optional<Serving>& serving, double cpu_before, Log& log, const std::atomic<bool>& stop) {
+  const std::size_t count = experiments.size() * command.repeat;
+  int code = exit_ok;
+  try {
+    for (std::size_t number = 1; number <= count && code == exit_ok; ++number) {
+      const description::Experiment& experiment = experiments[(number - 1) % experiments.size()];
+      // A reset is a world that is built anew.
+      const auto simulation = first != nullptr ? std::exchange(first, nullptr) : build(command, experiment, log);
+      OneRun one(command, number, count, experiment, *simulation, log);
+      if (count > 1) log.notice(fmt::format("run {} of {}: {}", number, count, experiment.name));
+      const session::RunOptions options = {speed_of(command, experiment)};
+      const RunResult result =
+          serving ? serving->run(experiment, *simulation, options, one.listener(), stop, number == count)
+                  : run_here(experiment, *simulation, controllers, options, one.listener(), stop);
+      const double cpu = cpu_seconds();
+      code = one.finish(result, cpu - std::exchange(cpu_before, cpu));
+    }
+  } catch (const std::exception& error) {
+    log.error(error.what());
+    return exit_failed;
+  }
+  return code;
+}
+
 }  // namespace
 
 int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
-  double cpu_before = cpu_seconds();  // a shell that became this process may have had children
-  bool has_begun = false;
+  const double cpu_before = cpu_seconds();  // a shell that became this process may have had children
   try {
     const std::size_t count = command.files.size() * command.repeat;
     for (std::size_t number = 1; number <= count; ++number) {
@@ -212,30 +238,14 @@ int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop) {
 
     std::optional<Serving> serving;
     if (!in_process) serving.emplace(command, experiments.front(), log);
-    int code = exit_ok;
-    for (std::size_t number = 1; number <= count && code == exit_ok; ++number) {
-      const description::Experiment& experiment = experiments[(number - 1) % experiments.size()];
-      // A reset is a world that is built anew.
-      if (simulation == nullptr) simulation = build(command, experiment, log);
-      OneRun one(command, number, count, experiment, *simulation, log);
-      if (count > 1) log.notice(fmt::format("run {} of {}: {}", number, count, experiment.name));
-      if (number == 1 && serving) serving->start_controllers(experiment, controllers);
-      has_begun = true;
-      const session::RunOptions options = {speed_of(command, experiment)};
-      const RunResult result =
-          serving ? serving->run(experiment, *simulation, options, one.listener(), stop, number == count)
-                  : run_here(experiment, *simulation, controllers, options, one.listener(), stop);
-      const double cpu = cpu_seconds();
-      code = one.finish(result, cpu - std::exchange(cpu_before, cpu));
-      simulation.reset();
-    }
-    return code;
+    if (serving) serving->start_controllers(experiments.front(), controllers);
+    return run_each(command, experiments, controllers, std::move(simulation), serving, cpu_before, log, stop);
   } catch (const description::InputError& error) {
     log.problems(error);
   } catch (const std::exception& error) {
     log.error(error.what());
   }
-  return has_begun ? exit_failed : exit_usage;
+  return exit_usage;
 }
 
 }  // namespace cohort::tool

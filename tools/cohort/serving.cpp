@@ -133,7 +133,7 @@ void Serving::start_controllers(const description::Experiment& experiment,
 }
 
 session::RunResult Serving::run(const description::Experiment& experiment, Simulation& simulation,
-                                const session::RunOptions& options, session::RunListener listener,
+                                const session::RunOptions& options, const session::RunListener& listener,
                                 const std::atomic<bool>& stop, bool is_last) {
   session::RunResult result = server_->run(experiment, simulation, options, listener, stop);
   if (!is_last && result.end == session::RunResult::End::finished) return result;

@@ -25,7 +25,7 @@ class Serving {
 
   /// `is_last`: controllers may leave afterwards.
   session::RunResult run(const description::Experiment& experiment, Simulation& simulation,
-                         const session::RunOptions& options, session::RunListener listener,
+                         const session::RunOptions& options, const session::RunListener& listener,
                          const std::atomic<bool>& stop, bool is_last);
 
  private:

@@ -68,7 +68,9 @@ Reduced reduce(double x) {
     w = n * rest2 - ((t - r) - w);
     value = r - w;
   }
-  return {static_cast<int>(static_cast<std::int64_t>(n) & 3), value, (r - value) - w};
+  // Of an angle beyond any sense every quadrant is as good, but it has to be the same one.
+  const bool is_countable = __builtin_fabs(n) < 0x1p62;
+  return {is_countable ? static_cast<int>(static_cast<std::int64_t>(n) & 3) : 0, value, (r - value) - w};
 }
 
 bool is_finite(double x) { return x - x == 0.0; }

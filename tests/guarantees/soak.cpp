@@ -57,16 +57,13 @@ void print(std::uint64_t tick, const Held& server, const Held& clients) {
   std::fflush(stdout);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc != 3) return 2;
-  const std::uint64_t ticks = std::stoull(argv[1]);
-  const int controllers = std::stoi(argv[2]);
+// The exit code.
+int soak(std::uint64_t ticks, int controllers) {
   const FieldOfRobots field(controllers, static_cast<double>(ticks) / 100.0);
   const ReservedDomain domain;
   Process server(field.serve(domain));
   std::vector<std::unique_ptr<Process>> clients;
+  clients.reserve(static_cast<std::size_t>(controllers));
   for (int i = 0; i < controllers; ++i)
     clients.push_back(std::make_unique<Process>(FieldOfRobots::host(domain, std::to_string(i))));
 
@@ -100,4 +97,16 @@ int main(int argc, char** argv) {
               summary["resent"].dump().c_str(), summary["state_hash"].get<std::string>().c_str());
   std::puts(grew ? "something grew" : "nothing grew");
   return grew || summary["ticks"] != ticks ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  try {
+    return soak(std::stoull(argv[1]), std::stoi(argv[2]));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "soak: %s\n", error.what());
+    return 1;
+  }
 }

@@ -121,8 +121,9 @@ class RowMeasurement {
     LockstepRun run(row_.robots, 0, {shares_, options_.inline_step, 0.0});
     Counter counter(run.clients());
     bool is_warm = false;
-    run.on_barrier = [&](double seconds) { counter.add_barrier(seconds); };
-    run.on_boundary = [&] {
+    LockstepListener listener;
+    listener.barrier = [&](double seconds) { counter.add_barrier(seconds); };
+    listener.boundary = [&] {
       if (run.tick() == 0) return counter.begin();
       if (counter.add_tick() < (is_warm ? options_.seconds : warm_up)) return;
       if (is_warm) row_.cohort.push_back(counter.end());
@@ -133,7 +134,7 @@ class RowMeasurement {
       say(fmt::format("repetition {} of {}", row_.udp.size() + 1, options_.repetitions));
       counter.begin();
     };
-    run.run(surroundings_.stop);
+    run.run(listener, surroundings_.stop);
     udp_processes_.may_end();
     if (has_to_end()) throw_why();
     return std::move(row_);
@@ -195,6 +196,7 @@ std::uint32_t process_count(ClientPlacement placement, std::uint32_t robots) {
 
 Spread spread_of(const std::vector<LockstepTurn>& turns, double LockstepTurn::*quantity) {
   std::vector<double> values;
+  values.reserve(turns.size());
   for (const LockstepTurn& turn : turns) values.push_back(turn.*quantity);
   return spread_of(std::move(values));
 }

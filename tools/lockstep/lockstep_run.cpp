@@ -50,18 +50,16 @@ void LockstepRun::open_domains(std::size_t wanted) {
   }
 }
 
-void LockstepRun::run(const std::atomic<bool>& interrupted) {
-  session::RunListener listener;
-  listener.boundary = [this] {
-    if (on_boundary) on_boundary();
+void LockstepRun::run(const LockstepListener& listener, const std::atomic<bool>& interrupted) {
+  session::RunListener of_server;
+  of_server.boundary = listener.boundary;
+  of_server.barrier = [&](std::chrono::nanoseconds latency) {
+    if (listener.barrier) listener.barrier(std::chrono::duration<double>(latency).count());
   };
-  listener.barrier = [this](std::chrono::nanoseconds latency) {
-    if (on_barrier) on_barrier(std::chrono::duration<double>(latency).count());
-  };
-  listener.progress = [&](const session::Progress&) {
+  of_server.progress = [&](const session::Progress&) {
     if (interrupted) stop_ = true;
   };
-  const session::RunResult result = server_->run(experiment_, simulation_, {}, listener, stop_);
+  const session::RunResult result = server_->run(experiment_, simulation_, {}, of_server, stop_);
   clients_->may_end();
   server_->dismiss(result);
   clients_->let_finish();

@@ -23,21 +23,23 @@ struct IdleClients {
   double work = 0.0;  ///< CPU time of each step of a process [s]
 };
 
-/// A server of idle robots, as `cohort run` makes it but for its world, and its client processes. The callbacks come on
-/// the thread of `run`.
+/// What a run calls, on its thread. Each may be empty.
+struct LockstepListener {
+  std::function<void()> boundary{};               ///< before the first frame and after each step
+  std::function<void(double seconds)> barrier{};  ///< from a tick's first frame to the last answer needed
+};
+
+/// A server of idle robots, as `cohort run` makes it but for its world, and its client processes.
 class LockstepRun {
  public:
-  std::function<void()> on_boundary{};               ///< before the first frame and after each step
-  std::function<void(double seconds)> on_barrier{};  ///< from a tick's first frame to the last answer needed
-
   /// Starts the clients. `delay` is theirs, in ticks.
   LockstepRun(std::uint32_t robots, std::uint32_t delay, const IdleClients& clients);
 
   BenchProcesses& clients() { return *clients_; }
   std::uint64_t tick() const { return simulation_.tick(); }
   /// Until `stop` is called, or `interrupted` is set. Throws std::runtime_error if anything fails.
-  void run(const std::atomic<bool>& interrupted);
-  /// From a callback.
+  void run(const LockstepListener& listener, const std::atomic<bool>& interrupted);
+  /// From the listener.
   void stop() { stop_ = true; }
 
  private:

@@ -48,9 +48,10 @@ description::Experiment idle_robots(std::uint32_t robots, std::uint32_t delay) {
   world.models.push_back(idle_robot());
   const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(robots)));
   for (std::uint32_t robot = 0; robot < robots; ++robot) {
+    const std::uint32_t row = robot / side;
     world.robots.push_back(world.instances.size());
     world.instances.push_back({"robot_" + std::to_string(robot), world.models.size() - 1,
-                               Pose{{apart * (robot % side), apart * (robot / side), height}}});
+                               Pose{{apart * (robot % side), apart * row, height}}});
   }
   description::Team team;
   team.name = "robots";

@@ -21,7 +21,8 @@ double run_once(std::uint32_t delay, double work, const LockstepOptions& options
   std::vector<double> ticks;
   double begin = 0.0;
   double last = 0.0;
-  run.on_boundary = [&] {
+  LockstepListener listener;
+  listener.boundary = [&] {
     if (run.tick() > 0) compute(work);  // as if the step had taken it
     const double now = wall_seconds();
     if (run.tick() == first_ticks) begin = now;
@@ -29,7 +30,7 @@ double run_once(std::uint32_t delay, double work, const LockstepOptions& options
     last = now;
     if (run.tick() > first_ticks && now - begin >= options.seconds) run.stop();
   };
-  run.run(surroundings.stop);
+  run.run(listener, surroundings.stop);
   if (surroundings.stop) throw Interrupted();
   return spread_of(std::move(ticks)).median;
 }

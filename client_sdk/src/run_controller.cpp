@@ -1,5 +1,3 @@
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -8,14 +6,13 @@
 
 #include "client_sdk/src/client.hpp"
 #include "client_sdk/src/domains.hpp"
+#include "client_sdk/src/program.hpp"
 
 namespace cohort {
 namespace {
 
 constexpr int exit_finished = 0;
-constexpr int exit_failed = 1;
 constexpr int exit_usage = 2;
-constexpr int exit_interrupted = 130;
 
 constexpr const char* help =
     R"(Usage: %s [--robots SEL[,SEL...]] [--server ADDRESS] [--domain N] [--secure DIR]
@@ -33,20 +30,6 @@ Drives robots of a running simulation until the run ends.
 Exit code: 0 when the run finished, 1 when it failed, the server was lost or another process took over, 2 for a mistake
 in the options or a refused claim, 130 when interrupted.
 )";
-
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
-std::atomic<bool> stop_requested{false};
-
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = SA_RESETHAND;  // a second one ends the process even if the controller is stuck
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-  struct sigaction hangup {};
-  ::sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);  // but for nohup: the terminal was closed
-}
 
 class UsageError : public std::runtime_error {
  public:
@@ -99,18 +82,6 @@ Arguments parse(int argc, char** argv) {
   return arguments;
 }
 
-int exit_code(ClientEnd end) {
-  switch (end) {
-    case ClientEnd::finished: return exit_finished;
-    case ClientEnd::refused: return exit_usage;
-    case ClientEnd::interrupted: return exit_interrupted;
-    case ClientEnd::failed:
-    case ClientEnd::superseded:
-    case ClientEnd::server_lost: break;
-  }
-  return exit_failed;
-}
-
 }  // namespace
 
 int run_controller(const Plugin& plugin, int argc, char** argv) {
@@ -120,8 +91,7 @@ int run_controller(const Plugin& plugin, int argc, char** argv) {
       std::printf(help, argv[0]);
       return exit_finished;
     }
-    stop_on_signals();
-    return exit_code(run_client(plugin, arguments.options, stop_requested));
+    return exit_code_of(run_client(plugin, arguments.options, stop_on_signals()));
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s. Try --help.\n", plugin.name, error.what());
   } catch (const std::exception& error) {

@@ -41,15 +41,6 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, OfControllersThatARunCanDoWithout) {
   EXPECT_GE(tick_of(joined[2]), tick_of(lost[0]));
 }
 
-// The same as an experiment says it in advance: robots whose controllers come at a known tick do what others do that
-// are there from the beginning, since nobody is asked before the first tick.
-TEST(JoinAndLeaveAtTickBoundariesOnly, AControllerThatIsThereFromTheBeginningMakesNoDifferenceToARequiredOne) {
-  const FieldOfRobots required(4, 3.0);
-  const FieldOfRobots optional(4, 3.0, ", required: false");
-  const auto expected = run_experiment(required.file(), {"--controllers", "inprocess"});
-  EXPECT_EQ(run_experiment(optional.file(), {"--controllers", "inprocess"})["state_hash"], expected["state_hash"]);
-}
-
 // A robot that is free is never waited for: its controller may be stopped for as long as anybody likes.
 TEST(JoinAndLeaveAtTickBoundariesOnly, AFreeControllerThatIsStoppedHoldsNobodyUp) {
   const FieldOfRobots field(2, 6.0, ", mode: free, on_late: zero, deadline: 0.2",

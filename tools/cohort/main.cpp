@@ -1,9 +1,9 @@
-#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <limits>
 
 #include "client_sdk/src/domains.hpp"
+#include "client_sdk/src/program.hpp"
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
 #include "tools/cohort/bench_options.hpp"
@@ -18,21 +18,8 @@ using namespace cohort::tool;
 
 constexpr double most_seconds = 9e9;  // fits into nanoseconds
 
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
-std::atomic<bool> stop_requested = false;
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
 Log* dds_log = nullptr;
-
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = SA_RESETHAND;  // a second one ends the process at once, whatever it is stuck in
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  struct sigaction hangup {};
-  sigaction(SIGHUP, nullptr, &hangup);
-  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // but for nohup: the terminal was closed
-}
 
 struct LogFlags {
   std::string format;
@@ -320,7 +307,7 @@ int main(int argc, char** argv) {
     if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
     dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
   });
-  stop_on_signals();
+  const std::atomic<bool>& stop_requested = cohort::stop_on_signals();
   if (run_app->parsed()) return run(run_options, log, stop_requested);
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
   if (host_app->parsed()) return host(host_options, log, stop_requested);

@@ -17,8 +17,8 @@ namespace {
 // Domains that a run picks from for itself and the controllers that it starts.
 constexpr std::uint32_t first_own_domain = 1;
 constexpr std::uint32_t own_domain_count = 59;
-// Within a domain every client learns of every other's readers, so that matching takes time with the square of their
-// number.
+// The server has writers for each client of a domain, and announces all of them to all: matching takes time with the
+// square of their number.
 constexpr std::size_t processes_per_domain = 64;
 // Two for each process that is started here: its end, and what it prints.
 constexpr std::size_t files_per_process = 2;

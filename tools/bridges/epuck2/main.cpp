@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "client_sdk/src/client.hpp"
+#include "client_sdk/src/program.hpp"
 #include "tools/bridges/epuck2/port.hpp"
 #include "tools/bridges/epuck2/robot.hpp"
 
@@ -25,21 +25,9 @@ namespace {
 using namespace cohort;
 
 constexpr int exit_finished = 0;
-constexpr int exit_failed = 1;
 constexpr int exit_usage = 2;
 constexpr int exit_interrupted = 130;
 constexpr std::uint32_t most_robots = 100;
-
-// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
-std::atomic<bool> stop_requested{false};
-
-void stop_on_signals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { stop_requested = true; };
-  action.sa_flags = SA_RESETHAND;
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
-}
 
 struct Options {
   std::string robots = "0";
@@ -86,10 +74,12 @@ std::vector<std::string> robots_in(const std::string& list) {
 // One robot: its port, and the client that drives it.
 class Bridge {
  public:
-  Bridge(std::string robot, const std::string& address, std::uint16_t port, const Options& options)
+  Bridge(std::string robot, const std::string& address, std::uint16_t port, const Options& options,
+         std::atomic<bool>& stop)
       : name_("robot " + std::move(robot)),
+        stop_(stop),
         port_(address, port,
-              {[this] { return stop_requested || watch_.is_over(); }, [this](const std::string& text) { tell(text); }}),
+              {[this] { return stop_ || watch_.is_over(); }, [this](const std::string& text) { tell(text); }}),
         without_program_(options.without_program),
         packets_(options.packets) {
     client_.server = options.server;
@@ -116,17 +106,18 @@ class Bridge {
                                                        [](Controller* controller) { delete controller; });
                               }};
     try {
-      end_ = run_client(kind, client_, stop_requested);
+      end_ = run_client(kind, client_, stop_);
     } catch (const std::exception& error) {
       tell(error.what());
     }
     // The others' runs go on in vain without this one's.
-    if (end_ != ClientEnd::finished) stop_requested = true;
+    if (end_ != ClientEnd::finished) stop_ = true;
   }
 
   void tell(const std::string& text) const { std::fprintf(stderr, "%s: %s\n", name_.c_str(), text.c_str()); }
 
   std::string name_;
+  std::atomic<bool>& stop_;
   RunWatch watch_;
   epuck2::Port port_;
   epuck2::WithoutProgram without_program_;
@@ -150,37 +141,25 @@ void add_choice(CLI::App& app, const std::string& name, Value& value, const std:
       ->type_name(names);
 }
 
-int exit_code(ClientEnd end) {
-  switch (end) {
-    case ClientEnd::finished: return exit_finished;
-    case ClientEnd::refused: return exit_usage;
-    case ClientEnd::interrupted: return exit_interrupted;
-    case ClientEnd::failed:
-    case ClientEnd::superseded:
-    case ClientEnd::server_lost: break;
-  }
-  return exit_failed;
-}
-
 int run(const Options& options) {
   const std::vector<std::string> robots = robots_in(options.robots);
   const bool counts_ports = options.addresses.size() == 1;
   if (!counts_ports && options.addresses.size() != robots.size()) {
     throw UsageError("--listen wants one address, or one for each robot");
   }
+  std::atomic<bool>& stop = stop_on_signals();
   std::vector<std::unique_ptr<Bridge>> bridges;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const std::size_t port = counts_ports && options.port != 0 ? options.port + i : options.port;
     if (port > 65535) throw UsageError("there are no ports beyond 65535");
     bridges.push_back(std::make_unique<Bridge>(robots[i], options.addresses[counts_ports ? 0 : i],
-                                               static_cast<std::uint16_t>(port), options));
+                                               static_cast<std::uint16_t>(port), options, stop));
   }
-  stop_on_signals();
   for (const auto& bridge : bridges) bridge->start();
   // The first that ended for another reason than the others' end.
   int code = exit_finished;
   for (const auto& bridge : bridges) {
-    const int its = exit_code(bridge->wait());
+    const int its = exit_code_of(bridge->wait());
     if (code == exit_finished || code == exit_interrupted) code = its == exit_finished ? code : its;
   }
   return code;

@@ -65,6 +65,7 @@ struct Experiment {
   std::vector<StopCondition> stops;
   std::vector<PrintedQuantity> prints;
   History history;
+  Recorded recorded;
 };
 
 /// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's;

@@ -101,19 +101,11 @@ class Scanner {
     block.end_time = is_first ? message.log_time : std::max(block.end_time, message.log_time);
     ++counts[message.channel];
   }
-  void add_block(Block block, const std::map<ChannelId, std::uint64_t>& counts) {
-    Statistics& statistics = scan_.contents.statistics;
-    for (const auto& [channel, number] : counts) {
-      block.channels.push_back(channel);
-      statistics.messages_of_channels[channel] += number;
-      statistics.message_count += number;
-    }
-    if (!counts.empty()) {
-      statistics.start_time = has_messages_ ? std::min(statistics.start_time, block.start_time) : block.start_time;
-      statistics.end_time = has_messages_ ? std::max(statistics.end_time, block.end_time) : block.end_time;
-      has_messages_ = true;
-    }
+  void add_block(Block block, std::map<ChannelId, std::uint64_t> counts) {
+    block.channels.reserve(counts.size());
+    for (const auto& [channel, number] : counts) block.channels.push_back(channel);
     scan_.contents.blocks.push_back(std::move(block));
+    counts_.push_back(std::move(counts));
   }
 
   void add_message(std::uint64_t offset, std::uint64_t size, const Place& place) {
@@ -127,8 +119,8 @@ class Scanner {
     loose_.length += record_head_size + size;
   }
   void end_messages() {
-    if (!loose_counts_.empty()) add_block(loose_, loose_counts_);
-    loose_counts_.clear();
+    if (!loose_counts_.empty()) add_block(std::move(loose_), std::move(loose_counts_));
+    loose_counts_ = {};
     loose_ = {};
   }
 
@@ -162,7 +154,7 @@ class Scanner {
     });
     for (auto& [schema, place] : schemas) add_schema(std::move(schema), place, true);
     for (auto& [channel, place] : channels) add_channel(std::move(channel), place, true);
-    add_block(std::move(block), counts);
+    add_block(std::move(block), std::move(counts));
   }
 
   void check_message_index(ByteView content, const Place& place) {
@@ -274,12 +266,32 @@ class Scanner {
     return offset;
   }
 
-  void finish() {
-    end_messages();
+  // Programs write messages either into chunks or outside of them: where something is damaged, what stands outside of
+  // chunks is another record with a wrong opcode.
+  void forget_loose_messages() {
+    std::vector<Block>& blocks = scan_.contents.blocks;
+    for (std::size_t i = blocks.size(); i-- > 0;) {
+      if (blocks[i].is_chunk) continue;
+      add_damage(blocks[i].offset, blocks[i].length, "a message outside of the chunks, where none is expected");
+      blocks.erase(blocks.begin() + static_cast<std::ptrdiff_t>(i));
+      counts_.erase(counts_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+
+  void count_messages() {
     Contents& contents = scan_.contents;
     Statistics& statistics = contents.statistics;
-    if (!scan_.is_closed && scan_.damages.empty())
-      add_damage(file_.size(), 0, "the file ends here without a summary: it was never closed");
+    for (std::size_t i = 0; i < contents.blocks.size(); ++i) {
+      if (counts_[i].empty()) continue;
+      const Block& block = contents.blocks[i];
+      const bool is_first = statistics.messages_of_channels.empty();
+      statistics.start_time = is_first ? block.start_time : std::min(statistics.start_time, block.start_time);
+      statistics.end_time = is_first ? block.end_time : std::max(statistics.end_time, block.end_time);
+      for (const auto& [channel, number] : counts_[i]) {
+        statistics.messages_of_channels[channel] += number;
+        statistics.message_count += number;
+      }
+    }
     for (const auto& [channel, number] : statistics.messages_of_channels) {
       if (contents.channels.count(channel) != 0) continue;
       add_damage(file_.size(), 0,
@@ -294,18 +306,26 @@ class Scanner {
     statistics.channel_count = static_cast<std::uint32_t>(contents.channels.size());
   }
 
+  void finish() {
+    end_messages();
+    if (!scan_.is_closed && scan_.damages.empty())
+      add_damage(file_.size(), 0, "the file ends here without a summary: it was never closed");
+    if (!scan_.damages.empty() && scan_.contents.statistics.chunk_count > 0) forget_loose_messages();
+    count_messages();
+  }
+
   const FileBytes& file_;
   ReadLimits limits_;
   FileWindow window_;
   Scan scan_;
   bool is_at_end_ = false;
-  bool has_messages_ = false;
   bool is_after_lost_chunk_ = false;
   std::uint64_t looked_again_ = 0;  // bytes
   std::uint64_t trusted_ = 0;       // up to here it is known where records begin
   std::set<std::uint16_t> sure_schemas_;
   std::set<std::uint16_t> sure_channels_;
-  Block loose_;  // messages outside of chunks, as they come
+  std::vector<std::map<ChannelId, std::uint64_t>> counts_;  // of messages, for each block
+  Block loose_;                                             // messages outside of chunks, as they come
   std::map<ChannelId, std::uint64_t> loose_counts_;
 };
 

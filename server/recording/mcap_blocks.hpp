@@ -7,8 +7,8 @@ namespace cohort::recording {
 
 /// More than this is not taken from a file, whatever it says of itself.
 struct ReadLimits {
-  std::uint64_t chunk_size = std::uint64_t{1} << 30U;   ///< uncompressed bytes of a chunk
-  std::uint64_t open_chunks = std::uint64_t{1} << 30U;  ///< the same of all chunks that overlap in time
+  std::uint64_t chunk_size = std::uint64_t{1} << 29U;   ///< uncompressed bytes of a chunk
+  std::uint64_t open_chunks = std::uint64_t{1} << 29U;  ///< the same of all chunks that overlap in time
 };
 
 /// A chunk, or messages that follow each other outside of chunks.

@@ -34,8 +34,14 @@ class Scanner {
   }
 
  private:
-  // So that no file is made that takes long to look through.
+  // So that no file can be made that takes long to look through, with records that overlap.
   bool may_look_again() const { return looked_again_ <= 8 * file_.size(); }
+
+  ByteView small_record(std::uint64_t content, std::uint64_t size, const Place& place) {
+    looked_at_ += size;
+    if (looked_at_ > 8 * file_.size()) place.fail("one of too many records that overlap");
+    return window_.get(content, size);
+  }
 
   void add_damage(std::uint64_t offset, std::uint64_t length, std::string problem, bool is_chunk = false) {
     scan_.damages.push_back({offset, length, std::move(problem), is_chunk});
@@ -53,12 +59,14 @@ class Scanner {
                  std::to_string(file_.size() - content));
     if (head.opcode != Opcode::message) end_messages();
     switch (head.opcode) {
-      case Opcode::header: scan_.contents.header = read_header(window_.get(content, head.size), place); break;
-      case Opcode::schema: add_schema(read_schema(window_.get(content, head.size), place), place, false); break;
-      case Opcode::channel: add_channel(read_channel(window_.get(content, head.size), place), place, false); break;
+      case Opcode::header: scan_.contents.header = read_header(small_record(content, head.size, place), place); break;
+      case Opcode::schema: add_schema(read_schema(small_record(content, head.size, place), place), place, false); break;
+      case Opcode::channel:
+        add_channel(read_channel(small_record(content, head.size, place), place), place, false);
+        break;
       case Opcode::message: add_message(offset, head.size, place); break;
       case Opcode::chunk: add_chunk(offset, head.size, place); break;
-      case Opcode::message_index: check_message_index(window_.get(content, head.size), place); break;
+      case Opcode::message_index: check_message_index(small_record(content, head.size, place), place); break;
       case Opcode::attachment: add_attachment(offset, head.size, place); break;
       case Opcode::metadata: add_metadata(offset, head.size, place); break;
       case Opcode::data_end: end_data(offset, head.size, place); break;
@@ -101,19 +109,11 @@ class Scanner {
     block.end_time = is_first ? message.log_time : std::max(block.end_time, message.log_time);
     ++counts[message.channel];
   }
-  void add_block(Block block, const std::map<ChannelId, std::uint64_t>& counts) {
-    Statistics& statistics = scan_.contents.statistics;
-    for (const auto& [channel, number] : counts) {
-      block.channels.push_back(channel);
-      statistics.messages_of_channels[channel] += number;
-      statistics.message_count += number;
-    }
-    if (!counts.empty()) {
-      statistics.start_time = has_messages_ ? std::min(statistics.start_time, block.start_time) : block.start_time;
-      statistics.end_time = has_messages_ ? std::max(statistics.end_time, block.end_time) : block.end_time;
-      has_messages_ = true;
-    }
+  void add_block(Block block, std::map<ChannelId, std::uint64_t> counts) {
+    block.channels.reserve(counts.size());
+    for (const auto& [channel, number] : counts) block.channels.push_back(channel);
     scan_.contents.blocks.push_back(std::move(block));
+    counts_.push_back(std::move(counts));
   }
 
   void add_message(std::uint64_t offset, std::uint64_t size, const Place& place) {
@@ -127,8 +127,8 @@ class Scanner {
     loose_.length += record_head_size + size;
   }
   void end_messages() {
-    if (!loose_counts_.empty()) add_block(loose_, loose_counts_);
-    loose_counts_.clear();
+    if (!loose_counts_.empty()) add_block(std::move(loose_), std::move(loose_counts_));
+    loose_counts_ = {};
     loose_ = {};
   }
 
@@ -162,7 +162,7 @@ class Scanner {
     });
     for (auto& [schema, place] : schemas) add_schema(std::move(schema), place, true);
     for (auto& [channel, place] : channels) add_channel(std::move(channel), place, true);
-    add_block(std::move(block), counts);
+    add_block(std::move(block), std::move(counts));
   }
 
   void check_message_index(ByteView content, const Place& place) {
@@ -170,26 +170,32 @@ class Scanner {
     if (is_after_lost_chunk_) scan_.lost_messages += index.entries.size();
   }
 
-  void add_attachment(std::uint64_t offset, std::uint64_t size, const Place& place) {
+  // Where the lengths in a record fit, it is believed where it ends, even if something in it is wrong.
+  template <class Add>
+  void add_part(std::uint64_t offset, std::uint64_t size, bool fits, const Place& place, const Add& add) {
+    if (!fits) place.fail("the record's length is not that of its parts");
+    trusted_ = offset + record_head_size + size;
     try {
-      const Attachment attachment = recording::read_attachment(file_.read(offset + record_head_size, size), place);
+      add(file_.read(offset + record_head_size, size));
+    } catch (const McapError& error) {
+      add_damage(offset, record_head_size + size, error.problem());
+    }
+  }
+  void add_attachment(std::uint64_t offset, std::uint64_t size, const Place& place) {
+    add_part(offset, size, end_of_attachment(offset, size) <= size, place, [&](const Bytes& content) {
+      const Attachment attachment = recording::read_attachment(content, place);
       scan_.contents.attachments.push_back({offset, record_head_size + size, attachment.log_time,
                                             attachment.create_time, attachment.data.size(), attachment.name,
                                             attachment.media_type});
       ++scan_.contents.statistics.attachment_count;
-      trusted_ = offset + record_head_size + size;
-    } catch (const McapError& error) {
-      if (!is_attachment(offset)) throw;
-      add_damage(offset, record_head_size + size, error.problem());
-      trusted_ = offset + record_head_size + size;
-    }
+    });
   }
-
   void add_metadata(std::uint64_t offset, std::uint64_t size, const Place& place) {
-    const Metadata metadata = recording::read_metadata(window_.get(offset + record_head_size, size), place);
-    scan_.contents.metadata.push_back({offset, record_head_size + size, metadata.name});
-    ++scan_.contents.statistics.metadata_count;
-    if (is_metadata(offset)) trusted_ = offset + record_head_size + size;
+    add_part(offset, size, end_of_metadata(offset, size) <= size, place, [&](const Bytes& content) {
+      const Metadata metadata = recording::read_metadata(content, place);
+      scan_.contents.metadata.push_back({offset, record_head_size + size, metadata.name});
+      ++scan_.contents.statistics.metadata_count;
+    });
   }
 
   void end_data(std::uint64_t offset, std::uint64_t size, const Place& place) {
@@ -218,68 +224,87 @@ class Scanner {
     return true;
   }
 
-  bool is_one_of(std::uint64_t offset, Opcode opcode, std::uint64_t& size) {
-    const ByteView first = window_.peek(offset, record_head_size);
-    if (first.size() < record_head_size) return false;
-    const RecordHead head = read_record_head(first, file_.at(offset));
-    size = head.size;
-    return head.opcode == opcode && head.size <= file_.size() - offset - record_head_size;
+  static constexpr std::uint64_t nowhere = ~std::uint64_t{0};
+
+  // The offset after what stands behind its own length, of `bytes` bytes, at `at` of the content of the record at
+  // `offset`; nowhere if that is beyond the record's `size`.
+  std::uint64_t end_of_sized(std::uint64_t offset, std::uint64_t size, std::uint64_t at, std::size_t bytes) {
+    if (at > size || size - at < bytes) return nowhere;
+    std::uint64_t length = 0;
+    std::memcpy(&length, window_.get(offset + record_head_size + at, bytes).data(), bytes);
+    return length > size - at - bytes ? nowhere : at + bytes + length;
   }
-  // The length of what stands after its own length at `offset`, in `bytes` bytes, if it is before `end`.
-  std::optional<std::uint64_t> end_of_sized(std::uint64_t offset, std::size_t bytes, std::uint64_t end) {
-    if (offset > end || end - offset < bytes) return {};
-    std::uint64_t size = 0;
-    std::memcpy(&size, window_.get(offset, bytes).data(), bytes);
-    if (size > end - offset - bytes) return {};
-    return offset + bytes + size;
+  // Where in the record's content its parts end, by the lengths in it.
+  std::uint64_t end_of_chunk(std::uint64_t offset, std::uint64_t size) {
+    return end_of_sized(offset, size, end_of_sized(offset, size, 8 + 8 + 8 + 4, 4), 8);
   }
-  bool is_chunk(std::uint64_t offset) {
-    std::uint64_t size = 0;
-    if (!is_one_of(offset, Opcode::chunk, size)) return false;
-    constexpr std::uint64_t before = 8 + 8 + 8 + 4;
-    const std::uint64_t content = offset + record_head_size;
-    const std::optional<std::uint64_t> compression = end_of_sized(content + before, 4, content + size);
-    return compression && end_of_sized(*compression, 8, content + size) == content + size;
+  std::uint64_t end_of_attachment(std::uint64_t offset, std::uint64_t size) {
+    const std::uint64_t type = end_of_sized(offset, size, end_of_sized(offset, size, 8 + 8, 4), 4);
+    const std::uint64_t data = end_of_sized(offset, size, type, 8);
+    return data == nowhere ? nowhere : data + 4;
   }
-  bool is_attachment(std::uint64_t offset) {
-    std::uint64_t size = 0;
-    if (!is_one_of(offset, Opcode::attachment, size)) return false;
-    const std::uint64_t content = offset + record_head_size;
-    const std::optional<std::uint64_t> name = end_of_sized(content + 16, 4, content + size);
-    const std::optional<std::uint64_t> type = name ? end_of_sized(*name, 4, content + size) : std::nullopt;
-    const std::optional<std::uint64_t> data = type ? end_of_sized(*type, 8, content + size) : std::nullopt;
-    return data && *data + 4 == content + size;
-  }
-  bool is_metadata(std::uint64_t offset) {
-    std::uint64_t size = 0;
-    if (!is_one_of(offset, Opcode::metadata, size)) return false;
-    const std::uint64_t content = offset + record_head_size;
-    const std::optional<std::uint64_t> name = end_of_sized(content, 4, content + size);
-    return name && end_of_sized(*name, 4, content + size) == content + size;
-  }
-  bool is_data_end(std::uint64_t offset) {
-    std::uint64_t size = 0;
-    return is_one_of(offset, Opcode::data_end, size) && size == 4;
+  std::uint64_t end_of_metadata(std::uint64_t offset, std::uint64_t size) {
+    return end_of_sized(offset, size, end_of_sized(offset, size, 0, 4), 4);
   }
 
-  // The next place from `offset` on where a record seems to begin whose inner lengths fit its own; the end of the file
-  // if there is none.
-  std::uint64_t find_record(std::uint64_t offset) {
-    for (; offset < file_.size(); ++offset) {
-      const auto opcode = static_cast<Opcode>(window_.peek(offset, 1)[0]);
-      if ((opcode == Opcode::chunk && is_chunk(offset)) || (opcode == Opcode::attachment && is_attachment(offset)) ||
-          (opcode == Opcode::metadata && is_metadata(offset)) || (opcode == Opcode::data_end && is_data_end(offset)))
-        return offset;
+  // Whether the lengths in what may be a record fit each other.
+  bool seems_a_record(std::uint64_t offset) {
+    const ByteView first = window_.peek(offset, record_head_size);
+    if (first.size() < record_head_size) return false;
+    const auto [opcode, size] = read_record_head(first, file_.at(offset));
+    if (size > file_.size() - offset - record_head_size) return false;
+    switch (opcode) {
+      case Opcode::chunk: return end_of_chunk(offset, size) == size;
+      case Opcode::attachment: return end_of_attachment(offset, size) == size;
+      case Opcode::metadata: return end_of_metadata(offset, size) == size;
+      case Opcode::data_end: return size == 4;
+      default: return false;
     }
+  }
+
+  // The next place from `offset` on where a chunk, an attachment, metadata or the end of the data seems to begin; the
+  // end of the file if there is none.
+  std::uint64_t find_record(std::uint64_t offset) {
+    while (offset < file_.size() && !seems_a_record(offset)) ++offset;
     return offset;
   }
 
-  void finish() {
-    end_messages();
+  // Programs write messages either into chunks or outside of them: where something is damaged, what stands outside of
+  // chunks is another record with a wrong opcode.
+  void forget_loose_messages() {
+    std::vector<Block> chunks;
+    std::vector<std::map<ChannelId, std::uint64_t>> counts;
+    Damage damage;
+    for (std::size_t i = 0; i < counts_.size(); ++i) {
+      Block& block = scan_.contents.blocks[i];
+      if (block.is_chunk) {
+        chunks.push_back(std::move(block));
+        counts.push_back(std::move(counts_[i]));
+      } else {
+        if (damage.length == 0) damage.offset = block.offset;
+        damage.length += block.length;
+      }
+    }
+    if (damage.length > 0)
+      add_damage(damage.offset, damage.length, "messages outside of the chunks, where none are expected");
+    scan_.contents.blocks = std::move(chunks);
+    counts_ = std::move(counts);
+  }
+
+  void count_messages() {
     Contents& contents = scan_.contents;
     Statistics& statistics = contents.statistics;
-    if (!scan_.is_closed && scan_.damages.empty())
-      add_damage(file_.size(), 0, "the file ends here without a summary: it was never closed");
+    for (std::size_t i = 0; i < contents.blocks.size(); ++i) {
+      if (counts_[i].empty()) continue;
+      const Block& block = contents.blocks[i];
+      const bool is_first = statistics.messages_of_channels.empty();
+      statistics.start_time = is_first ? block.start_time : std::min(statistics.start_time, block.start_time);
+      statistics.end_time = is_first ? block.end_time : std::max(statistics.end_time, block.end_time);
+      for (const auto& [channel, number] : counts_[i]) {
+        statistics.messages_of_channels[channel] += number;
+        statistics.message_count += number;
+      }
+    }
     for (const auto& [channel, number] : statistics.messages_of_channels) {
       if (contents.channels.count(channel) != 0) continue;
       add_damage(file_.size(), 0,
@@ -294,18 +319,27 @@ class Scanner {
     statistics.channel_count = static_cast<std::uint32_t>(contents.channels.size());
   }
 
+  void finish() {
+    end_messages();
+    if (!scan_.is_closed && scan_.damages.empty())
+      add_damage(file_.size(), 0, "the file ends here without a summary: it was never closed");
+    if (!scan_.damages.empty() && scan_.contents.statistics.chunk_count > 0) forget_loose_messages();
+    count_messages();
+  }
+
   const FileBytes& file_;
   ReadLimits limits_;
   FileWindow window_;
   Scan scan_;
   bool is_at_end_ = false;
-  bool has_messages_ = false;
   bool is_after_lost_chunk_ = false;
-  std::uint64_t looked_again_ = 0;  // bytes
-  std::uint64_t trusted_ = 0;       // up to here it is known where records begin
+  std::uint64_t looked_again_ = 0;  // bytes, like the next
+  std::uint64_t looked_at_ = 0;
+  std::uint64_t trusted_ = 0;  // up to here it is known where records begin
   std::set<std::uint16_t> sure_schemas_;
   std::set<std::uint16_t> sure_channels_;
-  Block loose_;  // messages outside of chunks, as they come
+  std::vector<std::map<ChannelId, std::uint64_t>> counts_;  // of messages, for each block
+  Block loose_;                                             // messages outside of chunks, as they come
   std::map<ChannelId, std::uint64_t> loose_counts_;
 };
 

@@ -16,15 +16,15 @@ struct Time {
 };
 
 struct Header {
-  Time stamp;
-  std::string frame_id;
+  Time stamp{};
+  std::string frame_id{};
   static constexpr const char* type = "std_msgs/msg/Header";
   static constexpr auto fields = std::tuple(field("stamp", &Header::stamp), field("frame_id", &Header::frame_id));
   bool operator==(const Header&) const = default;
 };
 
 struct MultiArrayDimension {
-  std::string label;
+  std::string label{};
   std::uint32_t size = 0;
   std::uint32_t stride = 0;
   static constexpr const char* type = "std_msgs/msg/MultiArrayDimension";
@@ -35,7 +35,7 @@ struct MultiArrayDimension {
 };
 
 struct MultiArrayLayout {
-  std::vector<MultiArrayDimension> dim;
+  std::vector<MultiArrayDimension> dim{};
   std::uint32_t data_offset = 0;
   static constexpr const char* type = "std_msgs/msg/MultiArrayLayout";
   static constexpr auto fields =
@@ -44,8 +44,8 @@ struct MultiArrayLayout {
 };
 
 struct Float64MultiArray {
-  MultiArrayLayout layout;
-  std::vector<double> data;
+  MultiArrayLayout layout{};
+  std::vector<double> data{};
   static constexpr const char* type = "std_msgs/msg/Float64MultiArray";
   static constexpr auto fields =
       std::tuple(field("layout", &Float64MultiArray::layout), field("data", &Float64MultiArray::data));
@@ -53,7 +53,7 @@ struct Float64MultiArray {
 };
 
 struct Clock {
-  Time clock;
+  Time clock{};
   static constexpr const char* type = "rosgraph_msgs/msg/Clock";
   static constexpr auto fields = std::tuple(field("clock", &Clock::clock));
   bool operator==(const Clock&) const = default;
@@ -90,8 +90,8 @@ struct Quaternion {
 };
 
 struct Pose {
-  Point position;
-  Quaternion orientation;
+  Point position{};
+  Quaternion orientation{};
   static constexpr const char* type = "geometry_msgs/msg/Pose";
   static constexpr auto fields =
       std::tuple(field("position", &Pose::position), field("orientation", &Pose::orientation));
@@ -99,24 +99,24 @@ struct Pose {
 };
 
 struct PoseStamped {
-  Header header;
-  Pose pose;
+  Header header{};
+  Pose pose{};
   static constexpr const char* type = "geometry_msgs/msg/PoseStamped";
   static constexpr auto fields = std::tuple(field("header", &PoseStamped::header), field("pose", &PoseStamped::pose));
   bool operator==(const PoseStamped&) const = default;
 };
 
 struct PoseArray {
-  Header header;
-  std::vector<Pose> poses;
+  Header header{};
+  std::vector<Pose> poses{};
   static constexpr const char* type = "geometry_msgs/msg/PoseArray";
   static constexpr auto fields = std::tuple(field("header", &PoseArray::header), field("poses", &PoseArray::poses));
   bool operator==(const PoseArray&) const = default;
 };
 
 struct Transform {
-  Vector3 translation;
-  Quaternion rotation;
+  Vector3 translation{};
+  Quaternion rotation{};
   static constexpr const char* type = "geometry_msgs/msg/Transform";
   static constexpr auto fields =
       std::tuple(field("translation", &Transform::translation), field("rotation", &Transform::rotation));
@@ -124,9 +124,9 @@ struct Transform {
 };
 
 struct TransformStamped {
-  Header header;
-  std::string child_frame_id;
-  Transform transform;
+  Header header{};
+  std::string child_frame_id{};
+  Transform transform{};
   static constexpr const char* type = "geometry_msgs/msg/TransformStamped";
   static constexpr auto fields =
       std::tuple(field("header", &TransformStamped::header), field("child_frame_id", &TransformStamped::child_frame_id),
@@ -136,16 +136,16 @@ struct TransformStamped {
 
 /// [m/s], [rad/s].
 struct Twist {
-  Vector3 linear;
-  Vector3 angular;
+  Vector3 linear{};
+  Vector3 angular{};
   static constexpr const char* type = "geometry_msgs/msg/Twist";
   static constexpr auto fields = std::tuple(field("linear", &Twist::linear), field("angular", &Twist::angular));
   bool operator==(const Twist&) const = default;
 };
 
 struct TwistStamped {
-  Header header;
-  Twist twist;
+  Header header{};
+  Twist twist{};
   static constexpr const char* type = "geometry_msgs/msg/TwistStamped";
   static constexpr auto fields =
       std::tuple(field("header", &TwistStamped::header), field("twist", &TwistStamped::twist));
@@ -154,16 +154,16 @@ struct TwistStamped {
 
 /// [N], [Nm].
 struct Wrench {
-  Vector3 force;
-  Vector3 torque;
+  Vector3 force{};
+  Vector3 torque{};
   static constexpr const char* type = "geometry_msgs/msg/Wrench";
   static constexpr auto fields = std::tuple(field("force", &Wrench::force), field("torque", &Wrench::torque));
   bool operator==(const Wrench&) const = default;
 };
 
 struct WrenchStamped {
-  Header header;
-  Wrench wrench;
+  Header header{};
+  Wrench wrench{};
   static constexpr const char* type = "geometry_msgs/msg/WrenchStamped";
   static constexpr auto fields =
       std::tuple(field("header", &WrenchStamped::header), field("wrench", &WrenchStamped::wrench));
@@ -171,7 +171,7 @@ struct WrenchStamped {
 };
 
 struct TFMessage {
-  std::vector<TransformStamped> transforms;
+  std::vector<TransformStamped> transforms{};
   static constexpr const char* type = "tf2_msgs/msg/TFMessage";
   static constexpr auto fields = std::tuple(field("transforms", &TFMessage::transforms));
   bool operator==(const TFMessage&) const = default;
@@ -179,7 +179,7 @@ struct TFMessage {
 
 /// Angles counter-clockwise about z [rad], distances [m], times [s]. Nothing within reach: infinite.
 struct LaserScan {
-  Header header;
+  Header header{};
   float angle_min = 0;
   float angle_max = 0;
   float angle_increment = 0;
@@ -187,8 +187,8 @@ struct LaserScan {
   float scan_time = 0;
   float range_min = 0;
   float range_max = 0;
-  std::vector<float> ranges;
-  std::vector<float> intensities;
+  std::vector<float> ranges{};
+  std::vector<float> intensities{};
   static constexpr const char* type = "sensor_msgs/msg/LaserScan";
   static constexpr auto fields =
       std::tuple(field("header", &LaserScan::header), field("angle_min", &LaserScan::angle_min),
@@ -201,12 +201,12 @@ struct LaserScan {
 
 /// Covariances row by row; -1 as the first number: this quantity is not measured.
 struct Imu {
-  Header header;
-  Quaternion orientation;
+  Header header{};
+  Quaternion orientation{};
   std::array<double, 9> orientation_covariance{};
-  Vector3 angular_velocity;
+  Vector3 angular_velocity{};
   std::array<double, 9> angular_velocity_covariance{};
-  Vector3 linear_acceleration;
+  Vector3 linear_acceleration{};
   std::array<double, 9> linear_acceleration_covariance{};
   static constexpr const char* type = "sensor_msgs/msg/Imu";
   static constexpr auto fields = std::tuple(
@@ -220,8 +220,8 @@ struct Imu {
 
 /// [T].
 struct MagneticField {
-  Header header;
-  Vector3 magnetic_field;
+  Header header{};
+  Vector3 magnetic_field{};
   std::array<double, 9> magnetic_field_covariance{};
   static constexpr const char* type = "sensor_msgs/msg/MagneticField";
   static constexpr auto fields =
@@ -232,7 +232,7 @@ struct MagneticField {
 
 /// [Pa], variance [Pa^2]; 0: unknown.
 struct FluidPressure {
-  Header header;
+  Header header{};
   double fluid_pressure = 0;
   double variance = 0;
   static constexpr const char* type = "sensor_msgs/msg/FluidPressure";
@@ -244,7 +244,7 @@ struct FluidPressure {
 
 /// [degrees Celsius].
 struct Temperature {
-  Header header;
+  Header header{};
   double temperature = 0;
   double variance = 0;
   static constexpr const char* type = "sensor_msgs/msg/Temperature";
@@ -256,7 +256,7 @@ struct Temperature {
 
 /// 0 to 1.
 struct RelativeHumidity {
-  Header header;
+  Header header{};
   double relative_humidity = 0;
   double variance = 0;
   static constexpr const char* type = "sensor_msgs/msg/RelativeHumidity";
@@ -268,11 +268,11 @@ struct RelativeHumidity {
 
 /// [rad] or [m], [rad/s] or [m/s], [Nm] or [N]; each list as long as `name`, or empty.
 struct JointState {
-  Header header;
-  std::vector<std::string> name;
-  std::vector<double> position;
-  std::vector<double> velocity;
-  std::vector<double> effort;
+  Header header{};
+  std::vector<std::string> name{};
+  std::vector<double> position{};
+  std::vector<double> velocity{};
+  std::vector<double> effort{};
   static constexpr const char* type = "sensor_msgs/msg/JointState";
   static constexpr auto fields = std::tuple(
       field("header", &JointState::header), field("name", &JointState::name), field("position", &JointState::position),
@@ -282,7 +282,7 @@ struct JointState {
 
 /// Distances [m], `field_of_view` [rad], variance [m^2], 0: unknown.
 struct Range {
-  Header header;
+  Header header{};
   std::uint8_t radiation_type = 0;
   float field_of_view = 0;
   float min_range = 0;
@@ -301,7 +301,7 @@ struct Range {
 
 /// [V], [degrees Celsius], [A] (negative while discharging), [Ah], percentage 0 to 1; NaN: not measured.
 struct BatteryState {
-  Header header;
+  Header header{};
   float voltage = 0;
   float temperature = 0;
   float current = 0;
@@ -313,10 +313,10 @@ struct BatteryState {
   std::uint8_t power_supply_health = 0;
   std::uint8_t power_supply_technology = 0;
   bool present = false;
-  std::vector<float> cell_voltage;
-  std::vector<float> cell_temperature;
-  std::string location;
-  std::string serial_number;
+  std::vector<float> cell_voltage{};
+  std::vector<float> cell_temperature{};
+  std::string location{};
+  std::string serial_number{};
   static constexpr const char* type = "sensor_msgs/msg/BatteryState";
   static constexpr auto fields = std::tuple(
       field("header", &BatteryState::header), field("voltage", &BatteryState::voltage),
@@ -344,8 +344,8 @@ struct NavSatStatus {
 
 /// Latitude and longitude [degrees], altitude above the WGS 84 ellipsoid [m], covariance east-north-up [m^2].
 struct NavSatFix {
-  Header header;
-  NavSatStatus status;
+  Header header{};
+  NavSatStatus status{};
   double latitude = 0;
   double longitude = 0;
   double altitude = 0;

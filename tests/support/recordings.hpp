@@ -67,11 +67,14 @@ inline std::vector<std::string> messages_of(const recording::McapReader& reader,
   return messages;
 }
 
-/// A file that is gone with this.
+/// A file that is gone with this; in memory where there is such a folder, since much of recording waits for the disk.
 class TemporaryFile {
  public:
   explicit TemporaryFile(ByteView bytes = {}) {
-    std::string name = (std::filesystem::temp_directory_path() / "cohort_recording_XXXXXX").string();
+    const std::filesystem::path memory = "/dev/shm";
+    const bool has_memory = access(memory.c_str(), W_OK) == 0;
+    std::string name =
+        ((has_memory ? memory : std::filesystem::temp_directory_path()) / "cohort_recording_XXXXXX").string();
     const int descriptor = mkstemp(name.data());
     if (descriptor >= 0) close(descriptor);
     path_ = name;

@@ -157,15 +157,17 @@ void Exchange::restore(SnapshotReader& reader) {
   }
 }
 
-void Exchange::apply() {
+std::span<const std::uint32_t> Exchange::apply() {
+  using Kind = lockstep::Barrier::Outcome::Kind;
+  changed_.clear();
   for (std::uint32_t robot = 0; robot < simulation_.robot_count(); ++robot) {
     const lockstep::Barrier::Outcome outcome = barrier_.outcome(robot);
-    switch (outcome.kind) {
-      case lockstep::Barrier::Outcome::Kind::keep: break;
-      case lockstep::Barrier::Outcome::Kind::command: simulation_.set_command(robot, outcome.values); break;
-      case lockstep::Barrier::Outcome::Kind::neutral: simulation_.set_neutral_command(robot); break;
-    }
+    if (outcome.kind == Kind::keep) continue;
+    const bool changes = outcome.kind == Kind::command ? simulation_.set_command(robot, outcome.values)
+                                                       : simulation_.set_neutral_command(robot);
+    if (changes) changed_.push_back(robot);
   }
+  return changed_;
 }
 
 }  // namespace cohort::session

@@ -33,6 +33,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       if (stop) return book.finish(RunResult::End::interrupted);
       const auto begin = RunBook::Clock::now();
       exchange.open(begin.time_since_epoch());
+      book.at_boundary();
       for (std::size_t team = 0; team < hosts.size(); ++team) {
         exchange.fill_frame(frame, experiment.teams[team].robots, simulation.tick());
         if (frame.robots.empty()) continue;
@@ -48,7 +49,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
         if (taken.ends_run) return book.finish(RunResult::End::failed, taken.rejection->text);
       }
       book.add_barrier(RunBook::Clock::now() - begin);
-      exchange.apply();
+      book.commanded(exchange.apply());
       try {
         simulation.step();
       } catch (const std::runtime_error& error) {

@@ -14,7 +14,6 @@ RunBook::RunBook(const description::Experiment& experiment, const Simulation& si
 
 void RunBook::start() {
   for (const std::string& text : simulation_.happened()) add_event("event", text);
-  if (listener_.boundary) listener_.boundary();
   started_ = true;
   start_ = Clock::now();
   last_report_ = start_;
@@ -23,6 +22,18 @@ void RunBook::start() {
 void RunBook::stop() {
   if (started_ && !stopped_) result_.wall_time = Clock::now() - start_;
   stopped_ = true;
+}
+
+void RunBook::stepped() {
+  for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
+  for (const std::string& text : simulation_.happened()) add_event("event", text);
+  if (is_over()) at_boundary();  // no frame goes out any more
+}
+
+void RunBook::at_boundary() {
+  if (last_boundary_ == simulation_.tick()) return;
+  last_boundary_ = simulation_.tick();
+  if (listener_.boundary) listener_.boundary();
 }
 
 std::optional<RunBook::Clock::time_point> RunBook::due_time() const {
@@ -45,15 +56,18 @@ Progress RunBook::progress_at(Clock::time_point now) {
 }
 
 void RunBook::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
-  if (log_.add(simulation_.tick(), kind, text, count) && listener_.event)
-    listener_.event({simulation_.tick(), kind, text, count});
+  const Event event{simulation_.tick(), kind, text, count};
+  const bool is_news = log_.add(event.tick, kind, text, count);
+  if (listener_.event) listener_.event(event);
+  if (is_news && listener_.news) listener_.news(event);
 }
 
 void RunBook::add_miss(const lockstep::Barrier::Miss& miss) {
   constexpr std::size_t most_misses = 1'000'000;
   ++result_.late;
-  if (result_.misses.size() < most_misses)
-    result_.misses.push_back({simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited});
+  const Miss booked{simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited};
+  if (result_.misses.size() < most_misses) result_.misses.push_back(booked);
+  if (listener_.miss) listener_.miss(booked);
   add_event("missed", simulation_.robot_name(miss.robot) + " did not answer in time");
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,15 +31,6 @@ struct Progress {
   std::chrono::nanoseconds waiting{0};   ///< wall time since the wait began
 };
 
-/// Told what happens, on the thread that runs. Each may be empty.
-struct RunListener {
-  std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
-  std::function<void(const Event&)> event{};        ///< the first of its kind and text
-  std::function<void()> boundary{};                 ///< the first frame is about to go out, or a step is done
-  /// A tick has its answers: the wall time since its first frame was sent.
-  std::function<void(std::chrono::nanoseconds)> barrier{};
-};
-
 /// An answer that missed its deadline.
 struct Miss {
   std::uint64_t tick = 0;        ///< at which it was needed
@@ -46,6 +38,20 @@ struct Miss {
   std::uint32_t robot = 0;
   description::OnLate consequence = description::OnLate::hold;
   std::chrono::nanoseconds waited{0};  ///< wall time
+};
+
+/// Told what happens, on the thread that runs. Each may be empty.
+struct RunListener {
+  std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
+  std::function<void(const Event&)> event{};        ///< each time; its count is that of this time
+  std::function<void(const Event&)> news{};         ///< the first event of its kind and text
+  std::function<void(const Miss&)> miss{};
+  /// The state of a tick is complete and its frames are out: once for each tick, from the run's first to its last.
+  std::function<void()> boundary{};
+  /// A tick has its answers: the wall time since its first frame was sent.
+  std::function<void(std::chrono::nanoseconds)> barrier{};
+  /// The commands of a tick are with the simulation, which is about to step: those of these robots have changed.
+  std::function<void(std::span<const std::uint32_t>)> commands{};
 };
 
 struct RunResult {
@@ -84,10 +90,11 @@ class RunBook {
   void start();  ///< the first frame is about to go out
   void stop();   ///< the last step is done, or there will be none
   /// A step is done.
-  void stepped() {
-    for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
-    for (const std::string& text : simulation_.happened()) add_event("event", text);
-    if (listener_.boundary) listener_.boundary();
+  void stepped();
+  /// The frames of this tick are out.
+  void at_boundary();
+  void commanded(std::span<const std::uint32_t> changed) {
+    if (listener_.commands) listener_.commands(changed);
   }
   /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
   template <class Complete>
@@ -124,6 +131,7 @@ class RunBook {
   std::uint64_t total_ticks_;
   bool started_ = false;
   bool stopped_ = false;
+  std::optional<std::uint64_t> last_boundary_;  // that the listener was told of
   Clock::time_point start_;
   Clock::time_point last_report_;
   std::chrono::nanoseconds last_report_time_{0};  // simulated

@@ -82,9 +82,9 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
       return end(End::failed, error.what());
     }
     run.book.stepped();
-    publish_world_state();
     if (!sleep_until_due(stop)) return end_early();
   }
+  publish_world_state();
   return end(End::finished);
 }
 
@@ -115,7 +115,10 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     run_->exchange.open(begin.time_since_epoch());
   }
   send_frames();
+  run_->book.at_boundary();
+  publish_world_state();
   if (!handle_misses(begin)) return false;
+  std::span<const std::uint32_t> changed;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
@@ -124,7 +127,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
       if (!run_->error.empty() || stop) return false;
       if (run_->exchange.barrier().complete()) {
         run_->book.add_barrier(Clock::now() - begin);
-        run_->exchange.apply();
+        changed = run_->exchange.apply();
         break;
       }
     }
@@ -135,6 +138,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     resend_frames(now);
     report_progress(false);
   }
+  run_->book.commanded(changed);
   report_progress(false);
   return true;
 }

@@ -102,7 +102,7 @@ class OneRun {
   session::RunListener listener() {
     return {
         .progress = [&](const session::Progress& progress) { terminal_.progress(progress); },
-        .event = [&](const session::Event& event) { terminal_.event(event); },
+        .news = [&](const session::Event& event) { terminal_.event(event); },
         .boundary =
             [&] {
               if (recorder_) recorder_->boundary();

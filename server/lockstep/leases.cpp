@@ -65,6 +65,7 @@ void Leases::note_answer(std::uint64_t client, Time now, std::uint64_t tick, std
   found->second.answered_at = now;
   found->second.answered_tick = tick;
   found->second.answered_copy = copy;
+  ++found->second.answer_count;
   if (found->second.news.size() < most_news) found->second.news.push_back({tick, now});
 }
 

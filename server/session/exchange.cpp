@@ -138,6 +138,25 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
   return taken;
 }
 
+void Exchange::save(SnapshotWriter& writer) const {
+  barrier_.save(writer);
+  for (const std::vector<double>& observations : history_) {
+    writer.add_count(observations.size());
+    writer.add_all(observations.data(), observations.size());
+  }
+}
+
+void Exchange::restore(SnapshotReader& reader) {
+  barrier_.restore(reader);
+  if (barrier_.tick() > simulation_.tick() || barrier_.tick() + 1 < simulation_.tick())
+    throw SnapshotError("the snapshot's world stands at tick " + std::to_string(simulation_.tick()) +
+                        ", and its barrier at " + std::to_string(barrier_.tick()));
+  for (std::vector<double>& observations : history_) {
+    reader.expect_count(observations.size(), "observed values under way");
+    reader.read_all(observations.data(), observations.size());
+  }
+}
+
 std::span<const std::uint32_t> Exchange::apply() {
   using Kind = lockstep::Barrier::Outcome::Kind;
   changed_.clear();

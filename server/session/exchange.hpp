@@ -49,6 +49,12 @@ class Exchange {
   /// others than before, good until the next call.
   std::span<const std::uint32_t> apply();
 
+  /// At a boundary: the barrier, and the observations of frames whose answers do not act yet.
+  void save(SnapshotWriter& writer) const;
+  /// Of an exchange of the same experiment, right after the construction of this one, with the simulation restored.
+  /// Throws SnapshotError.
+  void restore(SnapshotReader& reader);
+
  private:
   std::span<const double> kept(std::uint32_t robot, std::uint64_t tick) const;
 

@@ -1,22 +1,28 @@
 #include "server/session/run.hpp"
 
+#include <algorithm>
+
 namespace cohort::session {
 
 RunBook::RunBook(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
                  RunListener listener)
     : simulation_(simulation),
-      options_(options),
+      options_(std::move(options)),
       listener_(std::move(listener)),
       step_(experiment.world.step),
       total_ticks_(static_cast<std::uint64_t>(experiment.duration / experiment.world.step)),
       start_(Clock::now()),
-      last_report_(start_) {}
+      pace_start_(start_),
+      pace_start_time_(simulation.time()),
+      last_report_(start_),
+      last_report_time_(simulation.time()) {}
 
 void RunBook::start() {
   for (const std::string& text : simulation_.happened()) add_event("event", text);
   started_ = true;
   start_ = Clock::now();
   last_report_ = start_;
+  resume();
 }
 
 void RunBook::stop() {
@@ -38,8 +44,23 @@ void RunBook::at_boundary() {
 
 std::optional<RunBook::Clock::time_point> RunBook::due_time() const {
   if (options_.speed <= 0.0) return std::nullopt;
-  const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulation_.time().count()) / options_.speed);
-  return start_ + std::chrono::duration_cast<Clock::duration>(wall);
+  const std::chrono::nanoseconds simulated = simulation_.time() - pace_start_time_;
+  const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulated.count()) / options_.speed);
+  return pace_start_ + std::chrono::duration_cast<Clock::duration>(wall);
+}
+
+void RunBook::set_speed(double speed) {
+  constexpr std::chrono::milliseconds little{100};
+  const Clock::time_point now = Clock::now();
+  const Clock::time_point due = due_time().value_or(now);
+  pace_start_ = due > now - little ? std::min(due, now) : now;
+  pace_start_time_ = simulation_.time();
+  options_.speed = speed;
+}
+
+void RunBook::resume() {
+  pace_start_ = Clock::now();
+  pace_start_time_ = simulation_.time();
 }
 
 Progress RunBook::progress_at(Clock::time_point now) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/control.hpp"
 #include "server/sensing/take_samples.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/thesis.hpp"
@@ -56,6 +57,8 @@ struct RunCommand {
   std::filesystem::path csv;               ///< the same: what the experiment prints
   RecordOptions record;
   bool quiet = false;
+  bool paused = false;                 ///< at first
+  std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
   std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
   std::string network = "127.0.0.1";
   std::filesystem::path secure;  ///< folder of identities; empty: without security
@@ -107,6 +110,28 @@ struct SamplesCommand {
   sensing::SampleGrid grid;
 };
 int take_samples(const SamplesCommand& command, Log& log);
+
+/// `cohort ctl`: docs/cli.md.
+struct CtlCommand {
+  enum class What {
+    request,  ///< one, and its reply
+    status,
+    entities,
+    save,
+    load,
+  };
+  What what = What::request;
+  wire::Request request{};
+  std::string server;
+  std::vector<std::uint32_t> domains{};  ///< of the server; the first is used. Empty: 0
+  std::filesystem::path secure{};        ///< folder of an identity; empty: without security
+  std::filesystem::path file{};          ///< of a snapshot
+  std::filesystem::path model{};         ///< of what is spawned: a file, or the name of a model of the world
+  std::optional<double> timeout{};       ///< [s]; none: by operation
+  bool watch = false;
+  bool json = false;
+};
+int ctl(CtlCommand command, Log& log, const std::atomic<bool>& stop);
 
 /// `cohort security`: docs/security.md.
 struct SecurityCommand {

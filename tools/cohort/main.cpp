@@ -167,6 +167,8 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   add_record_options(app, options.record);
+  app.add_flag("--paused", options.paused, "Begin paused, until 'cohort ctl resume' or 'step'");
+  app.add_option("--from", options.from, "Go on from this snapshot of 'cohort ctl save'")->type_name("FILE");
   add_domains(app, options.domains, "DDS domains to serve (default: free ones, or 0 if others start controllers)");
   add_secure_option(app, options.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");
   add_log_options(app, flags);
@@ -274,6 +276,13 @@ int main(int argc, char** argv) {
   add_log_options(*teleop_app, log_flags);
   teleop_app->footer("Example: cohort teleop --robots 0");
 
+  CtlCommand ctl_command;
+  CLI::App* ctl_app = app.add_subcommand("ctl", "Control a run: pause, step, change its world, save, ask how it is");
+  add_domains(*ctl_app, ctl_command.domains, "DDS domain of the server, the first if it has several (default: 0)");
+  add_secure_option(*ctl_app, ctl_command.secure, "Folder of an identity that may control (default: $COHORT_SECURE)");
+  add_ctl_commands(*ctl_app, ctl_command);
+  add_log_options(*ctl_app, log_flags);
+
   std::filesystem::path checked_file;
   CLI::App* check_app =
       app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
@@ -354,6 +363,7 @@ int main(int argc, char** argv) {
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   replay_command.quiet = log_flags.quiet;
   if (replay_app->parsed()) return replay(replay_command, log, stop_requested);
+  if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
   if (security_app->parsed()) return security(security_command, log);

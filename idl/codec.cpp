@@ -1,37 +1,13 @@
 #include "idl/codec.hpp"
 
-#include <span>
 #include <string>
+
+#include "idl/lent.hpp"
 
 namespace cohort::wire {
 namespace {
 
 using namespace std::chrono_literals;
-
-// Cyclone's structs are not const-correct; writing only reads what they point to. `_release` stays false: it is ours.
-char* lent(const std::string& text) { return const_cast<char*>(text.c_str()); }
-
-template <class Sequence, class Elements>
-void lend(const Elements& elements, Sequence& sequence) {
-  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
-  sequence._buffer = const_cast<Element*>(elements.data());
-  sequence._length = static_cast<std::uint32_t>(elements.size());
-  sequence._maximum = sequence._length;
-}
-
-std::string to_string(const char* text) { return text == nullptr ? std::string() : std::string(text); }
-
-template <class Sequence>
-auto to_span(const Sequence& sequence) {
-  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
-  return std::span<const Element>(sequence._buffer, sequence._buffer == nullptr ? 0 : sequence._length);
-}
-
-std::vector<std::string> to_strings(const dds_sequence_string& texts) {
-  std::vector<std::string> result;
-  for (const char* text : to_span(texts)) result.push_back(to_string(text));
-  return result;
-}
 
 std::vector<cohort_v1_Channel> encode(const std::vector<Channel>& channels) {
   std::vector<cohort_v1_Channel> result;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cohort.h"
+#include "idl/control.hpp"
 #include "idl/dds.hpp"
 #include "idl/messages.hpp"
 
@@ -110,6 +111,34 @@ struct Codec<Report> {
   };
   static const Topic topic;
   static Report decode(const Sample& sample);
+};
+
+template <>
+struct Codec<Request> {
+  using Sample = cohort_v1_Request;
+  struct Outgoing {
+    explicit Outgoing(const Request& message);
+    Sample sample{};
+  };
+  static const Topic topic;
+  static Request decode(const Sample& sample);
+};
+
+template <>
+struct Codec<Reply> {
+  using Sample = cohort_v1_Reply;
+  struct Outgoing {
+    explicit Outgoing(const Reply& message);
+    Sample sample{};
+    std::vector<char*> spawn_formats;
+    std::vector<char*> entities;
+    std::vector<cohort_v1_EntityState> states;
+    std::vector<cohort_v1_SimulationStatus> status;
+    std::vector<std::vector<char*>> awaited;                         // of each status
+    std::vector<std::vector<cohort_v1_ControllerStatus>> controllers;  // the same
+  };
+  static const Topic topic;
+  static Reply decode(const Sample& sample);
 };
 
 }  // namespace cohort::wire

@@ -56,6 +56,10 @@ void set_value(Identity& identity, const fs::path& file, const std::string& key,
     identity.protection = value;
   } else if (key == "robots") {
     identity.robots.push_back(value);
+  } else if (key == "control") {
+    if (value != "yes" && value != "no")
+      throw WireError(file.string() + ": expected control: yes or no, not '" + value + "'");
+    identity.may_control = value == "yes";
   } else {
     throw WireError(file.string() + ": there is no '" + key + "' in the file of an identity");
   }
@@ -76,6 +80,7 @@ std::string identity_text(const Identity& identity) {
     if (role == identity.role) text += "role: " + std::string(name) + "\n";
   text += "door: " + std::to_string(identity.door) + "\nprotection: " + identity.protection + "\n";
   for (const std::string& robots : identity.robots) text += "robots: " + robots + "\n";
+  if (identity.may_control) text += "control: yes\n";
   return text;
 }
 

@@ -20,6 +20,7 @@ struct Identity {
   std::uint32_t door = 0;             ///< the server's participant index; 0 is the observers'
   std::string protection = "sign";    ///< of all messages: sign or encrypt
   std::vector<std::string> robots{};  ///< selectors of what it may claim; none for observers
+  bool may_control = false;           ///< the run: docs/protocol.md, "Control"
   std::filesystem::path folder{};     ///< absolute
 };
 

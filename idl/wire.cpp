@@ -195,6 +195,8 @@ template class Writer<Observation>;
 template class Writer<Command>;
 template class Writer<WorldState>;
 template class Writer<Report>;
+template class Writer<Request>;
+template class Writer<Reply>;
 template class Reader<Join>;
 template class Reader<Admit>;
 template class Reader<RobotDescription>;
@@ -202,5 +204,7 @@ template class Reader<Observation>;
 template class Reader<Command>;
 template class Reader<WorldState>;
 template class Reader<Report>;
+template class Reader<Request>;
+template class Reader<Reply>;
 
 }  // namespace cohort::wire

@@ -27,8 +27,12 @@ class SnapshotWriter {
     std::memcpy(bytes_.data() + at, &number, sizeof number);
   }
   template <class Number>
+  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
   void add_all(const Number* numbers, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) add(numbers[i]);
+    if (count == 0) return;
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + count * sizeof *numbers);
+    std::memcpy(bytes_.data() + at, numbers, count * sizeof *numbers);
   }
   /// How many follow; `SnapshotReader::read_count` checks it.
   void add_count(std::size_t count) { add(static_cast<std::uint64_t>(count)); }
@@ -52,8 +56,12 @@ class SnapshotReader {
     bytes_ = bytes_.subspan(sizeof number);
   }
   template <class Number>
+  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
   void read_all(Number* numbers, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) read(numbers[i]);
+    if (count == 0) return;
+    if (bytes_.size() / sizeof *numbers < count) throw SnapshotError("the snapshot ends too early");
+    std::memcpy(numbers, bytes_.data(), count * sizeof *numbers);
+    bytes_ = bytes_.subspan(count * sizeof *numbers);
   }
   /// A count of things that take at least `bytes_each`.
   std::size_t read_count(std::size_t bytes_each) {

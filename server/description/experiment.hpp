@@ -67,6 +67,7 @@ struct Experiment {
   std::vector<StopCondition> stops;
   std::vector<PrintedQuantity> prints;
   History history;
+  Recorded recorded;
   std::shared_ptr<const KeptFiles> inputs{};  ///< what it was read from; null if it was made in a program
 };
 

@@ -32,8 +32,9 @@ void Barrier::set_driven(std::uint32_t robot, bool driven) {
 }
 
 void Barrier::open(std::uint64_t tick, Time now) {
-  if (tick == 0)
+  if (is_fresh_)
     for (Robot& robot : robots_) robot.heard_at = now;
+  is_fresh_ = false;
   tick_ = tick;
   opened_at_ = now;
   awaited_count_ = 0;
@@ -176,6 +177,52 @@ Barrier::Outcome Barrier::outcome(std::uint32_t robot) const {
   if (answer.state == Answer::State::given) return {Outcome::Kind::command, answer.values};
   const bool hold = r.policy.on_late == OnLate::hold || r.policy.on_late == OnLate::wait;
   return {hold ? Outcome::Kind::keep : Outcome::Kind::neutral, {}};
+}
+
+void Barrier::save(SnapshotWriter& writer) const {
+  writer.add(tick_);
+  writer.add_count(robots_.size());
+  for (const Robot& robot : robots_) {
+    for (const bool flag : {robot.present, robot.driven, robot.detached, robot.silent, robot.answered.has_value()})
+      writer.add(flag);
+    writer.add(robot.answered.value_or(0));
+    writer.add_count(robot.answers.size());
+    for (const Answer& answer : robot.answers) {
+      writer.add(answer.state);
+      writer.add(answer.asked);
+      writer.add_count(answer.values.size());
+      writer.add_all(answer.values.data(), answer.values.size());
+    }
+  }
+}
+
+void Barrier::restore(SnapshotReader& reader) {
+  const auto read_flag = [&] {
+    std::uint8_t flag = 0;
+    reader.read(flag);
+    if (flag > 1) throw SnapshotError("the snapshot has a flag that is neither 0 nor 1");
+    return flag == 1;
+  };
+  reader.read(tick_);
+  reader.expect_count(robots_.size(), "robots at its barrier");
+  awaited_count_ = 0;
+  for (Robot& robot : robots_) {
+    for (bool Robot::*const flag : {&Robot::present, &Robot::driven, &Robot::detached, &Robot::silent})
+      robot.*flag = read_flag();
+    robot.awaited = false;
+    const bool has_answered = read_flag();
+    std::uint64_t answered = 0;
+    reader.read(answered);
+    robot.answered = has_answered ? std::optional(answered) : std::nullopt;
+    reader.expect_count(robot.answers.size(), "answers under way");
+    for (Answer& answer : robot.answers) {
+      reader.read(answer.state);
+      if (answer.state > Answer::State::refused) throw SnapshotError("the snapshot has an answer of no known state");
+      answer.asked = read_flag();
+      reader.expect_count(answer.values.size(), "values in an answer");
+      reader.read_all(answer.values.data(), answer.values.size());
+    }
+  }
 }
 
 }  // namespace cohort::lockstep

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "server/core/snapshot.hpp"
 #include "server/description/experiment.hpp"
 
 namespace cohort::lockstep {
@@ -31,8 +32,8 @@ class Barrier {
   /// longer awaited, and has its neutral values. At first all are driven.
   void set_driven(std::uint32_t robot, bool driven);
 
-  /// Starts tick `tick` at time `now`; the first call has tick 0, each further one the next tick. The tick before must
-  /// be complete.
+  /// Starts tick `tick` at time `now`; the first call has tick 0, or that of the boundary at which what was restored was
+  /// saved, each further one the next tick. The tick before must be complete.
   void open(std::uint64_t tick, Time now);
 
   std::uint64_t tick() const { return tick_; }
@@ -54,6 +55,8 @@ class Barrier {
 
   bool complete() const { return awaited_count_ == 0; }
   bool is_awaited(std::uint32_t robot) const { return robots_[robot].awaited; }
+  /// For good, by a policy.
+  bool is_detached(std::uint32_t robot) const { return robots_[robot].detached; }
   /// Ascending.
   std::vector<std::uint32_t> awaited() const;
   Time opened_at() const { return opened_at_; }
@@ -85,6 +88,11 @@ class Barrier {
   };
   /// What the tick gives the robot. Once the tick is complete.
   Outcome outcome(std::uint32_t robot) const;
+
+  /// At a boundary: answers that have come and do not act yet, and who is asked no more. Not times.
+  void save(SnapshotWriter& writer) const;
+  /// Of a barrier of the same policies and sizes, before the first `open`. Throws SnapshotError.
+  void restore(SnapshotReader& reader);
 
  private:
   struct Answer {
@@ -128,6 +136,7 @@ class Barrier {
   std::uint64_t tick_ = 0;
   Time opened_at_{0};
   std::size_t awaited_count_ = 0;
+  bool is_fresh_ = true;  // nothing was opened yet
 };
 
 }  // namespace cohort::lockstep

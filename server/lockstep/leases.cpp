@@ -6,6 +6,7 @@ namespace cohort::lockstep {
 namespace {
 
 constexpr std::chrono::seconds trusted_for{1};  // as long as the lease of liveliness
+constexpr std::size_t most_news = 64;
 
 }  // namespace
 
@@ -64,6 +65,8 @@ void Leases::note_answer(std::uint64_t client, Time now, std::uint64_t tick, std
   found->second.answered_at = now;
   found->second.answered_tick = tick;
   found->second.answered_copy = copy;
+  ++found->second.answer_count;
+  if (found->second.news.size() < most_news) found->second.news.push_back({tick, now});
 }
 
 void Leases::set_alive(std::uint64_t client, bool alive) {

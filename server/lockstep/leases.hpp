@@ -24,12 +24,18 @@ class Leases {
   struct Lease {
     std::uint64_t epoch = 0;
     std::vector<std::uint32_t> robots;  ///< ascending
-    bool alive = true;  ///< says liveliness
-    Time heard_until{0};  ///< what liveliness calls dead and yet answers counts as alive until then
+    bool alive = true;                  ///< says liveliness
+    Time heard_until{0};                ///< what liveliness calls dead and yet answers counts as alive until then
     /// The last answer: when it came, to which frame, and which of the copies that were sent of it.
     Time answered_at{0};
     std::uint64_t answered_tick = 0;
     std::uint32_t answered_copy = 0;
+    std::uint64_t answer_count = 0;
+    struct Answered {
+      std::uint64_t tick;
+      Time at;
+    };
+    std::vector<Answered> news{};  ///< answers since `drain_news`; at most 64
   };
 
   /// `robots`: ascending, at least one. A client's new claim stands in for its earlier one that still waits.
@@ -65,9 +71,18 @@ class Leases {
   std::uint64_t next_epoch() const { return next_epoch_; }
   bool has_claims() const { return !claims_.empty(); }
 
-  /// The client, which has a lease, answered a frame. If liveliness called it dead, it lives for a second more: one that
-  /// was stopped and goes on may die for good before liveliness has called it alive again, and then says nothing more.
+  /// The client, which has a lease, answered a frame. If liveliness called it dead, it lives for a second more: one
+  /// that was stopped and goes on may die for good before liveliness has called it alive again, and then says nothing
+  /// more.
   void note_answer(std::uint64_t client, Time now = Time{0}, std::uint64_t tick = 0, std::uint32_t copy = 0);
+  /// Calls `note` with each answer of the client since this was last called, if it has a lease.
+  template <class Note>
+  void drain_news(std::uint64_t client, Note&& note) {
+    const auto found = leases_.find(client);
+    if (found == leases_.end()) return;
+    for (const Lease::Answered& answered : found->second.news) note(answered);
+    found->second.news.clear();
+  }
   /// What liveliness says.
   void set_alive(std::uint64_t client, bool alive);
   /// The client left for good: its robots are free, its claim is gone.

@@ -138,15 +138,36 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
   return taken;
 }
 
-void Exchange::apply() {
+void Exchange::save(SnapshotWriter& writer) const {
+  barrier_.save(writer);
+  for (const std::vector<double>& observations : history_) {
+    writer.add_count(observations.size());
+    writer.add_all(observations.data(), observations.size());
+  }
+}
+
+void Exchange::restore(SnapshotReader& reader) {
+  barrier_.restore(reader);
+  if (barrier_.tick() > simulation_.tick() || barrier_.tick() + 1 < simulation_.tick())
+    throw SnapshotError("the snapshot's world stands at tick " + std::to_string(simulation_.tick()) +
+                        ", and its barrier at " + std::to_string(barrier_.tick()));
+  for (std::vector<double>& observations : history_) {
+    reader.expect_count(observations.size(), "observed values under way");
+    reader.read_all(observations.data(), observations.size());
+  }
+}
+
+std::span<const std::uint32_t> Exchange::apply() {
+  using Kind = lockstep::Barrier::Outcome::Kind;
+  changed_.clear();
   for (std::uint32_t robot = 0; robot < simulation_.robot_count(); ++robot) {
     const lockstep::Barrier::Outcome outcome = barrier_.outcome(robot);
-    switch (outcome.kind) {
-      case lockstep::Barrier::Outcome::Kind::keep: break;
-      case lockstep::Barrier::Outcome::Kind::command: simulation_.set_command(robot, outcome.values); break;
-      case lockstep::Barrier::Outcome::Kind::neutral: simulation_.set_neutral_command(robot); break;
-    }
+    if (outcome.kind == Kind::keep) continue;
+    const bool changes = outcome.kind == Kind::command ? simulation_.set_command(robot, outcome.values)
+                                                       : simulation_.set_neutral_command(robot);
+    if (changes) changed_.push_back(robot);
   }
+  return changed_;
 }
 
 }  // namespace cohort::session

@@ -45,8 +45,15 @@ class Exchange {
   Taken take(std::span<const std::uint32_t> held, std::uint64_t frame_tick, std::span<const std::uint32_t> robots,
              std::span<const double> values, lockstep::Time now = lockstep::Time{0});
 
-  /// Gives the complete tick's outcomes to the simulation, in the order of the robots.
-  void apply();
+  /// Gives the complete tick's outcomes to the simulation, in the order of the robots. The robots whose commands are
+  /// others than before, good until the next call.
+  std::span<const std::uint32_t> apply();
+
+  /// At a boundary: the barrier, and the observations of frames whose answers do not act yet.
+  void save(SnapshotWriter& writer) const;
+  /// Of an exchange of the same experiment, right after the construction of this one, with the simulation restored.
+  /// Throws SnapshotError.
+  void restore(SnapshotReader& reader);
 
  private:
   std::span<const double> kept(std::uint32_t robot, std::uint64_t tick) const;
@@ -55,7 +62,8 @@ class Exchange {
   lockstep::Barrier barrier_;
   // By robot: delay + 1 observations, by tick modulo delay + 1. None without a delay: the simulation has the only one.
   std::vector<std::vector<double>> history_;
-  std::vector<std::uint32_t> due_;  // reused
+  std::vector<std::uint32_t> due_;      // reused
+  std::vector<std::uint32_t> changed_;  // of the last tick
 };
 
 }  // namespace cohort::session

@@ -1,18 +1,50 @@
 #include "server/session/in_process.hpp"
 
+#include <map>
 #include <memory>
+#include <span>
 #include <thread>
+#include <vector>
 
 #include "server/session/exchange.hpp"
 #include "server/session/roster.hpp"
 
 namespace cohort::session {
 
+namespace {
+
+// Those of `robots` that are due at `tick`.
+Exchange::Taken ask(Exchange& exchange, const description::Experiment& experiment,
+                    std::span<const std::uint32_t> robots, std::uint64_t tick, ControllerHost& host) {
+  Exchange::Frame frame;
+  exchange.fill_frame(frame, robots, tick);
+  if (frame.robots.empty()) return {};
+  wire::Observation observation;
+  observation.tick = tick;
+  observation.time_ns = (experiment.world.step * static_cast<std::int64_t>(tick)).count();
+  observation.robots = frame.robots;
+  observation.values = frame.values;
+  return exchange.take(robots, tick, frame.robots, host.answer(observation));
+}
+
+// What a snapshot has of frames without an answer: others were asked, and had not answered when it was taken.
+void ask_again(Exchange& exchange, const description::Experiment& experiment, std::span<const std::uint32_t> robots,
+               std::uint64_t now, ControllerHost& host) {
+  std::map<std::uint64_t, std::vector<std::uint32_t>> robots_of;  // by tick
+  for (const std::uint32_t robot : robots)
+    for (const std::uint64_t tick : exchange.barrier().unanswered(robot))
+      if (tick < now) robots_of[tick].push_back(robot);
+  for (const auto& [tick, unanswered] : robots_of) ask(exchange, experiment, unanswered, tick, host);
+}
+
+}  // namespace
+
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
                          const std::vector<ControllerKind>& controllers, const RunOptions& options,
                          const RunListener& listener, const std::atomic<bool>& stop) {
   RunBook book(experiment, simulation, options, listener);
   Exchange exchange(simulation);
+  if (options.from) restore(*options.from, exchange);
   const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
 
   std::vector<std::unique_ptr<ControllerHost>> hosts;
@@ -24,31 +56,26 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       admit.tick = simulation.tick();
       admit_robots(admit, experiment, simulation, experiment.teams[team].robots);
       hosts.push_back(std::make_unique<ControllerHost>(controllers[team]));
+      if (options.from) admit.start_reason = wire::StartReason::restored;
       hosts.back()->start(admit, descriptions);
+      if (options.from)
+        ask_again(exchange, experiment, experiment.teams[team].robots, simulation.tick(), *hosts.back());
     }
 
     book.start();
-    Exchange::Frame frame;
     while (!book.is_over()) {
       if (stop) return book.finish(RunResult::End::interrupted);
       const auto begin = RunBook::Clock::now();
       exchange.open(begin.time_since_epoch());
+      book.at_boundary();
       for (std::size_t team = 0; team < hosts.size(); ++team) {
-        exchange.fill_frame(frame, experiment.teams[team].robots, simulation.tick());
-        if (frame.robots.empty()) continue;
-        wire::Observation observation;
-        observation.tick = simulation.tick();
-        observation.time_ns = simulation.time().count();
-        observation.robots = frame.robots;
-        observation.values = frame.values;
-        const auto taken = exchange.take(experiment.teams[team].robots, simulation.tick(), frame.robots,
-                                         hosts[team]->answer(observation));
+        const auto taken = ask(exchange, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team]);
         if (!taken.is_fault) continue;
         book.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
         if (taken.ends_run) return book.finish(RunResult::End::failed, taken.rejection->text);
       }
       book.add_barrier(RunBook::Clock::now() - begin);
-      exchange.apply();
+      book.commanded(exchange.apply());
       try {
         simulation.step();
       } catch (const std::runtime_error& error) {

@@ -1,23 +1,28 @@
 #include "server/session/run.hpp"
 
+#include <algorithm>
+
 namespace cohort::session {
 
 RunBook::RunBook(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
                  RunListener listener)
     : simulation_(simulation),
-      options_(options),
+      options_(std::move(options)),
       listener_(std::move(listener)),
       step_(experiment.world.step),
       total_ticks_(static_cast<std::uint64_t>(experiment.duration / experiment.world.step)),
       start_(Clock::now()),
-      last_report_(start_) {}
+      pace_start_(start_),
+      pace_start_time_(simulation.time()),
+      last_report_(start_),
+      last_report_time_(simulation.time()) {}
 
 void RunBook::start() {
   for (const std::string& text : simulation_.happened()) add_event("event", text);
-  if (listener_.boundary) listener_.boundary();
   started_ = true;
   start_ = Clock::now();
   last_report_ = start_;
+  resume();
 }
 
 void RunBook::stop() {
@@ -25,10 +30,37 @@ void RunBook::stop() {
   stopped_ = true;
 }
 
+void RunBook::stepped() {
+  for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
+  for (const std::string& text : simulation_.happened()) add_event("event", text);
+  if (is_over()) at_boundary();  // no frame goes out any more
+}
+
+void RunBook::at_boundary() {
+  if (last_boundary_ == simulation_.tick()) return;
+  last_boundary_ = simulation_.tick();
+  if (listener_.boundary) listener_.boundary();
+}
+
 std::optional<RunBook::Clock::time_point> RunBook::due_time() const {
   if (options_.speed <= 0.0) return std::nullopt;
-  const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulation_.time().count()) / options_.speed);
-  return start_ + std::chrono::duration_cast<Clock::duration>(wall);
+  const std::chrono::nanoseconds simulated = simulation_.time() - pace_start_time_;
+  const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulated.count()) / options_.speed);
+  return pace_start_ + std::chrono::duration_cast<Clock::duration>(wall);
+}
+
+void RunBook::set_speed(double speed) {
+  constexpr std::chrono::milliseconds little{100};
+  const Clock::time_point now = Clock::now();
+  const Clock::time_point due = due_time().value_or(now);
+  pace_start_ = due > now - little ? std::min(due, now) : now;
+  pace_start_time_ = simulation_.time();
+  options_.speed = speed;
+}
+
+void RunBook::resume() {
+  pace_start_ = Clock::now();
+  pace_start_time_ = simulation_.time();
 }
 
 Progress RunBook::progress_at(Clock::time_point now) {
@@ -45,15 +77,18 @@ Progress RunBook::progress_at(Clock::time_point now) {
 }
 
 void RunBook::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
-  if (log_.add(simulation_.tick(), kind, text, count) && listener_.event)
-    listener_.event({simulation_.tick(), kind, text, count});
+  const Event event{simulation_.tick(), kind, text, count};
+  const bool is_news = log_.add(event.tick, kind, text, count);
+  if (listener_.event) listener_.event(event);
+  if (is_news && listener_.news) listener_.news(event);
 }
 
 void RunBook::add_miss(const lockstep::Barrier::Miss& miss) {
   constexpr std::size_t most_misses = 1'000'000;
   ++result_.late;
-  if (result_.misses.size() < most_misses)
-    result_.misses.push_back({simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited});
+  const Miss booked{simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited};
+  if (result_.misses.size() < most_misses) result_.misses.push_back(booked);
+  if (listener_.miss) listener_.miss(booked);
   add_event("missed", simulation_.robot_name(miss.robot) + " did not answer in time");
 }
 

@@ -3,20 +3,47 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "server/lockstep/barrier.hpp"
 #include "server/lockstep/latency_histogram.hpp"
 #include "server/session/events.hpp"
+#include "server/session/play.hpp"
+#include "server/session/session_snapshot.hpp"
 #include "server/simulation/simulation.hpp"
 
 /// What a run over DDS and a run in one process have in common.
 namespace cohort::session {
 
+/// What whoever controls a run wants in its place.
+struct NextRun {
+  std::uint64_t seed = 0;
+  std::shared_ptr<const SessionSnapshot> snapshot{};  ///< where it goes on from; none: from the beginning
+  PlayState state = PlayState::playing;
+  double speed = 0.0;
+};
+
 struct RunOptions {
-  double speed = 0.0;  ///< simulated seconds per wall second at the most; 0: as fast as it goes
+  double speed = 0.0;                    ///< simulated seconds per wall second at the most; 0: as fast as it goes
+  PlayState state = PlayState::playing;  ///< at first
+  /// The simulation was restored from it, and the exchange has to be too; none: the run begins at the beginning.
+  std::shared_ptr<const SessionSnapshot> from{};
+  /// Makes the world of a reset or of a snapshot, before this run is ended for it. What it throws is the answer to
+  /// whoever asked, and the run goes on. Empty: there are neither resets nor snapshots to load.
+  std::function<void(const NextRun&)> prepare{};
+};
+
+/// Something that somebody did to a running world at a boundary, before its frames went out: docs/protocol.md,
+/// "Control".
+struct ControlEvent {
+  std::uint64_t tick = 0;
+  std::string operation;          ///< its name, such as `SpawnEntity`
+  std::string text;               ///< a sentence for people: who, and what
+  std::vector<std::byte> action;  ///< of one that changes the world: what Simulation::act was given, for replay
 };
 
 /// How far a run is.
@@ -25,18 +52,10 @@ struct Progress {
   std::chrono::nanoseconds duration{0};  ///< simulated, of the whole run
   double real_time_factor = 0.0;         ///< over the last report's interval
   bool started = false;                  ///< false while controllers are missing at the start
+  bool paused = false;                   ///< until whoever controls the run lets it go on
   std::vector<std::string> awaited;      ///< names of the robots that are waited for, in order
   std::string awaited_from;              ///< who drives the first of them, if anybody does
   std::chrono::nanoseconds waiting{0};   ///< wall time since the wait began
-};
-
-/// Told what happens, on the thread that runs. Each may be empty.
-struct RunListener {
-  std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
-  std::function<void(const Event&)> event{};        ///< the first of its kind and text
-  std::function<void()> boundary{};                 ///< the first frame is about to go out, or a step is done
-  /// A tick has its answers: the wall time since its first frame was sent.
-  std::function<void(std::chrono::nanoseconds)> barrier{};
 };
 
 /// An answer that missed its deadline.
@@ -48,15 +67,34 @@ struct Miss {
   std::chrono::nanoseconds waited{0};  ///< wall time
 };
 
+/// Told what happens, on the thread that runs. Each may be empty.
+struct RunListener {
+  std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
+  std::function<void(const Event&)> event{};        ///< each time; its count is that of this time
+  std::function<void(const Event&)> news{};         ///< the first event of its kind and text
+  std::function<void(const Miss&)> miss{};
+  /// The state of a tick is complete and its frames are out: once for each tick, from the run's first to its last.
+  std::function<void()> boundary{};
+  /// A tick has its answers: the wall time since its first frame was sent.
+  std::function<void(std::chrono::nanoseconds)> barrier{};
+  /// The commands of a tick are with the simulation, which is about to step: those of these robots have changed.
+  std::function<void(std::span<const std::uint32_t>)> commands{};
+  std::function<void(const ControlEvent&)> control{};
+};
+
 struct RunResult {
   enum class End {
     finished,     ///< the whole duration was simulated, or a stop condition of the experiment holds
     interrupted,  ///< asked to stop
     failed,       ///< `error` says why
+    shut_down,    ///< whoever controls it wanted an end
+    reset,        ///< `next` is to be run in its place, from the beginning
+    restored,     ///< the same from a snapshot
   };
   End end = End::finished;
   std::string error;
-  std::string stop_reason;  ///< the stop condition that ended it; empty if none did
+  std::optional<NextRun> next{};  ///< of reset and restored
+  std::string stop_reason;        ///< the stop condition that ended it; empty if none did
   std::uint64_t ticks = 0;
   std::chrono::nanoseconds sim_time{0};
   std::chrono::nanoseconds wall_time{0};  ///< from the first frame to the last step
@@ -84,10 +122,11 @@ class RunBook {
   void start();  ///< the first frame is about to go out
   void stop();   ///< the last step is done, or there will be none
   /// A step is done.
-  void stepped() {
-    for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
-    for (const std::string& text : simulation_.happened()) add_event("event", text);
-    if (listener_.boundary) listener_.boundary();
+  void stepped();
+  /// The frames of this tick are out.
+  void at_boundary();
+  void commanded(std::span<const std::uint32_t> changed) {
+    if (listener_.commands) listener_.commands(changed);
   }
   /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
   template <class Complete>
@@ -99,9 +138,20 @@ class RunBook {
     listener_.progress(progress);
   }
   Clock::time_point next_report() const { return last_report_ + report_interval; }
-  /// When the next tick may begin at the asked speed; nothing if none is asked. From the run's beginning, so that
-  /// simulated and wall time never drift apart.
+  /// When the next tick may begin at the asked speed; nothing if none is asked. From the run's beginning or its last
+  /// change of pace, so that simulated and wall time never drift apart.
   std::optional<Clock::time_point> due_time() const;
+  /// A change of pace, without a gap where the run was at its pace before.
+  void set_speed(double speed);
+  /// The wall time until now does not count for the pace.
+  void resume();
+  double speed() const { return options_.speed; }
+  const RunOptions& options() const { return options_; }
+  std::chrono::nanoseconds duration() const { return step_ * static_cast<std::int64_t>(total_ticks_); }
+  void controlled(const ControlEvent& event) {
+    add_event("control", event.operation + ": " + event.text);
+    if (listener_.control) listener_.control(event);
+  }
   void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
   void add_barrier(std::chrono::nanoseconds latency) {
     result_.barrier.add(latency);
@@ -124,7 +174,11 @@ class RunBook {
   std::uint64_t total_ticks_;
   bool started_ = false;
   bool stopped_ = false;
+  std::optional<std::uint64_t> last_boundary_;  // that the listener was told of
   Clock::time_point start_;
+  // The pace is counted from here.
+  Clock::time_point pace_start_;
+  std::chrono::nanoseconds pace_start_time_{0};  // simulated
   Clock::time_point last_report_;
   std::chrono::nanoseconds last_report_time_{0};  // simulated
   EventLog log_;

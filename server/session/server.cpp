@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
-#include <thread>
 
 #include "server/session/roster.hpp"
 
@@ -49,9 +48,12 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
     auto next = std::make_unique<Run>(experiment, simulation, options, listener, next_epoch_);
     const std::lock_guard lock(mutex_);
     ++run_number_;
+    if (options.from) restore(*options.from, next->exchange);
     run_ = std::move(next);
   }
   Run& run = *run_;
+  control_.begin({experiment, simulation, run.book, run_number_,
+                  [this](wire::SimulationStatus& status) { fill_status(status); }, [this] { return take_snapshot(); }});
   publish_descriptions();
   claim_anew();
 
@@ -59,6 +61,7 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
     run.book.stop();
     handle_inbox();
     report_progress(true);
+    control_.end(how);
     RunResult result = run.book.finish(how, error);
     const std::lock_guard lock(mutex_);
     next_epoch_ = run.leases.next_epoch();
@@ -68,12 +71,20 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
   };
   const auto end_early = [&] {
     const std::string error = this->error();
-    return error.empty() ? end(End::interrupted) : end(End::failed, error);
+    if (!error.empty()) return end(End::failed, error);
+    if (!control_.ending()) return end(End::interrupted);
+    const Control::Ending ending = *control_.ending();
+    if (run.started) run.book.at_boundary();
+    RunResult result = end(ending.how);
+    result.next = ending.next;
+    return result;
   };
   if (!wait_for_controllers(stop)) return end_early();
   run.book.start();
   run.started = true;
-  while (!run.book.is_over()) {
+  for (;;) {
+    if (!stand_at_boundary(stop)) return end_early();
+    if (run.book.is_over()) break;
     if (!run_tick(stop)) return end_early();
     try {
       simulation.step();
@@ -82,18 +93,19 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
       return end(End::failed, error.what());
     }
     run.book.stepped();
-    publish_world_state();
-    if (!sleep_until_due(stop)) return end_early();
   }
+  publish_world_state();
   return end(End::finished);
 }
 
 bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
   const auto is_ready = [&](std::uint32_t robot) {
-    return run_->leases.holder(robot).has_value() || !run_->simulation.policy(robot).required;
+    return run_->leases.holder(robot).has_value() || !run_->simulation.policy(robot).required ||
+           run_->exchange.barrier().is_detached(robot);
   };
   for (;;) {
     handle_inbox();
+    if (!control_.perform(Control::Moment::boundary)) return false;
     decide_claims();
     report_progress(false);
     std::unique_lock lock(mutex_);
@@ -106,7 +118,6 @@ bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
 
 // From boundary k to the complete set of commands for it. False if the run has to end.
 bool Server::run_tick(const std::atomic<bool>& stop) {
-  handle_inbox();
   decide_claims();
   see_who_drives();
   const Clock::time_point begin = Clock::now();
@@ -115,7 +126,10 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     run_->exchange.open(begin.time_since_epoch());
   }
   send_frames();
+  run_->book.at_boundary();
+  publish_world_state();
   if (!handle_misses(begin)) return false;
+  std::span<const std::uint32_t> changed;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
@@ -124,30 +138,20 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
       if (!run_->error.empty() || stop) return false;
       if (run_->exchange.barrier().complete()) {
         run_->book.add_barrier(Clock::now() - begin);
-        run_->exchange.apply();
+        changed = run_->exchange.apply();
         break;
       }
     }
     const Clock::time_point now = Clock::now();
     handle_inbox();
+    if (!control_.perform(Control::Moment::midst)) return false;
     decide_claims();
     if (!handle_misses(now)) return false;
     resend_frames(now);
     report_progress(false);
   }
+  run_->book.commanded(changed);
   report_progress(false);
-  return true;
-}
-
-// False if the run has to end meanwhile.
-bool Server::sleep_until_due(const std::atomic<bool>& stop) {
-  const auto due = run_->book.due_time();
-  if (!due) return true;
-  while (Clock::now() < *due) {
-    if (stop) return false;
-    std::this_thread::sleep_until(std::min(*due, Clock::now() + longest_sleep));
-  }
-  run_->book.add_lateness(Clock::now() - *due);
   return true;
 }
 
@@ -172,7 +176,10 @@ bool Server::fill_frame(std::uint64_t client_id, Client& client, std::uint64_t t
   client.frame.robots.clear();
   const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
   if (lease == nullptr) return false;
-  if (!resent) client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
+  if (!resent) {
+    client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
+    run_->leases.drain_news(client_id, [&](const auto& news) { client.answer_times.answered(news.tick, news.at); });
+  }
   run_->exchange.fill_frame(client.frame, lease->robots, tick);
   client.epoch = lease->epoch;
   return !client.frame.robots.empty();
@@ -188,7 +195,11 @@ void Server::write_frame(std::uint64_t client_id, Client& client, std::uint64_t 
   observation.time_ns = (run_->experiment.world.step * static_cast<std::int64_t>(tick)).count();
   observation.robots = client.frame.robots;
   observation.values = client.frame.values;
-  if (!resent) client.resend.start(tick, Clock::now().time_since_epoch());
+  if (!resent) {
+    const lockstep::Time now = Clock::now().time_since_epoch();
+    client.resend.start(tick, now);
+    client.answer_times.sent(tick, now);
+  }
   client.observation.write(observation);  // lost if DDS cannot take it: sent again then
 }
 
@@ -226,6 +237,7 @@ void Server::resend_frames(Clock::time_point now) {
     ++client.times_resent;
     for (const std::uint64_t tick : ticks) send_frame(id, client, tick, true);
     run_->book.add_resent(ticks.size());
+    client.resent_count += ticks.size();
     client.resend.resent(now.time_since_epoch());
   }
 }
@@ -236,6 +248,7 @@ bool Server::handle_misses(Clock::time_point now) {
     const std::lock_guard lock(mutex_);
     for (const lockstep::Barrier::Miss& miss : run_->exchange.barrier().expire(now.time_since_epoch())) {
       run_->book.add_miss(miss);
+      if (const auto holder = run_->leases.holder(miss.robot)) ++clients_.at(*holder).late;
       if (miss.consequence == description::OnLate::stop && run_->error.empty())
         run_->error = run_->simulation.robot_name(miss.robot) + " did not answer tick " +
                       std::to_string(miss.frame_tick) + " within " +
@@ -259,10 +272,11 @@ void Server::report_progress(bool now_anyway) {
   run_->book.report(now_anyway, [&](Progress& progress) {
     const std::lock_guard lock(mutex_);
     std::vector<std::uint32_t> awaited;
-    if (run_->started) {
+    progress.paused = control_.holds();
+    if (run_->started && !progress.paused) {
       awaited = run_->exchange.barrier().awaited();
       progress.waiting = Clock::now().time_since_epoch() - run_->exchange.barrier().opened_at();
-    } else {
+    } else if (!run_->started) {
       for (const std::uint32_t robot : run_->all_robots)
         if (!run_->leases.holder(robot) && run_->simulation.policy(robot).required) awaited.push_back(robot);
     }

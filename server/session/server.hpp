@@ -14,10 +14,13 @@
 #include <string_view>
 #include <vector>
 
+#include "idl/control.hpp"
 #include "idl/survey.hpp"
 #include "idl/wire.hpp"
+#include "server/lockstep/answer_times.hpp"
 #include "server/lockstep/leases.hpp"
 #include "server/lockstep/resend_timer.hpp"
+#include "server/session/control.hpp"
 #include "server/session/exchange.hpp"
 #include "server/session/run.hpp"
 
@@ -35,7 +38,8 @@ class Server {
 
   /// Waits for a controller for every robot that requires one, and runs. Clients that were attached before are admitted
   /// to the new run, as far as their selectors select robots of it. Returns soon after `stop` is set, also while it
-  /// waits. Experiment and simulation must outlive this call only.
+  /// waits, or when whoever controls the run wants an end or another run. Experiment and simulation must outlive this
+  /// call only.
   RunResult run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
                 const RunListener& listener, const std::atomic<bool>& stop);
 
@@ -60,13 +64,14 @@ class Server {
     wire::Reader<wire::Join> joins;
     wire::Reader<wire::Command> commands;
     wire::Reader<wire::Report> reports;
+    wire::Reader<wire::Request> requests;
     wire::VersionWatch versions;
   };
 
   struct Client {
     wire::Join join;
-    std::uint64_t arrival = 0;  // clients of a session in their order
-    std::uint64_t writer = 0;   // of its last Join
+    std::uint64_t arrival = 0;                      // clients of a session in their order
+    std::uint64_t writer = 0;                       // of its last Join
     const std::optional<wire::Identity>& identity;  // of whoever it is, not of whom it says to be
     std::string label;                              // for people: controller, process and host
     wire::Writer<wire::Admit> admit;
@@ -82,6 +87,10 @@ class Server {
     Exchange::Frame frame{};                      // reused: the last one
     std::uint64_t epoch = 0;                      // of the lease that it went to
     std::set<std::string> reported_rejections{};  // reasons that it was told of
+    lockstep::AnswerTimes answer_times{};
+    std::uint64_t late = 0;  // answers
+    std::uint64_t rejected = 0;
+    std::uint64_t resent_count = 0;  // frames
     // Of earlier ones.
     bool drove = false;  // so that a new run is a reset to it
   };
@@ -122,12 +131,16 @@ class Server {
     std::vector<Liveliness> liveliness;
     std::vector<wire::Report> reports;
     std::vector<std::uint32_t> ended_processes;
+    std::vector<Asked> requests{};
+    std::map<std::uint64_t, std::size_t> requests_of{};  // by participant
+    std::size_t request_bytes = 0;
+    std::vector<wire::Sender> gone_requesters{};
     std::string failure;                                                     // of something outside
     std::set<std::uint32_t> foreign_versions{};                              // of the protocol, that clients have
     std::map<std::pair<std::uint64_t, std::string>, Rejections> rejected{};  // by who, or what participant, and reason
     bool empty() const {
       return arrivals.empty() && liveliness.empty() && reports.empty() && ended_processes.empty() && failure.empty() &&
-             foreign_versions.empty() && rejected.empty();
+             foreign_versions.empty() && rejected.empty() && requests.empty() && gone_requesters.empty();
     }
   };
 
@@ -138,6 +151,8 @@ class Server {
   bool take_answer(const wire::Command& command, const wire::Sender& sender);
   void on_report(const wire::Report& report, const wire::Sender& sender);
   void on_foreign_version(std::uint32_t major);
+  void on_request(Door& door, const wire::Request& request, const wire::Sender& sender);
+  void on_requester(const wire::Sender& sender, bool alive);
   bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
   void reject(std::uint64_t who, const char* reason, std::string_view text);
   void call_attention();
@@ -145,7 +160,6 @@ class Server {
   // On the thread of `run`; those that take the lock must not hold it. One run, tick by tick (server.cpp):
   bool wait_for_controllers(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
-  bool sleep_until_due(const std::atomic<bool>& stop);
   bool fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
   void write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
   void send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent);
@@ -158,6 +172,12 @@ class Server {
   void report_progress(bool now_anyway);
   void publish_world_state();
   std::string error();
+
+  // Control (server_control.cpp):
+  bool stand_at_boundary(const std::atomic<bool>& stop);
+  SessionSnapshot take_snapshot();
+  void fill_status(wire::SimulationStatus& status);
+  std::uint64_t due_tick_of(const std::vector<std::uint32_t>& robots) const;
 
   // Who is attached (server_clients.cpp):
   void handle_inbox();
@@ -197,6 +217,7 @@ class Server {
   Clock::time_point observers_counted_at_{};
   bool observed_ = false;
   std::vector<double> poses_;  // reused
+  Control control_;
 
   wire::Writer<wire::WorldState> world_state_;
   // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they

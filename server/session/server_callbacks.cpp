@@ -27,6 +27,11 @@ Server::Door::Door(Server& server, wire::Participant& its_participant)
       reports(its_participant,
               {[&server](const wire::Report& report, const wire::Sender& sender) { server.on_report(report, sender); },
                {}}),
+      requests(its_participant,
+               {[&server, this](const wire::Request& request, const wire::Sender& sender) {
+                  server.on_request(*this, request, sender);
+                },
+                [&server](const wire::Sender& sender, bool alive) { server.on_requester(sender, alive); }}),
       versions(its_participant, [&server](std::uint32_t major) { server.on_foreign_version(major); }) {}
 
 // Under the lock.

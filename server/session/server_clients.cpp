@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/description/select_robots.hpp"
+#include "server/session/clean.hpp"
 #include "server/session/roster.hpp"
 #include "server/session/server.hpp"
 
@@ -19,15 +20,6 @@ std::string host_name() {
   char name[256] = {};
   ::gethostname(name, sizeof(name) - 1);
   return name;
-}
-
-// What a client says of itself ends up in logs.
-std::string clean(const std::string& text) {
-  constexpr std::size_t longest = 100;
-  std::string result = text.substr(0, longest);
-  std::ranges::replace_if(
-      result, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
-  return result;
 }
 
 }  // namespace
@@ -69,6 +61,8 @@ void Server::handle_inbox() {
                                         " of the protocol, and this server version 1: they never meet. Install the "
                                         "same major version of Cohort on both sides");
   handle_rejections(inbox);
+  for (const wire::Sender& sender : inbox.gone_requesters) control_.lose(sender);
+  for (const Asked& asked : inbox.requests) control_.take(asked);
 }
 
 void Server::handle_rejections(const Inbox& inbox) {
@@ -76,8 +70,9 @@ void Server::handle_rejections(const Inbox& inbox) {
     const auto& [client_id, reason] = key;
     run_->book.add_event("rejected", reason + " from " + label_of(client_id) + ": " + rejections.text,
                          rejections.count);
-    if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
     const auto client = clients_.find(client_id);
+    if (client != clients_.end()) client->second.rejected += rejections.count;
+    if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
     if (client == clients_.end() || !client->second.reported_rejections.insert(reason).second) continue;
     client->second.report.write(
         {client_id, run_number_, wire::ReportKind::rejected, run_->simulation.tick(), reason, rejections.text});
@@ -181,6 +176,8 @@ void Server::claim_anew() {
     client.claims = false;
     client.robots.clear();
     client.reported_rejections.clear();
+    client.answer_times = {};
+    client.late = client.rejected = client.resent_count = 0;
   }
   for (const std::uint64_t id : gone) forget(id);
   std::ranges::sort(staying);
@@ -262,7 +259,8 @@ void Server::admit(const lockstep::Leases::Granted& granted) {
   {
     const std::lock_guard lock(mutex_);
     const lockstep::Leases::Lease& lease = *run_->leases.lease(granted.client);
-    if (run_->started) frames = frames_under_way(lease.robots);
+    // Of a restored run there are some before its first tick.
+    if (run_->started || run_->book.options().from) frames = frames_under_way(lease.robots);
     answer.client = granted.client;
     answer.run = run_number_;
     answer.epoch = lease.epoch;
@@ -286,6 +284,7 @@ void Server::admit(const lockstep::Leases::Granted& granted) {
 wire::StartReason Server::why_it_starts(const std::vector<std::uint32_t>& robots, const Client& client) const {
   const bool takes_over = std::ranges::any_of(robots, [&](auto robot) { return run_->was_driven[robot]; });
   if (run_->started && takes_over) return wire::StartReason::takeover;
+  if (!run_->started && run_->book.options().from) return wire::StartReason::restored;
   return client.drove ? wire::StartReason::reset : wire::StartReason::first;
 }
 

@@ -1,6 +1,7 @@
 #include "server/simulation/simulation.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -134,12 +135,17 @@ CommandFault Simulation::unfit(std::uint32_t robot, const Channel& channel, doub
   return {finite ? CommandFault::Reason::out_of_range : CommandFault::Reason::not_finite, channel.name, text.str()};
 }
 
-void Simulation::set_command(std::uint32_t robot, std::span<const double> values) {
-  std::ranges::copy(values, robots_[robot].command.begin());
+bool Simulation::set_command(std::uint32_t robot, std::span<const double> values) {
+  std::vector<double>& command = robots_[robot].command;
+  // As they are hashed: 0.0 and -0.0 differ.
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  if (std::ranges::equal(command, values, {}, bits, bits)) return false;
+  std::ranges::copy(values, command.begin());
+  return true;
 }
 
-void Simulation::set_neutral_command(std::uint32_t robot) {
-  robots_[robot].command = neutral_values(kinds_[robots_[robot].kind]);
+bool Simulation::set_neutral_command(std::uint32_t robot) {
+  return set_command(robot, neutral_values(kinds_[robots_[robot].kind]));
 }
 
 void Simulation::step() {

@@ -100,10 +100,12 @@ class Simulation {
   void on_action(const std::string& name, ActionHandler handler);
 
   /// From this tick on the robot does this, until told otherwise. `values` must have passed `check_command`. Until the
-  /// first call every channel has its neutral value.
-  void set_command(std::uint32_t robot, std::span<const double> values);
+  /// first call every channel has its neutral value. Whether its bits are others than those that stood before.
+  bool set_command(std::uint32_t robot, std::span<const double> values);
   /// The same with every channel's neutral value.
-  void set_neutral_command(std::uint32_t robot);
+  bool set_neutral_command(std::uint32_t robot);
+  /// That acts in the next step, unless the robot's battery is empty by then.
+  std::span<const double> command(std::uint32_t robot) const { return robots_[robot].command; }
 
   /// Actuates in the order of the robots, steps the world to the next boundary and senses there. A body whose state
   /// breaks is quarantined; in a `strict` world std::runtime_error is thrown, which names it. The events of the new

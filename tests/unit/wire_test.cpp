@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "idl/control.hpp"
 #include "tests/support/free_domain.hpp"
 
 namespace cohort::wire {
@@ -38,6 +39,12 @@ std::string show(const AdmittedRobot& r) {
 }
 std::string show(const Parameter& p);
 std::string show(const Team& t);
+std::string show(const Vector3& v);
+std::string show(const Pose& p);
+std::string show(const Twist& t);
+std::string show(const EntityState& s);
+std::string show(const ControllerStatus& s);
+std::string show(const SimulationStatus& s);
 template <class List>
 requires requires(const List& list) { list.size(), list.data()[0]; }
 std::string show_list(const List& list) {
@@ -70,6 +77,38 @@ std::string show(const Command& m) {
 }
 std::string show(const WorldState& m) {
   return show_all(m.run, m.tick, m.time_ns, m.state_hash) + show_list(m.robots) + show_list(m.poses);
+}
+std::string show(const Vector3& v) { return show_all(v.x, v.y, v.z); }
+std::string show(const Pose& p) {
+  const Quaternion& q = p.orientation;
+  return show(p.position) + show_all(q.x, q.y, q.z, q.w);
+}
+std::string show(const Twist& t) { return show(t.linear) + show(t.angular); }
+std::string show(const EntityState& s) { return show(s.entity) + show(s.pose) + show(s.twist); }
+std::string show(const ControllerStatus& s) {
+  return show_all(s.label, s.client, s.alive, s.awaited, s.awaited_ns, s.due_tick, s.answers, s.late, s.rejected,
+                  s.resent, s.answer_p50_ns, s.answer_p99_ns) +
+         show_list(s.robots);
+}
+std::string show(const SimulationStatus& s) {
+  return show_all(s.experiment, s.seed, s.started, s.step_ns, s.duration_ns, s.speed, s.real_time_factor, s.state_hash,
+                  s.robots, s.awaited_count, s.waiting_ns) +
+         show_list(s.awaited) + show_list(s.controllers);
+}
+std::string show(const Request& m) {
+  return show_all(m.client, m.minor, m.number, static_cast<std::uint32_t>(m.operation), m.label,
+                  static_cast<std::uint32_t>(m.state), m.scope, m.set_seed, m.seed, m.steps, m.speed, m.filter,
+                  m.entity, m.allow_renaming, m.uri, m.resource_string, m.set_pose, m.pose, m.set_twist, m.twist, m.on,
+                  m.set_intensity, m.intensity, m.set_color, m.color, m.link, m.force, m.torque, m.duration_ns, m.size,
+                  m.offset) +
+         show_list(m.data);
+}
+std::string show(const Reply& m) {
+  return show_all(m.client, m.number, static_cast<std::uint32_t>(m.operation), static_cast<std::uint32_t>(m.result),
+                  m.error_message, static_cast<std::uint32_t>(m.state), m.run, m.tick, m.time_ns, m.entity, m.size,
+                  m.offset) +
+         show_list(m.features) + show_list(m.spawn_formats) + show_list(m.entities) + show_list(m.states) +
+         show_list(m.status) + show_list(m.data);
 }
 std::string show(const Report& m) {
   return show_all(m.client, m.run, static_cast<std::uint32_t>(m.kind), m.tick, m.reason, m.text);
@@ -223,6 +262,85 @@ TEST_F(WireTest, AReportArrivesUnchangedEitherWay) {
                                     {.client = 5}};
   expect_round_trip(free.server, client, reports);
   expect_round_trip(client, free.server, reports);
+}
+
+TEST_F(WireTest, ARequestArrivesUnchanged) {
+  Request all;
+  all.client = 5;
+  all.number = ~std::uint64_t{0};
+  all.operation = Operation::spawn_entity;
+  all.label = "Näherung";
+  all.state = SimulationState::quitting;
+  all.scope = 255;
+  all.set_seed = all.allow_renaming = all.set_pose = all.set_twist = all.on = all.set_intensity = all.set_color = true;
+  all.seed = 1;
+  all.steps = 2;
+  all.speed = 0.1;
+  all.filter = "f";
+  all.entity = "team/sbot_1";
+  all.uri = "u";
+  all.resource_string = long_text;
+  all.pose = {{1, 2, 3}, {0.1, 0.2, 0.3, 0.4}};
+  all.twist = {{4, 5, 6}, {7, 8, 9}};
+  all.intensity = -0.0;
+  all.color = {0.1, 0.2, 0.3};
+  all.link = "l";
+  all.force = {-1, -2, -3};
+  all.torque = {-4, -5, -6};
+  all.duration_ns = -7;
+  all.size = 3;
+  all.offset = 4;
+  all.data.assign(largest_part, 0xfe);
+  expect_round_trip<Request>(client, free.server, {all, {.client = 5}, all});
+}
+
+TEST_F(WireTest, AReplyArrivesUnchanged) {
+  const ControllerStatus controller{.label = "c",
+                                    .client = 1,
+                                    .robots = {2, 3},
+                                    .alive = true,
+                                    .awaited = true,
+                                    .awaited_ns = 4,
+                                    .due_tick = 5,
+                                    .answers = 6,
+                                    .late = 7,
+                                    .rejected = 8,
+                                    .resent = 9,
+                                    .answer_p50_ns = 10,
+                                    .answer_p99_ns = 11};
+  const SimulationStatus status{.experiment = "e",
+                                .seed = 1,
+                                .started = true,
+                                .step_ns = 2,
+                                .duration_ns = 3,
+                                .speed = 4,
+                                .real_time_factor = 5,
+                                .state_hash = 6,
+                                .robots = 7,
+                                .awaited_count = 8,
+                                .awaited = {"a", "b"},
+                                .waiting_ns = 9,
+                                .controllers = {controller, {}, controller}};
+  Reply all;
+  all.client = 5;
+  all.number = 6;
+  all.operation = Operation::get_status;
+  all.result = ResultCode::not_permitted;
+  all.error_message = "no";
+  all.state = SimulationState::paused;
+  all.run = 7;
+  all.tick = 8;
+  all.time_ns = 9;
+  all.entity = "n";
+  all.features = {1, 2};
+  all.spawn_formats = {"sdf"};
+  all.entities = std::vector<std::string>(3000, "team/sbot");
+  all.states = {{"x", {{1, 2, 3}, {4, 5, 6, 7}}, {{8, 9, 10}, {11, 12, 13}}}, {}};
+  all.status = {status, {}, status};
+  all.size = 10;
+  all.offset = 11;
+  all.data.assign(largest_part, 3);
+  expect_round_trip<Reply>(free.server, client, {all, {.client = 5}, all});
 }
 
 TEST_F(WireTest, ALateReaderGetsWhatTheServerHasToSayToLateJoiners) {

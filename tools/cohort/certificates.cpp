@@ -85,21 +85,27 @@ struct Allowed {
 };
 
 // docs/protocol.md, "Topics".
-std::vector<Allowed> allowed_to(wire::Role role) {
+std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
+  std::vector<Allowed> allowed;
   switch (role) {
     case wire::Role::server: return {{"publish", {"cohort/v1/*"}, "*"}, {"subscribe", {"cohort/v1/*"}, "*"}};
     case wire::Role::controller:
-      return {{"publish", {"cohort/v1/join", "cohort/v1/command", "cohort/v1/report"}, ""},
-              {"subscribe", {"cohort/v1/admit", "cohort/v1/observation", "cohort/v1/report"}, "c*"},
-              {"subscribe", {"cohort/v1/robot_description"}, ""}};
+      allowed = {{"publish", {"cohort/v1/join", "cohort/v1/command", "cohort/v1/report"}, ""},
+                 {"subscribe", {"cohort/v1/admit", "cohort/v1/observation", "cohort/v1/report"}, "c*"},
+                 {"subscribe", {"cohort/v1/robot_description"}, ""}};
+      if (may_control) {
+        allowed[0].topics.push_back("cohort/v1/request");
+        allowed[1].topics.push_back("cohort/v1/reply");
+      }
+      return allowed;
     case wire::Role::observer: break;
   }
   return {{"subscribe", {"cohort/v1/robot_description"}, ""}, {"subscribe", {"cohort/v1/world_state"}, "view"}};
 }
 
-std::string rules_of(wire::Role role) {
+std::string rules_of(wire::Role role, bool may_control) {
   std::string text;
-  for (const Allowed& allowed : allowed_to(role)) {
+  for (const Allowed& allowed : allowed_to(role, may_control)) {
     text += fmt::format("        <{}><topics>", allowed.verb);
     for (const char* topic : allowed.topics) text += fmt::format("<topic>{}</topic>", topic);
     text += fmt::format("</topics><partitions><partition>{}</partition></partitions></{}>\n", allowed.partition,
@@ -128,10 +134,13 @@ void make_side(const NewIdentity& identity, wire::Role role, const fs::path& mak
   openssl(making,
           {"x509", "-req", "-in", "request.pem", "-CA", std::string(wire::authority_file), "-CAkey", authority_key,
            "-CAcreateserial", "-days", days, "-sha256", "-out", prefix + std::string(wire::certificate_file)});
-  sign(making, fmt::format(permissions, side, subject_in_permissions(identity.name, side), rules_of(role)),
-       prefix + std::string(wire::permissions_file));
+  sign(
+      making,
+      fmt::format(permissions, side, subject_in_permissions(identity.name, side), rules_of(role, identity.may_control)),
+      prefix + std::string(wire::permissions_file));
   for (const auto& file : {wire::authority_file, wire::governance_file}) fs::copy_file(making / file, folder / file);
-  wire::Identity described{identity.name, role, identity.door, identity.protection, identity.robots};
+  const wire::Identity described{identity.name,       role, identity.door, identity.protection, identity.robots,
+                                 identity.may_control};
   write_file("an identity", folder / "identity", wire::identity_text(described));
   for (const auto& entry : fs::directory_iterator(folder))
     fs::permissions(entry.path(), fs::perms::owner_read | fs::perms::owner_write);

@@ -16,6 +16,7 @@ struct NewIdentity {
   std::uint32_t door = 0;
   std::string protection = "sign";
   std::vector<std::string> robots{};
+  bool may_control = false;
 };
 
 /// Makes the two sides of a door in the folders `server` and `client`, which must not exist yet: an authority of its

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/control.hpp"
 #include "server/sensing/take_samples.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/thesis.hpp"
@@ -33,6 +34,15 @@ enum class Controllers {
   external,    ///< started by somebody else
 };
 
+/// What a recording holds, where the experiment says something else.
+struct RecordOptions {
+  std::filesystem::path file;  ///< empty: no recording
+  std::optional<double> pose_rate{};                  ///< [Hz]
+  std::optional<double> observation_rate{};           ///< [Hz]
+  std::vector<std::string> robots{};                  ///< selectors: whose observations
+  std::optional<double> snapshot_interval{};          ///< [s]
+};
+
 struct RunCommand {
   std::vector<std::filesystem::path> files;  ///< experiments, one after the other
   std::uint64_t repeat = 1;                  ///< how often all of them are run
@@ -45,7 +55,10 @@ struct RunCommand {
   std::filesystem::path plot;              ///< the same
   Viewpoint viewpoint = Viewpoint::above;  ///< of the plot
   std::filesystem::path csv;               ///< the same: what the experiment prints
+  RecordOptions record;
   bool quiet = false;
+  bool paused = false;                 ///< at first
+  std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
   std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
   std::string network = "127.0.0.1";
   std::filesystem::path secure;  ///< folder of identities; empty: without security
@@ -73,6 +86,16 @@ int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop
 
 int check(const std::filesystem::path& file, Log& log);
 
+struct ReplayCommand {
+  std::filesystem::path file;
+  bool verify = false;         ///< compare the state of every boundary
+  double from = 0.0;           ///< log time [s]
+  std::optional<double> to;    ///< the same; none: to the end
+  unsigned threads = 0;        ///< 0: one for each core
+  bool quiet = false;
+};
+int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop);
+
 struct ExportCommand {
   std::filesystem::path file;
   std::filesystem::path output;       ///< .sdf or .yaml
@@ -87,6 +110,28 @@ struct SamplesCommand {
   sensing::SampleGrid grid;
 };
 int take_samples(const SamplesCommand& command, Log& log);
+
+/// `cohort ctl`: docs/cli.md.
+struct CtlCommand {
+  enum class What {
+    request,  ///< one, and its reply
+    status,
+    entities,
+    save,
+    load,
+  };
+  What what = What::request;
+  wire::Request request{};
+  std::string server;
+  std::vector<std::uint32_t> domains{};  ///< of the server; the first is used. Empty: 0
+  std::filesystem::path secure{};        ///< folder of an identity; empty: without security
+  std::filesystem::path file{};          ///< of a snapshot
+  std::filesystem::path model{};         ///< of what is spawned: a file, or the name of a model of the world
+  std::optional<double> timeout{};       ///< [s]; none: by operation
+  bool watch = false;
+  bool json = false;
+};
+int ctl(CtlCommand command, Log& log, const std::atomic<bool>& stop);
 
 /// `cohort security`: docs/security.md.
 struct SecurityCommand {

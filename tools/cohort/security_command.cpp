@@ -22,13 +22,26 @@ fs::path client_folder(const fs::path& folder, const std::string& name) { return
 
 std::string joined(const std::vector<std::string>& texts) { return fmt::format("{}", fmt::join(texts, ",")); }
 
+// What an identity may do besides driving robots stands among their selectors.
+void take_rights(NewIdentity& identity, const std::vector<std::string>& selectors) {
+  for (const std::string& selector : selectors) {
+    if (selector == "control") identity.may_control = true;
+    if (selector != "control" && selector != "none") identity.robots.push_back(selector);
+  }
+}
+
+std::string rights_of(const std::vector<std::string>& robots, bool may_control) {
+  if (robots.empty()) return may_control ? "control the run, and drive nothing" : "look on, and drive nothing";
+  return "drive " + joined(robots) + (may_control ? ", and control the run" : "");
+}
+
 // `red=0..3,red/*`
 NewIdentity parse_client(const std::string& text) {
   const auto equals = text.find('=');
   NewIdentity identity;
   identity.name = text.substr(0, equals);
-  if (equals != std::string::npos) identity.robots = split_selectors(std::string_view(text).substr(equals + 1));
-  if (identity.robots.empty())
+  if (equals != std::string::npos) take_rights(identity, split_selectors(std::string_view(text).substr(equals + 1)));
+  if (identity.robots.empty() && !identity.may_control)
     throw std::invalid_argument(
         fmt::format("'{}' does not say which robots that client may drive; expected such as {}=explorers/*", text,
                     identity.name.empty() ? "red" : identity.name));
@@ -76,8 +89,7 @@ void initialise(const SecurityCommand& command) {
       folder.string());
   for (const NewIdentity& identity : identities)
     std::cout << fmt::format("  --secure {}  {}\n", client_folder(folder, identity.name).string(),
-                             identity.role == wire::Role::observer ? "may look on, and drive nothing"
-                                                                   : "may drive " + joined(identity.robots));
+                             "may " + rights_of(identity.robots, identity.may_control));
 }
 
 void add(const SecurityCommand& command) {
@@ -90,7 +102,10 @@ void add(const SecurityCommand& command) {
       throw std::invalid_argument(fmt::format(
           "{} has a client '{}' already; to make it anew, remove {} and {}", command.folder.string(), command.name,
           server_folder(command.folder, command.name).string(), client_folder(command.folder, command.name).string()));
-  NewIdentity identity{.name = command.name, .protection = doors.front().protection, .robots = command.robots};
+  NewIdentity identity{.name = command.name, .protection = doors.front().protection};
+  take_rights(identity, command.robots);
+  if (identity.robots.empty() && !identity.may_control)
+    throw std::invalid_argument(fmt::format("'{}' could do nothing: expected robots or 'control'", command.name));
   // The first that is free: a client that was removed leaves a gap.
   while (std::ranges::find(doors, identity.door, &wire::Identity::door) != doors.end()) ++identity.door;
   if (identity.door > wire::last_door)
@@ -98,9 +113,8 @@ void add(const SecurityCommand& command) {
   const fs::path client = client_folder(command.folder, identity.name);
   if (fs::exists(client)) throw std::invalid_argument(fmt::format("{} exists already", client.string()));
   make_door(identity, server_folder(command.folder, identity.name), client, command.days);
-  std::cout << fmt::format(
-      "{} is made: it may drive {}. The server takes it when it is started again with this folder.\n", client.string(),
-      joined(identity.robots));
+  std::cout << fmt::format("{} is made: it may {}. The server takes it when it is started again with this folder.\n",
+                           client.string(), rights_of(identity.robots, identity.may_control));
 }
 
 void list(const SecurityCommand& command) {
@@ -112,7 +126,9 @@ void list(const SecurityCommand& command) {
     const bool is_over = end < std::time(nullptr);
     std::cout << fmt::format("{:<20} {:<6} {:<11} {:<16} {}{}\n", door.name, door.door,
                              door.protection == "encrypt" ? "encrypted" : "signed", until,
-                             door.robots.empty() ? "nothing, only look on" : joined(door.robots),
+                             door.robots.empty()
+                                 ? door.may_control ? "nothing; controls the run" : "nothing, only look on"
+                                 : joined(door.robots) + (door.may_control ? "; controls the run" : ""),
                              is_over ? "   EXPIRED" : "");
   }
 }
@@ -134,19 +150,20 @@ void add_security_commands(CLI::App& app, SecurityCommand& command) {
   add_folder(*init_app);
   init_app
       ->add_option("--client", command.clients,
-                   "A client and what it may drive; may be repeated (default: controllers=all)")
+                   "A client and what it may drive, control too; may be repeated (default: controllers=all)")
       ->allow_extra_args(false)
       ->type_name("NAME=SEL[,SEL...]");
   init_app->add_flag("--encrypt", command.encrypt, "Encrypt all messages (default: sign them)");
   add_days(*init_app);
   init_app->callback([&] { command.what = SecurityCommand::What::init; });
-  init_app->footer("Example: cohort security init keys --client red=red/* --client blue=0..3,blue/*");
+  init_app->footer("Example: cohort security init keys --client red=red/* --client operator=none,control");
 
   CLI::App* add_app = app.add_subcommand("add", "Make one more client");
   add_folder(*add_app);
   add_app->add_option("NAME", command.name, "Of the client: letters, digits, _ and -")->required()->type_name("");
   add_app
-      ->add_option("--robots", command.robots, "What it may drive: all, an id, ids A..B, or a name with *; by commas")
+      ->add_option("--robots", command.robots,
+                   "What it may drive: all, an id, ids A..B, a name with *, none; and control; by commas")
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false)

@@ -101,10 +101,10 @@ Serving::Serving(const RunCommand& command, const description::Experiment& exper
   open_domains(command, external || has_keyboard(experiment), processes, domains_, participants_);
   server_.emplace(participants_);
   if (command.secure.empty() && !command.network.starts_with("127.") && command.network != "localhost")
-    log.warning(
-        fmt::format("whoever reaches {} can drive robots and end this run: there is no security. 'cohort security "
-                    "init DIR' makes identities for --secure DIR; without them, only use a network of your own",
-                    command.network));
+    log.warning(fmt::format(
+        "whoever reaches {} can drive robots, control this run and end it: there is no security. 'cohort security "
+        "init DIR' makes identities for --secure DIR; without them, only use a network of your own",
+        command.network));
   const std::string serving =
       fmt::format("serving {} on {}, {}{}", counted(experiment.world.robots.size(), "robot"), command.network,
                   domains_text(domains_), command.secure.empty() ? "" : ", secure");
@@ -136,7 +136,7 @@ session::RunResult Serving::run(const description::Experiment& experiment, Simul
                                 const session::RunOptions& options, const session::RunListener& listener,
                                 const std::atomic<bool>& stop, bool is_last) {
   session::RunResult result = server_->run(experiment, simulation, options, listener, stop);
-  if (!is_last && result.end == session::RunResult::End::finished) return result;
+  if (result.next || (!is_last && result.end == session::RunResult::End::finished)) return result;
   if (children_) children_->stop_restarting();
   server_->dismiss(result);
   if (children_) children_->let_finish();

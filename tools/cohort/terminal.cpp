@@ -45,16 +45,19 @@ void Terminal::progress(const session::Progress& progress) {
                                                       : "{:.2f} of {:.2f} s simulated, {:.1f} x real time"),
         seconds(progress.time), seconds(progress.duration), progress.real_time_factor);
   if (waits) line += (line.empty() ? "" : log_.format() == LogFormat::text ? "   " : ", ") + awaited;
+  if (progress.paused) line += log_.format() == LogFormat::text ? "   paused" : ", paused";
   if (waits && progress.started) line += fmt::format(", {:.1f} s", seconds(progress.waiting));
 
   if (line.empty()) return log_.clear_progress();
   const auto now = std::chrono::steady_clock::now();
-  const bool news = awaited != last_awaited_ && waits;
+  const bool news = (awaited != last_awaited_ && waits) || progress.paused != was_paused_;
   last_awaited_ = awaited;
+  was_paused_ = progress.paused;
   if (!log_.rewrites_progress() && !news && now - last_line_ < line_interval) return;
   last_line_ = now;
   LogFields fields = {{"sim_time_s", seconds(progress.time)}, {"duration_s", seconds(progress.duration)}};
   if (progress.started) fields.emplace_back("real_time_factor", progress.real_time_factor);
+  if (progress.paused) fields.emplace_back("paused", true);
   if (waits) fields.emplace_back("waiting_for", progress.awaited);
   log_.progress(line, fields);
 }
@@ -68,7 +71,7 @@ void Terminal::event(const session::Event& event) {
 LogLevel Terminal::level_of(const session::Event& event) {
   const std::string& kind = event.kind;
   if (kind == "event" || kind == "joined" || kind == "back" || kind == "superseded" || kind == "failed" ||
-      kind == "stopped")
+      kind == "control" || kind == "stopped")
     return LogLevel::info;
   if (kind == "lost" && options_.own_controllers) return LogLevel::info;
   // A frame that is sent again may be answered twice.

@@ -28,6 +28,7 @@ class Terminal {
   Log& log_;
   Options options_;
   std::string last_awaited_;
+  bool was_paused_ = false;
   std::chrono::steady_clock::time_point last_line_;
   bool miss_was_told_ = false;
 };

@@ -1,0 +1,181 @@
+#include "client_sdk/src/control_client.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <random>
+#include <thread>
+#include <utility>
+
+namespace cohort {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr auto look_interval = 10ms;
+constexpr std::chrono::milliseconds first_interval{50};  // after which a request is asked again
+constexpr std::chrono::milliseconds longest_interval{1000};
+constexpr auto server_may_be_away = 2s;
+
+std::uint64_t random_id() {
+  std::random_device device;
+  const std::uint64_t high = device();
+  return high << 32 | device() | 1;
+}
+
+std::string host_name() {
+  char name[256] = {};
+  ::gethostname(name, sizeof(name) - 1);
+  return name;
+}
+
+std::optional<wire::Identity> identity_of(const ControlOptions& options) {
+  if (options.secure.empty()) return std::nullopt;
+  wire::Identity identity = wire::read_identity(options.secure);
+  if (!identity.may_control)
+    throw wire::WireError("the identity in " + options.secure +
+                          " may not control a run; one that may is made by 'cohort security add DIR NAME --robots "
+                          "none,control'");
+  return identity;
+}
+
+}  // namespace
+
+struct ControlClient::State {
+  explicit State(const ControlOptions& options)
+      : label(options.label + " (process " + std::to_string(::getpid()) + " on " + host_name() + ")"),
+        participant(wire::Participant::client(options.domain, options.server, identity_of(options))),
+        replies(participant, {[this](const wire::Reply& reply, const wire::Sender&) { receive(reply); }, nullptr},
+                wire::partition_of(id), static_cast<int>(wire::requests_under_way)),
+        requests(participant) {}
+
+  // On a thread of DDS.
+  void receive(const wire::Reply& reply) {
+    if (reply.client != id) return;
+    {
+      const std::lock_guard lock(mutex);
+      if (awaited != reply.number) return;  // a repetition
+      received = reply;
+    }
+    wake.notify_one();
+  }
+
+  bool sees_server() {
+    const bool there = requests.matched() > 0;
+    if (there) seen_at = Clock::now();
+    return there;
+  }
+
+  const std::uint64_t id = random_id();
+  const std::string label;
+  std::uint64_t next_number = 1;
+  std::optional<Clock::time_point> seen_at;  // a server, for the last time
+
+  std::mutex mutex;
+  std::condition_variable wake;
+  std::uint64_t awaited = 0;
+  std::optional<wire::Reply> received;
+
+  wire::Participant participant;
+  wire::Reader<wire::Reply> replies;
+  wire::Writer<wire::Request> requests;
+};
+
+ControlClient::ControlClient(const ControlOptions& options) : state_(std::make_unique<State>(options)) {}
+ControlClient::~ControlClient() = default;
+
+bool ControlClient::server_is_gone() const {
+  return state_->seen_at && !state_->sees_server() && Clock::now() - *state_->seen_at > server_may_be_away;
+}
+
+bool ControlClient::wait_for_server(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
+  const auto until = Clock::now() + at_most;
+  while (!state_->sees_server()) {
+    if (stop || Clock::now() > until) return false;
+    std::this_thread::sleep_for(look_interval);
+  }
+  return true;
+}
+
+std::optional<wire::Reply> ControlClient::ask(wire::Request request, std::chrono::milliseconds at_most,
+                                              const std::atomic<bool>& stop) {
+  State& state = *state_;
+  const auto begin = Clock::now();
+  const auto is_late = [&] { return Clock::now() - begin > at_most; };
+  request.client = state.id;
+  request.number = state.next_number++;
+  request.label = state.label;
+  {
+    const std::lock_guard lock(state.mutex);
+    state.awaited = request.number;
+    state.received.reset();
+  }
+  Clock::time_point ask_at = begin;
+  std::chrono::milliseconds interval = first_interval;
+  while (!stop && !is_late() && !server_is_gone()) {
+    // What is written before anybody reads it is lost.
+    if (state.sees_server() && Clock::now() >= ask_at) {
+      state.requests.write(request);
+      ask_at = Clock::now() + interval;
+      interval = std::min(longest_interval, interval + interval / 2);
+    }
+    std::unique_lock lock(state.mutex);
+    if (state.wake.wait_for(lock, look_interval, [&] { return state.received.has_value(); }))
+      return std::exchange(state.received, std::nullopt);
+  }
+  return std::nullopt;
+}
+
+wire::Reply ControlClient::expect(wire::Request request, std::chrono::milliseconds at_most,
+                                  const std::atomic<bool>& stop) {
+  const std::string what = wire::name_of(request.operation);
+  const auto reply = ask(std::move(request), at_most, stop);
+  if (!reply && stop) throw ControlError("interrupted");
+  if (!reply && server_is_gone()) throw ControlError("the server has gone");
+  if (!reply) throw ControlError("the server does not answer " + what);
+  if (reply->result != wire::ResultCode::ok) throw ControlError(reply->error_message, reply->result);
+  return *reply;
+}
+
+std::vector<std::byte> ControlClient::save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
+  wire::Request request;
+  request.operation = wire::Operation::save_snapshot;
+  const std::uint64_t size = expect(request, at_most, stop).size;
+  if (size > wire::largest_data) throw ControlError("the server says that its snapshot is larger than may be");
+  std::vector<std::byte> bytes;
+  bytes.reserve(size);
+  request.operation = wire::Operation::get_data;
+  while (bytes.size() < size) {
+    request.offset = bytes.size();
+    const wire::Reply part = expect(request, at_most, stop);
+    if (part.offset != bytes.size() || part.size != size || part.data.empty() || part.data.size() > size - bytes.size())
+      throw ControlError("the server sends another part of the snapshot than it was asked for");
+    const auto data = std::as_bytes(std::span(part.data));
+    bytes.insert(bytes.end(), data.begin(), data.end());
+  }
+  return bytes;
+}
+
+wire::Reply ControlClient::load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,
+                                const std::atomic<bool>& stop) {
+  wire::Request request;
+  request.operation = wire::Operation::put_data;
+  request.size = snapshot.size();
+  while (request.offset < snapshot.size()) {
+    const auto part =
+        snapshot.subspan(request.offset, std::min<std::size_t>(wire::largest_part, snapshot.size() - request.offset));
+    const auto* const begin = reinterpret_cast<const std::uint8_t*>(part.data());
+    request.data.assign(begin, begin + part.size());
+    expect(request, at_most, stop);
+    request.offset += part.size();
+  }
+  wire::Request load;
+  load.operation = wire::Operation::load_snapshot;
+  return expect(load, at_most, stop);
+}
+
+}  // namespace cohort

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "idl/control.hpp"
+
+namespace cohort {
+
+struct ControlOptions {
+  std::string server = "127.0.0.1";
+  std::uint32_t domain = 0;
+  std::string secure{};          ///< folder of an identity that may control (docs/security.md); empty: without security
+  std::string label = "client";  ///< what the server calls this one; process and host are added
+};
+
+/// The server said no, or did not say what had to come. `result` is its word for programs.
+class ControlError : public std::runtime_error {
+ public:
+  explicit ControlError(const std::string& text, wire::ResultCode code = wire::ResultCode::operation_failed)
+      : std::runtime_error(text), result(code) {}
+  wire::ResultCode result;
+};
+
+/// Controls a run of a server: docs/protocol.md, "Control", the client's side. Requests are asked again until their
+/// reply comes; the server does each once. One thread uses it.
+class ControlClient {
+ public:
+  /// Does not wait for the server. Throws wire::WireError if its address or the identity cannot be used.
+  explicit ControlClient(const ControlOptions& options);
+  ~ControlClient();
+
+  /// Waits until a server is there; false if none is within `at_most`, or `stop` is set.
+  bool wait_for_server(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+
+  /// Asks and waits for the reply, whatever its result is. Nothing if none comes within `at_most`, `stop` is set, or
+  /// the server goes; what was asked for may happen all the same. Client and number are filled in.
+  std::optional<wire::Reply> ask(wire::Request request, std::chrono::milliseconds at_most,
+                                 const std::atomic<bool>& stop);
+  /// A server was there, and is there no more.
+  bool server_is_gone() const;
+
+  /// The snapshot of the run as it stands at the next boundary (SaveSnapshot, GetData). Throws ControlError; `at_most`
+  /// counts for each of its parts.
+  std::vector<std::byte> save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+  /// Lets the run go on from a snapshot (PutData, LoadSnapshot). The reply of the run that does. Throws ControlError.
+  wire::Reply load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,
+                   const std::atomic<bool>& stop);
+
+ private:
+  struct State;
+  wire::Reply expect(wire::Request request, std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cohort

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/core/snapshot.hpp"
+#include "server/description/experiment.hpp"
+
+namespace cohort {
+class Simulation;
+}
+
+namespace cohort::session {
+
+class Exchange;
+
+/// A run at a boundary: its world, and what its barrier holds. Whoever goes on from it, here or in another process, has
+/// the same bits from there on, if its controllers answer as those did.
+struct SessionSnapshot {
+  std::string experiment;  ///< its name
+  std::uint64_t seed = 0;
+  std::uint64_t tick = 0;
+  std::vector<std::byte> simulation;  ///< Simulation::save
+  std::vector<std::byte> exchange;    ///< Exchange::save
+};
+
+SessionSnapshot take_snapshot(const description::Experiment& experiment, const Simulation& simulation,
+                              const Exchange& exchange);
+
+/// As they are kept in a file: a mark, the format's version, that of Cohort, the above, and a hash of it all.
+std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot);
+/// Throws SnapshotError if they are no snapshot, of another version of Cohort, damaged or cut short.
+SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes);
+
+/// Throws SnapshotError if it is of another experiment. Its seed may be another than this one's.
+void expect_same_experiment(const SessionSnapshot& snapshot, const description::Experiment& experiment);
+
+/// Brings a simulation that was built of the same experiment and seed, and not used yet, to where the snapshot is.
+/// Throws SnapshotError; the simulation is then not to be used.
+void restore(const SessionSnapshot& snapshot, Simulation& simulation);
+/// The same for its exchange, afterwards.
+void restore(const SessionSnapshot& snapshot, Exchange& exchange);
+
+/// Throws SnapshotError, which names the file.
+SessionSnapshot read_snapshot(const std::filesystem::path& file);
+
+}  // namespace cohort::session

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "client_sdk/src/control_client.hpp"
+#include "tests/support/field_of_robots.hpp"
+
+namespace cohort::testing {
+
+/// A served field of robots with its controllers, for tests that control it.
+class ControlledRun {
+ public:
+  explicit ControlledRun(const FieldOfRobots& field, const std::vector<std::string>& more = {}, bool with_host = true)
+      : field_(field), server_(field.serve(domain_, more), {{"COHORT_LOG", "info"}}) {
+    if (with_host) attach();
+  }
+  void attach(const std::string& robots = "all") {
+    hosts_.push_back(std::make_unique<Process>(FieldOfRobots::host(domain_, robots)));
+  }
+  Process& host(std::size_t index = 0) { return *hosts_.at(index); }
+  Process& server() { return server_; }
+  const ReservedDomain& domain() const { return domain_; }
+
+  std::vector<std::string> ctl(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> command = {cohort_program(), "ctl", "--domain", domain_.text()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return command;
+  }
+  /// `cohort ctl` as people type it; what it printed, if it says that it is done.
+  std::string done(const std::vector<std::string>& arguments) const {
+    const Ended ended = run_to_end(ctl(arguments));
+    EXPECT_EQ(ended.exit_code, 0) << arguments.front() << ": " << ended.err << ended.out;
+    return ended.out;
+  }
+  nlohmann::json status() const { return nlohmann::json::parse(done({"status", "--json"})); }
+  std::uint64_t tick() const { return status()["tick"]; }
+  /// Asks until the status has what `condition` wants; false if it does not in time.
+  template <class Condition>
+  bool comes_to(Condition condition) const {
+    const auto until = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < until)
+      if (condition(status())) return true;
+    return false;
+  }
+  /// The run's summary, once all are gone.
+  nlohmann::json finish() {
+    EXPECT_EQ(server_.wait_for_exit(), 0) << server_.output();
+    return field_.summary();
+  }
+
+ private:
+  const FieldOfRobots& field_;
+  ReservedDomain domain_;
+  Process server_;
+  std::vector<std::unique_ptr<Process>> hosts_;
+};
+
+}  // namespace cohort::testing

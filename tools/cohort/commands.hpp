@@ -86,14 +86,45 @@ int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop
 
 int check(const std::filesystem::path& file, Log& log);
 
+/// Log times of a recording, both in it [s].
+struct RecordingPart {
+  double from = 0.0;
+  std::optional<double> to{};  ///< none: to the end
+};
+
 struct ReplayCommand {
   std::filesystem::path file;
-  bool verify = false;         ///< compare the state of every boundary
-  double from = 0.0;           ///< log time [s]
-  std::optional<double> to;    ///< the same; none: to the end
-  unsigned threads = 0;        ///< 0: one for each core
+  bool verify = false;  ///< compare the state of every boundary
+  RecordingPart part{};
+  unsigned threads = 0;  ///< 0: one for each core
   bool quiet = false;
 };
+struct ExportDataCommand {
+  std::filesystem::path file;
+  std::filesystem::path csv;   ///< folder; empty: hdf5
+  std::filesystem::path hdf5;  ///< file; one of the two is not empty
+  std::vector<std::string> robots;
+  RecordingPart part{};
+};
+int export_data(const ExportDataCommand& command, Log& log);
+
+struct PlotCommand {
+  std::filesystem::path file;
+  std::filesystem::path output;     ///< .svg or .png
+  std::vector<std::string> what{};  ///< `speed` and channels; empty: paths
+  std::vector<std::string> robots{};
+  Viewpoint viewpoint = Viewpoint::above;  ///< of paths
+  RecordingPart part{};
+};
+int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop);
+
+struct DiffCommand {
+  std::filesystem::path first;
+  std::filesystem::path second;
+  bool json = false;
+};
+int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop);
+
 int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop);
 
 struct ExportCommand {

@@ -121,15 +121,55 @@ void add_record_options(CLI::App& app, RecordOptions& options) {
       ->type_name("S");
 }
 
+void add_part_options(CLI::App& app, RecordingPart& part) {
+  app.add_option("--from", part.from, "Time in the recording to begin at, in simulated seconds (default: 0)")
+      ->check(number_from_zero(most_seconds))
+      ->type_name("S");
+  app.add_option("--to", part.to, "Time to end at (default: the end)")
+      ->check(number_from_zero(most_seconds))
+      ->type_name("S");
+}
+
+void add_robots_of_recording(CLI::App& app, std::vector<std::string>& robots) {
+  app.add_option("--robots", robots, "Which robots, as of 'cohort host' (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("SEL[,SEL...]");
+}
+
+void add_export_data_options(CLI::App& app, ExportDataCommand& command) {
+  app.add_option("FILE", command.file, "Recording (MCAP)")->required()->type_name("");
+  CLI::Option_group& target = *app.add_option_group("Target");
+  target.add_option("--csv", command.csv, "Folder for a CSV file for each table")->type_name("DIR");
+  target.add_option("--hdf5", command.hdf5, "HDF5 file for all of them")->type_name("FILE");
+  target.require_option(1);
+  add_robots_of_recording(app, command.robots);
+  add_part_options(app, command.part);
+  app.footer("Example: cohort export-data run.mcap --csv tables");
+}
+
+void add_plot_options(CLI::App& app, PlotCommand& command) {
+  app.add_option("FILE", command.file, "Recording (MCAP)")->required()->type_name("");
+  app.add_option("-o,--output", command.output, "Picture to write (.svg or .png)")->required()->type_name("FILE");
+  app.add_option("--what", command.what, "Over time: speed, or channels such as proximity/3/reading (default: paths)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("WHAT[,WHAT...]");
+  add_robots_of_recording(app, command.robots);
+  const auto set_view = [&command](const std::string& view) {
+    command.viewpoint = view == "side" ? Viewpoint::side : Viewpoint::above;
+  };
+  app.add_option_function<std::string>("--view", set_view, "Of paths: from above (the default), or from the side")
+      ->check(one_of({"above", "side"}))
+      ->type_name("above|side");
+  add_part_options(app, command.part);
+  app.footer("Example: cohort plot run.mcap --what speed,proximity/0/reading --robots 0..3 -o speeds.svg");
+}
+
 void add_replay_options(CLI::App& app, ReplayCommand& command, LogFlags& flags) {
   app.add_option("FILE", command.file, "Recording (MCAP)")->required()->type_name("");
   app.add_flag("--verify", command.verify, "Compare the state of every tick with the recorded one");
-  app.add_option("--from", command.from, "Time in the recording to begin at, in simulated seconds")
-      ->check(number_from_zero(most_seconds))
-      ->type_name("S");
-  app.add_option("--to", command.to, "Time to end at (default: the end)")
-      ->check(number_from_zero(most_seconds))
-      ->type_name("S");
+  add_part_options(app, command.part);
   app.add_option("--threads", command.threads, "Threads that step the world (default: the cores)")
       ->check(whole_number(1, 1024))
       ->type_name("N");
@@ -332,6 +372,24 @@ int main(int argc, char** argv) {
   CLI::App* replay_app = app.add_subcommand("replay", "Run a recording's world again, without controllers");
   add_replay_options(*replay_app, replay_command, log_flags);
 
+  ExportDataCommand export_data_command;
+  CLI::App* export_data_app = app.add_subcommand("export-data", "Write a recording as tables");
+  add_export_data_options(*export_data_app, export_data_command);
+  add_log_options(*export_data_app, log_flags);
+
+  PlotCommand plot_command;
+  CLI::App* plot_app = app.add_subcommand("plot", "Draw a recording");
+  add_plot_options(*plot_app, plot_command);
+  add_log_options(*plot_app, log_flags);
+
+  DiffCommand diff_command;
+  CLI::App* diff_app = app.add_subcommand("diff", "Find where two recorded runs part, and in what");
+  diff_app->add_option("FIRST", diff_command.first, "Recording (MCAP)")->required()->type_name("");
+  diff_app->add_option("SECOND", diff_command.second, "Another one")->required()->type_name("");
+  diff_app->add_flag("--json", diff_command.json, "Print it as JSON");
+  add_log_options(*diff_app, log_flags);
+  diff_app->footer("Example: cohort diff monday.mcap tuesday.mcap");
+
   std::string help_topic;
   CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
   help_app->add_option("TOPIC", help_topic, "Such as sensors, placement, proximity_ring or events")->type_name("");
@@ -373,6 +431,9 @@ int main(int argc, char** argv) {
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   replay_command.quiet = log_flags.quiet;
+  if (export_data_app->parsed()) return export_data(export_data_command, log);
+  if (plot_app->parsed()) return plot(plot_command, log, stop_requested);
+  if (diff_app->parsed()) return diff(diff_command, log, stop_requested);
   if (replay_app->parsed()) return replay(replay_command, log, stop_requested);
   if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);

@@ -7,35 +7,14 @@
 
 #include "server/recording/replay.hpp"
 #include "tools/cohort/commands.hpp"
+#include "tools/cohort/recording_part.hpp"
+#include "tools/cohort/replay_progress.hpp"
 #include "tools/cohort/wording.hpp"
 
 namespace cohort::tool {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
-
-std::chrono::nanoseconds nanoseconds(double seconds) {
-  return std::chrono::round<std::chrono::nanoseconds>(Seconds(seconds));
-}
-
-// Where the replay is, a few times a second.
-class ReplayProgress {
- public:
-  ReplayProgress(Log& log, bool quiet) : log_(log), quiet_(quiet) {}
-
-  void at(std::chrono::nanoseconds log_time) {
-    using namespace std::chrono_literals;
-    const auto now = std::chrono::steady_clock::now();
-    if (quiet_ || !log_.rewrites_progress() || now - last_ < 200ms) return;
-    last_ = now;
-    log_.progress(fmt::format("{:8.2f} s replayed", Seconds(log_time).count()));
-  }
-
- private:
-  Log& log_;
-  bool quiet_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 void say(bool quiet, const std::string& line) {
   if (!quiet) std::fputs((line + "\n").c_str(), stdout);
@@ -85,12 +64,12 @@ int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop
     const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
     recording::Replay replay(recording, command.threads == 0 ? cores : command.threads);
 
-    ReplayProgress progress(log, command.quiet);
+    ReplayProgress progress(log);
     const auto start = std::chrono::steady_clock::now();
-    const std::chrono::nanoseconds to = command.to ? nanoseconds(*command.to) : std::chrono::nanoseconds::max();
+    const std::chrono::nanoseconds to = command.part.to ? nanoseconds(*command.part.to) : std::chrono::nanoseconds::max();
     const recording::Verification found =
-        recording::verify(replay, nanoseconds(command.from), to, [&](std::chrono::nanoseconds log_time) {
-          progress.at(log_time);
+        recording::verify(replay, nanoseconds(command.part.from), to, [&](std::chrono::nanoseconds log_time) {
+          progress.at(log_time, "replayed");
           return !stop;
         });
     log.clear_progress();

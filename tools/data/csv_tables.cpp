@@ -1,0 +1,90 @@
+#include "tools/data/csv_tables.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace cohort::data {
+namespace {
+
+void append(std::string& line, double value) {
+  char text[32];
+  line.append(std::begin(text), std::to_chars(std::begin(text), std::end(text), value).ptr);
+}
+void append(std::string& line, std::uint64_t value) { line += std::to_string(value); }
+void append(std::string& line, const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) {
+    line += text;
+    return;
+  }
+  line += '"';
+  for (const char letter : text) {
+    if (letter == '"') line += '"';
+    line += letter;
+  }
+  line += '"';
+}
+
+[[noreturn]] void fail(const std::filesystem::path& file) {
+  throw std::runtime_error(file.string() + " cannot be written: " + std::generic_category().message(errno));
+}
+
+class CsvTable final : public TableWriter {
+ public:
+  CsvTable(std::filesystem::path file, const std::vector<Column>& columns)
+      : file_(std::move(file)), stream_(file_, std::ios::binary | std::ios::trunc) {
+    for (const Column& column : columns) {
+      if (!line_.empty()) line_ += ',';
+      append(line_, column.name);
+    }
+    end_line();
+  }
+
+  void add(std::span<const Cell> row) override {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i > 0) line_ += ',';
+      std::visit([&](const auto& value) { append(line_, value); }, row[i]);
+    }
+    end_line();
+  }
+
+  void finish() override {
+    if (stream_.close(), !stream_) fail(file_);
+  }
+
+ private:
+  void end_line() {
+    line_ += '\n';
+    if (!(stream_ << line_)) fail(file_);
+    line_.clear();
+  }
+
+  std::filesystem::path file_;
+  std::ofstream stream_;
+  std::string line_;
+};
+
+class CsvTables final : public TableSink {
+ public:
+  explicit CsvTables(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw std::runtime_error("the folder " + folder_.string() + " cannot be made: " + error.message());
+  }
+  std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) override {
+    return std::make_unique<CsvTable>(folder_ / (name + ".csv"), columns);
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace
+
+std::unique_ptr<TableSink> csv_tables(const std::filesystem::path& folder) {
+  return std::make_unique<CsvTables>(folder);
+}
+
+}  // namespace cohort::data

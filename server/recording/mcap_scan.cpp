@@ -99,7 +99,7 @@ class Scanner {
     const auto found = values.find(id);
     if (found != values.end() && !(found->second == value))
       add_damage(place.offset, 0, what + std::to_string(id) + " is given twice, and not alike");
-    if (found == values.end() || (is_in_chunk && sure.count(id) == 0)) values.insert_or_assign(id, std::move(value));
+    if (found == values.end() || (is_in_chunk && !sure.contains(id))) values.insert_or_assign(id, std::move(value));
     if (is_in_chunk) sure.insert(id);
   }
 
@@ -306,7 +306,7 @@ class Scanner {
       }
     }
     for (const auto& [channel, number] : statistics.messages_of_channels) {
-      if (contents.channels.count(channel) != 0) continue;
+      if (contents.channels.contains(channel)) continue;
       add_damage(file_.size(), 0,
                  std::to_string(number) + " messages are of channel " + std::to_string(channel) +
                      ", which is nowhere in what can be read");
@@ -314,7 +314,7 @@ class Scanner {
       statistics.message_count -= number;
     }
     std::erase_if(statistics.messages_of_channels,
-                  [&](const auto& entry) { return contents.channels.count(entry.first) == 0; });
+                  [&](const auto& entry) { return !contents.channels.contains(entry.first); });
     statistics.schema_count = static_cast<std::uint16_t>(contents.schemas.size());
     statistics.channel_count = static_cast<std::uint32_t>(contents.channels.size());
   }

@@ -73,7 +73,7 @@ void McapWriter::add(Schema schema) {
 }
 
 void McapWriter::add(Channel channel) {
-  if (channel.schema != 0 && schemas_.count(channel.schema) == 0)
+  if (channel.schema != 0 && !schemas_.contains(channel.schema))
     throw std::invalid_argument("channel " + channel.topic + " names schema " + std::to_string(channel.schema) +
                                 ", which was not added");
   const auto [added, is_new] = channels_.emplace(channel.id, std::move(channel));
@@ -84,7 +84,7 @@ void McapWriter::add(Channel channel) {
 
 void McapWriter::write_message(ChannelId channel, std::uint32_t sequence, Timestamp log_time, Timestamp publish_time,
                                ByteView data) {
-  if (channels_.count(channel) == 0)
+  if (!channels_.contains(channel))
     throw std::invalid_argument("there is no channel " + std::to_string(channel) + " to write a message to");
   MessageIndex& index = message_indexes_[channel];
   index.channel = channel;

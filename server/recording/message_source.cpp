@@ -44,7 +44,7 @@ void MessageStream::Source::open(const Block& block) {
                  std::to_string(block.start_time.count()) + " to " + std::to_string(block.end_time.count()) + " ns");
     if (message.log_time < query_.from || message.log_time > query_.to) return;
     if (!query_.channels.empty() && !std::ranges::binary_search(query_.channels, message.channel)) return;
-    if (contents_->channels.count(message.channel) == 0) {
+    if (!contents_->channels.contains(message.channel)) {
       if (is_strict_) place.fail("a message of channel " + std::to_string(message.channel) + ", which is not defined");
       return;
     }

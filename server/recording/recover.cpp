@@ -39,7 +39,7 @@ class Copy {
 
  private:
   void add_channel(Channel channel) {
-    if (channel.schema != 0 && scan_.contents.schemas.count(channel.schema) == 0) {
+    if (channel.schema != 0 && !scan_.contents.schemas.contains(channel.schema)) {
       scan_.damages.push_back({source_.size(), 0,
                                "the schema of channel '" + channel.topic +
                                    "' is nowhere in what can be read; its messages are kept without",
@@ -70,7 +70,7 @@ class Copy {
     for_each_record(records, place_in(source_, block), [&](const RecordView& record, const Place& place) {
       if (record.opcode != Opcode::message) return;
       const Message message = read_message(record.content, place);
-      if (scan_.contents.channels.count(message.channel) == 0) return;
+      if (!scan_.contents.channels.contains(message.channel)) return;
       writer_.write_message(message.channel, message.sequence, message.log_time, message.publish_time, message.data);
     });
     writer_.flush_chunk();

@@ -17,6 +17,7 @@ using test::TemporaryFile;
 
 std::vector<std::string> all_said(int count) {
   std::vector<std::string> texts;
+  texts.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) texts.push_back(said(i));
   return texts;
 }

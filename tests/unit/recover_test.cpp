@@ -19,6 +19,7 @@ using test::write_bytes;
 
 std::vector<std::string> said_from(int first, int end) {
   std::vector<std::string> texts;
+  texts.reserve(static_cast<std::size_t>(end - first));
   for (int i = first; i < end; ++i) texts.push_back(said(i));
   return texts;
 }

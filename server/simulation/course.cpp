@@ -243,10 +243,12 @@ void Course::restore(SnapshotReader& reader, std::uint64_t tick) {
   pushes_.assign(reader.read_count(sizeof(std::uint64_t)), {});
   removed_.assign(reader.read_count(sizeof(std::uint32_t)), 0);
   visit_outside(*this, [&](auto& number) { reader.read(number); });
-  for (const Push& push : pushes_)
-    if (push.object >= objects_.size() ||
-        push.force.link >= experiment_.world.models[world_.model_of(push.object)].links.size())
-      throw SnapshotError("the snapshot has a push on something that is not there");
+  for (const Push& push : pushes_) {
+    if (push.object >= objects_.size()) throw SnapshotError("the snapshot has a push on something that is not there");
+    const description::Model& model = experiment_.world.models[world_.model_of(push.object)];
+    if (model.is_static || push.force.link >= model.links.size())
+      throw SnapshotError("the snapshot has a push on something that does not move");
+  }
   next_event_ =
       static_cast<std::size_t>(std::upper_bound(event_ticks_.begin(), event_ticks_.end(), tick) - event_ticks_.begin());
 }

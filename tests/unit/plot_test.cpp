@@ -138,6 +138,26 @@ std::string fault_in_xml(const std::string& text) {
   return roots == 1 ? "" : "has not one root";
 }
 
+TEST(RunTraces, HaveWhatHasComeIntoTheWorldInMidRun) {
+  description::Experiment experiment;
+  experiment.world = arena();
+  experiment.teams.push_back({"team", {0, 1}, "none", {}});
+  Simulation simulation(experiment, 1);
+  TraceRecorder recorder(experiment.world, simulation, Viewpoint::above);
+  const auto obstacles = [](const RunTrace& trace) {
+    return std::ranges::count(trace.solids, TracedSolid::Kind::obstacle, &TracedSolid::kind);
+  };
+  simulation.act(SpawnObject{"another_block", "block", at(100.5, 50.85, 0.1)});  // in the way of the first
+  for (int tick = 0; tick < 100; ++tick) {
+    simulation.set_command(0, std::vector<double>{0.1, 0.1, 0.0});
+    simulation.step();
+    recorder.boundary();
+  }
+  const RunTrace trace = recorder.finish();
+  EXPECT_EQ(obstacles(trace), 4);
+  EXPECT_FALSE(trace.contacts.empty());
+}
+
 TEST(Plot, IsWellFormedXml) { EXPECT_EQ(fault_in_xml(run(arena(), 30).plot()), ""); }
 
 TEST(Plot, EscapesNames) {

@@ -81,7 +81,7 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
   double lowest_robot = world.robots.empty() ? -infinity : infinity;
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
-    const std::uint32_t robot = robot_of_body_[solid.body];
+    const std::uint32_t robot = robot_of(solid.body);
     if (robot == none) continue;
     lowest_robot = std::min(lowest_robot, scene.bounds(i).lower.z());
     double& radius = trace_.robots[robot].radius;
@@ -96,6 +96,13 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
   sample();
   if (viewpoint == Viewpoint::side) note_robots(&RobotTrace::at_start);
 }
+
+// What has come in mid-run is no robot, and no floor.
+std::uint32_t TraceRecorder::robot_of(std::uint32_t body) const {
+  return body < robot_of_body_.size() ? robot_of_body_[body] : none;
+}
+
+bool TraceRecorder::is_floor(std::uint32_t body) const { return body < is_floor_.size() && is_floor_[body] != 0; }
 
 void TraceRecorder::boundary() {
   if (simulation_.tick() >= next_sample_) sample();
@@ -118,11 +125,11 @@ void TraceRecorder::sample() {
 void TraceRecorder::note_contacts() {
   for (const physics::Contact& contact : simulation_.world().contacts()) {
     // A contact of two robots is marked once, as the first one's.
-    std::uint32_t robot = robot_of_body_[contact.body_a];
-    std::uint32_t other = robot_of_body_[contact.body_b];
+    std::uint32_t robot = robot_of(contact.body_a);
+    std::uint32_t other = robot_of(contact.body_b);
     if (robot == none && other == none) continue;
     const bool of_robots = robot != none && other != none;
-    if (!of_robots && is_floor_[robot == none ? contact.body_a : contact.body_b]) continue;
+    if (!of_robots && is_floor(robot == none ? contact.body_a : contact.body_b)) continue;
     robot = std::min(robot, other);
     const Eigen::Vector2d position_V = seen(contact.position_W);
     if (!position_V.allFinite()) continue;
@@ -155,7 +162,7 @@ void TraceRecorder::note_robots(std::vector<TracedSolid> RobotTrace::*solids) {
   const Scene& scene = simulation_.world().scene();
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
-    const std::uint32_t robot = solid.body < robot_of_body_.size() ? robot_of_body_[solid.body] : none;
+    const std::uint32_t robot = robot_of(solid.body);
     if (robot != none && simulation_.is_present(robot)) add(robot, solid.shape, solid.X_WC);
   }
 }
@@ -168,7 +175,7 @@ RunTrace TraceRecorder::finish() {
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     if (!simulation_.objects().is_present(solid.body)) continue;
-    const bool of_robot = robot_of_body_[solid.body] != none;
+    const bool of_robot = robot_of(solid.body) != none;
     if (!of_robot && !geometry::is_ground(solid.shape) && scene.bounds(i).lower.allFinite() &&
         scene.bounds(i).upper.allFinite())
       order.push_back(i);
@@ -180,11 +187,11 @@ RunTrace TraceRecorder::finish() {
   for (const std::uint32_t i : order) {
     const Solid& solid = scene.solid(i);
     using Kind = TracedSolid::Kind;
-    const Kind kind = solid.moves ? Kind::object : is_floor_[solid.body] ? Kind::floor : Kind::obstacle;
+    const Kind kind = solid.moves ? Kind::object : is_floor(solid.body) ? Kind::floor : Kind::obstacle;
     trace_.solids.push_back({kind, solid.shape, pose_seen(solid.X_WC)});
   }
   for (const emission::Lamp& lamp : simulation_.emitters().lamps()) {
-    const bool of_robot = lamp.mount.body < robot_of_body_.size() && robot_of_body_[lamp.mount.body] != none;
+    const bool of_robot = robot_of(lamp.mount.body) != none;
     if (of_robot || lamp.light.kind == description::Light::Kind::directional) continue;
     // Also of one that was never in the world, which the emitters know no place of.
     const Pose X_WE = simulation_.world().link_pose(lamp.mount.body, lamp.mount.link) * lamp.mount.X_LE;

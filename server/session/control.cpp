@@ -17,7 +17,7 @@ using wire::ResultCode;
 using wire::SimulationState;
 
 constexpr std::size_t most_requesters = 64;
-constexpr std::size_t most_waiting_bytes = 64 * 1024 * 1024;
+constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
 constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
 constexpr std::uint32_t scope_default = 0;
 constexpr std::uint32_t scope_all = 255;

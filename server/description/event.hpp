@@ -108,4 +108,12 @@ struct History {
   std::chrono::nanoseconds every{0};  ///< 0: every tick
 };
 
+/// What a recording holds beside what replays the run. Rates are of simulated time, in whole ticks; 0: none.
+struct Recorded {
+  double pose_rate = 10.0;              ///< of every object that moves [Hz]
+  double observation_rate = 0.0;        ///< at the most, and no more often than the robot is asked [Hz]
+  std::vector<std::uint32_t> observed;  ///< robots, ascending
+  std::chrono::nanoseconds snapshot_interval = std::chrono::seconds(30);
+};
+
 }  // namespace cohort::description

@@ -3,11 +3,13 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "server/description/event.hpp"
+#include "server/description/input_file.hpp"
 #include "server/description/world.hpp"
 
 namespace cohort::description {
@@ -65,6 +67,8 @@ struct Experiment {
   std::vector<StopCondition> stops;
   std::vector<PrintedQuantity> prints;
   History history;
+  Recorded recorded;
+  std::shared_ptr<const KeptFiles> inputs{};  ///< what it was read from; null if it was made in a program
 };
 
 /// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's;
@@ -72,5 +76,10 @@ struct Experiment {
 Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
                            std::optional<std::chrono::nanoseconds> duration = {},
                            const std::vector<std::filesystem::path>& last_model_folders = {});
+
+/// Reads an experiment again from what was kept when it was read first, on whatever machine and without looking at any
+/// file: the same experiment bit for bit, if `seed` and `duration` are those that it had.
+Experiment read_experiment(std::shared_ptr<const KeptFiles> kept, std::optional<std::uint64_t> seed,
+                           std::optional<std::chrono::nanoseconds> duration);
 
 }  // namespace cohort::description

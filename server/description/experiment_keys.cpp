@@ -22,6 +22,7 @@ constexpr ExtensionKey experiment[] = {
     {"stop", group, "", no_value, "list of conditions; the run ends when one of them holds"},
     {"print", group, "", no_value, "list of quantities that `cohort run` prints"},
     {"history", group, "", no_value, "whose last poses are kept"},
+    {"record", group, "", "its defaults", "what a recording holds, if there is one"},
 };
 
 constexpr std::string_view late_policies[] = {"wait", "hold", "zero", "detach", "stop"};
@@ -131,6 +132,13 @@ constexpr ExtensionKey history[] = {
     {"every", positive, "s", no_value, "of simulated time, in whole ticks; a tick if absent"},
 };
 
+constexpr ExtensionKey record[] = {
+    {"poses", non_negative, "Hz", "10", "how often the poses of all that moves"},
+    {"observations", non_negative, "Hz", "0", "how often what robots observe, at the most as often as they are asked"},
+    {"robots", name, "", "all", "a selector or a list of selectors: whose observations", true},
+    {"snapshots", non_negative, "s", "30", "from one snapshot of the world to the next; 0: none"},
+};
+
 constexpr Extension table[] = {
     {"experiment", "", false, "A world, a seed, a duration, and who controls which robot.", experiment, "experiment"},
     {"teams", "experiment", false, "Robots that share a controller.", team, "experiment"},
@@ -150,6 +158,7 @@ constexpr Extension table[] = {
     {"quarantined", "stop", false, "One of the objects broke or left the world.", quarantined, "stop"},
     {"print", "experiment", false, "A quantity of some objects, printed at times.", print, "print"},
     {"history", "experiment", false, "Poses of some objects that are kept.", history, "history"},
+    {"record", "experiment", false, "What a recording holds beside what replays the run.", record, "record"},
 };
 
 }  // namespace

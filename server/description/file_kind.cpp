@@ -1,12 +1,9 @@
 #include "server/description/file_kind.hpp"
 
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <string_view>
 
-#include "server/description/input_file.hpp"
 #include "server/description/text.hpp"
 #include "server/description/yaml_document.hpp"
 #include "server/description/yaml_sdf.hpp"
@@ -31,11 +28,15 @@ bool starts_like_sdf(const std::string& text) {
 bool is_yaml(const std::filesystem::path& file) { return file.extension() == ".yaml" || file.extension() == ".yml"; }
 
 FileKind kind_of_file(const std::filesystem::path& file) {
+  InputFiles disk;
+  return kind_of_file(disk, file);
+}
+
+FileKind kind_of_file(InputFiles& input, const std::filesystem::path& file) {
   for (const char* const extension : {".sdf", ".world", ".urdf"})
     if (file.extension() == extension) return FileKind::sdf;
-  if (!is_yaml(file) || why_unreadable(file)) return FileKind::experiment;
-  std::ifstream stream(file);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  if (!is_yaml(file) || input.why_unreadable(file)) return FileKind::experiment;
+  const std::string& text = input.read(file);
   const YamlDocument document = parse_yaml(text);
   const bool is_sdf = document.root ? is_sdf_in_yaml(*document.root) : starts_like_sdf(text);
   return is_sdf ? FileKind::sdf : FileKind::experiment;

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "server/description/input_file.hpp"
+
 namespace cohort::description {
 
 enum class FileKind {
@@ -12,6 +14,7 @@ enum class FileKind {
 /// What a file that a user names is: by its extension, and of YAML by its content, since an experiment names its world
 /// and a world's file holds it.
 FileKind kind_of_file(const std::filesystem::path& file);
+FileKind kind_of_file(InputFiles& input, const std::filesystem::path& file);
 
 bool is_yaml(const std::filesystem::path& file);
 

@@ -2,10 +2,11 @@
 
 #include <png.h>
 
-#include <cstdio>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cohort::description {
@@ -14,6 +15,7 @@ namespace {
 constexpr png_uint_32 most_pixels = 8193;  // along an edge
 
 struct Image {
+  std::string_view unread;  // of the file
   png_uint_32 width = 0;
   png_uint_32 height = 0;
   int bits = 0;
@@ -29,12 +31,18 @@ extern "C" void keep_error(png_structp png, png_const_charp message) {
   png_longjmp(png, 1);
 }
 extern "C" void ignore_warning(png_structp, png_const_charp) {}
+extern "C" void take_bytes(png_structp png, png_bytep bytes, std::size_t count) {
+  std::string_view& unread = static_cast<Image*>(png_get_io_ptr(png))->unread;
+  if (count > unread.size()) png_error(png, "the file ends too early");
+  std::memcpy(bytes, unread.data(), count);
+  unread.remove_prefix(count);
+}
 
 // False if libpng fails; `image` then has its message.
-bool read_header(png_structp png, png_infop info, std::FILE* file, Image& image) {
+bool read_header(png_structp png, png_infop info, Image& image) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_user_limits(png, most_pixels, most_pixels);
-  png_init_io(png, file);
+  png_set_read_fn(png, &image, &take_bytes);
   png_read_info(png, info);
   image.width = png_get_image_width(png, info);
   image.height = png_get_image_height(png, info);
@@ -50,20 +58,20 @@ bool read_pixels(png_structp png, Image& image) {
   return true;
 }
 
-Image read_png(const std::filesystem::path& path) {
+Image read_png(InputFiles& input, const std::filesystem::path& path) {
   const auto fail = [&](const std::string& why) -> void {
     throw std::runtime_error("'" + path.string() + "' cannot be read as a height map: " + why);
   };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) fail("it cannot be opened");
+  if (const auto reason = input.why_unreadable(path)) fail(*reason);
   Image image;
+  image.unread = input.read(path);
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &image, &keep_error, &ignore_warning);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
   const auto destroy = [&info](png_structp made) { png_destroy_read_struct(&made, &info, nullptr); };
   const std::unique_ptr<png_struct, decltype(destroy)> owner(png, destroy);
   if (info == nullptr) fail("there is not enough memory");
 
-  if (!read_header(png, info, file.get(), image)) fail(image.error + "; expected a PNG image");
+  if (!read_header(png, info, image)) fail(image.error + "; expected a PNG image");
   if (image.colours != PNG_COLOR_TYPE_GRAY || image.bits < 8)
     fail("expected a grey PNG image of 8 or 16 bits, without transparency");
   if (image.width < 2 || image.height < 2) fail("expected at least 2 by 2 pixels");
@@ -76,8 +84,8 @@ Image read_png(const std::filesystem::path& path) {
 
 }  // namespace
 
-HeightGrid read_height_image(const std::filesystem::path& file, const Eigen::Vector3d& size) {
-  const Image image = read_png(file);
+HeightGrid read_height_image(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& size) {
+  const Image image = read_png(input, file);
   HeightGrid grid;
   grid.columns = image.width;
   grid.rows = image.height;

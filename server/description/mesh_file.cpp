@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <array>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cstring>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +35,52 @@ Eigen::Matrix4d to_eigen(const aiMatrix4x4& m) {
   matrix << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
   return matrix;
 }
+
+// What assimp reads, of the mesh and of what the mesh names, such as the .mtl of an .obj.
+class AssimpStream : public Assimp::IOStream {
+ public:
+  explicit AssimpStream(const std::string& bytes) : bytes_(bytes) {}
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    if (size == 0) return 0;
+    const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
+    std::memcpy(buffer, bytes_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+    const std::size_t to = from + offset;  // backwards, it wraps around
+    if (to > bytes_.size()) return aiReturn_FAILURE;
+    at_ = to;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return at_; }
+  std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+};
+
+class AssimpFiles : public Assimp::IOSystem {
+ public:
+  explicit AssimpFiles(InputFiles& input) : input_(input) {}
+
+  bool Exists(const char* file) const override { return input_.is_file(file); }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos || input_.why_unreadable(file))
+      return nullptr;
+    return new AssimpStream(input_.read(file));
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  InputFiles& input_;
+};
 
 // Adds triangles to a mesh. Formats such as STL repeat a vertex for each triangle that has it.
 class MeshBuilder {
@@ -73,9 +123,10 @@ class MeshBuilder {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
   check_format(file);
   Assimp::Importer importer;
+  importer.SetIOHandler(new AssimpFiles(input));  // which it owns
   // Otherwise a file whose z axis points upwards would be turned.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_Triangulate);

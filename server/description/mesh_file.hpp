@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "server/description/input_file.hpp"
 #include "server/description/shape.hpp"
 
 namespace cohort::description {
@@ -9,6 +10,6 @@ namespace cohort::description {
 /// Reads all triangles of an STL, OBJ or COLLADA file. Coordinates are as in the file, in metres, multiplied by
 /// `scale`; a unit that a COLLADA file gives is heeded, its up-axis is not. Vertices at the same place are one. Throws
 /// std::runtime_error that says what is wrong with the file.
-TriangleMesh read_mesh(const std::filesystem::path& file, const Eigen::Vector3d& scale);
+TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale);
 
 }  // namespace cohort::description

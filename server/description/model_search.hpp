@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "server/description/input_file.hpp"
+
 namespace cohort::description {
 
 /// A model that a URI leads to.
@@ -17,7 +19,9 @@ struct FoundModel {
 /// `last_folders`. Any other URI is a path, to a model's folder or to an SDF file.
 class ModelSearch {
  public:
-  ModelSearch(const std::filesystem::path& world_file, const std::vector<std::filesystem::path>& last_folders);
+  /// `input` must outlive this.
+  ModelSearch(InputFiles& input, const std::filesystem::path& world_file,
+              const std::vector<std::filesystem::path>& last_folders);
 
   /// Throws std::runtime_error that says what is missing and where it was looked for.
   /// A path is relative to `folder`.
@@ -30,6 +34,10 @@ class ModelSearch {
   std::filesystem::path path_of(const std::string& uri, const std::filesystem::path& folder) const;
   std::filesystem::path find_folder(const std::string& name) const;
 
+  /// The SDF file of a model's folder.
+  std::filesystem::path sdf_file_of(const std::filesystem::path& folder) const;
+
+  InputFiles& input_;
   std::filesystem::path world_folder_;
   std::vector<std::filesystem::path> folders_;
 };

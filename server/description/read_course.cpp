@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -200,6 +201,7 @@ void CourseReader::read(Experiment& experiment) const {
   read_stops(experiment);
   read_prints(experiment);
   read_history(experiment);
+  read_recorded(experiment);
 }
 
 void CourseReader::read_events(Experiment& experiment) const {
@@ -335,6 +337,26 @@ void CourseReader::read_history(Experiment& experiment) const {
   if (entry.values().has("length"))
     experiment.history.length = static_cast<std::size_t>(entry.values().whole("length"));
   experiment.history.every = entry.time("every").value_or(std::chrono::nanoseconds(0));
+}
+
+void CourseReader::read_recorded(Experiment& experiment) const {
+  Recorded& recorded = experiment.recorded;
+  recorded.observed.resize(experiment.world.robots.size());
+  std::iota(recorded.observed.begin(), recorded.observed.end(), 0u);
+  if (!top_.has("record")) return;
+  const CourseEntry entry(top_.where("record"), "record", experiment_part("record", "experiment"), report_);
+  if (entry.values().has("poses")) recorded.pose_rate = entry.values().real("poses");
+  if (entry.values().has("observations")) recorded.observation_rate = entry.values().real("observations");
+  recorded.snapshot_interval = entry.time("snapshots").value_or(recorded.snapshot_interval);
+  if (!entry.is_written("robots")) return;
+  std::set<std::uint32_t> observed;
+  try {
+    for (const std::string& selector : entry.values().texts("robots"))
+      for (const std::uint32_t robot : select_robots(experiment.world, selector)) observed.insert(robot);
+  } catch (const std::invalid_argument& error) {
+    entry.problem("robots", error.what());
+  }
+  recorded.observed.assign(observed.begin(), observed.end());
 }
 
 }  // namespace cohort::description

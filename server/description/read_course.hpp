@@ -37,6 +37,7 @@ class CourseReader {
   void read_stops(Experiment& experiment) const;
   void read_prints(Experiment& experiment) const;
   void read_history(Experiment& experiment) const;
+  void read_recorded(Experiment& experiment) const;
 
   const YamlMap& top_;
   std::filesystem::path file_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -122,15 +120,16 @@ Restart read_restart(const YamlMap& team) {
 
 class ExperimentReader {
  public:
-  ExperimentReader(const fs::path& file, const std::vector<fs::path>& last_model_folders)
-      : last_model_folders_(last_model_folders), report_(file, problems_) {
+  /// `input` must outlive this.
+  ExperimentReader(InputFiles& input, const fs::path& file, const std::vector<fs::path>& last_model_folders)
+      : input_(input), last_model_folders_(last_model_folders), report_(file, problems_) {
     experiment_.file = file;
   }
 
   Experiment read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration);
 
  private:
-  YAML::Node load() const;
+  YAML::Node load();
   void read_world_of(const YamlMap& top, const std::vector<LaterObject>& later);
   void read_step(const YamlMap& top);
   void read_teams(const YamlMap& top);
@@ -143,6 +142,7 @@ class ExperimentReader {
   void report_robots_without_team(const YamlMap& top);
   std::string listed(const std::vector<std::uint32_t>& robots) const;
 
+  InputFiles& input_;
   std::vector<fs::path> last_model_folders_;
   Experiment experiment_;
   std::vector<Problem> problems_;
@@ -179,15 +179,14 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   return std::move(experiment_);
 }
 
-YAML::Node ExperimentReader::load() const {
+YAML::Node ExperimentReader::load() {
   const fs::path& file = experiment_.file;
-  if (auto reason = why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
-  if (kind_of_file(file) == FileKind::sdf)
+  if (auto reason = input_.why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
+  if (kind_of_file(input_, file) == FileKind::sdf)
     throw InputError(
         {{file, 0, "",
           "this is a world; expected an experiment (YAML), which names a world and who controls its robots"}});
-  std::ifstream stream(file);
-  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::string& text = input_.read(file);
   // What yaml-cpp would take, and whoever walks through it would never be done with.
   if (const YamlDocument document = parse_yaml(text); document.error)
     throw InputError({{file, document.error->line, "", document.error->message}});
@@ -201,13 +200,13 @@ YAML::Node ExperimentReader::load() const {
 void ExperimentReader::read_world_of(const YamlMap& top, const std::vector<LaterObject>& later) {
   const std::optional<std::string> name = top.text("world");
   if (!name) return;
-  const fs::path world = experiment_.file.parent_path() / *name;
-  if (const auto reason = why_unreadable(world)) {
-    top.problem("world", *reason + ": '" + world.lexically_normal().string() + "'");
+  const fs::path world = (experiment_.file.parent_path() / *name).lexically_normal();
+  if (const auto reason = input_.why_unreadable(world)) {
+    top.problem("world", *reason + ": '" + world.string() + "'");
     return;
   }
   try {
-    experiment_.world = read_world(world.lexically_normal(), experiment_.seed, last_model_folders_, later);
+    experiment_.world = read_world(input_, world, experiment_.seed, last_model_folders_, later);
     team_of_.resize(experiment_.world.robots.size());
     world_is_read_ = true;
   } catch (const InputError& error) {
@@ -361,7 +360,22 @@ std::string ExperimentReader::listed(const std::vector<std::uint32_t>& robots) c
 Experiment read_experiment(const fs::path& file, std::optional<std::uint64_t> seed,
                            std::optional<std::chrono::nanoseconds> duration,
                            const std::vector<fs::path>& last_model_folders) {
-  return ExperimentReader(file, last_model_folders).read(seed, duration);
+  InputFiles disk;
+  Experiment experiment = ExperimentReader(disk, file, last_model_folders).read(seed, duration);
+  KeptFiles kept = disk.kept();
+  kept.experiment = file.string();
+  for (const fs::path& folder : last_model_folders) kept.last_model_folders.push_back(folder.string());
+  experiment.inputs = std::make_shared<const KeptFiles>(std::move(kept));
+  return experiment;
+}
+
+Experiment read_experiment(std::shared_ptr<const KeptFiles> kept, std::optional<std::uint64_t> seed,
+                           std::optional<std::chrono::nanoseconds> duration) {
+  InputFiles input(kept);
+  const std::vector<fs::path> last_model_folders(kept->last_model_folders.begin(), kept->last_model_folders.end());
+  Experiment experiment = ExperimentReader(input, kept->experiment, last_model_folders).read(seed, duration);
+  experiment.inputs = std::move(kept);
+  return experiment;
 }
 
 }  // namespace cohort::description

@@ -28,10 +28,10 @@ const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
 
 class WorldReader {
  public:
-  WorldReader(const std::filesystem::path& file, std::uint64_t seed,
+  WorldReader(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
               const std::vector<std::filesystem::path>& last_model_folders)
       : seed_(seed),
-        files_(file, last_model_folders, problems_, world_.warnings),
+        files_(input, file, last_model_folders, problems_, world_.warnings),
         shape_files_(files_),
         report_(files_, problems_, world_.warnings) {
     world_.file = file;
@@ -348,12 +348,19 @@ bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& 
 
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
-  return WorldReader(file, seed, last_model_folders).read(false, later);
+  InputFiles disk;
+  return read_world(disk, file, seed, last_model_folders, later);
+}
+
+World read_world(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
+                 const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
+  return WorldReader(input, file, seed, last_model_folders).read(false, later);
 }
 
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders) {
-  return WorldReader(file, seed, last_model_folders).read(true, {});
+  InputFiles disk;
+  return WorldReader(disk, file, seed, last_model_folders).read(true, {});
 }
 
 }  // namespace cohort::description

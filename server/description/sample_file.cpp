@@ -7,12 +7,12 @@
 #include <fstream>
 #include <numbers>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "server/description/input_error.hpp"
-#include "server/description/input_file.hpp"
 #include "server/description/text.hpp"
 
 namespace cohort::description {
@@ -50,14 +50,14 @@ std::optional<std::string> unit_of(std::string_view field, std::string_view name
 
 class SampleReader {
  public:
-  explicit SampleReader(const std::filesystem::path& file) { samples_.file = file; }
+  SampleReader(InputFiles& input, const std::filesystem::path& file) : input_(input) { samples_.file = file; }
 
   Samples read() {
-    if (const auto why = why_unreadable(samples_.file)) {
+    if (const auto why = input_.why_unreadable(samples_.file)) {
       add_problem(0, "", *why);
       throw InputError(problems_);
     }
-    std::ifstream stream(samples_.file);
+    std::istringstream stream(input_.read(samples_.file));
     bool has_header = false;
     int number = 0;
     for (std::string text; std::getline(stream, text) && problems_.size() < most_problems;) {
@@ -170,6 +170,7 @@ class SampleReader {
                       ": every distance has the angles of the first");
   }
 
+  InputFiles& input_;
   Samples samples_;
   std::vector<Problem> problems_;
   std::size_t angles_here_ = 0;  // at the distance that is being read
@@ -178,7 +179,12 @@ class SampleReader {
 
 }  // namespace
 
-Samples read_samples(const std::filesystem::path& file) { return SampleReader(file).read(); }
+Samples read_samples(const std::filesystem::path& file) {
+  InputFiles disk;
+  return read_samples(disk, file);
+}
+
+Samples read_samples(InputFiles& input, const std::filesystem::path& file) { return SampleReader(input, file).read(); }
 
 std::string samples_as_text(const Samples& samples) {
   std::string text = std::string(distance_column) + "," + std::string(angle_column);

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "server/description/input_file.hpp"
+
 namespace cohort::description {
 
 /// Readings of a real sensor, taken for one object at a grid of places around the robot (thesis, section 2.3.2: indexed
@@ -29,6 +31,7 @@ struct Samples {
 /// Then come the places, by distance and then by angle, with every angle at every distance. Throws InputError with all
 /// that is wrong, but for what follows from it.
 Samples read_samples(const std::filesystem::path& file);
+Samples read_samples(InputFiles& input, const std::filesystem::path& file);
 
 /// The same as text: read again, it gives the same bits.
 std::string samples_as_text(const Samples& samples);

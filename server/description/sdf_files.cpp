@@ -1,10 +1,7 @@
 #include "server/description/sdf_files.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <sdf/Console.hh>
 #include <sdf/SDFImpl.hh>
@@ -13,9 +10,9 @@
 #include <utility>
 
 #include "server/description/file_kind.hpp"
-#include "server/description/input_file.hpp"
 #include "server/description/sdf_errors.hpp"
 #include "server/description/sdf_schema.hpp"
+#include "server/description/sdf_version.hpp"
 #include "server/description/text.hpp"
 #include "server/description/urdf_file.hpp"
 #include "server/description/yaml_sdf.hpp"
@@ -39,17 +36,6 @@ sdf::Console& console() {
     return silent;
   }();
   return *made;
-}
-
-// "1.9" as {1, 9}; {0, 0} if it is anything else.
-std::pair<int, int> version_of(std::string_view text) {
-  std::pair<int, int> version{0, 0};
-  const char* const end = text.data() + text.size();
-  const auto [dot, error] = std::from_chars(text.data(), end, version.first);
-  if (error != std::errc{} || dot == end || *dot != '.') return {0, 0};
-  const auto [stopped, second_error] = std::from_chars(dot + 1, end, version.second);
-  if (second_error != std::errc{} || stopped != end || version.second < 0) return {0, 0};
-  return version;
 }
 
 // There is one world, whose name does not matter.
@@ -162,16 +148,17 @@ LibsdformatScope::~LibsdformatScope() {
   console().SetQuiet(false);
 }
 
-SdfFiles::SdfFiles(const fs::path& world_file, const std::vector<fs::path>& last_model_folders,
+SdfFiles::SdfFiles(InputFiles& input, const fs::path& world_file, const std::vector<fs::path>& last_model_folders,
                    std::vector<Problem>& problems, std::vector<Problem>& warnings)
-    : world_file_(world_file),
-      world_folder_(fs::absolute(world_file).lexically_normal().parent_path()),
-      search_(world_file, last_model_folders),
+    : input_(input),
+      world_file_(world_file),
+      world_folder_(input.absolute(world_file).parent_path()),
+      search_(input, world_file, last_model_folders),
       problems_(problems),
       warnings_(warnings) {}
 
 SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
-  const fs::path absolute = fs::absolute(path).lexically_normal();
+  const fs::path absolute = input_.absolute(path);
   std::unique_ptr<SdfFile>& file = files_[absolute];
   if (file) return *file;
   file = std::make_unique<SdfFile>();
@@ -179,7 +166,7 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
   opened.path = absolute;
   opened.shown = shown;
   opening_.push_back(absolute);
-  if (const auto text = read_text(opened))
+  if (const std::string* const text = read_text(opened))
     if (auto source = read_source(*text, opened))
       if (auto tree = converted(*std::move(source), opened)) {
         opened.tree = *std::move(tree);
@@ -192,16 +179,13 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
   return opened;
 }
 
-std::optional<std::string> SdfFiles::read_text(const SdfFile& file) {
-  auto failure = why_unreadable(file.path);
-  if (!failure) {
-    std::ifstream stream(file.path);
-    std::string text(std::istreambuf_iterator<char>(stream), {});
-    if (stream) return text;
-    failure = "the file cannot be read";
+const std::string* SdfFiles::read_text(const SdfFile& file) {
+  try {
+    return &input_.read(file.path);
+  } catch (const std::runtime_error& error) {
+    problems_.push_back({file.shown, 0, "", error.what()});
+    return nullptr;
   }
-  problems_.push_back({file.shown, 0, "", std::move(*failure)});
-  return std::nullopt;
 }
 
 std::optional<XmlNode> SdfFiles::read_source(const std::string& text, const SdfFile& file) {

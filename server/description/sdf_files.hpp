@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "server/description/input_error.hpp"
+#include "server/description/input_file.hpp"
 #include "server/description/model_search.hpp"
 #include "server/description/xml_outline.hpp"
 
@@ -86,9 +87,10 @@ struct Location {
 /// each <include>, and only print what is wrong with it.
 class SdfFiles {
  public:
-  /// What is wrong with a file goes to `problems`, what is ignored in it to `warnings`; both must outlive this.
-  SdfFiles(const std::filesystem::path& world_file, const std::vector<std::filesystem::path>& last_model_folders,
-           std::vector<Problem>& problems, std::vector<Problem>& warnings);
+  /// What is wrong with a file goes to `problems`, what is ignored in it to `warnings`. All three must outlive this.
+  SdfFiles(InputFiles& input, const std::filesystem::path& world_file,
+           const std::vector<std::filesystem::path>& last_model_folders, std::vector<Problem>& problems,
+           std::vector<Problem>& warnings);
 
   const SdfFile& world() { return open(world_file_, world_file_); }
 
@@ -103,10 +105,12 @@ class SdfFiles {
   std::filesystem::path find_file(const sdf::ElementPtr& element) const;
 
   Location locate(const sdf::ElementPtr& element) const;
+  InputFiles& input() const { return input_; }
 
  private:
   SdfFile& open(const std::filesystem::path& path, const std::filesystem::path& shown);
-  std::optional<std::string> read_text(const SdfFile& file);
+  /// Null, and reported, if it cannot be read.
+  const std::string* read_text(const SdfFile& file);
   /// The <sdf> element of a file, in whatever format it is written; nothing after a problem.
   std::optional<XmlNode> read_source(const std::string& text, const SdfFile& file);
   std::optional<XmlNode> read_xml(const std::string& text, const SdfFile& file);
@@ -136,6 +140,7 @@ class SdfFiles {
   bool fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file);
 
   LibsdformatScope libsdformat_;
+  InputFiles& input_;
   std::filesystem::path world_file_;
   std::filesystem::path world_folder_;
   ModelSearch search_;

@@ -26,7 +26,7 @@ std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri,
   const std::filesystem::path file = files_.find_file(uri);
   std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
   if (mesh) return mesh;
-  TriangleMesh read = read_mesh(file, scale);
+  TriangleMesh read = read_mesh(files_.input(), file, scale);
   if (convex) read = hull_of(read, file);
   read.file = file;
   read.scale = scale;
@@ -38,7 +38,7 @@ std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr&
   const std::filesystem::path file = files_.find_file(uri);
   std::shared_ptr<const HeightGrid>& grid = grids_[{file, size.x(), size.y(), size.z()}];
   if (grid) return grid;
-  HeightGrid read = read_height_image(file, size);
+  HeightGrid read = read_height_image(files_.input(), file, size);
   read.file = file;
   read.size = size;
   grid = std::make_shared<const HeightGrid>(std::move(read));
@@ -48,7 +48,7 @@ std::shared_ptr<const HeightGrid> ShapeFiles::height_grid(const sdf::ElementPtr&
 std::shared_ptr<const Samples> ShapeFiles::samples(const sdf::ElementPtr& uri) {
   const std::filesystem::path file = files_.find_file(uri);
   std::shared_ptr<const Samples>& samples = samples_[file];
-  if (!samples) samples = std::make_shared<const Samples>(read_samples(file));
+  if (!samples) samples = std::make_shared<const Samples>(read_samples(files_.input(), file));
   return samples;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/description/input_error.hpp"
+#include "server/description/input_file.hpp"
 #include "server/description/model.hpp"
 
 namespace cohort::description {
@@ -108,6 +109,11 @@ struct World {
 /// relative to the file. docs/worlds.md has the details. `later`: instances that are not present at first; they come
 /// last. Throws InputError with every problem found. Callable from any thread; calls wait for each other.
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
+                 const std::vector<std::filesystem::path>& last_model_folders = {},
+                 const std::vector<LaterObject>& later = {});
+
+/// The same from `input`, which goes on keeping what was read.
+World read_world(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders = {},
                  const std::vector<LaterObject>& later = {});
 

@@ -58,6 +58,20 @@ TEST_F(Course, HasItsEventsInTheOrderOfTheirTimes) {
   EXPECT_EQ(std::get<SetVelocity>(experiment.events[6].effect).angular_W, Eigen::Vector3d::Zero());
 }
 
+TEST_F(Course, SaysWhatIsRecorded) {
+  const Recorded defaults = read_course("").recorded;
+  EXPECT_EQ(defaults.observed, (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(defaults.pose_rate, 10.0);
+  EXPECT_EQ(defaults.observation_rate, 0.0);
+  EXPECT_EQ(defaults.snapshot_interval, 30s);
+  const Recorded written =
+      read_course("record: {poses: 0, observations: 25, robots: ['team/*'], snapshots: 1.5}\n").recorded;
+  EXPECT_EQ(written.observed, (std::vector<std::uint32_t>{1}));
+  EXPECT_EQ(written.pose_rate, 0.0);
+  EXPECT_EQ(written.observation_rate, 25.0);
+  EXPECT_EQ(written.snapshot_interval, 1500ms);
+}
+
 TEST_F(Course, HasStopsPrintsAndAHistory) {
   const Experiment experiment = read_course(
       "stop:\n  - inside: {objects: a, min: [0, 0], max: 1 1, for: 2}\n  - at_rest:  {}\n"
@@ -119,6 +133,9 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"print: {quantity: pose}\n", 4, "print", "expected a list"},
         Flaw{"history: {objects: a}\n", 4, "history.length", "missing"},
         Flaw{"history: {length: 0}\n", 4, "history.length", "from 1"},
+        Flaw{"record: {pose: 10}\n", 4, "record.pose", "did you mean 'poses'?"},
+        Flaw{"record: {robots: [c]}\n", 4, "record.robots", "no robot"},
+        Flaw{"record: {observations: -1}\n", 4, "record.observations", "0"},
         Flaw{"step: 0.5e-9\n", 4, "step", "whole number of nanoseconds"}, Flaw{"step: 2\n", 4, "step", "at most 1 s"},
         Flaw{"threads: 0\n", 4, "threads", "from 1"}, Flaw{"stopp: []\n", 4, "stopp", "did you mean 'stop'?"}));
 

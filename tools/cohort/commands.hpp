@@ -34,6 +34,15 @@ enum class Controllers {
   external,    ///< started by somebody else
 };
 
+/// What a recording holds, where the experiment says something else.
+struct RecordOptions {
+  std::filesystem::path file;  ///< empty: no recording
+  std::optional<double> pose_rate{};                  ///< [Hz]
+  std::optional<double> observation_rate{};           ///< [Hz]
+  std::vector<std::string> robots{};                  ///< selectors: whose observations
+  std::optional<double> snapshot_interval{};          ///< [s]
+};
+
 struct RunCommand {
   std::vector<std::filesystem::path> files;  ///< experiments, one after the other
   std::uint64_t repeat = 1;                  ///< how often all of them are run
@@ -46,6 +55,7 @@ struct RunCommand {
   std::filesystem::path plot;              ///< the same
   Viewpoint viewpoint = Viewpoint::above;  ///< of the plot
   std::filesystem::path csv;               ///< the same: what the experiment prints
+  RecordOptions record;
   bool quiet = false;
   bool paused = false;                 ///< at first
   std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
@@ -75,6 +85,16 @@ struct TeleopCommand {
 int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop);
 
 int check(const std::filesystem::path& file, Log& log);
+
+struct ReplayCommand {
+  std::filesystem::path file;
+  bool verify = false;         ///< compare the state of every boundary
+  double from = 0.0;           ///< log time [s]
+  std::optional<double> to;    ///< the same; none: to the end
+  unsigned threads = 0;        ///< 0: one for each core
+  bool quiet = false;
+};
+int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop);
 
 struct ExportCommand {
   std::filesystem::path file;

@@ -103,6 +103,41 @@ void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::
       ->type_name("N|A..B");
 }
 
+void add_record_options(CLI::App& app, RecordOptions& options) {
+  constexpr double most_hertz = 1e9;
+  app.add_option("--record", options.file, "Record the run to this file (MCAP)")->type_name("FILE");
+  app.add_option("--record-poses", options.pose_rate, "Poses a simulated second in it, 0 for none")
+      ->check(number_from_zero(most_hertz))
+      ->type_name("HZ");
+  app.add_option("--record-observations", options.observation_rate, "Observations of a robot a simulated second")
+      ->check(number_from_zero(most_hertz))
+      ->type_name("HZ");
+  app.add_option("--record-robots", options.robots, "Whose observations: as --robots of 'cohort host'")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("SEL[,SEL...]");
+  app.add_option("--record-snapshots", options.snapshot_interval, "Simulated seconds between snapshots, 0 for none")
+      ->check(number_from_zero(most_seconds))
+      ->type_name("S");
+}
+
+void add_replay_options(CLI::App& app, ReplayCommand& command, LogFlags& flags) {
+  app.add_option("FILE", command.file, "Recording (MCAP)")->required()->type_name("");
+  app.add_flag("--verify", command.verify, "Compare the state of every tick with the recorded one");
+  app.add_option("--from", command.from, "Time in the recording to begin at, in simulated seconds")
+      ->check(number_from_zero(most_seconds))
+      ->type_name("S");
+  app.add_option("--to", command.to, "Time to end at (default: the end)")
+      ->check(number_from_zero(most_seconds))
+      ->type_name("S");
+  app.add_option("--threads", command.threads, "Threads that step the world (default: the cores)")
+      ->check(whole_number(1, 1024))
+      ->type_name("N");
+  add_log_options(app, flags);
+  app.add_flag("--quiet", flags.quiet, "Print errors only");
+  app.footer("Example: cohort replay run.mcap --verify");
+}
+
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
   app.add_option("--repeat", options.repeat,
                  "How often to run it, the world built anew each time, the controllers attached")
@@ -131,6 +166,7 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->check(one_of({"above", "side"}))
       ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
+  add_record_options(app, options.record);
   app.add_flag("--paused", options.paused, "Begin paused, until 'cohort ctl resume' or 'step'");
   app.add_option("--from", options.from, "Go on from this snapshot of 'cohort ctl save'")->type_name("FILE");
   add_domains(app, options.domains, "DDS domains to serve (default: free ones, or 0 if others start controllers)");
@@ -281,6 +317,10 @@ int main(int argc, char** argv) {
   add_doctor_options(*doctor_app, doctor_command);
   add_log_options(*doctor_app, log_flags);
 
+  ReplayCommand replay_command;
+  CLI::App* replay_app = app.add_subcommand("replay", "Run a recording's world again, without controllers");
+  add_replay_options(*replay_app, replay_command, log_flags);
+
   std::string help_topic;
   CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
   help_app->add_option("TOPIC", help_topic, "Such as sensors, placement, proximity_ring or events")->type_name("");
@@ -321,6 +361,8 @@ int main(int argc, char** argv) {
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
+  replay_command.quiet = log_flags.quiet;
+  if (replay_app->parsed()) return replay(replay_command, log, stop_requested);
   if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);

@@ -29,6 +29,7 @@ constexpr Group groups[] = {
     {"stop", "when a run ends early"},
     {"print", "what a run prints"},
     {"history", "whose last poses are kept"},
+    {"record", "what recordings hold"},
 };
 
 std::vector<const Extension*> all_entries() {

@@ -17,6 +17,7 @@
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
 #include "tools/cohort/printed_table.hpp"
+#include "tools/cohort/run_recording.hpp"
 #include "tools/cohort/run_trace.hpp"
 #include "tools/cohort/serving.hpp"
 #include "tools/cohort/summary_file.hpp"
@@ -94,23 +95,30 @@ class OneRun {
         log_(log),
         summary_(numbered(command.summary, number, count)),
         plot_(numbered(command.plot, number, count)),
+        recording_(numbered(command.record.file, number, count)),
         csv_(numbered(command.csv, number, count)),
         own_controllers_(command.controllers != Controllers::external && !has_keyboard(experiment)),
         terminal_(log, {.quiet = command.quiet, .own_controllers = own_controllers_}) {
-    if (!plot_.empty()) recorder_.emplace(experiment.world, simulation, command.viewpoint);
+    if (!plot_.empty()) trace_.emplace(experiment.world, simulation, command.viewpoint);
+    if (!recording_.empty()) {
+      recorder_.emplace(recording_, experiment);
+      recorder_->begin(experiment, simulation, recording::Beginning::first);
+    }
     if (!experiment.prints.empty()) table_.emplace(experiment, simulation, csv_.empty() && !command.quiet);
   }
 
   session::RunListener listener() {
-    return {
+    session::RunListener listener = {
         .progress = [&](const session::Progress& progress) { terminal_.progress(progress); },
         .news = [&](const session::Event& event) { terminal_.event(event); },
         .boundary =
             [&] {
-              if (recorder_) recorder_->boundary();
+              if (trace_) trace_->boundary();
               if (table_) table_->boundary();
             },
     };
+    if (recorder_) add_recorder(listener, *recorder_);
+    return listener;
   }
 
   /// Prints and writes what was asked for. The exit code.
@@ -140,25 +148,39 @@ class OneRun {
         return false;
       }
     };
-    bool written = true;
+    bool written = close_recording(result);
     if (!summary_.empty()) written &= try_to([&] { write_summary(summary_, experiment_, result, cpu); });
-    if (recorder_)
+    if (trace_)
       written &= try_to([&] {
         const PlotCaption caption = {experiment_.name, result.sim_time, result.state_hash};
-        write_file("the plot", plot_, draw_plot(recorder_->finish(), caption));
+        write_file("the plot", plot_, draw_plot(trace_->finish(), caption));
       });
     if (!csv_.empty())
       written &= try_to([&] { write_file("the table", csv_, table_ ? table_->text() : std::string()); });
     return written;
   }
 
+  bool close_recording(const RunResult& result) {
+    if (!recorder_) return true;
+    recorder_->finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
+    if (const std::uint64_t dropped = recorder_->dropped(); dropped > 0)
+      log_.warning(fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are "
+                               "all there; --record-poses and --record-observations ask for fewer",
+                               dropped, recording_.string()),
+                   {{"dropped", dropped}});
+    const std::optional<std::string> error = recorder_->error();
+    if (error) log_.error("the recording ended before its run: " + *error);
+    return !error;
+  }
+
   const RunCommand& command_;
   const description::Experiment& experiment_;
   Log& log_;
-  std::filesystem::path summary_, plot_, csv_;
+  std::filesystem::path summary_, plot_, recording_, csv_;
   bool own_controllers_;
   Terminal terminal_;
-  std::optional<TraceRecorder> recorder_;
+  std::optional<recording::Recorder> recorder_;
+  std::optional<TraceRecorder> trace_;
   std::optional<PrintedTable> table_;
 };
 
@@ -169,6 +191,7 @@ description::Experiment read(const RunCommand& command, const std::filesystem::p
   const Stopwatch reading;
   description::Experiment experiment =
       description::read_experiment(file, command.seed, duration, installed_model_folders());
+  set_recorded(experiment, command.record);
   for (const description::Problem& warning : experiment.world.warnings) log.problem(LogLevel::warning, warning);
   log.info(
       fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", file.string(), experiment.world.file.string(),
@@ -306,6 +329,8 @@ int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
     for (std::size_t number = 1; number <= count; ++number) {
       if (!command.summary.empty()) check_writable("the summary", numbered(command.summary, number, count));
       if (!command.plot.empty()) check_writable("the plot", numbered(command.plot, number, count));
+      if (!command.record.file.empty())
+        check_writable("the recording", numbered(command.record.file, number, count));
       if (!command.csv.empty()) check_writable("the table", numbered(command.csv, number, count));
     }
     const bool in_process = command.controllers == Controllers::in_process;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/cohort/output_file.hpp"
+#include "tools/cohort/wording.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -18,17 +19,6 @@ nlohmann::ordered_json quantiles(const lockstep::LatencyHistogram& histogram) {
   return {{"p50", microseconds(histogram.quantile(0.5))},
           {"p99", microseconds(histogram.quantile(0.99))},
           {"max", microseconds(histogram.max())}};
-}
-
-const char* word_of(description::OnLate consequence) {
-  switch (consequence) {
-    case description::OnLate::wait: return "wait";
-    case description::OnLate::hold: return "hold";
-    case description::OnLate::zero: return "zero";
-    case description::OnLate::detach: return "detach";
-    case description::OnLate::stop: return "stop";
-  }
-  return "unknown";
 }
 
 }  // namespace

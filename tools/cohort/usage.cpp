@@ -85,6 +85,16 @@ CLI::Validator number_above_zero(double greatest) {
           ""};
 }
 
+CLI::Validator number_from_zero(double greatest) {
+  return {[=](std::string& text) {
+            const auto value = description::parse_real(text);
+            return value && *value >= 0.0 && *value <= greatest
+                       ? std::string()
+                       : fmt::format("expected a number from 0 to {}, not '{}'", greatest, text);
+          },
+          ""};
+}
+
 CLI::Validator max_or_number_above_zero(double greatest) {
   return {[=](std::string& text) {
             return text == "max" || is_above_zero(text, greatest)

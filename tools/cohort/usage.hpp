@@ -11,6 +11,7 @@ namespace cohort::tool {
 /// Checks of an option's value; their messages say what was expected.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest);
 CLI::Validator number_above_zero(double greatest);
+CLI::Validator number_from_zero(double greatest);
 CLI::Validator max_or_number_above_zero(double greatest);
 CLI::Validator domain_range();
 CLI::Validator one_of(std::vector<std::string> names);

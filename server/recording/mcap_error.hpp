@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace cohort::recording {
+
+/// A recording that cannot be read or written. `what()` is `FILE: byte OFFSET: what was found and what was expected`.
+class McapError : public std::runtime_error {
+ public:
+  McapError(std::filesystem::path file, std::uint64_t offset, const std::string& problem)
+      : std::runtime_error(file.string() + ": byte " + std::to_string(offset) + ": " + problem),
+        file_(std::move(file)),
+        offset_(offset),
+        problem_(problem) {}
+
+  const std::filesystem::path& file() const { return file_; }
+  /// In the file; of what is wrong inside of a chunk, that of the chunk.
+  std::uint64_t offset() const { return offset_; }
+  const std::string& problem() const { return problem_; }
+
+ private:
+  std::filesystem::path file_;
+  std::uint64_t offset_;
+  std::string problem_;
+};
+
+/// A file that cannot be opened, written or replaced: what, where, why, and what to do.
+class FileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace cohort::recording

@@ -1,0 +1,203 @@
+#include "server/recording/recorder.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "server/recording/facts.hpp"
+
+namespace cohort::recording {
+namespace {
+
+// In whole ticks.
+std::uint64_t ticks_at_rate(double rate, std::chrono::nanoseconds step) {
+  if (rate <= 0.0) return 0;
+  const double ticks = 1e9 / (rate * static_cast<double>(step.count()));
+  return ticks > 1e15 ? 0 : static_cast<std::uint64_t>(std::max(1.0, std::round(ticks)));
+}
+
+std::uint64_t ticks_every(std::chrono::nanoseconds interval, std::chrono::nanoseconds step) {
+  if (interval.count() == 0) return 0;
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(1, interval / step));
+}
+
+std::vector<RecordedChannel> recorded(const std::vector<cohort::Channel>& channels) {
+  std::vector<RecordedChannel> result;
+  result.reserve(channels.size());
+  for (const cohort::Channel& channel : channels) result.push_back({channel.name, channel.unit, channel.size});
+  return result;
+}
+
+// A message with a field for each channel, whose names ROS allows.
+std::string observation_schema(const RobotKind& kind) {
+  std::string text = "builtin_interfaces/Time stamp\n";
+  for (const cohort::Channel& channel : kind.observation)
+    text += (channel.size == 1 ? "float64 " : "float64[" + std::to_string(channel.size) + "] ") +
+            ros_field_name(channel.name) + "\n";
+  const RosDefinition time = definition<ros::Time>();
+  return schema_text({"", text, {{"builtin_interfaces/Time", time.text, {}}}});
+}
+
+std::vector<std::uint8_t> bytes_of(std::span<const std::byte> bytes) {
+  std::vector<std::uint8_t> result(bytes.size());
+  std::ranges::transform(bytes, result.begin(), [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+  return result;
+}
+
+}  // namespace
+
+template <RosMessage Message>
+Recorder::Topic Recorder::add_topic(const std::string& topic, bool is_latched) {
+  return {add_ros_channel(file_, topic, add_ros_schema<Message>(file_), is_latched)};
+}
+
+Recorder::Recorder(const std::filesystem::path& file, const description::Experiment& experiment)
+    : file_(file),
+      world_(add_topic<WorldBegins>(WorldBegins::topic, true)),
+      roster_(add_topic<Roster>(Roster::topic, true)),
+      boundary_(add_topic<Boundary>(Boundary::topic)),
+      commands_(add_topic<Commands>(Commands::topic)),
+      action_(add_topic<ActionTaken>(ActionTaken::topic)),
+      event_(add_topic<RecordedEvent>(RecordedEvent::topic)),
+      miss_(add_topic<RecordedMiss>(RecordedMiss::topic)),
+      snapshot_(add_topic<RecordedSnapshot>(RecordedSnapshot::topic)),
+      clock_(add_topic<ros::Clock>("/clock")),
+      transforms_(add_topic<ros::TFMessage>("/tf")) {
+  file_.add_metadata({facts_name, facts_of(experiment)});
+  if (experiment.inputs == nullptr) return;
+  file_.add_metadata({inputs_name, entries_of(*experiment.inputs)});
+  for (const description::KeptFile& input : experiment.inputs->files) file_.add_attachment(attachment_of(input));
+}
+
+void Recorder::begin(const description::Experiment& experiment, const Simulation& simulation, Beginning reason) {
+  if (experiment_ != nullptr) {
+    ++run_;
+    log_offset_ = last_log_time_ + experiment.world.step - simulation.time();
+  }
+  experiment_ = &experiment;
+  simulation_ = &simulation;
+  const std::chrono::nanoseconds step = experiment.world.step;
+  pose_interval_ = ticks_at_rate(experiment.recorded.pose_rate, step);
+  observation_interval_ = ticks_at_rate(experiment.recorded.observation_rate, step);
+  snapshot_interval_ = ticks_every(experiment.recorded.snapshot_interval, step);
+  if (observed_.empty() && observation_interval_ != 0) add_observed();
+
+  write(world_, WorldBegins{run_, static_cast<std::uint8_t>(reason), experiment.seed, simulation.tick(),
+                            experiment.duration.count(), log_offset_.count()});
+  write_roster();
+  if (reason == Beginning::restored || reason == Beginning::attached) write_snapshot(Importance::essential);
+}
+
+void Recorder::add_observed() {
+  std::vector<SchemaId> schemas;
+  for (const RobotKind& kind : simulation_->kinds())
+    schemas.push_back(file_.add_schema(observation_type(kind.model), "ros2msg", observation_schema(kind)));
+  for (const std::uint32_t robot : experiment_->recorded.observed) {
+    const std::string topic = "/" + simulation_->robot_name(robot) + observation_topic_end;
+    observed_.push_back({robot, {add_ros_channel(file_, topic, schemas[simulation_->kind_of(robot)])}});
+  }
+}
+
+void Recorder::write_roster() {
+  Roster roster;
+  for (const RobotKind& kind : simulation_->kinds())
+    roster.kinds.push_back({kind.model, recorded(kind.observation), recorded(kind.command)});
+  for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
+    roster.robots.push_back({simulation_->robot_name(robot), "", simulation_->kind_of(robot)});
+  for (const description::Team& team : experiment_->teams)
+    for (const std::uint32_t robot : team.robots) roster.robots[robot].team = team.name;
+  write(roster_, roster);
+}
+
+template <RosMessage Message>
+void Recorder::write(Topic& topic, const Message& message, Importance importance) {
+  cdr_.clear();
+  cdr_.add(message);
+  write_bytes(topic, cdr_.bytes(), importance);
+}
+
+void Recorder::write_bytes(Topic& topic, ByteView bytes, Importance importance) {
+  const std::chrono::nanoseconds time = simulation_->time();
+  last_log_time_ = time + log_offset_;
+  file_.write_message(topic.channel, topic.sequence++, last_log_time_, time, bytes, importance);
+}
+
+void Recorder::event(std::string_view kind, std::string_view text, std::uint64_t count) {
+  write(event_, RecordedEvent{simulation_->tick(), std::string(kind), std::string(text), count});
+}
+
+void Recorder::miss(const RecordedMiss& miss) { write(miss_, miss); }
+
+void Recorder::action(std::string_view text, std::span<const std::byte> action) {
+  write(action_, ActionTaken{simulation_->tick(), std::string(text), bytes_of(action)});
+}
+
+void Recorder::boundary() {
+  write(boundary_, Boundary{simulation_->tick(), simulation_->state_hash()});
+  if (is_now(snapshot_interval_) && simulation_->tick() > 0) write_snapshot(Importance::display);
+  if (is_now(pose_interval_)) write_poses();
+  if (is_now(observation_interval_)) write_observations();
+}
+
+void Recorder::commands(std::span<const std::uint32_t> robots) {
+  if (robots.empty()) return;
+  Commands commands{simulation_->tick(), {robots.begin(), robots.end()}, {}};
+  for (const std::uint32_t robot : robots) {
+    const std::span<const double> values = simulation_->command(robot);
+    commands.values.insert(commands.values.end(), values.begin(), values.end());
+  }
+  write(commands_, commands);
+}
+
+void Recorder::write_snapshot(Importance importance) {
+  write(snapshot_, RecordedSnapshot{simulation_->tick(), bytes_of(simulation_->save())}, importance);
+}
+
+void Recorder::write_poses() {
+  const ros::Time now = ros::time(simulation_->time());
+  write(clock_, ros::Clock{now}, Importance::display);
+  ros::TFMessage message;
+  const Objects& objects = simulation_->objects();
+  for (std::uint32_t object = 0; object < objects.size(); ++object) {
+    if (!objects.is_present(object) || is_static(object)) continue;
+    const Pose X_WL = simulation_->object_pose(object);
+    const auto& p = X_WL.position;
+    const auto& q = X_WL.orientation;
+    message.transforms.push_back(
+        {{now, "world"}, objects.name(object), {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}});
+  }
+  write(transforms_, message, Importance::display);
+}
+
+bool Recorder::is_static(std::uint32_t object) const {
+  const description::World& world = experiment_->world;
+  return object < world.instances.size() && world.models[world.instances[object].model].is_static;
+}
+
+void Recorder::write_observations() {
+  const ros::Time now = ros::time(simulation_->time());
+  for (auto& [robot, topic] : observed_) {
+    if (!simulation_->is_present(robot) || !simulation_->is_due(robot, simulation_->tick())) continue;
+    cdr_.clear();
+    cdr_.add(now);
+    for (const double value : simulation_->observation(robot)) cdr_.add(value);
+    write_bytes(topic, cdr_.bytes(), Importance::display);
+  }
+}
+
+std::uint64_t Recorder::dropped() const {
+  std::uint64_t count = 0;
+  for (const auto& [channel, messages] : file_.dropped()) count += messages;
+  return count;
+}
+
+void Recorder::finish(std::string_view end, std::string_view reason) {
+  file_.add_metadata({end_name,
+                      {{"end", std::string(end)},
+                       {"reason", std::string(reason)},
+                       {"ticks", std::to_string(simulation_ == nullptr ? 0 : simulation_->tick())},
+                       {"dropped", std::to_string(dropped())}}});
+  file_.close();
+}
+
+}  // namespace cohort::recording

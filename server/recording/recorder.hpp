@@ -1,0 +1,85 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "server/description/experiment.hpp"
+#include "server/recording/recording_file.hpp"
+#include "server/recording/ros_messages.hpp"
+#include "server/recording/run_messages.hpp"
+#include "server/simulation/simulation.hpp"
+
+namespace cohort::recording {
+
+/// Records a run: an observer, which reads the simulation at its boundaries, changes nothing and never waits for the
+/// disk. Log times are simulated time; where a world begins anew they go on from the last one. The thread that runs
+/// calls everything but `error`.
+class Recorder {
+ public:
+  /// Makes the file, and writes down what `experiment` was read from and where it runs. Throws FileError if the file
+  /// cannot be made.
+  Recorder(const std::filesystem::path& file, const description::Experiment& experiment);
+
+  /// From now on it is about this world, which stands at a boundary of which no one has been told yet. Both must
+  /// outlive what is recorded of them.
+  void begin(const description::Experiment& experiment, const Simulation& simulation, Beginning reason);
+
+  /// These happened at the present boundary.
+  void event(std::string_view kind, std::string_view text, std::uint64_t count);
+  void miss(const RecordedMiss& miss);
+  void action(std::string_view text, std::span<const std::byte> action);
+  /// The state of this tick is complete, with the actions taken at it.
+  void boundary();
+  /// The commands of these robots have changed and act from this boundary on.
+  void commands(std::span<const std::uint32_t> robots);
+
+  /// Closes the file. `end`: how the run ended, in a word, and why.
+  void finish(std::string_view end, std::string_view reason);
+
+  /// Why the recording has ended before its run, if it has. Any thread.
+  std::optional<std::string> error() const { return file_.error(); }
+  /// Poses and observations that were dropped since the disk was too slow.
+  std::uint64_t dropped() const;
+
+ private:
+  struct Topic {
+    ChannelId channel = 0;
+    std::uint32_t sequence = 0;
+  };
+  template <RosMessage Message>
+  Topic add_topic(const std::string& topic, bool is_latched = false);
+  template <RosMessage Message>
+  void write(Topic& topic, const Message& message, Importance importance = Importance::essential);
+  void write_bytes(Topic& topic, ByteView bytes, Importance importance);
+  void add_observed();
+  bool is_static(std::uint32_t object) const;
+  void write_roster();
+  void write_snapshot(Importance importance);
+  void write_poses();
+  void write_observations();
+  bool is_now(std::uint64_t interval) const { return interval != 0 && simulation_->tick() % interval == 0; }
+
+  RecordingFile file_;
+  Topic world_, roster_, boundary_, commands_, action_, event_, miss_, snapshot_, clock_, transforms_;
+  const description::Experiment* experiment_ = nullptr;
+  const Simulation* simulation_ = nullptr;
+  std::uint32_t run_ = 0;
+  std::chrono::nanoseconds log_offset_{0};
+  std::chrono::nanoseconds last_log_time_{0};
+  // In ticks; 0: never.
+  std::uint64_t pose_interval_ = 0;
+  std::uint64_t observation_interval_ = 0;
+  std::uint64_t snapshot_interval_ = 0;
+  struct Observed {
+    std::uint32_t robot = 0;
+    Topic topic;
+  };
+  std::vector<Observed> observed_;
+  CdrWriter cdr_;  // reused
+};
+
+}  // namespace cohort::recording

@@ -1,0 +1,105 @@
+#include "server/recording/replay.hpp"
+
+#include <algorithm>
+
+#include "server/recording/mcap_error.hpp"
+
+namespace cohort::recording {
+
+Replay::Replay(const Recording& recording, unsigned threads)
+    : recording_(recording), threads_(threads), ticks_(recording.ticks()) {}
+
+Replay::~Replay() = default;
+
+void Replay::begin_world(const WorldBegins& begins) {
+  simulation_.reset();
+  experiment_ = std::make_unique<description::Experiment>(recording_.experiment({begins, {}}));
+  simulation_ = std::make_unique<Simulation>(*experiment_, threads_);
+}
+
+bool Replay::advance() {
+  if (recorded_) apply_commands();
+  const std::optional<RecordedTick> before = std::exchange(recorded_, ticks_.next());
+  if (!recorded_) return false;
+  const auto fail = [&](const std::string& problem) { throw McapError(recording_.file(), 0, problem); };
+
+  if (recorded_->begins) {
+    begin_world(*recorded_->begins);
+    if (recorded_->snapshot)
+      simulation_->restore(std::as_bytes(std::span(recorded_->snapshot->data)));
+    else if (recorded_->tick != simulation_->tick())
+      fail("its world begins at tick " + std::to_string(recorded_->tick) + " without a snapshot");
+  } else {
+    if (simulation_ == nullptr) fail("the beginning of its world is lost");
+    if (before && recorded_->tick != before->tick + 1)
+      fail("after tick " + std::to_string(before->tick) + " comes tick " + std::to_string(recorded_->tick) +
+           ": what was between is lost, so the run cannot be replayed beyond");
+    simulation_->step();
+  }
+  take_actions();
+  return true;
+}
+
+void Replay::apply_commands() {
+  std::span<const double> values = recorded_->commands.values;
+  for (const std::uint32_t robot : recorded_->commands.robots) {
+    const std::size_t size = robot < simulation_->robot_count() ? simulation_->command(robot).size() : values.size() + 1;
+    if (size > values.size())
+      throw McapError(recording_.file(), 0,
+                      "the commands of tick " + std::to_string(recorded_->tick) + " are not for the robots of its world");
+    if (const auto fault = simulation_->check_command(robot, values.first(size)))
+      throw McapError(recording_.file(), 0, "a command of tick " + std::to_string(recorded_->tick) + " cannot act: " + fault->text);
+    simulation_->set_command(robot, values.first(size));
+    values = values.subspan(size);
+  }
+}
+
+void Replay::take_actions() {}
+
+bool Replay::seek(std::chrono::nanoseconds log_time) {
+  // Where it can begin: at a world, or at a snapshot of one.
+  const Recording::World* world = nullptr;
+  for (const Recording::World& each : recording_.worlds())
+    if (world == nullptr || each.log_time <= log_time) world = &each;
+  std::chrono::nanoseconds start = world->log_time;
+  const auto& snapshots = recording_.snapshots();
+  const auto after = std::ranges::upper_bound(snapshots, log_time);
+  if (after != snapshots.begin()) start = std::max(start, *std::prev(after));
+
+  recorded_.reset();
+  ticks_ = recording_.ticks(start);
+  if (start > world->log_time) {
+    recorded_ = ticks_.next();
+    if (!recorded_ || !recorded_->snapshot)
+      throw McapError(recording_.file(), 0, "the snapshot at " + std::to_string(start.count()) + " ns cannot be read");
+    begin_world(world->begins);
+    simulation_->restore(std::as_bytes(std::span(recorded_->snapshot->data)));
+  } else if (!advance()) {
+    return false;
+  }
+  while (recorded_->log_time < log_time)
+    if (!advance()) return false;
+  return true;
+}
+
+Verification verify(Replay& replay, std::chrono::nanoseconds from, std::chrono::nanoseconds to,
+                    const std::function<bool(std::chrono::nanoseconds)>& progress) {
+  Verification result;
+  try {
+    for (bool goes_on = replay.seek(from); goes_on && replay.recorded().log_time <= to; goes_on = replay.advance()) {
+      const RecordedTick& recorded = replay.recorded();
+      if (!progress(recorded.log_time)) break;
+      if (!recorded.state_hash) continue;
+      if (const std::uint64_t hash = replay.simulation().state_hash(); hash != *recorded.state_hash) {
+        result.difference = {recorded.tick, recorded.log_time, *recorded.state_hash, hash};
+        return result;
+      }
+      ++result.boundaries;
+    }
+  } catch (const std::exception& error) {
+    result.problem = error.what();
+  }
+  return result;
+}
+
+}  // namespace cohort::recording

@@ -1,0 +1,45 @@
+#include "server/recording/ros_schema.hpp"
+
+#include <map>
+#include <set>
+
+namespace cohort::recording {
+namespace {
+
+// Depth first, by name, as rosbag2 does it.
+void add_parts(std::string& text, const RosDefinition& definition, std::set<std::string>& known) {
+  std::map<std::string, const RosDefinition*> parts;
+  for (const RosDefinition& part : definition.parts) parts.emplace(part.name, &part);
+  for (const auto& [name, part] : parts) {
+    if (!known.insert(name).second) continue;
+    text += "\n" + std::string(80, '=') + "\nMSG: " + name + "\n" + part->text;
+    add_parts(text, *part, known);
+  }
+}
+
+}  // namespace
+
+std::string schema_text(const RosDefinition& definition) {
+  std::string text = definition.text;
+  std::set<std::string> known;
+  add_parts(text, definition, known);
+  return text;
+}
+
+std::string short_type(std::string_view type) {
+  const std::size_t first = type.find('/');
+  const std::size_t last = type.rfind('/');
+  return std::string(type.substr(0, first)) + std::string(type.substr(last));
+}
+
+StringMap ros_channel_metadata(bool is_latched) {
+  // By number, as rosbag2 reads them in files that name no version of it: unknown history, reliable, transient local or
+  // volatile, automatic liveliness, and no deadlines.
+  const std::string endless = "\n    sec: 9223372036\n    nsec: 854775807\n";
+  return {{"offered_qos_profiles",
+           "- history: 3\n  depth: 0\n  reliability: 1\n  durability: " + std::string(is_latched ? "1" : "2") +
+               "\n  deadline:" + endless + "  lifespan:" + endless +
+               "  liveliness: 1\n  liveliness_lease_duration:" + endless + "  avoid_ros_namespace_conventions: false"}};
+}
+
+}  // namespace cohort::recording

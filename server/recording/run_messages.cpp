@@ -1,0 +1,39 @@
+#include "server/recording/run_messages.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace cohort::recording {
+namespace {
+
+bool is_alphanumeric(char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0; }
+
+}  // namespace
+
+// Lower case, digits and single underscores, a letter first.
+std::string ros_field_name(std::string_view channel) {
+  std::string name;
+  for (const char letter : channel) {
+    if (is_alphanumeric(letter))
+      name += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    else if (!name.empty() && name.back() != '_')
+      name += '_';
+  }
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) name = "channel_" + name;
+  return name;
+}
+
+std::string observation_type(std::string_view model) {
+  std::string name;
+  bool begins_word = true;
+  for (const char letter : model) {
+    if (is_alphanumeric(letter))
+      name += begins_word ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
+    begins_word = !is_alphanumeric(letter);
+  }
+  if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) name = "Robot" + name;
+  return "cohort_msgs/msg/" + name + "Observation";
+}
+
+}  // namespace cohort::recording

@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "server/recording/ros_messages.hpp"
+#include "tests/support/recordings.hpp"
+
+namespace cohort::recording {
+namespace {
+
+using namespace std::chrono_literals;
+
+Bytes bytes_of_hex(std::string_view hex) {
+  Bytes bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); ++i) {
+    if (hex[i] == ' ') continue;
+    bytes.push_back(static_cast<std::byte>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16)));
+    ++i;
+  }
+  return bytes;
+}
+
+TEST(Cdr, NumbersStandAtMultiplesOfTheirSizesAfterTheEncapsulation) {
+  CdrWriter writer;
+  writer.add(std::uint8_t{1});
+  writer.add(std::uint16_t{0x0203});
+  writer.add(true);
+  writer.add(1.0);
+  writer.add(std::string("ab"));
+  writer.add(std::vector<float>{});
+  writer.add(std::vector<double>{2.0});
+  EXPECT_EQ(writer.bytes(), bytes_of_hex("00010000 01 00 0302 01 000000 000000000000f03f 03000000 616200 00 00000000 "
+                                         "01000000 0000000000000040"));
+  CdrReader reader(writer.bytes());
+  EXPECT_EQ(reader.get<std::uint8_t>(), 1);
+  EXPECT_EQ(reader.get<std::uint16_t>(), 0x0203);
+  EXPECT_EQ(reader.get<bool>(), true);
+  EXPECT_EQ(reader.get<double>(), 1.0);
+  EXPECT_EQ(reader.get<std::string>(), "ab");
+  EXPECT_TRUE(reader.get<std::vector<float>>().empty());
+  EXPECT_EQ(reader.get<std::vector<double>>(), std::vector<double>{2.0});
+  EXPECT_EQ(reader.left(), 0U);
+}
+
+// A std_msgs/Header as Fast DDS and Cyclone DDS write it.
+TEST(Cdr, AHeaderHasTheBytesThatRosGivesIt) {
+  const ros::Header header{{1, 2}, "map"};
+  EXPECT_EQ(encode(header), bytes_of_hex("00010000 01000000 02000000 04000000 6d617000"));
+}
+
+TEST(Cdr, RefusesWhatIsTooShortOrOfAnotherKind) {
+  EXPECT_THROW(decode<ros::Clock>(bytes_of_hex("000100")), CdrError);
+  EXPECT_THROW(decode<ros::Clock>(bytes_of_hex("00000000 00000001 00000002")), CdrError);  // big-endian
+  EXPECT_THROW(decode<ros::Clock>(bytes_of_hex("00010000 01000000 020000")), CdrError);
+  EXPECT_THROW(decode<ros::JointState>(bytes_of_hex("00010000 01000000 02000000 01000000 00 000000 ffffffff")),
+               CdrError);
+  const ros::Clock clock{{1, 2}};
+  EXPECT_EQ(decode<ros::Clock>(bytes_of_hex("00010000 01000000 02000000 0000")), clock);
+}
+
+// Fills messages with anything, the same anything each time.
+class Filler {
+ public:
+  template <class Value>
+  void fill(Value& value) {
+    if constexpr (RosMessage<Value>) {
+      std::apply([&](const auto&... fields) { (fill(value.*fields.member), ...); }, Value::fields);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      value = random_() % 2 == 1;
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      value = static_cast<Value>(static_cast<double>(random_() % 1'000'000) / 1024.0 - 300.0);
+    } else {
+      value = static_cast<Value>(random_());
+    }
+  }
+  void fill(std::string& text) { text.assign(random_() % 6, 'x'); }
+  template <class Value>
+  void fill(std::vector<Value>& values) {
+    values.resize(random_() % 5);
+    for (Value& value : values) fill(value);
+  }
+  template <class Value, std::size_t count>
+  void fill(std::array<Value, count>& values) {
+    for (Value& value : values) fill(value);
+  }
+
+ private:
+  std::mt19937_64 random_{7};
+};
+
+template <class Message>
+class RosMessages : public testing::Test {};
+using All = testing::Types<ros::Time, ros::Header, ros::Float64MultiArray, ros::Clock, ros::Pose, ros::PoseStamped,
+                           ros::PoseArray, ros::Transform, ros::TransformStamped, ros::Twist, ros::TwistStamped,
+                           ros::WrenchStamped, ros::TFMessage, ros::LaserScan, ros::Imu, ros::MagneticField,
+                           ros::FluidPressure, ros::Temperature, ros::RelativeHumidity, ros::JointState, ros::Range,
+                           ros::BatteryState, ros::NavSatFix>;
+TYPED_TEST_SUITE(RosMessages, All);
+
+TYPED_TEST(RosMessages, AreDecodedAsTheyWereEncodedAndCutOffOnesRefused) {
+  Filler filler;
+  for (int i = 0; i < 20; ++i) {
+    TypeParam message;
+    filler.fill(message);
+    const Bytes bytes = encode(message);
+    EXPECT_EQ(decode<TypeParam>(bytes), message);
+    for (std::size_t size = 0; size < bytes.size(); ++size)
+      EXPECT_THROW(decode<TypeParam>(ByteView(bytes).first(size)), CdrError) << size << " of " << bytes.size();
+  }
+}
+
+// Any bytes give a message or an error.
+TYPED_TEST(RosMessages, TakeAnyBytes) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 2000; ++i) {
+    Bytes bytes(4 + random() % 100);
+    for (std::byte& byte : bytes) byte = static_cast<std::byte>(random() % 8 == 0 ? random() : random() % 4);
+    bytes[0] = std::byte{0};
+    bytes[1] = std::byte{1};
+    try {
+      decode<TypeParam>(bytes);
+    } catch (const CdrError&) {
+    }
+  }
+}
+
+TEST(RosSchema, HasEachMessageInItOnceInTheOrderOfRosbag2) {
+  const std::string line = "\n" + std::string(80, '=') + "\nMSG: ";
+  EXPECT_EQ(schema_text(definition<ros::TFMessage>()),
+            "geometry_msgs/TransformStamped[] transforms\n" + line +
+                "geometry_msgs/TransformStamped\n"
+                "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n" +
+                line +
+                "geometry_msgs/Transform\ngeometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n" +
+                line + "geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n" + line +
+                "geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n" + line +
+                "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" + line +
+                "builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n");
+  EXPECT_EQ(definition<ros::Imu>().text,
+            "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
+            "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
+            "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n");
+  EXPECT_EQ(definition<ros::NavSatStatus>().text, "int8 status\nuint16 service\n");
+}
+
+TEST(RosTime, IsSecondsAndNanosecondsAlsoBeforeTheEpochAndAtItsEnds) {
+  EXPECT_EQ(ros::time(1'500'000'000ns), (ros::Time{1, 500'000'000}));
+  EXPECT_EQ(ros::time(-1ns), (ros::Time{-1, 999'999'999}));
+  EXPECT_EQ(ros::time(std::chrono::nanoseconds::max()), (ros::Time{2'147'483'647, 999'999'999}));
+  EXPECT_EQ(ros::time(std::chrono::nanoseconds::min()), (ros::Time{-2'147'483'648, 0}));
+  for (const auto time : {-1ns, 0ns, 1ns, 1'999'999'999ns}) EXPECT_EQ(ros::nanoseconds(ros::time(time)), time);
+}
+
+}  // namespace
+}  // namespace cohort::recording

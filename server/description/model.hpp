@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -98,6 +99,12 @@ struct Model {
 
   /// A robot is a model that can be observed or commanded.
   bool is_robot() const { return !devices.empty(); }
+  /// Why its root link stays where it is, such as "is static"; null if it is free to move.
+  const char* why_fixed() const {
+    const auto ties_root = [](const Joint& joint) { return joint.parent == Joint::world && joint.child == 0; };
+    if (is_static) return "is static";
+    return std::any_of(joints.begin(), joints.end(), ties_root) ? "is tied to the world by a joint" : nullptr;
+  }
 };
 
 }  // namespace cohort::description

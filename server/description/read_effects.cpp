@@ -28,11 +28,9 @@ std::optional<Effect> read_move(const CourseEntry& entry, const World&, std::siz
 // False, and reported, of what stays where it is.
 bool can_be_pushed(const CourseEntry& entry, const World& world, std::size_t object) {
   const Model& model = world.models[world.instances[object].model];
-  const auto ties_root = [](const Joint& joint) { return joint.parent == Joint::world && joint.child == 0; };
-  const bool is_tied = std::any_of(model.joints.begin(), model.joints.end(), ties_root);
-  if (!model.is_static && !is_tied) return true;
-  entry.problem("objects", "'" + world.instances[object].name + "' " +
-                               (model.is_static ? "is static" : "is tied to the world by a joint"));
+  const char* const why = model.why_fixed();
+  if (why == nullptr) return true;
+  entry.problem("objects", "'" + world.instances[object].name + "' " + why);
   return false;
 }
 

@@ -38,6 +38,8 @@ class WorldReader {
   }
 
   World read(bool may_be_a_model, const std::vector<LaterObject>& later);
+  /// A world with nothing but the model of the file. Materials are numbered on from `materials`.
+  World read_model_file(std::vector<std::string> materials);
 
  private:
   World finished();
@@ -98,6 +100,16 @@ World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& lat
   read_lights(sdf_world, file);
   read_extensions(sdf_world);
   for (const LaterObject& object : later) add_later(object);
+  return finished();
+}
+
+World WorldReader::read_model_file(std::vector<std::string> materials) {
+  world_.materials = std::move(materials);
+  const SdfFile& file = files_.world();
+  if (file.loaded && file.root.Model() == nullptr)
+    problems_.push_back({file.shown, file.tree.line, "", "expected one <model> or <robot>"});
+  if (!file.loaded || file.root.Model() == nullptr) throw InputError(std::move(problems_));
+  read_model_alone(file);
   return finished();
 }
 
@@ -361,6 +373,21 @@ World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders) {
   InputFiles disk;
   return WorldReader(disk, file, seed, last_model_folders).read(true, {});
+}
+
+std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world) {
+  const std::shared_ptr<const KeptFiles> kept = inputs ? inputs : std::make_shared<const KeptFiles>();
+  InputFiles input(kept);
+  const std::filesystem::path file =
+      world.file.parent_path() / (trimmed(text).starts_with('<') ? "(model).sdf" : "(model).yaml");
+  input.add(file, text);
+  constexpr std::uint64_t no_seed = 0;  // nothing is drawn
+  World alone = WorldReader(input, file, no_seed, {kept->last_model_folders.begin(), kept->last_model_folders.end()})
+                    .read_model_file(world.materials);
+  world.materials = std::move(alone.materials);
+  world.warnings.insert(world.warnings.end(), alone.warnings.begin(), alone.warnings.end());
+  world.models.push_back(std::move(alone.models.front()));
+  return world.models.size() - 1;
 }
 
 }  // namespace cohort::description

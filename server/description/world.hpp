@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -92,7 +94,7 @@ struct World {
   Climate climate;
   std::vector<std::string> materials{""};  ///< 0 is of all that names none
   std::vector<MaterialPair> material_pairs;
-  std::vector<Model> models;
+  std::deque<Model> models;  ///< they stay where they are while more come
   std::vector<Instance> instances;
   std::vector<BreakableJoint> breakable_joints;
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order
@@ -120,5 +122,10 @@ World read_world(InputFiles& input, const std::filesystem::path& file, std::uint
 /// The same; a file with a model alone is a world with nothing but this model, at the origin.
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders = {});
+
+/// Adds to `world` the model that a text in SDF, URDF or YAML describes, and the materials that it names. Returns its
+/// index. What the text includes or names, such as a mesh, has to be in `inputs`, from which `world` was read; null is
+/// nothing. Throws InputError with every problem found; `world` is then as it was.
+std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world);
 
 }  // namespace cohort::description

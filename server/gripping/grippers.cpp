@@ -41,8 +41,12 @@ Grippers::Grippers(const description::World& description, physics::World& world)
       grippers_.push_back({.body = body, .device = gripper});
     }
   }
-  for (const description::Model& model : description.models)
-    for (const description::GripRing& ring : model.grip_rings) largest_ring_ = std::max(largest_ring_, ring.radius);
+  for (std::size_t model = 0; model < description.models.size(); ++model) note_model(model);
+}
+
+void Grippers::note_model(std::size_t model) {
+  for (const description::GripRing& ring : description_.models[model].grip_rings)
+    largest_ring_ = std::max(largest_ring_, ring.radius);
 }
 
 void Grippers::command(std::uint32_t number, double opening) {
@@ -115,9 +119,7 @@ std::optional<Target> Grippers::find_target(std::uint32_t number) const {
   world_.scene().for_each_overlap({X_WG.position - around, X_WG.position + around}, [&](std::uint32_t index) {
     const geometry::Solid& solid = world_.scene().solid(index);
     if (solid.body == gripper.body) return;
-    if (solid.body < description_.instances.size() &&
-        !description_.models[description_.instances[solid.body].model].grip_rings.empty())
-      bodies.push_back(solid.body);
+    if (!description_.models[world_.model_of(solid.body)].grip_rings.empty()) bodies.push_back(solid.body);
     if (solid.surface.is_grippable) consider_solid(gripper, X_WG, index, best);
   });
   std::sort(bodies.begin(), bodies.end());
@@ -130,7 +132,7 @@ std::optional<Target> Grippers::find_target(std::uint32_t number) const {
 void Grippers::consider_rings(const Gripper& gripper, const Pose& X_WG, std::uint32_t body,
                               std::optional<Target>& best) const {
   const description::Gripper& device = *gripper.device;
-  for (const description::GripRing& ring : description_.models[description_.instances[body].model].grip_rings) {
+  for (const description::GripRing& ring : description_.models[world_.model_of(body)].grip_rings) {
     const Pose X_WR = world_.link_pose(body, ring.link) * ring.X_LR;
     const Vector3d axis_W = X_WR.orientation * Vector3d::UnitZ();
     if (std::abs(axis_W.dot(X_WG.orientation * Vector3d::UnitZ())) < least_parallel) continue;

@@ -44,6 +44,8 @@ class Grippers {
   bool is_gripping(std::uint32_t gripper) const;
   /// At the connection, over the last step [N]; 0 if it holds nothing.
   double force(std::uint32_t gripper) const;
+  /// A model has come to the description, which may have rings to grip.
+  void note_model(std::size_t model);
   /// The light barrier.
   bool is_something_between(std::uint32_t gripper) const;
   /// The nearest within the acceptance; of two as near, that of the lower body, then link.

@@ -36,11 +36,20 @@ SurfacePairs::SurfacePairs(const description::World& world)
   }
 }
 
-SurfacePair SurfacePairs::of(const description::Surface& a, const description::Surface& b) const {
-  const std::size_t index = a.material * materials_ + b.material;
-  if (is_given_[index]) return pairs_[index];
+namespace {
+
+SurfacePair of_coefficients(const description::Surface& a, const description::Surface& b) {
   return {std::min(a.friction, b.friction), std::max(a.restitution, b.restitution),
           std::max(a.rolling_resistance, b.rolling_resistance)};
+}
+
+}  // namespace
+
+SurfacePair SurfacePairs::of(const description::Surface& a, const description::Surface& b) const {
+  if (a.material >= materials_ || b.material >= materials_) return of_coefficients(a, b);  // came later
+  const std::size_t index = a.material * materials_ + b.material;
+  if (is_given_[index]) return pairs_[index];
+  return of_coefficients(a, b);
 }
 
 namespace {

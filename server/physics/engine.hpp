@@ -21,6 +21,7 @@ class Engine {
 
   virtual const geometry::Scene& scene() const = 0;
   virtual std::size_t body_count() const = 0;
+  virtual std::size_t model_of(std::uint32_t body) const = 0;
   virtual Pose link_pose(std::uint32_t body, std::size_t link) const = 0;
   virtual Twist link_twist(std::uint32_t body, std::size_t link) const = 0;
   virtual double joint_position(std::uint32_t body, std::size_t joint) const = 0;

@@ -31,6 +31,7 @@ void PlanarEngine::put_back_body(std::uint32_t index) {
 
 void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
   PlacedBody& body = bodies_[index];
+  if (body.member != Anchors::nobody) place_on_ground(body.member, X_WM);
   body.X_WM = X_WM;
   body.is_placed_again = true;
   if (body.member == Anchors::nobody) {
@@ -44,13 +45,29 @@ void PlanarEngine::place_body(std::uint32_t index, const Pose& X_WM) {
     return scene_.build();
   }
   connections_.release_of(body.member);
-  planar_.place(body.member, X_WM);
   if (members_[body.member].record) members_[body.member].record->forget();
   collision_.forget(body.member);
-  find_parts_in_body(members_[body.member], body.member);
   place_solids(body.member);
   scene_.update();
-  put_on_ground(body.member);
+}
+
+// Where there is no ground it stays where it was.
+void PlanarEngine::place_on_ground(std::uint32_t member, const Pose& X_WM) {
+  const bool had_ground = members_[member].has_ground;
+  SnapshotWriter before;
+  PlanarBodies::visit_state(planar_, member, StateSaver{before});
+  planar_.place(member, X_WM);
+  find_parts_in_body(members_[member], member);
+  try {
+    put_on_ground(member);
+  } catch (const std::invalid_argument&) {
+    SnapshotReader reader(before.bytes());
+    PlanarBodies::visit_state(planar_, member, StateRestorer{reader});
+    planar_.update_poses(member);
+    find_parts_in_body(members_[member], member);
+    members_[member].has_ground = had_ground;
+    throw;
+  }
 }
 
 void PlanarEngine::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {

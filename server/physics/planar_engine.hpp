@@ -50,6 +50,7 @@ class PlanarEngine final : public Engine {
 
   const geometry::Scene& scene() const override { return scene_; }
   std::size_t body_count() const override { return bodies_.size(); }
+  std::size_t model_of(std::uint32_t body) const override { return bodies_[body].model; }
   Pose link_pose(std::uint32_t body, std::size_t link) const override;
   Twist link_twist(std::uint32_t body, std::size_t link) const override;
   double joint_position(std::uint32_t body, std::size_t joint) const override {
@@ -138,7 +139,10 @@ class PlanarEngine final : public Engine {
   void add_static(std::uint32_t body);
   void add_moving(std::uint32_t body);
   void put_on_ground(std::uint32_t index);
-  std::uint32_t ground_under(std::uint32_t index, double z) const;
+  void place_on_ground(std::uint32_t member, const Pose& X_WM);
+  void check_ground(const description::Model& described, const Pose& X_WM) const;
+  bool needs_ground(const PlanarModel& model) const;
+  std::uint32_t ground_under(const Eigen::Vector3d& origin_W) const;
 
   void find_islands();
   void solve_island(std::span<const std::uint32_t> members, Memory& memory);

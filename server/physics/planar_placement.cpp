@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -56,22 +57,48 @@ PlanarEngine::PlanarEngine(const description::World& description, WorkerPool& wo
 }
 
 std::uint32_t PlanarEngine::add_body(std::size_t model, const Pose& X_WM) {
+  check_ground(description_.models[model], X_WM);
   const std::uint32_t body = create_body(model, X_WM);
   scene_.build();
-  if (const std::uint32_t member = bodies_[body].member; member != Anchors::nobody) {
-    try {
-      put_on_ground(member);
-    } catch (const std::invalid_argument&) {
-      take_out(member);
-      throw;
-    }
-  }
+  if (const std::uint32_t member = bodies_[body].member; member != Anchors::nobody) put_on_ground(member);
   return body;
+}
+
+// Throws as create_body and put_on_ground would, for a body that is not there yet.
+void PlanarEngine::check_ground(const description::Model& described, const Pose& X_WM) const {
+  if (described.is_static) return;
+  try {
+    const PlanarModel model(described);
+    if (!needs_ground(model)) return;
+    PlanarBodies alone;
+    const std::uint32_t index = alone.add(model, X_WM);
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = alone.segment_in_body(index, 0).position.z();
+    for (std::size_t link = 0; link < described.links.size(); ++link) {
+      const Mechanism::LinkPlace& place = model.mechanism().link(link);
+      if (!place.collides) continue;
+      for (const description::Collision& collision : described.links[link].collisions) {
+        const Pose X_BC = alone.segment_in_body(index, place.segment) * (place.X_SL * collision.X_LC);
+        const description::Footprint outline = *description::footprint_of(collision.shape, X_BC);
+        lowest = std::min(lowest, outline.lowest);
+        highest = std::max(highest, outline.highest);
+      }
+    }
+    const double from = std::isfinite(lowest) ? 0.5 * (lowest + highest) : highest;
+    ground_under({alone.place(index).x, alone.place(index).y, from});
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("model '" + described.name + "': " + error.what());
+  }
+}
+
+bool PlanarEngine::needs_ground(const PlanarModel& model) const {
+  return !model.is_fixed() && description_.gravity.z() * model.mass() != 0.0;
 }
 
 std::uint32_t PlanarEngine::create_body(std::size_t model_index, const Pose& X_WM) {
   const auto body = static_cast<std::uint32_t>(bodies_.size());
   const description::Model& model = description_.models[model_index];
+  if (model_index >= models_.size()) models_.resize(model_index + 1);  // it has come since
   try {
     if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_unique<PlanarModel>(model);
     const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
@@ -141,7 +168,7 @@ void PlanarEngine::put_on_ground(std::uint32_t index) {
   Member& member = members_[index];
   const PlanarModel& model = planar_.model(index);
   const double weight = -description_.gravity.z() * model.mass();
-  member.has_ground = model.is_fixed() || weight == 0.0;
+  member.has_ground = !needs_ground(model);
   if (member.has_ground) return;
   const std::span<const Part> parts(parts_.data() + member.first_part, member.part_count);
   const auto is_lower = [](const Part& a, const Part& b) { return a.outline_B.lowest < b.outline_B.lowest; };
@@ -153,7 +180,7 @@ void PlanarEngine::put_on_ground(std::uint32_t index) {
   const double from = lowest != parts.end() ? 0.5 * (lowest->outline_B.lowest + highest) : highest;
   std::uint32_t ground = 0;
   try {
-    ground = ground_under(index, from);
+    ground = ground_under({planar_.place(index).x, planar_.place(index).y, from});
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("model '" + model.mechanism().model().name + "': " + error.what());
   }
@@ -170,11 +197,9 @@ void PlanarEngine::put_on_ground(std::uint32_t index) {
   }
 }
 
-// The first solid below the centre of mass that does not move.
-std::uint32_t PlanarEngine::ground_under(std::uint32_t index, double z) const {
+// The first solid below a point that does not move.
+std::uint32_t PlanarEngine::ground_under(const Vector3d& origin_W) const {
   constexpr double depth = 10.0;  // [m]
-  const PlanarPlace& place = planar_.place(index);
-  const Vector3d origin_W(place.x, place.y, z);
   std::vector<std::uint32_t> below;
   scene_.for_each_static_overlap({origin_W - depth * Vector3d::UnitZ(), origin_W},
                                  [&](std::uint32_t solid) { below.push_back(solid); });

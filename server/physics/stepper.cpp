@@ -39,30 +39,39 @@ std::uint32_t Stepper::add_body(std::size_t model, const Pose& X_WM) {
 std::uint32_t Stepper::create_body(std::size_t model_index, const Pose& X_WM) {
   const auto body = static_cast<std::uint32_t>(bodies_.size());
   const description::Model& model = description_.models[model_index];
+  if (model_index >= shapes_.size()) {  // it has come since
+    mechanisms_.resize(model_index + 1);
+    shapes_.resize(model_index + 1);
+  }
+  std::unique_ptr<Multibody> multibody = model.is_static ? nullptr : make_multibody(model_index, X_WM, body);
   std::vector<std::shared_ptr<const BulletShape>>& shapes = shapes_[model_index];
   if (shapes.empty())
     for (const description::Link& link : model.links)
       for (const description::Collision& collision : link.collisions)
         shapes.push_back(std::make_shared<BulletShape>(collision.shape));
-  if (model.is_static) {
-    PlacedBody& placed = bodies_.emplace_back();
-    placed.model = model_index;
-    placed.X_WM = X_WM;
+  PlacedBody placed;
+  placed.model = model_index;
+  placed.X_WM = X_WM;
+  if (multibody)
+    placed.member = assembly_.add_member(std::move(multibody), shapes);
+  else
     placed.solids = assembly_.add_static(body, model, X_WM, shapes);
-    return body;
-  }
+  bodies_.push_back(std::move(placed));
+  return body;
+}
+
+std::unique_ptr<Multibody> Stepper::make_multibody(std::size_t model_index, const Pose& X_WM, std::uint32_t body) {
+  const description::Model& model = description_.models[model_index];
+  std::unique_ptr<Mechanism>& known = mechanisms_[model_index];
   try {
-    std::unique_ptr<Mechanism>& mechanism = mechanisms_[model_index];
-    if (!mechanism) mechanism = std::make_unique<Mechanism>(model, description_.physics.fidelity);
-    const std::uint32_t member = assembly_.add_member(std::make_unique<Multibody>(*mechanism, X_WM, body), shapes);
-    PlacedBody& placed = bodies_.emplace_back();
-    placed.model = model_index;
-    placed.X_WM = X_WM;
-    placed.member = member;
+    std::unique_ptr<Mechanism> made =
+        known ? nullptr : std::make_unique<Mechanism>(model, description_.physics.fidelity);
+    auto multibody = std::make_unique<Multibody>(made ? *made : *known, X_WM, body);
+    if (made) known = std::move(made);
+    return multibody;
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("model '" + model.name + "': " + error.what());
   }
-  return body;
 }
 
 // Well below everything that was there at first, unless the world says where.

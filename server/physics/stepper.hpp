@@ -32,6 +32,7 @@ class Stepper final : public Engine {
 
   const geometry::Scene& scene() const override { return assembly_.scene; }
   std::size_t body_count() const override { return bodies_.size(); }
+  std::size_t model_of(std::uint32_t body) const override { return bodies_[body].model; }
   Pose link_pose(std::uint32_t body, std::size_t link) const override;
   Twist link_twist(std::uint32_t body, std::size_t link) const override;
   double joint_position(std::uint32_t body, std::size_t joint) const override {
@@ -92,6 +93,7 @@ class Stepper final : public Engine {
     std::vector<std::uint32_t> candidates;
   };
 
+  std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, std::uint32_t body);
   std::uint32_t create_body(std::size_t model, const Pose& X_WM);
   void find_lowest();
   void detect();

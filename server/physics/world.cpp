@@ -29,6 +29,7 @@ void World::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench
 }
 const geometry::Scene& World::scene() const { return engine_->scene(); }
 std::size_t World::body_count() const { return engine_->body_count(); }
+std::size_t World::model_of(std::uint32_t body) const { return engine_->model_of(body); }
 std::span<const Contact> World::contacts() const { return engine_->contacts(); }
 
 Pose World::link_pose(std::uint32_t body, std::size_t link) const { return engine_->link_pose(body, link); }

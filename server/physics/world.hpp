@@ -96,8 +96,9 @@ class World {
   /// Whether the body is in the world: neither quarantined nor removed.
   bool is_active(std::uint32_t body) const;
 
-  /// Adds an instance of one of the description's models; between steps. Returns its body, the next free index. Throws
-  /// std::invalid_argument for a model that cannot be simulated.
+  /// Adds an instance of one of the description's models, which may have come since the world was built; between steps.
+  /// Returns its body, the next free index. Throws std::invalid_argument for a model that cannot be simulated, or not
+  /// there; nothing is changed then.
   std::uint32_t add_body(std::size_t model, const Pose& X_WM);
   /// Takes a body out of the world, also one that is static: it touches nothing, is seen by nobody and does not move,
   /// and what connects it is released. Between steps, as the next three.
@@ -105,13 +106,14 @@ class World {
   /// A body that was removed or quarantined comes back as it was, at rest if it was quarantined.
   void put_back_body(std::uint32_t body);
   /// Puts the whole model of a body at X_WM, at rest, with its joints as they are; connections are released. Throws
-  /// std::invalid_argument where a planar body has no ground.
+  /// std::invalid_argument where a planar body has no ground; it then stays where it was.
   void place_body(std::uint32_t body, const Pose& X_WM);
   /// A force at the centre of mass of a link, and a torque, that act during the next step, besides others.
   void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench);
 
   const geometry::Scene& scene() const;
   std::size_t body_count() const;
+  std::size_t model_of(std::uint32_t body) const;  ///< its index in the description
 
   Pose link_pose(std::uint32_t body, std::size_t link) const;    ///< X_WL
   Twist link_twist(std::uint32_t body, std::size_t link) const;  ///< zero for a static body

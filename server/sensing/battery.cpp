@@ -38,7 +38,8 @@ double Battery::mechanical_power() const {
 }
 
 void Battery::remember(std::uint64_t tick, bool) {
-  if (tick == 0) return;  // nothing has moved yet
+  if (tick == noted_tick_) return;  // nothing has moved since, or at all yet
+  noted_tick_ = tick;
   power_ = energy_ > 0.0 ? battery_.idle_power + mechanical_power() / battery_.motor_efficiency : 0.0;
   energy_ = std::max(0.0, energy_ - power_ * step_);
 }

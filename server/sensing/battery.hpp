@@ -16,8 +16,16 @@ class Battery final : public Sensor {
   void remember(std::uint64_t tick, bool was_delivered) override;
   bool is_exhausted() const override { return energy_ <= 0.0; }
   void hash(StateHash& hash) const override { hash.add(energy_); }
-  void save(SnapshotWriter& writer) const override { writer.add(energy_); }
-  void restore(SnapshotReader& reader) override { reader.read(energy_); }
+  void save(SnapshotWriter& writer) const override {
+    writer.add(energy_);
+    writer.add(power_);
+    writer.add(noted_tick_);
+  }
+  void restore(SnapshotReader& reader) override {
+    reader.read(energy_);
+    reader.read(power_);
+    reader.read(noted_tick_);
+  }
 
  private:
   double mechanical_power() const;
@@ -29,6 +37,7 @@ class Battery final : public Sensor {
   double step_ = 0.0;                // [s]
   double energy_ = 0.0;              // that is left [J]
   double power_ = 0.0;               // over the last step [W]
+  std::uint64_t noted_tick_ = 0;
 };
 
 }  // namespace cohort::sensing

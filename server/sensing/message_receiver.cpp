@@ -23,8 +23,12 @@ std::vector<Channel> MessageReceiver::channels() const {
   return channels;
 }
 
-void MessageReceiver::remember(std::uint64_t, bool was_delivered) {
-  if (was_delivered) heard_.clear();
+void MessageReceiver::remember(std::uint64_t tick, bool was_delivered) {
+  if (tick != noted_tick_) {
+    noted_tick_ = tick;
+    before_ = std::move(heard_);
+    if (was_delivered) before_.clear();
+  }
   const Pose X_WS = mount_.world.link_pose(mount_.body, device_.link) * device_.X_LS;
   struct Near {
     double distance;
@@ -53,7 +57,7 @@ void MessageReceiver::remember(std::uint64_t, bool was_delivered) {
                                std::atan2(p_S.z(), std::sqrt(p_S.x() * p_S.x() + p_S.y() * p_S.y()))});
     heard.insert(heard.end(), beacon.message.begin(), beacon.message.end());
   }
-  heard.insert(heard.end(), heard_.begin(), heard_.end());
+  heard.insert(heard.end(), before_.begin(), before_.end());
   heard.resize(std::min(heard.size(), device_.capacity * size_of_one()));
   heard_ = std::move(heard);
 }
@@ -69,15 +73,21 @@ void MessageReceiver::hash(StateHash& hash) const {
 }
 
 void MessageReceiver::save(SnapshotWriter& writer) const {
-  writer.add_count(heard_.size());
-  writer.add_all(heard_.data(), heard_.size());
+  writer.add(noted_tick_);
+  for (const std::vector<double>* const messages : {&heard_, &before_}) {
+    writer.add_count(messages->size());
+    writer.add_all(messages->data(), messages->size());
+  }
 }
 
 void MessageReceiver::restore(SnapshotReader& reader) {
-  heard_.resize(reader.read_count(sizeof(double)));
-  if (heard_.size() > device_.capacity * size_of_one())
-    throw SnapshotError("the snapshot has more messages than a robot hears");
-  reader.read_all(heard_.data(), heard_.size());
+  reader.read(noted_tick_);
+  for (std::vector<double>* const messages : {&heard_, &before_}) {
+    messages->resize(reader.read_count(sizeof(double)));
+    if (messages->size() > device_.capacity * size_of_one())
+      throw SnapshotError("the snapshot has more messages than a robot hears");
+    reader.read_all(messages->data(), messages->size());
+  }
 }
 
 }  // namespace cohort::sensing

@@ -26,7 +26,9 @@ class MessageReceiver final : public Sensor {
 
   description::RangeAndBearing device_;
   Mount mount_;
-  std::vector<double> heard_;  // range, bearing, elevation and message of each, in the order of the report
+  std::vector<double> heard_;   // range, bearing, elevation and message of each, in the order of the report
+  std::vector<double> before_;  // of these, those of ticks before `noted_tick_`
+  std::uint64_t noted_tick_ = ~std::uint64_t{0};
 };
 
 }  // namespace cohort::sensing

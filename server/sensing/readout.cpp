@@ -50,6 +50,7 @@ Readout::Readout(const description::Readout& readout, std::vector<Channel> chann
   is_immediate_ = period_ == 1 && latency_ == 0 && readout_.drop_out == 0.0;
   if (is_immediate_) reported_.clear();
   if (wanders_) drift_.assign(values_.size(), 0.0);
+  drift_before_ = drift_;
 }
 
 int Readout::noise_on(const Channel& channel, std::uint32_t element) const {
@@ -68,6 +69,13 @@ int Readout::noise_on(const Channel& channel, std::uint32_t element) const {
 // section 3.6).
 void Readout::disturb(std::uint64_t tick, std::span<double> values) {
   if (readout_.noises.empty()) return;
+  if (wanders_) {
+    if (tick == drift_tick_)
+      drift_ = drift_before_;
+    else
+      drift_before_ = drift_;
+    drift_tick_ = tick;
+  }
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Value& value = values_[i];
     if (value.noise < 0) {
@@ -91,6 +99,7 @@ void Readout::disturb(std::uint64_t tick, std::span<double> values) {
 
 void Readout::take(std::uint64_t tick, std::span<const double> values) {
   if (readout_.drop_out > 0.0 && random_.uniform(tick, draw_of(drop_out, 0)) < readout_.drop_out) return;
+  if (!under_way_.empty() && under_way_.back().due == tick + latency_) under_way_.pop_back();
   under_way_.push_back({tick + latency_, {values.begin(), values.end()}});
 }
 
@@ -119,12 +128,18 @@ void Readout::hash(StateHash& hash) const {
 void Readout::save(SnapshotWriter& writer) const {
   writer.add_count(under_way_.size());
   visit_state(*this, physics::StateSaver{writer});
+  if (!wanders_) return;
+  writer.add(drift_tick_);
+  for (const double drift : drift_before_) writer.add(drift);
 }
 
 void Readout::restore(SnapshotReader& reader) {
   constexpr std::size_t least_bytes = sizeof(std::uint64_t);
   under_way_.assign(reader.read_count(least_bytes), {0, std::vector<double>(values_.size())});
   visit_state(*this, physics::StateRestorer{reader});
+  if (!wanders_) return;
+  reader.read(drift_tick_);
+  for (double& drift : drift_before_) reader.read(drift);
 }
 
 }  // namespace cohort::sensing

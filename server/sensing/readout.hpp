@@ -29,7 +29,8 @@ class Readout {
     return is_immediate_ ? is_due || wanders_ : tick % period_ == 0;
   }
   /// Adds all errors to what has been measured at this tick. What is infinite, where nothing was there to be measured,
-  /// becomes the bound of its channel, if there is noise on the device at all.
+  /// becomes the bound of its channel, if there is noise on the device at all. As `take` and `report`, it may be called
+  /// again at the same tick, when something has been changed from outside; what it did before is then undone.
   void disturb(std::uint64_t tick, std::span<double> values);
   /// Takes what was measured at this tick, with its errors.
   void take(std::uint64_t tick, std::span<const double> values);
@@ -65,7 +66,9 @@ class Readout {
   std::uint64_t latency_ = 0;  // in ticks
   double sample_time_ = 0.0;   // from one measurement to the next [s]
 
-  std::vector<double> drift_;     // of each value, if any wanders
+  std::vector<double> drift_;         // of each value, if any wanders
+  std::vector<double> drift_before_;  // before `drift_tick_`
+  std::uint64_t drift_tick_ = ~std::uint64_t{0};
   std::vector<double> reported_;  // that holds now; if there is a memory
   std::deque<Report> under_way_;  // oldest first
 };

@@ -45,7 +45,8 @@ class Sensor {
   virtual bool needs_record() const { return false; }
 
   /// Of a sensor with a memory: takes note of this tick, before it senses and whether it is asked or not.
-  /// `was_delivered`: the robot was given what was sensed at the tick before.
+  /// `was_delivered`: the robot was given what was sensed at the tick before. Called again at the same tick, when
+  /// something has been changed from outside, it takes note of this tick anew.
   virtual bool has_memory() const { return false; }
   virtual void remember(std::uint64_t /*tick*/, bool /*was_delivered*/) {}
   /// Whether the robot has no energy left.

@@ -2,20 +2,12 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
+#include "server/core/overloaded.hpp"
+
 namespace cohort {
-namespace {
-
-template <class... Functions>
-struct Overloaded : Functions... {
-  using Functions::operator()...;
-};
-template <class... Functions>
-Overloaded(Functions...) -> Overloaded<Functions...>;
-
-}  // namespace
-
 Course::Course(const description::Experiment& experiment, physics::World& world, Objects& objects,
                emission::Emitters& emitters, const actuation::UserActions& actions)
     : experiment_(experiment),
@@ -33,6 +25,7 @@ Course::Course(const description::Experiment& experiment, physics::World& world,
 }
 
 std::vector<std::string> Course::begin_tick(std::uint64_t tick) {
+  std::erase_if(pushes_, [&](const Push& push) { return push.end <= tick; });
   std::vector<std::string> happened;
   for (; next_event_ < event_ticks_.size() && event_ticks_[next_event_] <= tick; ++next_event_)
     happened.push_back(act(experiment_.events[next_event_]));
@@ -75,6 +68,7 @@ std::string Course::who_begins(const description::Reaction& reaction) const {
 std::optional<std::string> Course::why_not(const description::Event& event) const {
   const auto* const presence = std::get_if<description::SetPresence>(&event.effect);
   const bool comes_first = presence != nullptr && presence->once && presence->present;
+  if (std::find(removed_.begin(), removed_.end(), event.object) != removed_.end()) return "it has been removed";
   switch (stages_[event.object]) {
     case Stage::to_come: return comes_first ? std::nullopt : std::optional("it has not been added");
     case Stage::came: return comes_first ? std::optional("it has been added already") : std::nullopt;
@@ -88,26 +82,38 @@ std::string Course::act(const description::Event& event) {
   std::string text = event.kind + " '" + objects_.name(object) + "'";
   if (const std::optional<std::string> reason = why_not(event)) return text + " does nothing: " + *reason;
   try {
-    std::visit(Overloaded{
-                   [&](const description::SetPresence& presence) {
-                     objects_.set_present(object, presence.present);
-                     if (presence.once) stages_[object] = presence.present ? Stage::came : Stage::gone;
-                   },
-                   [&](const description::PlaceAt& place) { world_.place_body(object, place.X_WM); },
-                   [&](const description::SetVelocity& velocity) {
-                     if (world_.is_active(object))
-                       world_.set_root_twist(object, {velocity.angular_W, velocity.linear_W});
-                   },
-                   [](const description::ApplyForce&) {},  // acts in the steps that follow
-                   [&](const description::SetEmitters& set) {
-                     for (const std::size_t emitter : set.emitters) emitters_.change(object, emitter, set.change);
-                   },
-               },
-               event.effect);
+    apply(event);
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(text + ": " + error.what());
   }
+  const auto* const presence = std::get_if<description::SetPresence>(&event.effect);
+  if (presence != nullptr && presence->once) stages_[object] = presence->present ? Stage::came : Stage::gone;
   return text;
+}
+
+std::string Course::act_from_outside(const description::Event& event, std::uint64_t tick) {
+  apply(event);
+  const auto object = static_cast<std::uint32_t>(event.object);
+  if (std::holds_alternative<description::SetPresence>(event.effect)) removed_.push_back(object);
+  if (const auto* const force = std::get_if<description::ApplyForce>(&event.effect))
+    pushes_.push_back({object, *force, tick + ticks_of(force->duration, experiment_.world.step)});
+  return event.kind + " '" + objects_.name(object) + "'";
+}
+
+void Course::apply(const description::Event& event) {
+  const auto object = static_cast<std::uint32_t>(event.object);
+  std::visit(Overloaded{
+                 [&](const description::SetPresence& presence) { objects_.set_present(object, presence.present); },
+                 [&](const description::PlaceAt& place) { world_.place_body(object, place.X_WM); },
+                 [&](const description::SetVelocity& velocity) {
+                   if (world_.is_active(object)) world_.set_root_twist(object, {velocity.angular_W, velocity.linear_W});
+                 },
+                 [](const description::ApplyForce&) {},  // acts in the steps that follow
+                 [&](const description::SetEmitters& set) {
+                   for (const std::size_t emitter : set.emitters) emitters_.change(object, emitter, set.change);
+                 },
+             },
+             event.effect);
 }
 
 void Course::push(std::uint64_t tick) {
@@ -121,6 +127,9 @@ void Course::push(std::uint64_t tick) {
     push_for(experiment_.events[i], [&](const description::ApplyForce& force) {
       return event_ticks_[i] + ticks_of(force.duration, experiment_.world.step);
     });
+  for (const Push& push : pushes_)
+    if (world_.is_active(push.object))
+      world_.push_body(push.object, push.force.link, {push.force.force_W, push.force.torque_W});
   std::size_t i = 0;
   for (const description::Reaction& reaction : experiment_.reactions)
     for (const description::Event& event : reaction.events) {
@@ -180,7 +189,25 @@ std::optional<std::string> Course::why_it_holds(const description::StopCondition
       condition.what);
 }
 
+template <class Self, class Visit>
+void Course::visit_outside(Self& self, Visit&& visit) {
+  for (auto& push : self.pushes_) {
+    visit(push.object);
+    visit(push.force.link);
+    for (int i = 0; i < 3; ++i) visit(push.force.force_W[i]);
+    for (int i = 0; i < 3; ++i) visit(push.force.torque_W[i]);
+    visit(push.end);
+  }
+  for (auto& object : self.removed_) visit(object);
+}
+
 void Course::hash(StateHash& hash) const {
+  visit_outside(*this, [&]<class Number>(Number number) {
+    if constexpr (std::is_same_v<Number, double>)
+      hash.add(number);
+    else
+      hash.add(static_cast<std::uint64_t>(number));
+  });
   for (const std::uint64_t held : boundaries_held_) hash.add(held);
   if (experiment_.reactions.empty()) return;  // then all else follows from the tick
   for (const Stage stage : stages_) hash.add(static_cast<std::uint64_t>(stage));
@@ -197,6 +224,9 @@ void Course::save(SnapshotWriter& writer) const {
   writer.add_all(stages_.data(), stages_.size());
   writer.add_count(force_ends_.size());
   writer.add_all(force_ends_.data(), force_ends_.size());
+  writer.add_count(pushes_.size());
+  writer.add_count(removed_.size());
+  visit_outside(*this, [&](const auto& number) { writer.add(number); });
 }
 
 void Course::restore(SnapshotReader& reader, std::uint64_t tick) {
@@ -210,6 +240,13 @@ void Course::restore(SnapshotReader& reader, std::uint64_t tick) {
   reader.read_all(stages_.data(), stages_.size());
   reader.expect_count(force_ends_.size(), "events of actions");
   reader.read_all(force_ends_.data(), force_ends_.size());
+  pushes_.assign(reader.read_count(sizeof(std::uint64_t)), {});
+  removed_.assign(reader.read_count(sizeof(std::uint32_t)), 0);
+  visit_outside(*this, [&](auto& number) { reader.read(number); });
+  for (const Push& push : pushes_)
+    if (push.object >= objects_.size() ||
+        push.force.link >= experiment_.world.models[world_.model_of(push.object)].links.size())
+      throw SnapshotError("the snapshot has a push on something that is not there");
   next_event_ =
       static_cast<std::size_t>(std::upper_bound(event_ticks_.begin(), event_ticks_.end(), tick) - event_ticks_.begin());
 }

@@ -87,7 +87,10 @@ void Objects::hash(StateHash& hash) const {
   const std::vector<description::Instance>& instances = experiment_.world.instances;
   for (std::uint32_t object = 0; object < size(); ++object) {
     const bool is_known = object < instances.size();
-    if (!is_known) hash.add(hash_name(names_[object]));
+    if (!is_known) {
+      hash.add(hash_name(names_[object]));
+      hash.add(static_cast<std::uint64_t>(world_.model_of(object)));
+    }
     if (is_present(object) != (!is_known || instances[object].is_present))
       hash.add(static_cast<std::uint64_t>(object) << 1 | static_cast<std::uint64_t>(is_present(object)));
   }

@@ -6,17 +6,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "server/core/hash.hpp"
-#include "server/core/random.hpp"
-#include "server/core/snapshot.hpp"
-
 namespace cohort {
 namespace {
 
 constexpr std::size_t robots_a_chunk = 32;
-constexpr std::size_t bodies_a_chunk = 64;
-constexpr std::uint32_t none = 0xffffffffu;
-constexpr std::uint64_t snapshot_mark = 0x746f6873'74726f68u;
 
 std::size_t total_size(const std::vector<Channel>& channels) {
   std::size_t size = 0;
@@ -35,20 +28,19 @@ std::vector<double> neutral_values(const RobotKind& kind) {
 Simulation::Simulation(const description::Experiment& experiment, unsigned threads)
     : experiment_(experiment),
       workers_(threads),
-      world_(experiment.world, workers_),
-      breakable_joints_(experiment.world, world_),
-      emitters_(experiment.world, world_),
-      grippers_(experiment.world, world_),
-      actions_(experiment.world, world_),
+      world_(experiment_.world, workers_),
+      breakable_joints_(experiment_.world, world_),
+      emitters_(experiment_.world, world_),
+      grippers_(experiment_.world, world_),
+      actions_(experiment_.world, world_),
       lamp_view_(world_, emitters_),
-      objects_(experiment, world_),
-      course_(experiment, world_, objects_, emitters_, actions_) {
-  const description::World& world = experiment.world;
+      objects_(experiment_, world_),
+      course_(experiment_, world_, objects_, emitters_, actions_),
+      spawned_models_(experiment_) {
+  const description::World& world = experiment_.world;
   kind_of_model_.assign(world.models.size(), none);
   robot_of_body_.assign(world.instances.size(), none);
-  is_ground_.assign(world.instances.size(), 0);
-  for (std::uint32_t solid = 0; solid < world_.scene().size(); ++solid)
-    if (geometry::is_ground(world_.scene().solid(solid).shape)) is_ground_[world_.scene().solid(solid).body] = 1;
+  note_ground();
 
   robots_.resize(world.robots.size());
   for (const description::Team& team : experiment.teams)
@@ -209,6 +201,7 @@ void Simulation::begin_tick() {
 std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM) {
   const std::uint32_t object = objects_.add(name, model, X_WM);
   emitters_.add_body(object, model);
+  grippers_.note_model(model);
   note_added();
   return object;
 }
@@ -216,8 +209,15 @@ std::uint32_t Simulation::add_object(const std::string& name, std::size_t model,
 // The world has bodies that the description does not list.
 void Simulation::note_added() {
   robot_of_body_.resize(world_.body_count(), none);
-  is_ground_.resize(world_.body_count(), 0);
+  note_ground();
   body_hashes_.resize(world_.body_count());
+}
+
+void Simulation::note_ground() {
+  const geometry::Scene& scene = world_.scene();
+  is_ground_.resize(world_.body_count(), 0);
+  for (; solids_noted_ < scene.size(); ++solids_noted_)
+    if (geometry::is_ground(scene.solid(solids_noted_).shape)) is_ground_[scene.solid(solids_noted_).body] = 1;
 }
 
 void Simulation::name_quarantined() {
@@ -295,102 +295,6 @@ void Simulation::count_touches() {
     if (is_present(robot)) ++touches_.robot_ticks;
   for (const char touched : touches_obstacle) touches_.obstacles += static_cast<std::uint64_t>(touched);
   for (const char touched : touches_robot) touches_.robots += static_cast<std::uint64_t>(touched);
-}
-
-std::vector<std::byte> Simulation::save() const {
-  SnapshotWriter writer;
-  writer.add(snapshot_mark);
-  writer.add(hash_name(COHORT_VERSION));
-  writer.add(static_cast<std::uint64_t>(experiment_.seed));
-  writer.add(static_cast<std::uint64_t>(experiment_.world.step.count()));
-  writer.add(tick_);
-  world_.save(writer);
-  objects_.save(writer);
-  course_.save(writer);
-  emitters_.save(writer);
-  grippers_.save(writer);
-  actions_.save(writer);
-  writer.add_count(robots_.size());
-  for (const Robot& robot : robots_) {
-    writer.add_count(robot.command.size());
-    writer.add_all(robot.command.data(), robot.command.size());
-    for (const SensorOfRobot& each : robot.sensors) {
-      each.sensor->save(writer);
-      each.readout.save(writer);
-    }
-  }
-  writer.add_count(observations_.size());
-  writer.add_all(observations_.data(), observations_.size());
-  writer.add(touches_.robot_ticks);
-  writer.add(touches_.obstacles);
-  writer.add(touches_.robots);
-  return writer.bytes();
-}
-
-void Simulation::restore(std::span<const std::byte> snapshot) {
-  SnapshotReader reader(snapshot);
-  std::uint64_t mark = 0;
-  reader.read(mark);
-  if (mark != snapshot_mark) throw SnapshotError("this is no snapshot");
-  std::uint64_t version = 0;
-  reader.read(version);
-  if (version != hash_name(COHORT_VERSION))
-    throw SnapshotError("the snapshot is of another version than " COHORT_VERSION);
-  reader.expect_count(experiment_.seed, "as its seed");
-  reader.expect_count(static_cast<std::size_t>(experiment_.world.step.count()), "ns as its step");
-  reader.read(tick_);
-  world_.restore(reader);
-  objects_.restore(reader);
-  course_.restore(reader, tick_);
-  note_added();
-  emitters_.restore(reader);
-  emitters_.update(workers_);
-  grippers_.restore(reader);
-  actions_.restore(reader);
-  reader.expect_count(robots_.size(), "robots");
-  for (Robot& robot : robots_) {
-    reader.expect_count(robot.command.size(), "commanded values of a robot");
-    reader.read_all(robot.command.data(), robot.command.size());
-    for (SensorOfRobot& each : robot.sensors) {
-      each.sensor->restore(reader);
-      each.readout.restore(reader);
-    }
-  }
-  reader.expect_count(observations_.size(), "observed values");
-  reader.read_all(observations_.data(), observations_.size());
-  reader.read(touches_.robot_ticks);
-  reader.read(touches_.obstacles);
-  reader.read(touches_.robots);
-  if (!reader.is_at_end()) throw SnapshotError("the snapshot goes on after its end");
-}
-
-std::uint64_t Simulation::state_hash() const {
-  workers_.for_each_chunk(body_hashes_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
-    for (std::size_t body = begin; body < end; ++body) {
-      StateHash hash;
-      world_.hash_body(static_cast<std::uint32_t>(body), hash);
-      if (robot_of_body_[body] != none) {
-        for (const double value : observation(robot_of_body_[body])) hash.add(value);
-        const Robot& robot = robots_[robot_of_body_[body]];
-        for (const double value : robot.command) hash.add(value);
-        for (const SensorOfRobot& each : robot.sensors) {
-          each.sensor->hash(hash);
-          each.readout.hash(hash);
-        }
-      }
-      body_hashes_[body] = hash.value();
-    }
-  });
-  StateHash hash;
-  hash.add(tick_);
-  for (const std::uint64_t body_hash : body_hashes_) hash.add(body_hash);
-  world_.hash_contacts(hash);
-  objects_.hash(hash);
-  course_.hash(hash);
-  emitters_.hash(hash);
-  grippers_.hash(hash);
-  actions_.hash(hash);
-  return hash.value();
 }
 
 Pose Simulation::robot_pose(std::uint32_t robot) const { return world_.link_pose(robots_[robot].body, 0); }

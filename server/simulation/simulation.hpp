@@ -22,9 +22,11 @@
 #include "server/physics/world.hpp"
 #include "server/sensing/readout.hpp"
 #include "server/sensing/sensor.hpp"
+#include "server/simulation/action.hpp"
 #include "server/simulation/breakable_joints.hpp"
 #include "server/simulation/course.hpp"
 #include "server/simulation/objects.hpp"
+#include "server/simulation/spawned_models.hpp"
 
 namespace cohort {
 
@@ -52,6 +54,12 @@ struct TouchCounts {
   std::uint64_t robots = 0;       ///< touched another robot
 };
 
+/// What became of an action.
+struct ActionResult {
+  bool is_done = false;
+  std::string text;  ///< a sentence: what was done, or why it cannot be
+};
+
 /// What a program does when robots do something. The value is that of the step that has just ended, from 0 to 1.
 using ActionHandler = std::function<void(std::uint32_t robot, double value)>;
 
@@ -60,8 +68,8 @@ using ActionHandler = std::function<void(std::uint32_t robot, double value)>;
 /// experiment and of the commands, for any number of threads. One thread calls it.
 class Simulation {
  public:
-  /// Builds the world and senses tick 0. The experiment must outlive this. Throws std::invalid_argument for a world
-  /// that cannot be simulated.
+  /// Builds the world, of a copy of the experiment, and senses tick 0. Throws std::invalid_argument for a world that
+  /// cannot be simulated.
   Simulation(const description::Experiment& experiment, unsigned threads);
   ~Simulation();
 
@@ -108,6 +116,17 @@ class Simulation {
   /// Says which stop condition of the experiment holds, as soon as one does.
   const std::optional<std::string>& stop_reason() const { return course_.stop_reason(); }
 
+  /// Does what a person or a program asks for, now: after the events of this boundary and what stops a run was looked
+  /// at, and before any robot is asked. The robots that are due sense once more, so that what they observe at this tick
+  /// is the world as it is then; noise, and what sensors remember, is as if they had sensed once. Between steps.
+  /// Returns a sentence for the log. Throws std::invalid_argument, with a sentence that says why, if it cannot be done;
+  /// nothing is changed then. What is done is part of the state, and depends on nothing but the state and the action.
+  std::string act(const Action& action);
+  /// One after the other, with one sensing after all of them.
+  std::vector<ActionResult> act(std::span<const Action> actions);
+
+  /// The world as it was described, with the models that have come since.
+  const description::World& description() const { return experiment_.world; }
   /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
   /// The next five between steps. They act on any object, at once; what is sensed changes with the next step. An object
@@ -161,6 +180,9 @@ class Simulation {
   };
 
   void build_robot(std::uint32_t id);
+  std::string act_unsensed(const Action& action);
+  std::string spawn_object(const SpawnObject& spawn);
+  void note_ground();
   CommandFault wrong_size(std::uint32_t robot, std::size_t size) const;
   CommandFault unfit(std::uint32_t robot, const Channel& channel, double value) const;
   void sense();
@@ -173,7 +195,9 @@ class Simulation {
   void begin_tick();
   void note_added();
 
-  const description::Experiment& experiment_;
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  description::Experiment experiment_;  // with the models that have come since
   mutable WorkerPool workers_;
   physics::World world_;
   BreakableJoints breakable_joints_;
@@ -183,6 +207,7 @@ class Simulation {
   sensing::LampView lamp_view_;
   Objects objects_;
   Course course_;
+  SpawnedModels spawned_models_;
   std::vector<RobotKind> kinds_;
   std::vector<std::uint32_t> kind_of_model_;
   std::vector<Robot> robots_;
@@ -196,6 +221,7 @@ class Simulation {
   std::vector<char> asking_rings_;
   std::vector<std::uint32_t> robot_of_body_;
   std::vector<char> is_ground_;  // by body
+  std::uint32_t solids_noted_ = 0;
   std::uint64_t tick_ = 0;
   TouchCounts touches_;
   std::vector<std::string> quarantined_;

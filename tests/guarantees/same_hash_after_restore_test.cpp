@@ -28,6 +28,14 @@ TEST_F(SameHashAfterRestore, SavedInOneProcessAndRestoredInAnother) {
   EXPECT_EQ(step_world({"400", "900", "--load", file_, "--threads", "2"}), straight);
 }
 
+TEST_F(SameHashAfterRestore, WithObjectsThatWereSpawnedFromATextAndPushesUnderWay) {
+  const std::string straight = step_world({"0", "900", "--act", "300"});
+  EXPECT_NE(straight, step_world({"0", "900"}));
+  const std::string at_400 = step_world({"0", "400", "--act", "300", "--save", file_});
+  EXPECT_EQ(step_world({"400", "400", "--load", file_}), at_400);
+  EXPECT_EQ(step_world({"400", "900", "--load", file_, "--threads", "4"}), straight);
+}
+
 TEST_F(SameHashAfterRestore, SavedAgainItIsTheSameSnapshot) {
   step_world({"0", "300", "--save", file_});
   step_world({"300", "300", "--load", file_, "--save", file_ + "_again"});

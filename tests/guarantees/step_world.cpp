@@ -1,6 +1,7 @@
 // Steps the world of an experiment, with commands that are a function of robot and tick.
-//   step_world EXPERIMENT FROM TO [--load FILE] [--save FILE] [--threads N]
-// FROM: the tick at which the world stands after construction or loading. Prints the state hash at TO.
+//   step_world EXPERIMENT FROM TO [--load FILE] [--save FILE] [--threads N] [--act TICK]
+// FROM: the tick at which the world stands after construction or loading. --act: at this tick objects are spawned,
+// moved, pushed and removed. Prints the state hash at TO.
 
 #include <cmath>
 #include <cstdio>
@@ -8,7 +9,9 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "server/simulation/simulation.hpp"
 
@@ -24,6 +27,22 @@ void command(cohort::Simulation& simulation) {
         values.push_back(0.5 * channel.upper * std::sin(phase + static_cast<double>(values.size())));
     simulation.set_command(robot, values);
   }
+}
+
+void act(cohort::Simulation& simulation) {
+  const std::string crate =
+      "<sdf version='1.9'><model name='crate'><link name='body'><inertial><mass>1</mass><inertia><ixx>0.01</ixx>"
+      "<iyy>0.01</iyy><izz>0.01</izz></inertia></inertial><collision name='hull'><geometry><box><size>0.2 0.2 0.2"
+      "</size></box></geometry></collision></link></model></sdf>";
+  const std::string near = simulation.robot_name(0), other = simulation.robot_name(1);
+  cohort::Pose above = simulation.robot_pose(0);
+  above.position.z() += 0.4;
+  const std::vector<cohort::Action> actions = {
+      cohort::SpawnObject{"crate", crate, above},
+      cohort::ApplyForce{"crate", "", {2, 0, 0}, {0, 0, 0.1}, std::chrono::seconds(2)},
+      cohort::SetVelocity{near, {0.1, 0, 0}, {0, 0, 1}}, cohort::RemoveObject{other}};
+  for (const cohort::ActionResult& result : simulation.act(actions))
+    if (!result.is_done) throw std::runtime_error(result.text);
 }
 
 std::vector<std::byte> read(const std::string& file) {
@@ -43,7 +62,9 @@ int main(int count, char** arguments) {
   cohort::Simulation simulation(experiment, threads);
   if (options.contains("--load")) simulation.restore(read(options["--load"]));
   if (simulation.tick() != std::stoull(arguments[2])) return EXIT_FAILURE;
+  const std::uint64_t acting = options.contains("--act") ? std::stoull(options["--act"]) : ~std::uint64_t{0};
   while (simulation.tick() < std::stoull(arguments[3])) {
+    if (simulation.tick() == acting) act(simulation);
     command(simulation);
     simulation.step();
   }

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/core/pose.hpp"
+
+/// What a person or a program may do to a running world, at a boundary, as plain data. Objects are called by their
+/// scoped names; poses, forces and velocities are of the world frame W, in SI units. `Simulation::act` does it and says
+/// why it cannot be done. Names follow simulation_interfaces (ros-simulation).
+namespace cohort {
+
+/// A new object, at rest.
+struct SpawnObject {
+  std::string name;             ///< scoped; empty: that of the model
+  std::string model;            ///< the name of one of the world's models, or the text of one in SDF, URDF or YAML
+  Pose X_WM;                    ///< of the model
+  bool allow_renaming = false;  ///< a name that is taken gets a number
+};
+/// Out of the world, for good.
+struct RemoveObject {
+  std::string name;
+};
+/// At rest, with its joints as they are.
+struct SetPose {
+  std::string name;
+  Pose X_WM;
+};
+/// Of the root link, which has to be free to move.
+struct SetVelocity {
+  std::string name;
+  Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();   ///< of its origin [m/s]
+  Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();  ///< [rad/s]
+};
+/// Of `object/light`, of all lights of an object, or of a light of the world.
+struct SetLight {
+  std::string name;
+  bool on = true;
+  std::optional<double> intensity{};       ///< >= 0 [1]; stays as it is if absent
+  std::optional<Eigen::Vector3d> color{};  ///< red, green and blue from 0 to 1
+};
+/// At a link's centre of mass, from this boundary on.
+struct ApplyForce {
+  std::string name;
+  std::string link;                                    ///< empty: the root link
+  Eigen::Vector3d force_W = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d torque_W = Eigen::Vector3d::Zero();  ///< [N m]
+  std::chrono::nanoseconds duration{0};                ///< at least one step, and whole ones
+};
+using Action = std::variant<SpawnObject, RemoveObject, SetPose, SetVelocity, SetLight, ApplyForce>;
+
+/// For recordings and the wire: little-endian, and the same bytes for the same action.
+std::vector<std::byte> to_bytes(const Action& action);
+/// Throws std::invalid_argument if `bytes` are not exactly one action. Whether its values make sense, `Simulation::act`
+/// says.
+Action action_from_bytes(std::span<const std::byte> bytes);
+
+}  // namespace cohort

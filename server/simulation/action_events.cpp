@@ -1,0 +1,218 @@
+#include "server/simulation/action_events.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "server/core/overloaded.hpp"
+#include "server/description/text.hpp"
+
+namespace cohort {
+namespace {
+
+constexpr std::size_t longest_name = 255;
+constexpr double furthest = 1e6;  // beyond it a body has left the world [m]
+constexpr double unit_tolerance = 1e-3;
+constexpr std::chrono::nanoseconds longest_push = std::chrono::hours(24 * 365);
+
+[[noreturn]] void refuse(const std::string& why) { throw std::invalid_argument(why); }
+
+std::string quoted(const std::string& name) { return "'" + name + "'"; }
+
+// What is no name is not repeated in a message either.
+void check_name(const std::string& name, const std::string& what) {
+  check_utf8(name, what);
+  if (name.size() > longest_name) refuse(what + " is longer than " + std::to_string(longest_name) + " bytes");
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  if (std::ranges::any_of(name, is_control)) refuse(what + " has a control character in it");
+}
+
+std::vector<std::string> names_in_world(const Objects& objects) {
+  std::vector<std::string> names;
+  names.reserve(objects.size());
+  for (std::uint32_t object = 0; object < objects.size(); ++object)
+    if (objects.is_present(object)) names.push_back(objects.name(object));
+  return names;
+}
+
+std::uint32_t find_object(const std::string& name, const ActionScope& scope) {
+  check_name(name, "the name of the object");
+  const std::optional<std::uint32_t> object = scope.objects.find(name);
+  if (!object)
+    refuse("there is no object " + quoted(name) + description::suggestion(name, names_in_world(scope.objects)));
+  if (!scope.objects.is_present(*object)) refuse(quoted(name) + " is not in the world");
+  return *object;
+}
+
+std::uint32_t find_working_object(const std::string& name, const ActionScope& scope) {
+  const std::uint32_t object = find_object(name, scope);
+  if (scope.objects.is_quarantined(object)) refuse(quoted(name) + " is quarantined");
+  return object;
+}
+
+const description::Model& model_of(std::uint32_t object, const ActionScope& scope) {
+  return scope.description.models[scope.world.model_of(object)];
+}
+
+void check_finite(const Eigen::Vector3d& vector, const std::string& what) {
+  if (!vector.allFinite()) refuse("the " + what + " is not finite");
+}
+
+description::Event event_of_kind(const RemoveObject& remove, const ActionScope& scope) {
+  return {{}, find_object(remove.name, scope), description::SetPresence{false, true}, "remove"};
+}
+
+description::Event event_of_kind(const SetPose& set, const ActionScope& scope) {
+  return {{}, find_working_object(set.name, scope), description::PlaceAt{checked_pose(set.X_WM)}, "set_pose"};
+}
+
+description::Event event_of_kind(const SetVelocity& set, const ActionScope& scope) {
+  const std::uint32_t object = find_working_object(set.name, scope);
+  if (const char* const why = model_of(object, scope).why_fixed()) refuse(quoted(set.name) + " " + why);
+  check_finite(set.linear_W, "velocity");
+  check_finite(set.angular_W, "angular velocity");
+  return {{}, object, description::SetVelocity{set.linear_W, set.angular_W}, "set_velocity"};
+}
+
+description::Event event_of_kind(const ApplyForce& apply, const ActionScope& scope) {
+  const std::uint32_t object = find_working_object(apply.name, scope);
+  const description::Model& model = model_of(object, scope);
+  if (model.is_static) refuse(quoted(apply.name) + " is static");
+  check_finite(apply.force_W, "force");
+  check_finite(apply.torque_W, "torque");
+  if (apply.duration.count() < 0 || apply.duration > longest_push) refuse("expected a duration from 0 s to a year");
+  std::size_t link = 0;
+  if (!apply.link.empty()) {
+    check_name(apply.link, "the name of the link");
+    std::vector<std::string> names;
+    names.reserve(model.links.size());
+    for (const description::Link& each : model.links) names.push_back(each.name);
+    link = static_cast<std::size_t>(std::ranges::find(names, apply.link) - names.begin());
+    if (link == names.size())
+      refuse(quoted(apply.name) + " has no link " + quoted(apply.link) + description::suggestion(apply.link, names));
+  }
+  return {{}, object, description::ApplyForce{link, apply.force_W, apply.torque_W, apply.duration}, "apply_force"};
+}
+
+// ---- Lights ----
+
+std::vector<std::size_t> lights_of(const description::Model& model) {
+  std::vector<std::size_t> lights;
+  for (std::size_t i = 0; i < model.emitters.size(); ++i)
+    if (std::holds_alternative<description::Light>(model.emitters[i].what)) lights.push_back(i);
+  return lights;
+}
+
+// `object/light`, where either may have slashes of its own; nothing if there is no such object.
+std::optional<std::pair<std::uint32_t, std::size_t>> find_light(const std::string& name, const ActionScope& scope) {
+  for (std::size_t slash = name.rfind('/'); slash != std::string::npos && slash > 0;
+       slash = name.rfind('/', slash - 1)) {
+    const std::optional<std::uint32_t> object = scope.objects.find(name.substr(0, slash));
+    if (!object) continue;
+    const description::Model& model = model_of(*object, scope);
+    const std::string wanted = name.substr(slash + 1);
+    std::vector<std::string> names;
+    for (const std::size_t light : lights_of(model)) {
+      if (model.emitters[light].name == wanted) return std::pair{*object, light};
+      names.push_back(model.emitters[light].name);
+    }
+    refuse(quoted(scope.objects.name(*object)) + " has no light " + quoted(wanted) +
+           description::suggestion(wanted, names));
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> names_of_lights(const ActionScope& scope) {
+  std::vector<std::string> names;
+  for (std::uint32_t object = 0; object < scope.objects.size(); ++object) {
+    const description::Model& model = model_of(object, scope);
+    if (!scope.objects.is_present(object) || lights_of(model).empty()) continue;
+    names.push_back(scope.objects.name(object));
+    for (const std::size_t light : lights_of(model))
+      names.push_back(scope.objects.name(object) + "/" + model.emitters[light].name);
+  }
+  return names;
+}
+
+description::Event event_of_kind(const SetLight& set, const ActionScope& scope) {
+  check_name(set.name, "the name of the light");
+  description::SetEmitters effect;
+  effect.change.is_on = set.on;
+  effect.change.intensity = set.intensity;
+  effect.change.color = set.color;
+  if (set.intensity && !(*set.intensity >= 0.0 && std::isfinite(*set.intensity)))
+    refuse("expected an intensity of at least 0");
+  if (set.color && !((set.color->array() >= 0.0).all() && (set.color->array() <= 1.0).all()))
+    refuse("expected red, green and blue from 0 to 1");
+  std::string object = set.name;
+  if (!scope.objects.find(set.name)) {
+    const auto light = find_light(set.name, scope);
+    if (!light)
+      refuse("there is no light or object " + quoted(set.name) +
+             description::suggestion(set.name, names_of_lights(scope)));
+    object = scope.objects.name(light->first);
+    effect.emitters.push_back(light->second);
+  }
+  const std::uint32_t index = find_working_object(object, scope);
+  if (effect.emitters.empty()) effect.emitters = lights_of(model_of(index, scope));
+  if (effect.emitters.empty())
+    refuse(quoted(set.name) + " has no light" + description::suggestion(set.name, names_of_lights(scope)));
+  return {{}, index, std::move(effect), "set_light"};
+}
+
+}  // namespace
+
+void check_utf8(const std::string& text, const std::string& what) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned first = byte(i);
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xc2 ? 0
+                               : first < 0xe0 ? 2
+                               : first < 0xf0 ? 3
+                               : first < 0xf5 ? 4
+                                              : 0;
+    bool is_good = length > 0;
+    for (std::size_t k = 1; k < length; ++k) is_good = is_good && (byte(i + k) & 0xc0) == 0x80;
+    // Shortest forms, no surrogates, nothing beyond U+10FFFF.
+    if (first == 0xe0) is_good = is_good && byte(i + 1) >= 0xa0;
+    if (first == 0xed) is_good = is_good && byte(i + 1) < 0xa0;
+    if (first == 0xf0) is_good = is_good && byte(i + 1) >= 0x90;
+    if (first == 0xf4) is_good = is_good && byte(i + 1) < 0x90;
+    if (!is_good) refuse(what + " is not UTF-8");
+    i += length;
+  }
+}
+
+Pose checked_pose(const Pose& X_WM) {
+  const double norm = X_WM.orientation.norm();
+  if (!X_WM.position.allFinite() || !X_WM.orientation.coeffs().allFinite()) refuse("the pose is not finite");
+  if (X_WM.position.cwiseAbs().maxCoeff() > furthest) refuse("expected a position within 1,000 km of the origin");
+  if (std::abs(norm - 1.0) > unit_tolerance) refuse("expected a unit quaternion as the orientation of the pose");
+  return {X_WM.position, norm == 1.0 ? X_WM.orientation : X_WM.orientation.normalized()};
+}
+
+std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects) {
+  const std::string& wanted = spawn.name.empty() ? model : spawn.name;
+  check_name(wanted, "the name of the object");
+  if (wanted.empty() || wanted.front() == '/' || wanted.back() == '/' || wanted.find("//") != std::string::npos)
+    refuse(quoted(wanted) + " is no name: expected parts with a slash between them");
+  if (!objects.find(wanted)) return wanted;
+  if (!spawn.allow_renaming)
+    refuse(objects.is_present(*objects.find(wanted)) ? "another object has the name " + quoted(wanted)
+                                                     : "an object that is not in the world has the name " +
+                                                           quoted(wanted) + "; names are not used twice in a run");
+  for (std::size_t number = 1;; ++number)
+    if (std::string name = wanted + "_" + std::to_string(number); !objects.find(name)) return name;
+}
+
+description::Event event_of(const Action& action, const ActionScope& scope) {
+  return std::visit(
+      Overloaded{[](const SpawnObject&) -> description::Event { throw std::logic_error("a new object is no event"); },
+                 [&](const auto& kind) { return event_of_kind(kind, scope); }},
+      action);
+}
+
+}  // namespace cohort

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "server/description/event.hpp"
+#include "server/description/world.hpp"
+#include "server/physics/world.hpp"
+#include "server/simulation/action.hpp"
+#include "server/simulation/objects.hpp"
+
+namespace cohort {
+
+/// What an action looks names up in.
+struct ActionScope {
+  const description::World& description;
+  const physics::World& world;
+  const Objects& objects;
+};
+
+/// An action that does not bring anything new, as an event of now. Throws std::invalid_argument with the reason if it
+/// makes no sense: no such object, one that is not in the world or is quarantined, not free to move, a number that is
+/// not finite.
+description::Event event_of(const Action& action, const ActionScope& scope);
+
+/// The name that a new object gets. Throws std::invalid_argument if it is no name, or is taken.
+std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects);
+
+/// With a unit quaternion. Throws std::invalid_argument if it is no pose, or beyond what is simulated.
+Pose checked_pose(const Pose& X_WM);
+
+/// Throws std::invalid_argument if `text` is not UTF-8. `what`: for the message.
+void check_utf8(const std::string& text, const std::string& what);
+
+}  // namespace cohort

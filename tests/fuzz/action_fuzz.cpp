@@ -1,0 +1,60 @@
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "server/simulation/simulation.hpp"
+#include "tests/support/small_world.hpp"
+
+namespace {
+
+using namespace cohort;
+
+description::Experiment small_experiment() {
+  description::Experiment experiment;
+  experiment.world = testing::world_with_floor();
+  const Eigen::Vector3d size = Eigen::Vector3d::Constant(0.2);
+  testing::place(experiment.world, testing::loose("box", description::Box{size}, testing::solid_box(2.0, size)), "box",
+                 testing::at(-1, 0, 0.1));
+  description::Model post = testing::static_shape("post", description::Box{size});
+  post.emitters.push_back({"lamp", 0, {}, true, description::Light{}});
+  testing::place(experiment.world, post, "post", testing::at(1, 0, 0.1));
+  return experiment;
+}
+
+// What was refused has changed nothing; what was done survives saving and restoring.
+void act(const Action& action) {
+  static const description::Experiment experiment = small_experiment();
+  Simulation simulation(experiment, 1);
+  const std::uint64_t before = simulation.state_hash();
+  try {
+    simulation.act(action);
+  } catch (const std::invalid_argument&) {
+    if (simulation.state_hash() != before) std::abort();
+  }
+  simulation.step();
+  Simulation again(experiment, 1);
+  again.restore(simulation.save());
+  if (again.state_hash() != simulation.state_hash()) std::abort();
+  simulation.step();
+  again.step();
+  if (again.state_hash() != simulation.state_hash()) std::abort();
+}
+
+}  // namespace
+
+/// Any bytes are an action or refused with std::invalid_argument, and so is what they ask for.
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it so.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto bytes = std::as_bytes(std::span(data, size));
+  try {
+    const Action action = action_from_bytes(bytes);
+    const std::vector<std::byte> again = to_bytes(action);
+    if (!std::equal(again.begin(), again.end(), bytes.begin(), bytes.end())) std::abort();
+    act(action);
+  } catch (const std::invalid_argument&) {
+  }
+  return 0;
+}

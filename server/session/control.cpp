@@ -247,9 +247,16 @@ bool Control::perform(Moment moment) {
       ++i;
       continue;
     }
-    const Request request = std::move(waiting[i]);
-    waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
-    do_one(request);
+    // Actions that follow each other are done together.
+    std::vector<Request> now;
+    do {
+      now.push_back(std::move(waiting[i]));
+      waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
+    } while (i < waiting.size() && is_action(now.back()) && is_action(waiting[i]));
+    if (is_action(now.front()))
+      act(now);
+    else
+      do_one(now.front());
   }
   return !ending_;
 }

@@ -164,10 +164,11 @@ class OneRun {
     if (!recorder_) return true;
     recorder_->finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
     if (const std::uint64_t dropped = recorder_->dropped(); dropped > 0)
-      log_.warning(fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are "
-                               "all there; --record-poses and --record-observations ask for fewer",
-                               dropped, recording_.string()),
-                   {{"dropped", dropped}});
+      log_.warning(
+          fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are "
+                      "all there; --record-poses and --record-observations ask for fewer",
+                      dropped, recording_.string()),
+          {{"dropped", dropped}});
     const std::optional<std::string> error = recorder_->error();
     if (error) log_.error("the recording ended before its run: " + *error);
     return !error;
@@ -235,9 +236,11 @@ World build_world(const RunCommand& command, std::shared_ptr<const description::
 World world_of(const session::NextRun& next, const RunCommand& command, const World& now, Log& log) {
   std::shared_ptr<const description::Experiment> experiment = now.experiment;
   if (next.seed != experiment->seed) {
-    RunCommand other = command;
-    other.seed = next.seed;
-    experiment = std::make_shared<description::Experiment>(read(other, experiment->file, log));
+    // From what was read before, whatever has become of the files.
+    description::Experiment other =
+        description::read_experiment(now.experiment->inputs, next.seed, now.experiment->duration);
+    set_recorded(other, command.record);
+    experiment = std::make_shared<description::Experiment>(std::move(other));
   }
   World world = build_world(command, std::move(experiment), next.snapshot, log);
   if (next.snapshot) {
@@ -267,21 +270,25 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
                                  .state = command.paused ? session::PlayState::paused : session::PlayState::playing,
                                  .from = runs.from};
   for (;;) {
-    OneRun one(command, number, count, *world.experiment, *world.simulation, log);
     std::optional<World> next;
     options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
-    const RunResult result =
-        runs.serving
-            ? runs.serving->run(*world.experiment, *world.simulation, options, one.listener(), stop, number == count)
-            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one.listener(), stop);
-    if (!result.next) {
-      const double cpu = cpu_seconds();
-      goes_on = result.end == RunResult::End::finished;
-      return one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
+    RunResult result;
+    {
+      OneRun one(command, number, count, *world.experiment, *world.simulation, log);
+      result =
+          runs.serving
+              ? runs.serving->run(*world.experiment, *world.simulation, options, one.listener(), stop, number == count)
+              : run_here(*world.experiment, *world.simulation, runs.controllers, options, one.listener(), stop);
+      if (!result.next) {
+        const double cpu = cpu_seconds();
+        goes_on = result.end == RunResult::End::finished;
+        return one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
+      }
     }
     log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}",
                            result.end == RunResult::End::reset ? "reset" : "another snapshot", result.ticks,
                            next->simulation->tick(), next->experiment->seed));
+    world.simulation.reset();  // before what it was made of
     world = std::move(*next);
     options = {.speed = result.next->speed, .state = result.next->state, .from = result.next->snapshot};
   }
@@ -329,8 +336,7 @@ int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
     for (std::size_t number = 1; number <= count; ++number) {
       if (!command.summary.empty()) check_writable("the summary", numbered(command.summary, number, count));
       if (!command.plot.empty()) check_writable("the plot", numbered(command.plot, number, count));
-      if (!command.record.file.empty())
-        check_writable("the recording", numbered(command.record.file, number, count));
+      if (!command.record.file.empty()) check_writable("the recording", numbered(command.record.file, number, count));
       if (!command.csv.empty()) check_writable("the table", numbered(command.csv, number, count));
     }
     const bool in_process = command.controllers == Controllers::in_process;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/recording/mcap_error.hpp"
+#include "server/simulation/action.hpp"
 
 namespace cohort::recording {
 
@@ -54,7 +55,19 @@ void Replay::apply_commands() {
   }
 }
 
-void Replay::take_actions() {}
+// Those that were refused when they were recorded change nothing here either.
+void Replay::take_actions() {
+  std::vector<cohort::Action> actions;
+  actions.reserve(recorded_->actions.size());
+  try {
+    for (const ActionTaken& taken : recorded_->actions)
+      actions.push_back(action_from_bytes(std::as_bytes(std::span(taken.action))));
+  } catch (const std::invalid_argument& error) {
+    throw McapError(recording_.file(), 0,
+                    "an action at tick " + std::to_string(recorded_->tick) + " cannot be read: " + error.what());
+  }
+  if (!actions.empty()) simulation_->act(actions);
+}
 
 bool Replay::seek(std::chrono::nanoseconds log_time) {
   // Where it can begin: at a world, or at a snapshot of one.

@@ -14,9 +14,8 @@ namespace cohort::session {
 namespace {
 
 // Those of `robots` that are due at `tick`.
-Exchange::Taken ask(Exchange& exchange, const description::Experiment& experiment,
-                    std::span<const std::uint32_t> robots, std::uint64_t tick, ControllerHost& host,
-                    Exchange::Frame& frame) {
+Exchange::Taken ask(Exchange& exchange, Exchange::Frame& frame, const description::Experiment& experiment,
+                    std::span<const std::uint32_t> robots, std::uint64_t tick, ControllerHost& host) {
   exchange.fill_frame(frame, robots, tick);
   if (frame.robots.empty()) return {};
   wire::Observation observation;
@@ -35,7 +34,7 @@ void ask_again(Exchange& exchange, const description::Experiment& experiment, st
     for (const std::uint64_t tick : exchange.barrier().unanswered(robot))
       if (tick < now) robots_of[tick].push_back(robot);
   Exchange::Frame frame;
-  for (const auto& [tick, unanswered] : robots_of) ask(exchange, experiment, unanswered, tick, host, frame);
+  for (const auto& [tick, unanswered] : robots_of) ask(exchange, frame, experiment, unanswered, tick, host);
 }
 
 }  // namespace
@@ -64,15 +63,14 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
     }
 
     book.start();
-    Exchange::Frame frame;
+    Exchange::Frame frame;  // reused
     while (!book.is_over()) {
       if (stop) return book.finish(RunResult::End::interrupted);
       const auto begin = RunBook::Clock::now();
       exchange.open(begin.time_since_epoch());
       book.at_boundary();
       for (std::size_t team = 0; team < hosts.size(); ++team) {
-        const auto taken =
-            ask(exchange, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team], frame);
+        const auto taken = ask(exchange, frame, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team]);
         if (!taken.is_fault) continue;
         book.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
         if (taken.ends_run) return book.finish(RunResult::End::failed, taken.rejection->text);

@@ -3,7 +3,7 @@
 #include <random>
 
 #include "server/recording/ros_messages.hpp"
-#include "tests/support/recordings.hpp"
+#include "tests/support/any_message.hpp"
 
 namespace cohort::recording {
 namespace {
@@ -58,36 +58,6 @@ TEST(Cdr, RefusesWhatIsTooShortOrOfAnotherKind) {
   EXPECT_EQ(decode<ros::Clock>(bytes_of_hex("00010000 01000000 02000000 0000")), clock);
 }
 
-// Fills messages with anything, the same anything each time.
-class Filler {
- public:
-  template <class Value>
-  void fill(Value& value) {
-    if constexpr (RosMessage<Value>) {
-      std::apply([&](const auto&... fields) { (fill(value.*fields.member), ...); }, Value::fields);
-    } else if constexpr (std::is_same_v<Value, bool>) {
-      value = random_() % 2 == 1;
-    } else if constexpr (std::is_floating_point_v<Value>) {
-      value = static_cast<Value>(static_cast<double>(random_() % 1'000'000) / 1024.0 - 300.0);
-    } else {
-      value = static_cast<Value>(random_());
-    }
-  }
-  void fill(std::string& text) { text.assign(random_() % 6, 'x'); }
-  template <class Value>
-  void fill(std::vector<Value>& values) {
-    values.resize(random_() % 5);
-    for (Value& value : values) fill(value);
-  }
-  template <class Value, std::size_t count>
-  void fill(std::array<Value, count>& values) {
-    for (Value& value : values) fill(value);
-  }
-
- private:
-  std::mt19937_64 random_{7};
-};
-
 template <class Message>
 class RosMessages : public testing::Test {};
 using All = testing::Types<ros::Time, ros::Header, ros::Float64MultiArray, ros::Clock, ros::Pose, ros::PoseStamped,
@@ -98,10 +68,10 @@ using All = testing::Types<ros::Time, ros::Header, ros::Float64MultiArray, ros::
 TYPED_TEST_SUITE(RosMessages, All);
 
 TYPED_TEST(RosMessages, AreDecodedAsTheyWereEncodedAndCutOffOnesRefused) {
-  Filler filler;
+  test::AnyMessage any;
   for (int i = 0; i < 20; ++i) {
     TypeParam message;
-    filler.fill(message);
+    any.fill(message);
     const Bytes bytes = encode(message);
     EXPECT_EQ(decode<TypeParam>(bytes), message);
     for (std::size_t size = 0; size < bytes.size(); ++size)

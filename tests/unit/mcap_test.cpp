@@ -138,6 +138,19 @@ TEST(Mcap, MessagesOutsideOfChunksAreRead) {
   EXPECT_EQ(reader.statistics().message_count, 2U);
 }
 
+// Files as they were written once: what can be read today can be read tomorrow.
+TEST(Mcap, RecordingsOfEarlierVersionsAreRead) {
+  const auto messages = [](const std::string& name) {
+    return messages_of(McapReader(COHORT_SOURCE_DIR "/tests/data/recordings/" + name));
+  };
+  EXPECT_EQ(messages("closed.mcap"), all_said(9));
+  EXPECT_EQ(messages("uncompressed.mcap"), all_said(9));
+  EXPECT_EQ(messages("unclosed.mcap"), all_said(8));
+  EXPECT_EQ(messages("ros.mcap").size(), 2U);
+  EXPECT_EQ(messages("without_crcs.mcap").size(), 9U);
+  EXPECT_EQ(messages("without_chunks.mcap").size(), 4U);
+}
+
 TEST(Mcap, AChunkIsEndedAtItsSize) {
   const TemporaryFile file(small_recording(100, 1000, {.chunk_size = 1000}));
   const McapReader reader(file.path());

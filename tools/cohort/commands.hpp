@@ -111,6 +111,13 @@ struct SamplesCommand {
 };
 int take_samples(const SamplesCommand& command, Log& log);
 
+/// `cohort recover`: a closed recording of what can be read of a damaged one.
+struct RecoverCommand {
+  std::filesystem::path file;
+  std::filesystem::path output;  ///< empty: in place of `file`
+};
+int recover(const RecoverCommand& command, Log& log);
+
 /// `cohort ctl`: docs/cli.md.
 struct CtlCommand {
   enum class What {

@@ -214,6 +214,12 @@ void add_samples_options(CLI::App& app, SamplesCommand& command) {
   app.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
 }
 
+void add_recover_options(CLI::App& app, RecoverCommand& command) {
+  app.add_option("FILE", command.file, "Recording (.mcap)")->required()->type_name("");
+  app.add_option("-o,--output", command.output, "File to write (default: FILE itself is replaced)")->type_name("FILE");
+  app.footer("Example: cohort recover run.mcap");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -307,6 +313,11 @@ int main(int argc, char** argv) {
   add_samples_options(*samples_app, samples_options);
   add_log_options(*samples_app, log_flags);
 
+  RecoverCommand recover_command;
+  CLI::App* recover_app = app.add_subcommand("recover", "Make a whole recording of what can be read of a damaged one");
+  add_recover_options(*recover_app, recover_command);
+  add_log_options(*recover_app, log_flags);
+
   SecurityCommand security_command;
   CLI::App* security_app = app.add_subcommand("security", "Make and list who may drive what, with certificates");
   add_security_commands(*security_app, security_command);
@@ -366,6 +377,7 @@ int main(int argc, char** argv) {
   if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
+  if (recover_app->parsed()) return recover(recover_command, log);
   if (security_app->parsed()) return security(security_command, log);
   if (doctor_app->parsed()) return doctor(doctor_command, log);
   if (help_app->parsed()) return help(help_topic, log);

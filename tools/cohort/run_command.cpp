@@ -14,15 +14,11 @@
 #include "server/session/session_snapshot.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/installed_models.hpp"
+#include "tools/cohort/one_run.hpp"
 #include "tools/cohort/output_file.hpp"
-#include "tools/cohort/plot.hpp"
-#include "tools/cohort/printed_table.hpp"
 #include "tools/cohort/run_recording.hpp"
-#include "tools/cohort/run_trace.hpp"
 #include "tools/cohort/serving.hpp"
-#include "tools/cohort/summary_file.hpp"
 #include "tools/cohort/team_controllers.hpp"
-#include "tools/cohort/terminal.hpp"
 #include "tools/cohort/wording.hpp"
 
 namespace cohort::tool {
@@ -56,12 +52,6 @@ double speed_of(const RunCommand& command, const description::Experiment& experi
   return command.speed.value_or(has_keyboard(experiment) || has_free ? 1.0 : 0.0);
 }
 
-// Of several runs each has a file of its own: `summary.json` of the second is `summary-2.json`.
-std::filesystem::path numbered(const std::filesystem::path& file, std::size_t number, std::size_t count) {
-  if (file.empty() || count == 1) return file;
-  return file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
-}
-
 void refuse_keyboard(const description::Experiment& experiment) {
   for (const description::Team& team : experiment.teams)
     if (team.controller == keyboard_controller)
@@ -84,106 +74,6 @@ void warn_if_not_portable(Log& log) {
   if (!names.empty())
     log.warning("this run's hash may differ on another CPU: the C library's" + names + " are in use instead of ours");
 }
-
-// One experiment, with all that people see of it.
-class OneRun {
- public:
-  OneRun(const RunCommand& command, std::size_t number, std::size_t count, const description::Experiment& experiment,
-         Simulation& simulation, Log& log)
-      : command_(command),
-        experiment_(experiment),
-        log_(log),
-        summary_(numbered(command.summary, number, count)),
-        plot_(numbered(command.plot, number, count)),
-        recording_(numbered(command.record.file, number, count)),
-        csv_(numbered(command.csv, number, count)),
-        own_controllers_(command.controllers != Controllers::external && !has_keyboard(experiment)),
-        terminal_(log, {.quiet = command.quiet, .own_controllers = own_controllers_}) {
-    if (!plot_.empty()) trace_.emplace(experiment.world, simulation, command.viewpoint);
-    if (!recording_.empty()) {
-      recorder_.emplace(recording_, experiment);
-      recorder_->begin(experiment, simulation, recording::Beginning::first);
-    }
-    if (!experiment.prints.empty()) table_.emplace(experiment, simulation, csv_.empty() && !command.quiet);
-  }
-
-  session::RunListener listener() {
-    session::RunListener listener = {
-        .progress = [&](const session::Progress& progress) { terminal_.progress(progress); },
-        .news = [&](const session::Event& event) { terminal_.event(event); },
-        .boundary =
-            [&] {
-              if (trace_) trace_->boundary();
-              if (table_) table_->boundary();
-            },
-    };
-    if (recorder_) add_recorder(listener, *recorder_);
-    return listener;
-  }
-
-  /// Prints and writes what was asked for. The exit code.
-  int finish(const RunResult& result, double cpu) {
-    terminal_.summary(result, cpu);
-    const bool written = write_files(result, cpu);
-    switch (result.end) {
-      case RunResult::End::finished:
-      case RunResult::End::shut_down: return written ? exit_ok : exit_failed;
-      case RunResult::End::reset:
-      case RunResult::End::restored: return exit_ok;  // another one follows
-      case RunResult::End::interrupted: return exit_interrupted;
-      case RunResult::End::failed:
-        log_.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
-    }
-    return exit_failed;
-  }
-
- private:
-  bool write_files(const RunResult& result, double cpu) {
-    const auto try_to = [&](const auto& write) {
-      try {
-        write();
-        return true;
-      } catch (const std::exception& error) {
-        log_.error(error.what());
-        return false;
-      }
-    };
-    bool written = close_recording(result);
-    if (!summary_.empty()) written &= try_to([&] { write_summary(summary_, experiment_, result, cpu); });
-    if (trace_)
-      written &= try_to([&] {
-        const PlotCaption caption = {experiment_.name, result.sim_time, result.state_hash};
-        write_file("the plot", plot_, draw_plot(trace_->finish(), caption));
-      });
-    if (!csv_.empty())
-      written &= try_to([&] { write_file("the table", csv_, table_ ? table_->text() : std::string()); });
-    return written;
-  }
-
-  bool close_recording(const RunResult& result) {
-    if (!recorder_) return true;
-    recorder_->finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
-    if (const std::uint64_t dropped = recorder_->dropped(); dropped > 0)
-      log_.warning(
-          fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are "
-                      "all there; --record-poses and --record-observations ask for fewer",
-                      dropped, recording_.string()),
-          {{"dropped", dropped}});
-    const std::optional<std::string> error = recorder_->error();
-    if (error) log_.error("the recording ended before its run: " + *error);
-    return !error;
-  }
-
-  const RunCommand& command_;
-  const description::Experiment& experiment_;
-  Log& log_;
-  std::filesystem::path summary_, plot_, recording_, csv_;
-  bool own_controllers_;
-  Terminal terminal_;
-  std::optional<recording::Recorder> recorder_;
-  std::optional<TraceRecorder> trace_;
-  std::optional<PrintedTable> table_;
-};
 
 description::Experiment read(const RunCommand& command, const std::filesystem::path& file, Log& log) {
   std::optional<std::chrono::nanoseconds> duration;
@@ -236,11 +126,10 @@ World build_world(const RunCommand& command, std::shared_ptr<const description::
 World world_of(const session::NextRun& next, const RunCommand& command, const World& now, Log& log) {
   std::shared_ptr<const description::Experiment> experiment = now.experiment;
   if (next.seed != experiment->seed) {
-    // From what was read before, whatever has become of the files.
-    description::Experiment other =
-        description::read_experiment(now.experiment->inputs, next.seed, now.experiment->duration);
-    set_recorded(other, command.record);
-    experiment = std::make_shared<description::Experiment>(std::move(other));
+    auto other = std::make_shared<description::Experiment>(
+        description::read_experiment(experiment->inputs, next.seed, experiment->duration));
+    other->recorded = experiment->recorded;
+    experiment = std::move(other);
   }
   World world = build_world(command, std::move(experiment), next.snapshot, log);
   if (next.snapshot) {
@@ -269,26 +158,38 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
   session::RunOptions options = {.speed = speed_of(command, *world.experiment),
                                  .state = command.paused ? session::PlayState::paused : session::PlayState::playing,
                                  .from = runs.from};
+  const std::filesystem::path file = numbered(command.record.file, number, count);
+  std::optional<recording::Recorder> recorder;
+  if (!file.empty()) {
+    using enum recording::Beginning;
+    recorder.emplace(file, *world.experiment);
+    recorder->begin(*world.experiment, *world.simulation, runs.from ? restored : first);
+  }
   for (;;) {
+    std::optional<OneRun> one;
+    one.emplace(command, number, count, *world.experiment, *world.simulation, recorder ? &*recorder : nullptr, log);
     std::optional<World> next;
     options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
-    RunResult result;
-    {
-      OneRun one(command, number, count, *world.experiment, *world.simulation, log);
-      result =
-          runs.serving
-              ? runs.serving->run(*world.experiment, *world.simulation, options, one.listener(), stop, number == count)
-              : run_here(*world.experiment, *world.simulation, runs.controllers, options, one.listener(), stop);
-      if (!result.next) {
-        const double cpu = cpu_seconds();
-        goes_on = result.end == RunResult::End::finished;
-        return one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
-      }
+    const RunResult result =
+        runs.serving
+            ? runs.serving->run(*world.experiment, *world.simulation, options, one->listener(), stop, number == count)
+            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one->listener(), stop);
+    if (!result.next) {
+      const double cpu = cpu_seconds();
+      goes_on = result.end == RunResult::End::finished;
+      const int code = one->finish(result, cpu - std::exchange(runs.cpu_before, cpu));
+      const bool is_recorded = !recorder || close_recording(*recorder, file, result, log);
+      return is_recorded || code != exit_ok ? code : exit_failed;
     }
     log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}",
                            result.end == RunResult::End::reset ? "reset" : "another snapshot", result.ticks,
                            next->simulation->tick(), next->experiment->seed));
-    world.simulation.reset();  // before what it was made of
+    if (recorder)
+      recorder->begin(
+          *next->experiment, *next->simulation,
+          result.end == RunResult::End::reset ? recording::Beginning::reset : recording::Beginning::restored);
+    one.reset();  // it looks at what goes now
+    world.simulation.reset();
     world = std::move(*next);
     options = {.speed = result.next->speed, .state = result.next->state, .from = result.next->snapshot};
   }

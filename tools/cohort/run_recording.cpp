@@ -36,6 +36,10 @@ void add_recorder(session::RunListener& listener, recording::Recorder& recorder)
     recorder.boundary();
     if (next) next();
   };
+  listener.control = [&recorder, next = listener.control](const session::ControlEvent& event) {
+    if (!event.action.empty()) recorder.action(event.text, event.action);
+    if (next) next(event);
+  };
   listener.commands = [&recorder, next = listener.commands](std::span<const std::uint32_t> robots) {
     recorder.commands(robots);
     if (next) next(robots);
@@ -47,6 +51,9 @@ const char* word_of(session::RunResult::End end) {
     case session::RunResult::End::finished: return "finished";
     case session::RunResult::End::interrupted: return "interrupted";
     case session::RunResult::End::failed: return "failed";
+    case session::RunResult::End::shut_down: return "shut_down";
+    case session::RunResult::End::reset: return "reset";
+    case session::RunResult::End::restored: return "restored";
   }
   return "unknown";
 }

@@ -13,7 +13,7 @@ void set_recorded(description::Experiment& experiment, const RecordOptions& opti
 /// Lets `recorder` see all that `listener` is told, before the listener's own functions. It has begun with `simulation`.
 void add_recorder(session::RunListener& listener, recording::Recorder& recorder);
 
-/// How a run ended, in a word: `finished`, `interrupted` or `failed`.
+/// How a run ended, in a word.
 const char* word_of(session::RunResult::End end);
 
 }  // namespace cohort::tool

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include "server/recording/disk_file.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/recordings.hpp"
+
+// `cohort recover` as its users see it.
+namespace cohort::testing {
+namespace {
+
+using recording::Bytes;
+using recording::ByteView;
+using recording::McapReader;
+
+Ended recover(const std::vector<std::string>& arguments) {
+  std::vector<std::string> command = {cohort_program(), "recover"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  return run_to_end(command);
+}
+
+TEST(RecoverCommand, MendsAFileInPlaceAndSaysWhatWasLost) {
+  const ScratchFolder folder;
+  const std::string file = folder / "run.mcap";
+  const Bytes bytes = test::small_recording(20);
+  test::write_bytes(file, ByteView(bytes).first(bytes.size() / 2));
+  const std::uint64_t readable = McapReader(file).statistics().message_count;
+  ASSERT_GT(readable, 0U);
+
+  const Ended ended = recover({file});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_TRUE(ended.out.starts_with(file + ": kept " + std::to_string(readable) + " messages in ")) << ended.out;
+  EXPECT_NE(ended.out.find("\nlost "), std::string::npos) << ended.out;
+  EXPECT_TRUE(McapReader(file).is_complete());
+  EXPECT_EQ(McapReader(file).statistics().message_count, readable);
+
+  const Ended again = recover({file});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_NE(again.out.find("nothing was lost: the file is whole"), std::string::npos) << again.out;
+}
+
+TEST(RecoverCommand, WritesAnotherFileAndLeavesTheFirst) {
+  const ScratchFolder folder;
+  const std::string file = folder / "run.mcap";
+  const std::string whole = folder / "whole.mcap";
+  const Bytes bytes = test::small_recording(20);
+  const Bytes part(bytes.begin(), bytes.end() - 30);
+  test::write_bytes(file, part);
+  const Ended ended = recover({file, "-o", whole});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_EQ(test::read_bytes(file), part);
+  EXPECT_EQ(McapReader(whole).statistics().message_count, 20U);
+}
+
+void expect_refused(const std::vector<std::string>& arguments, const std::string& reason) {
+  const Ended ended = recover(arguments);
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_NE(ended.err.find(reason), std::string::npos) << ended.err;
+  EXPECT_EQ(ended.out, "");
+}
+
+TEST(RecoverCommand, RefusesWhatItCannotReadOrWrite) {
+  const ScratchFolder folder;
+  expect_refused({folder / "none.mcap"}, "cannot be read: No such file or directory");
+  write_file(folder / "text.mcap", "something else");
+  expect_refused({folder / "text.mcap"}, "text.mcap: byte 0: this is no MCAP file");
+  const std::string file = folder / "run.mcap";
+  test::write_bytes(file, test::small_recording(3));
+  expect_refused({file, "-o", folder / "no_folder/run.mcap"}, "cannot be written to");
+  recording::DiskFile being_recorded(file);
+  being_recorded.write(test::small_recording(3));
+  expect_refused({file}, "another process is recording to it");
+}
+
+}  // namespace
+}  // namespace cohort::testing

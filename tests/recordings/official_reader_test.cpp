@@ -1,0 +1,207 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+
+#include <set>
+
+#include "server/recording/recording_file.hpp"
+#include "server/recording/recover.hpp"
+#include "server/recording/ros_messages.hpp"
+#include "tests/support/any_message.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/recordings.hpp"
+
+namespace cohort::recording {
+namespace {
+
+using nlohmann::json;
+using test::TemporaryFile;
+namespace fs = std::filesystem;
+
+// The script and the packages that it needs, in the build's folder: installed once, by whoever comes first.
+class OfficialReader : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::string(COHORT_NODE).empty()) GTEST_SKIP() << "there is no node: Debian's packages nodejs and npm";
+    if (std::string(COHORT_NPM).empty()) GTEST_SKIP() << "there is no npm: Debian's package npm";
+    fs::create_directories(folder);
+    const int lock = open((folder / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    flock(lock, LOCK_EX);
+    install();
+    close(lock);
+  }
+
+  // What the reader found in the file.
+  static json read(const fs::path& file) {
+    const testing::Ended ended = testing::run_to_end({COHORT_NODE, (folder / "read_recording.mjs").string(), file});
+    EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    json found = json::parse(ended.out, nullptr, false);
+    EXPECT_TRUE(found.is_object()) << ended.out;
+    EXPECT_TRUE(found["data_crc_is_right"] == true && found["is_read_to_its_end"] == true);
+    return found;
+  }
+
+ private:
+  static void install() {
+    const fs::path source = COHORT_SOURCE_DIR "/tests/recordings";
+    for (const char* name : {"package.json", "package-lock.json", "read_recording.mjs"})
+      fs::copy_file(source / name, folder / name, fs::copy_options::overwrite_existing);
+    const std::string wanted = testing::read_file(folder / "package-lock.json");
+    if (testing::read_file(folder / "installed") == wanted) return;
+    const testing::Ended ended =
+        testing::run_to_end({COHORT_NPM, "ci", "--no-audit", "--no-fund", "--prefix", folder.string()});
+    ASSERT_EQ(ended.exit_code, 0) << ended.out << ended.err;
+    testing::write_file(folder / "installed", wanted);
+  }
+
+  inline static const fs::path folder = COHORT_NODE_FOLDER;
+};
+
+// Messages are text: a channel without a schema that has to be parsed.
+Bytes text_recording(int count, const McapWriterOptions& options) {
+  Bytes bytes;
+  McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); }, options);
+  const SchemaId schema = writer.add_schema("Text", "text", "anything");
+  const ChannelId channels[] = {writer.add_channel("/even", schema, "text", {{"key", "value"}}),
+                                writer.add_channel("/odd", 0, "text")};
+  writer.add_metadata({"run", {{"seed", "7"}, {"experiment", "demo"}}});
+  for (int i = 0; i < count; ++i) {
+    const Timestamp time(static_cast<std::uint64_t>((i / 3 * 3 + 2 - i % 3) * 1000));  // back and forth
+    writer.write_message(channels[i % 2], static_cast<std::uint32_t>(i), time, time + Timestamp(1),
+                         test::bytes_of(test::said(i)));
+    if (i == count / 2) writer.add_attachment({Timestamp(5), Timestamp(6), "snapshot", "text/plain", Bytes(1000)});
+  }
+  writer.close();
+  return bytes;
+}
+
+void expect_text_recording(const json& found, int count) {
+  EXPECT_EQ(found["header"]["profile"], "ros2");
+  EXPECT_EQ(found["schemas"], json::parse(R"([{"id": 1, "name": "Text", "encoding": "text"}])"));
+  EXPECT_EQ(found["channels"].size(), 2U);
+  EXPECT_EQ(found["channels"][0]["topic"], "/even");
+  EXPECT_EQ(found["channels"][0]["metadata"], json::parse(R"([["key", "value"]])"));
+  EXPECT_EQ(found["channels"][1]["schemaId"], 0);
+  EXPECT_EQ(found["attachments"], json::parse(R"([{"name": "snapshot", "media_type": "text/plain", "size": 1000}])"));
+  EXPECT_EQ(found["metadata"], json::parse(R"([{"name": "run", "entries": [["experiment", "demo"], ["seed", "7"]]}])"));
+  const json& statistics = found["statistics"];
+  EXPECT_EQ(statistics["messageCount"], count);
+  EXPECT_EQ(statistics["channelCount"], 2);
+  EXPECT_EQ(statistics["attachmentCount"], 1);
+  EXPECT_EQ(statistics["metadataCount"], 1);
+  EXPECT_EQ(statistics["chunkCount"], found["records"]["Chunk"]);
+  EXPECT_EQ(statistics["channelMessageCounts"], (json{{1, (count + 1) / 2}, {2, count / 2}}));
+  EXPECT_EQ(found["records"]["Message"], count);
+  EXPECT_EQ(found["records"]["ChunkIndex"], found["records"]["Chunk"]);
+
+  ASSERT_EQ(found["messages"].size(), static_cast<std::size_t>(count));
+  std::set<int> sequences;
+  for (std::size_t i = 0; i < found["messages"].size(); ++i) {
+    const json& message = found["messages"][i];
+    const int sequence = message["sequence"];
+    EXPECT_TRUE(i == 0 || found["messages"][i - 1]["log_time"] <= message["log_time"]);
+    EXPECT_EQ(message["message"], test::said(sequence));
+    EXPECT_EQ(message["topic"], sequence % 2 == 0 ? "/even" : "/odd");
+    EXPECT_EQ(message["log_time"], (sequence / 3 * 3 + 2 - sequence % 3) * 1000);
+    EXPECT_EQ(message["publish_time"], message["log_time"].get<int>() + 1);
+    sequences.insert(sequence);
+  }
+  EXPECT_EQ(sequences.size(), static_cast<std::size_t>(count));
+}
+
+TEST_F(OfficialReader, ReadsAllThatTheWriterWrote) {
+  for (const bool compress : {true, false}) {
+    const TemporaryFile file(text_recording(300, {.chunk_size = 1000, .compress = compress}));
+    const json found = read(file.path());
+    EXPECT_GT(found["records"]["Chunk"], 5);
+    expect_text_recording(found, 300);
+    // Schema, channel, chunk index, attachment index, statistics, metadata index: each group can be found.
+    EXPECT_EQ(found["summary_offsets"], (json{0x03, 0x04, 0x08, 0x0A, 0x0B, 0x0D}));
+  }
+}
+
+TEST_F(OfficialReader, ReadsARecordingWithoutMessages) {
+  Bytes bytes;
+  McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
+  writer.close();
+  const TemporaryFile file(bytes);
+  const json found = read(file.path());
+  EXPECT_EQ(found["statistics"]["messageCount"], 0);
+  EXPECT_TRUE(found["messages"].empty());
+}
+
+TEST_F(OfficialReader, ReadsWhatAThreadWroteAndWhatWasRecovered) {
+  const TemporaryFile file;
+  constexpr int count = 5000;
+  {
+    RecordingFile recording(file.path(), {.mcap = {.chunk_size = 20'000}});
+    const SchemaId schema = recording.add_schema("Text", "text", "anything");
+    const ChannelId channel = recording.add_channel("/t", schema, "text");
+    for (int i = 0; i < count; ++i)
+      recording.write_message(channel, static_cast<std::uint32_t>(i), Timestamp(static_cast<std::uint64_t>(i)), {},
+                              test::bytes_of(test::said(i)), Importance::essential);
+  }
+  EXPECT_EQ(read(file.path())["messages"].size(), static_cast<std::size_t>(count));
+
+  const Bytes bytes = test::read_bytes(file.path());
+  test::write_bytes(file.path(), ByteView(bytes).first(bytes.size() / 2));
+  const std::uint64_t kept = recover(file.path(), file.path()).kept.message_count;
+  EXPECT_GT(kept, 1000U);
+  const json found = read(file.path());
+  EXPECT_EQ(found["messages"].size(), kept);
+  EXPECT_EQ(found["messages"].back()["message"], test::said(static_cast<int>(kept) - 1));
+}
+
+// As decoders of ROS's messages give it.
+template <class Value>
+json as_json(const Value& value) {
+  if constexpr (RosMessage<Value>) {
+    json object = json::object();
+    std::apply([&](const auto&... fields) { ((object[fields.name] = as_json(value.*fields.member)), ...); },
+               Value::fields);
+    return object;
+  } else if constexpr (requires { value.c_str(); } || std::is_arithmetic_v<Value>) {
+    return value;
+  } else {
+    json array = json::array();
+    for (const auto& element : value) array.push_back(as_json(element));
+    return array;
+  }
+}
+
+template <class Message>
+void write_any(McapWriter& writer, test::AnyMessage& any, std::vector<json>& written) {
+  const ChannelId channel = add_ros_channel(writer, "/any", add_ros_schema<Message>(writer));
+  for (int i = 0; i < 5; ++i) {
+    Message message;
+    any.fill(message);
+    writer.write_message(channel, 0, Timestamp(written.size()), {}, encode(message));
+    written.push_back(as_json(message));
+  }
+}
+
+// By nothing but the schemas in the file, with code that is not ours.
+TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
+  Bytes bytes;
+  McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
+  test::AnyMessage any;
+  std::vector<json> written;
+  const auto write_all = [&]<class... Message>(std::tuple<Message...>*) {
+    (write_any<Message>(writer, any, written), ...);
+  };
+  using Messages = std::tuple<ros::Time, ros::Header, ros::Float64MultiArray, ros::Clock, ros::Pose, ros::PoseStamped,
+                              ros::PoseArray, ros::Transform, ros::TransformStamped, ros::Twist, ros::TwistStamped,
+                              ros::WrenchStamped, ros::TFMessage, ros::LaserScan, ros::Imu, ros::MagneticField,
+                              ros::FluidPressure, ros::Temperature, ros::RelativeHumidity, ros::JointState, ros::Range,
+                              ros::BatteryState, ros::NavSatFix>;
+  write_all(static_cast<Messages*>(nullptr));
+  writer.close();
+  const TemporaryFile file(bytes);
+  const json found = read(file.path());
+  ASSERT_EQ(found["messages"].size(), written.size());
+  for (std::size_t i = 0; i < written.size(); ++i)
+    EXPECT_EQ(found["messages"][i]["message"], written[i]) << found["schemas"][i / 5];
+}
+
+}  // namespace
+}  // namespace cohort::recording

@@ -134,7 +134,7 @@ struct Codec<Reply> {
     std::vector<char*> entities;
     std::vector<cohort_v1_EntityState> states;
     std::vector<cohort_v1_SimulationStatus> status;
-    std::vector<std::vector<char*>> awaited;                         // of each status
+    std::vector<std::vector<char*>> awaited;                           // of each status
     std::vector<std::vector<cohort_v1_ControllerStatus>> controllers;  // the same
   };
   static const Topic topic;

@@ -184,8 +184,8 @@ struct Reply {
 inline constexpr std::uint64_t requests_under_way = 16;
 /// Data goes in parts, of at most this size each [bytes], so that neither side waits long for one; and in all it has at
 /// most so many.
-inline constexpr std::uint64_t largest_part = 256 * 1024;
-inline constexpr std::uint64_t largest_data = 256 * 1024 * 1024;
+inline constexpr std::uint64_t largest_part = std::uint64_t{256} << 10;
+inline constexpr std::uint64_t largest_data = std::uint64_t{256} << 20;
 
 extern template class Writer<Request>;
 extern template class Writer<Reply>;

@@ -121,8 +121,7 @@ SimulationStatus decode(const cohort_v1_SimulationStatus& sample) {
   status.awaited_count = sample.awaited_count;
   status.awaited = to_strings(sample.awaited);
   status.waiting_ns = sample.waiting_ns;
-  for (const cohort_v1_ControllerStatus& each : to_span(sample.controllers))
-    status.controllers.push_back(decode(each));
+  for (const cohort_v1_ControllerStatus& each : to_span(sample.controllers)) status.controllers.push_back(decode(each));
   return status;
 }
 

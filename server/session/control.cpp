@@ -17,7 +17,7 @@ using wire::ResultCode;
 using wire::SimulationState;
 
 constexpr std::size_t most_requesters = 64;
-constexpr std::size_t most_waiting_bytes = 64 * 1024 * 1024;
+constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
 constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
 constexpr std::uint32_t scope_default = 0;
 constexpr std::uint32_t scope_all = 255;
@@ -247,9 +247,16 @@ bool Control::perform(Moment moment) {
       ++i;
       continue;
     }
-    const Request request = std::move(waiting[i]);
-    waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
-    do_one(request);
+    // Actions that follow each other are done together.
+    std::vector<Request> now;
+    do {
+      now.push_back(std::move(waiting[i]));
+      waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
+    } while (i < waiting.size() && is_action(now.back()) && is_action(waiting[i]));
+    if (is_action(now.front()))
+      act(now);
+    else
+      do_one(now.front());
   }
   return !ending_;
 }

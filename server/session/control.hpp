@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -96,6 +97,10 @@ class Control {
   void save(const wire::Request& request);
   void load(const wire::Request& request);
   void quit(const wire::Request& request);
+  // Actions on the world (control_actions.cpp).
+  static bool is_action(const wire::Request& request);
+  void act(std::span<const wire::Request> requests);
+  wire::ResultCode code_of_failure(const wire::Request& request) const;
   void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
 
   std::optional<ControlledRun> run_;

@@ -18,7 +18,11 @@ using wire::ResultCode;
 
 // Of simulation_interfaces/msg/SimulatorFeatures.
 enum Feature : std::uint32_t {
+  spawning = 0,
+  deleting = 1,
+  spawning_resource_string = 9,
   entity_state_getting = 10,
+  entity_state_setting = 11,
   simulation_reset = 20,
   simulation_state_getting = 24,
   simulation_state_setting = 25,
@@ -86,8 +90,17 @@ void Control::answer_query(const Request& request) {
 }
 
 void Control::fill_features(Reply& reply) const {
-  reply.features = {entity_state_getting,   simulation_state_getting, simulation_state_setting,
-                    simulation_state_pause, step_simulation_single,   step_simulation_multiple};
+  reply.features = {spawning,
+                    deleting,
+                    spawning_resource_string,
+                    entity_state_getting,
+                    entity_state_setting,
+                    simulation_state_getting,
+                    simulation_state_setting,
+                    simulation_state_pause,
+                    step_simulation_single,
+                    step_simulation_multiple};
+  reply.spawn_formats = {"sdf", "urdf", "yaml"};
   if (run_->book.options().prepare) reply.features.push_back(simulation_reset);
   std::ranges::sort(reply.features);
 }

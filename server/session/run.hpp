@@ -125,7 +125,7 @@ class RunBook {
   void stepped();
   /// The frames of this tick are out.
   void at_boundary();
-  void commanded(std::span<const std::uint32_t> changed) {
+  void commanded(std::span<const std::uint32_t> changed) const {
     if (listener_.commands) listener_.commands(changed);
   }
   /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.

@@ -178,7 +178,7 @@ bool Server::fill_frame(std::uint64_t client_id, Client& client, std::uint64_t t
   if (lease == nullptr) return false;
   if (!resent) {
     client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
-    run_->leases.drain_news(client_id, [&](const auto& news) { client.answer_times.answered(news.tick, news.at); });
+    note_answers(client_id, client);
   }
   run_->exchange.fill_frame(client.frame, lease->robots, tick);
   client.epoch = lease->epoch;

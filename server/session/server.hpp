@@ -177,6 +177,8 @@ class Server {
   bool stand_at_boundary(const std::atomic<bool>& stop);
   SessionSnapshot take_snapshot();
   void fill_status(wire::SimulationStatus& status);
+  wire::ControllerStatus status_of(std::uint64_t client_id, Client& client, std::chrono::nanoseconds waiting);
+  void note_answers(std::uint64_t client_id, Client& client);
   std::uint64_t due_tick_of(const std::vector<std::uint32_t>& robots) const;
 
   // Who is attached (server_clients.cpp):

@@ -10,8 +10,8 @@ constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by
 constexpr std::size_t most_names = 20;
 // Of requests between two looks at them.
 constexpr std::size_t most_requests = 1024;
-constexpr std::size_t most_request_bytes = 64 * 1024 * 1024;
-constexpr std::size_t largest_request = 4 * 1024 * 1024;
+constexpr std::size_t most_request_bytes = std::size_t{64} << 20;
+constexpr std::size_t largest_request = std::size_t{4} << 20;
 
 std::size_t size_of(const wire::Request& request) {
   return sizeof request + request.label.size() + request.filter.size() + request.entity.size() + request.uri.size() +
@@ -98,25 +98,35 @@ void Server::fill_status(wire::SimulationStatus& status) {
     status.awaited.push_back(run_->simulation.robot_name(robot));
   }
   if (!awaited.empty()) status.waiting_ns = waiting.count();
-  for (auto& [id, client] : clients_) {
-    const lockstep::Leases::Lease* lease = run_->leases.lease(id);
-    if (lease == nullptr) continue;
-    run_->leases.drain_news(id, [&](const auto& news) { client.answer_times.answered(news.tick, news.at); });
-    wire::ControllerStatus& each = status.controllers.emplace_back();
-    each.label = client.label;
-    each.client = id;
-    each.robots = lease->robots;
-    each.alive = lease->alive;
-    each.awaited = run_->started && is_awaited(id);
-    each.awaited_ns = each.awaited ? waiting.count() : 0;
-    each.due_tick = due_tick_of(lease->robots);
-    each.answers = lease->answer_count;
-    each.late = client.late;
-    each.rejected = client.rejected;
-    each.resent = client.resent_count;
-    each.answer_p50_ns = client.answer_times.histogram().quantile(0.5).count();
-    each.answer_p99_ns = client.answer_times.histogram().quantile(0.99).count();
-  }
+  for (auto& [id, client] : clients_)
+    if (run_->leases.lease(id) != nullptr) status.controllers.push_back(status_of(id, client, waiting));
+}
+
+// Under the lock: of one that drives robots.
+wire::ControllerStatus Server::status_of(std::uint64_t client_id, Client& client, std::chrono::nanoseconds waiting) {
+  note_answers(client_id, client);
+  const lockstep::Leases::Lease& lease = *run_->leases.lease(client_id);
+  const lockstep::LatencyHistogram& times = client.answer_times.histogram();
+  wire::ControllerStatus status;
+  status.label = client.label;
+  status.client = client_id;
+  status.robots = lease.robots;
+  status.alive = lease.alive;
+  status.awaited = run_->started && is_awaited(client_id);
+  status.awaited_ns = status.awaited ? waiting.count() : 0;
+  status.due_tick = due_tick_of(lease.robots);
+  status.answers = lease.answer_count;
+  status.late = client.late;
+  status.rejected = client.rejected;
+  status.resent = client.resent_count;
+  status.answer_p50_ns = times.quantile(0.5).count();
+  status.answer_p99_ns = times.quantile(0.99).count();
+  return status;
+}
+
+// Under the lock.
+void Server::note_answers(std::uint64_t client_id, Client& client) {
+  run_->leases.drain_news(client_id, [&](const auto& news) { client.answer_times.answered(news.tick, news.at); });
 }
 
 // Under the lock: of the oldest frame without an answer, or of the next one.

@@ -108,8 +108,8 @@ void expect_same_experiment(const SessionSnapshot& snapshot, const description::
 void restore(const SessionSnapshot& snapshot, Simulation& simulation) {
   simulation.restore(snapshot.simulation);
   if (simulation.tick() != snapshot.tick)
-    throw SnapshotError("the snapshot says that it is of tick " + std::to_string(snapshot.tick) + ", and its world of tick " +
-                        std::to_string(simulation.tick()));
+    throw SnapshotError("the snapshot says that it is of tick " + std::to_string(snapshot.tick) +
+                        ", and its world of tick " + std::to_string(simulation.tick()));
 }
 
 void restore(const SessionSnapshot& snapshot, Exchange& exchange) {

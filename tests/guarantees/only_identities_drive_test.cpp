@@ -139,6 +139,58 @@ TEST(OnlyIdentitiesDrive, AndWhoClaimsMoreThanItMayIsRefusedByName) {
   EXPECT_TRUE(server.wait_for_output("refused: ")) << server.output();
 }
 
+TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
+  const ScratchFolder folder;
+  const std::string keys = (folder / "keys").string();
+  const Ended made = run_to_end({cohort_program(), "security", "init", keys, "--client", "red=all", "--client",
+                                 "operator=none,control", "--client", "both=control,all"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("operator  may control the run, and drive nothing"), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find("both  may drive all, and control the run"), std::string::npos) << made.out;
+  const auto ctl = [&](const ReservedDomain& domain, const std::string& name, const std::string& what) {
+    return run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "--secure", keys + "/clients/" + name,
+                       "--timeout", "2", what});
+  };
+  const auto serve = [&](const ReservedDomain& domain) {
+    return std::vector<std::string>{cohort_program(), "serve",       demo_experiment(), "--paused",
+                                    "--domain",       domain.text(), "--secure",        keys};
+  };
+  const std::string disguised = keys + "/clients/red/identity";
+  const std::string red_identity = read_file(disguised);
+  {
+    const ReservedDomain domain;
+    Process server(serve(domain));
+    EXPECT_EQ(ctl(domain, "operator", "status").exit_code, 0) << server.output();
+    EXPECT_EQ(ctl(domain, "both", "resume").exit_code, 0) << server.output();
+    const Ended refused = ctl(domain, "red", "pause");
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_NE(refused.err.find("may not control a run"), std::string::npos) << refused.err;
+    // One that says that it may: DDS knows better, by what was signed.
+    write_file(disguised, red_identity + "control: yes\n");
+    EXPECT_NE(ctl(domain, "red", "pause").exit_code, 0);
+    // Nobody without an identity.
+    EXPECT_EQ(run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "--timeout", "2", "pause"}).exit_code, 1);
+    EXPECT_NE(ctl(domain, "operator", "status").out.find("playing"), std::string::npos);
+    Process operator_that_drives(host("0", domain, keys + "/clients/operator"));
+    EXPECT_EQ(operator_that_drives.wait_for_exit(), 2) << operator_that_drives.output();
+    EXPECT_EQ(ctl(domain, "operator", "shutdown").exit_code, 0);
+    EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  }
+  // What counts is the server's own folder, whatever a client's certificates allow.
+  const std::string servers = keys + "/server/operator/identity";
+  std::string text = read_file(servers);
+  text.replace(text.find("control: yes"), 12, "control: no");
+  write_file(servers, text);
+  const ReservedDomain domain;
+  Process server(serve(domain));
+  const Ended refused = ctl(domain, "operator", "resume");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("the identity 'operator' may not control the run"), std::string::npos) << refused.err;
+  EXPECT_NE(ctl(domain, "both", "status").out.find("paused"), std::string::npos);
+  EXPECT_EQ(ctl(domain, "both", "shutdown").exit_code, 0);
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+}
+
 TEST(OnlyIdentitiesDrive, AndAServerOnANetworkWithoutSecurityWarns) {
   const ReservedDomain domain;
   const std::string script = "ip link set lo up && ip addr add 10.77.0.1/32 dev lo && exec \"$@\"";
@@ -147,7 +199,9 @@ TEST(OnlyIdentitiesDrive, AndAServerOnANetworkWithoutSecurityWarns) {
     Process server({"/usr/bin/unshare", "-rn", "/bin/sh", "-c", script, "sh", cohort_program(), "serve",
                     demo_experiment(), "--domain", domain.text(), "--network", address});
     EXPECT_TRUE(server.wait_for_output("serving 16 robots")) << server.output();
-    const bool warns = server.output().find("warning: whoever reaches 10.77.0.1 can drive robots") != std::string::npos;
+    const bool warns =
+        server.output().find("warning: whoever reaches 10.77.0.1 can drive robots, control this run and end it") !=
+        std::string::npos;
     EXPECT_EQ(warns, address == "10.77.0.1") << server.output();
   }
 }

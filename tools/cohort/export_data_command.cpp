@@ -5,6 +5,7 @@
 #include "server/description/select_robots.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/output_file.hpp"
+#include "tools/cohort/recording_part.hpp"
 #include "tools/cohort/wording.hpp"
 #include "tools/data/csv_tables.hpp"
 #include "tools/data/hdf5_tables.hpp"

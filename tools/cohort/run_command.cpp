@@ -166,17 +166,18 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
     recorder->begin(*world.experiment, *world.simulation, runs.from ? restored : first);
   }
   for (;;) {
-    OneRun one(command, number, count, *world.experiment, *world.simulation, recorder ? &*recorder : nullptr, log);
+    std::optional<OneRun> one;
+    one.emplace(command, number, count, *world.experiment, *world.simulation, recorder ? &*recorder : nullptr, log);
     std::optional<World> next;
     options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
     const RunResult result =
         runs.serving
-            ? runs.serving->run(*world.experiment, *world.simulation, options, one.listener(), stop, number == count)
-            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one.listener(), stop);
+            ? runs.serving->run(*world.experiment, *world.simulation, options, one->listener(), stop, number == count)
+            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one->listener(), stop);
     if (!result.next) {
       const double cpu = cpu_seconds();
       goes_on = result.end == RunResult::End::finished;
-      const int code = one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
+      const int code = one->finish(result, cpu - std::exchange(runs.cpu_before, cpu));
       const bool is_recorded = !recorder || close_recording(*recorder, file, result, log);
       return is_recorded || code != exit_ok ? code : exit_failed;
     }
@@ -187,6 +188,8 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
       recorder->begin(
           *next->experiment, *next->simulation,
           result.end == RunResult::End::reset ? recording::Beginning::reset : recording::Beginning::restored);
+    one.reset();  // it looks at what goes now
+    world.simulation.reset();
     world = std::move(*next);
     options = {.speed = result.next->speed, .state = result.next->state, .from = result.next->snapshot};
   }
@@ -234,8 +237,7 @@ int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
     for (std::size_t number = 1; number <= count; ++number) {
       if (!command.summary.empty()) check_writable("the summary", numbered(command.summary, number, count));
       if (!command.plot.empty()) check_writable("the plot", numbered(command.plot, number, count));
-      if (!command.record.file.empty())
-        check_writable("the recording", numbered(command.record.file, number, count));
+      if (!command.record.file.empty()) check_writable("the recording", numbered(command.record.file, number, count));
       if (!command.csv.empty()) check_writable("the table", numbered(command.csv, number, count));
     }
     const bool in_process = command.controllers == Controllers::in_process;

@@ -147,11 +147,15 @@ void compare_actions(const RecordedTick& first, const RecordedTick& second, Diff
   }
 }
 
-bool has_same_inputs(const RecordedTick& first, const RecordedTick& second) {
+bool has_same_state(const RecordedTick& first, const RecordedTick& second) {
   const auto is_same_action = [](const ActionTaken& a, const ActionTaken& b) { return a.action == b.action; };
-  return first.commands.robots == second.commands.robots &&
-         std::ranges::equal(first.commands.values, second.commands.values, is_same) &&
+  return first.tick == second.tick && first.state_hash == second.state_hash &&
          std::ranges::equal(first.actions, second.actions, is_same_action);
+}
+
+bool has_same_commands(const RecordedTick& first, const RecordedTick& second) {
+  return first.commands.robots == second.commands.robots &&
+         std::ranges::equal(first.commands.values, second.commands.values, is_same);
 }
 
 std::string end_text(const Recording& shorter, const RecordedTick& last) {
@@ -215,23 +219,24 @@ Comparison compare(const Recording& first, const Recording& second, unsigned thr
   Comparison result;
   TickStream first_ticks = first.ticks();
   TickStream second_ticks = second.ticks();
-  std::optional<RecordedTick> last;
-  for (;;) {
-    const auto a = first_ticks.next();
-    const auto b = second_ticks.next();
-    if (!a && !b) return result;
-    if (!a || !b) {
-      if (last) result.ends = end_text(a ? second : first, *last);
-      return result;
-    }
-    if (a->tick != b->tick || a->state_hash != b->state_hash || !has_same_inputs(*a, *b)) {
+  std::optional<RecordedTick> a = first_ticks.next();
+  std::optional<RecordedTick> b = second_ticks.next();
+  while (a && b) {
+    std::optional<RecordedTick> next_a = first_ticks.next();
+    std::optional<RecordedTick> next_b = second_ticks.next();
+    // The last boundary of a run has no commands.
+    const bool both_go_on = next_a.has_value() == next_b.has_value();
+    if (!has_same_state(*a, *b) || (both_go_on && !has_same_commands(*a, *b))) {
       result.parting = parting_at(first, second, *a, *b, threads);
       return result;
     }
     ++result.boundaries;
-    if (!progress(a->log_time)) return result;
-    last = a;
+    if (!both_go_on) result.ends = end_text(next_a ? second : first, *a);
+    if (!both_go_on || !progress(a->log_time)) return result;
+    a = std::move(next_a);
+    b = std::move(next_b);
   }
+  return result;
 }
 
 }  // namespace cohort::recording

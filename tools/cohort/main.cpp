@@ -10,13 +10,12 @@
 #include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
+#include "tools/cohort/recording_options.hpp"
 #include "tools/cohort/usage.hpp"
 
 namespace {
 
 using namespace cohort::tool;
-
-constexpr double most_seconds = 9e9;  // fits into nanoseconds
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
 Log* dds_log = nullptr;
@@ -103,81 +102,6 @@ void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::
       ->type_name("N|A..B");
 }
 
-void add_record_options(CLI::App& app, RecordOptions& options) {
-  constexpr double most_hertz = 1e9;
-  app.add_option("--record", options.file, "Record the run to this file (MCAP)")->type_name("FILE");
-  app.add_option("--record-poses", options.pose_rate, "Poses a simulated second in it, 0 for none")
-      ->check(number_from_zero(most_hertz))
-      ->type_name("HZ");
-  app.add_option("--record-observations", options.observation_rate, "Observations of a robot a simulated second")
-      ->check(number_from_zero(most_hertz))
-      ->type_name("HZ");
-  app.add_option("--record-robots", options.robots, "Whose observations: as --robots of 'cohort host'")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("SEL[,SEL...]");
-  app.add_option("--record-snapshots", options.snapshot_interval, "Simulated seconds between snapshots, 0 for none")
-      ->check(number_from_zero(most_seconds))
-      ->type_name("S");
-}
-
-void add_part_options(CLI::App& app, RecordingPart& part) {
-  app.add_option("--from", part.from, "Time in the recording to begin at, in simulated seconds (default: 0)")
-      ->check(number_from_zero(most_seconds))
-      ->type_name("S");
-  app.add_option("--to", part.to, "Time to end at (default: the end)")
-      ->check(number_from_zero(most_seconds))
-      ->type_name("S");
-}
-
-void add_robots_of_recording(CLI::App& app, std::vector<std::string>& robots) {
-  app.add_option("--robots", robots, "Which robots, as of 'cohort host' (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("SEL[,SEL...]");
-}
-
-void add_export_data_options(CLI::App& app, ExportDataCommand& command) {
-  app.add_option("FILE", command.file, "Recording (MCAP)")->required()->type_name("");
-  CLI::Option_group& target = *app.add_option_group("Target");
-  target.add_option("--csv", command.csv, "Folder for a CSV file for each table")->type_name("DIR");
-  target.add_option("--hdf5", command.hdf5, "HDF5 file for all of them")->type_name("FILE");
-  target.require_option(1);
-  add_robots_of_recording(app, command.robots);
-  add_part_options(app, command.part);
-  app.footer("Example: cohort export-data run.mcap --csv tables");
-}
-
-void add_plot_options(CLI::App& app, PlotCommand& command) {
-  app.add_option("FILE", command.file, "Recording (MCAP)")->required()->type_name("");
-  app.add_option("-o,--output", command.output, "Picture to write (.svg or .png)")->required()->type_name("FILE");
-  app.add_option("--what", command.what, "Over time: speed, or channels such as proximity/3/reading (default: paths)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("WHAT[,WHAT...]");
-  add_robots_of_recording(app, command.robots);
-  const auto set_view = [&command](const std::string& view) {
-    command.viewpoint = view == "side" ? Viewpoint::side : Viewpoint::above;
-  };
-  app.add_option_function<std::string>("--view", set_view, "Of paths: from above (the default), or from the side")
-      ->check(one_of({"above", "side"}))
-      ->type_name("above|side");
-  add_part_options(app, command.part);
-  app.footer("Example: cohort plot run.mcap --what speed,proximity/0/reading --robots 0..3 -o speeds.svg");
-}
-
-void add_replay_options(CLI::App& app, ReplayCommand& command, LogFlags& flags) {
-  app.add_option("FILE", command.file, "Recording (MCAP)")->required()->type_name("");
-  app.add_flag("--verify", command.verify, "Compare the state of every tick with the recorded one");
-  add_part_options(app, command.part);
-  app.add_option("--threads", command.threads, "Threads that step the world (default: the cores)")
-      ->check(whole_number(1, 1024))
-      ->type_name("N");
-  add_log_options(app, flags);
-  app.add_flag("--quiet", flags.quiet, "Print errors only");
-  app.footer("Example: cohort replay run.mcap --verify");
-}
-
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
   app.add_option("--repeat", options.repeat,
                  "How often to run it, the world built anew each time, the controllers attached")
@@ -252,12 +176,6 @@ void add_samples_options(CLI::App& app, SamplesCommand& command) {
       ->capture_default_str()
       ->type_name("N");
   app.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
-}
-
-void add_recover_options(CLI::App& app, RecoverCommand& command) {
-  app.add_option("FILE", command.file, "Recording (.mcap)")->required()->type_name("");
-  app.add_option("-o,--output", command.output, "File to write (default: FILE itself is replaced)")->type_name("FILE");
-  app.footer("Example: cohort recover run.mcap");
 }
 
 }  // namespace
@@ -353,11 +271,6 @@ int main(int argc, char** argv) {
   add_samples_options(*samples_app, samples_options);
   add_log_options(*samples_app, log_flags);
 
-  RecoverCommand recover_command;
-  CLI::App* recover_app = app.add_subcommand("recover", "Make a whole recording of what can be read of a damaged one");
-  add_recover_options(*recover_app, recover_command);
-  add_log_options(*recover_app, log_flags);
-
   SecurityCommand security_command;
   CLI::App* security_app = app.add_subcommand("security", "Make and list who may drive what, with certificates");
   add_security_commands(*security_app, security_command);
@@ -368,27 +281,9 @@ int main(int argc, char** argv) {
   add_doctor_options(*doctor_app, doctor_command);
   add_log_options(*doctor_app, log_flags);
 
-  ReplayCommand replay_command;
-  CLI::App* replay_app = app.add_subcommand("replay", "Run a recording's world again, without controllers");
-  add_replay_options(*replay_app, replay_command, log_flags);
-
-  ExportDataCommand export_data_command;
-  CLI::App* export_data_app = app.add_subcommand("export-data", "Write a recording as tables");
-  add_export_data_options(*export_data_app, export_data_command);
-  add_log_options(*export_data_app, log_flags);
-
-  PlotCommand plot_command;
-  CLI::App* plot_app = app.add_subcommand("plot", "Draw a recording");
-  add_plot_options(*plot_app, plot_command);
-  add_log_options(*plot_app, log_flags);
-
-  DiffCommand diff_command;
-  CLI::App* diff_app = app.add_subcommand("diff", "Find where two recorded runs part, and in what");
-  diff_app->add_option("FIRST", diff_command.first, "Recording (MCAP)")->required()->type_name("");
-  diff_app->add_option("SECOND", diff_command.second, "Another one")->required()->type_name("");
-  diff_app->add_flag("--json", diff_command.json, "Print it as JSON");
-  add_log_options(*diff_app, log_flags);
-  diff_app->footer("Example: cohort diff monday.mcap tuesday.mcap");
+  RecordingCommands recording_commands;
+  add_recording_commands(app, recording_commands);
+  for (CLI::App* recording_app : recording_commands.apps()) add_log_options(*recording_app, log_flags);
 
   std::string help_topic;
   CLI::App* help_app = app.add_subcommand("help", "Manual of what may be written in worlds and experiments");
@@ -430,17 +325,12 @@ int main(int argc, char** argv) {
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
-  replay_command.quiet = log_flags.quiet;
-  if (export_data_app->parsed()) return export_data(export_data_command, log);
-  if (plot_app->parsed()) return plot(plot_command, log, stop_requested);
-  if (diff_app->parsed()) return diff(diff_command, log, stop_requested);
-  if (replay_app->parsed()) return replay(replay_command, log, stop_requested);
   if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
-  if (recover_app->parsed()) return recover(recover_command, log);
   if (security_app->parsed()) return security(security_command, log);
   if (doctor_app->parsed()) return doctor(doctor_command, log);
+  if (const auto code = recording_commands.run(log, stop_requested)) return *code;
   if (help_app->parsed()) return help(help_topic, log);
   if (bench_app->parsed()) return bench(bench_options.command(), log, stop_requested);
   return check(checked_file, log);

@@ -120,7 +120,7 @@ std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, co
       quantities.push_back(plotted(what, replay.simulation(), robots.front()));
       figures::Panel panel{quantities.back().title, "", "time [s]", fmt::format("[{}]", quantities.back().unit), {}};
       for (const std::uint32_t robot : robots)
-        panel.series.push_back({.name = replay.simulation().robot_name(robot), .measured = {}, .is_joined = true});
+        panel.series.push_back({.name = replay.simulation().robot_name(robot), .measured = {}, .is_joined = true, .has_dots = false});
       page.panels.push_back(std::move(panel));
     }
   };

@@ -10,6 +10,8 @@ namespace cohort::tool {
 
 /// Checks of an option's value; their messages say what was expected.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t greatest);
+inline constexpr double most_seconds = 9e9;  ///< fits into nanoseconds
+
 CLI::Validator number_above_zero(double greatest);
 CLI::Validator number_from_zero(double greatest);
 CLI::Validator max_or_number_above_zero(double greatest);

@@ -165,6 +165,7 @@ class PanelDrawing {
       for (const Vector2d& point : series.measured) points.push_back(on_page(point));
       fmt::format_to(out_, "<path fill=\"none\" stroke=\"{}\" d=\"{}\"/>\n", colour, tool::svg::path_data(points));
     }
+    if (!series.has_dots) return;
     for (const Vector2d& point : series.measured) {
       const Vector2d at = on_page(point);
       data += fmt::format("M{:.1f} {:.1f}h0", at.x(), at.y());

@@ -16,6 +16,7 @@ struct Series {
   std::function<double(double)> closed_form{};  ///< what theory says at x; empty if there is nothing to compare with
   double tolerance = 0.0;                       ///< how far the measured may be off it, of y
   bool is_joined = false;                       ///< a line goes from each point to the next
+  bool has_dots = true;                         ///< of what is measured
 };
 
 struct Image {

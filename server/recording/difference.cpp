@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
-#include <map>
+#include <set>
 #include <span>
 
 namespace cohort::recording {
@@ -111,28 +111,36 @@ void compare_contacts(const Simulation& first, const Simulation& second, Differe
   }
 }
 
-// The value that acts from this tick on, of every robot whose commands changed in one of the two.
+// A value that acts from this tick on: the new one, or the one that stands. -0.0 and 0.0 are two.
+std::string value_at(const Commands& changes, std::uint32_t robot, std::uint32_t place, const Simulation& simulation) {
+  for (std::size_t i = 0; i < changes.robots.size(); ++i)
+    if (changes.robots[i] == robot && changes.places[i] == place) return text_of(changes.values[i]);
+  return text_of(simulation.command(robot)[place]);
+}
+
+std::string channel_at(const std::vector<cohort::Channel>& channels, std::uint32_t place) {
+  for (const cohort::Channel& channel : channels) {
+    if (place < channel.size) return channel.size == 1 ? channel.name : channel.name + "[" + std::to_string(place) + "]";
+    place -= channel.size;
+  }
+  return "";
+}
+
+// The first value of each robot whose new commands differ.
 void compare_commands(const Commands& first, const Commands& second, const Simulation& simulation, Differences& found) {
-  std::map<std::uint32_t, std::pair<std::vector<double>, std::vector<double>>> robots;
-  const auto add = [&](const Commands& commands, auto member) {
-    std::span<const double> values = commands.values;
-    for (const std::uint32_t robot : commands.robots) {
-      if (robot >= simulation.robot_count()) return;
-      const std::size_t size = std::min(values.size(), simulation.command(robot).size());
-      (robots[robot].*member).assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size));
-      values = values.subspan(size);
-    }
-  };
-  using Pair = std::pair<std::vector<double>, std::vector<double>>;
-  add(first, &Pair::first);
-  add(second, &Pair::second);
-  for (auto& [robot, values] : robots) {
-    const std::span<const double> now = simulation.command(robot);
-    auto& [a, b] = values;
-    if (a.empty()) a.assign(now.begin(), now.end());
-    if (b.empty()) b.assign(now.begin(), now.end());
+  std::set<std::pair<std::uint32_t, std::uint32_t>> changed;  // robot and place, in either
+  for (const Commands* each : {&first, &second})
+    for (std::size_t i = 0; i < each->robots.size(); ++i)
+      if (each->robots[i] < simulation.robot_count() && each->places[i] < simulation.command(each->robots[i]).size())
+        changed.emplace(each->robots[i], each->places[i]);
+  std::optional<std::uint32_t> told;
+  for (const auto& [robot, place] : changed) {
+    const std::string a = value_at(first, robot, place, simulation);
+    const std::string b = value_at(second, robot, place, simulation);
+    if (a == b || told == robot) continue;
+    told = robot;
     found.begin(simulation.robot_name(robot));
-    found.compare_channels("command", simulation.kinds()[simulation.kind_of(robot)].command, a, b);
+    found.add("command", channel_at(simulation.kinds()[simulation.kind_of(robot)].command, place), a, b);
   }
 }
 
@@ -154,7 +162,7 @@ bool has_same_state(const RecordedTick& first, const RecordedTick& second) {
 }
 
 bool has_same_commands(const RecordedTick& first, const RecordedTick& second) {
-  return first.commands.robots == second.commands.robots &&
+  return first.commands.robots == second.commands.robots && first.commands.places == second.commands.places &&
          std::ranges::equal(first.commands.values, second.commands.values, is_same);
 }
 

@@ -102,8 +102,11 @@ void Recorder::write_roster() {
   Roster roster;
   for (const RobotKind& kind : simulation_->kinds())
     roster.kinds.push_back({kind.model, recorded(kind.observation), recorded(kind.command)});
-  for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
-    roster.robots.push_back({simulation_->robot_name(robot), "", simulation_->kind_of(robot)});
+  for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot) {
+    const std::span<const double> command = simulation_->command(robot);
+    roster.robots.push_back(
+        {simulation_->robot_name(robot), "", simulation_->kind_of(robot), {command.begin(), command.end()}});
+  }
   for (const description::Team& team : experiment_->teams)
     for (const std::uint32_t robot : team.robots) roster.robots[robot].team = team.name;
   write(roster_, roster);
@@ -134,19 +137,39 @@ void Recorder::action(std::string_view text, std::span<const std::byte> action) 
 
 void Recorder::boundary() {
   write(boundary_, Boundary{simulation_->tick(), simulation_->state_hash()});
+  keep_commands();
   if (is_now(snapshot_interval_) && simulation_->tick() > 0) write_snapshot(Importance::display);
   if (is_now(pose_interval_)) write_poses();
   if (is_now(observation_interval_)) write_observations();
 }
 
 void Recorder::commands(std::span<const std::uint32_t> robots) {
-  if (robots.empty()) return;
-  Commands commands{simulation_->tick(), {robots.begin(), robots.end()}, {}};
+  changes_.tick = simulation_->tick();
+  changes_.robots.clear();
+  changes_.places.clear();
+  changes_.values.clear();
   for (const std::uint32_t robot : robots) {
-    const std::span<const double> values = simulation_->command(robot);
-    commands.values.insert(commands.values.end(), values.begin(), values.end());
+    const std::span<const double> now = simulation_->command(robot);
+    const double* const before = commands_before_.data() + command_offsets_[robot];
+    for (std::uint32_t place = 0; place < now.size(); ++place) {
+      if (std::bit_cast<std::uint64_t>(now[place]) == std::bit_cast<std::uint64_t>(before[place])) continue;
+      changes_.robots.push_back(robot);
+      changes_.places.push_back(place);
+      changes_.values.push_back(now[place]);
+    }
   }
-  write(commands_, commands);
+  if (!changes_.values.empty()) write(commands_, changes_);
+}
+
+void Recorder::keep_commands() {
+  const std::uint32_t robots = simulation_->robot_count();
+  command_offsets_.resize(robots);
+  commands_before_.clear();
+  for (std::uint32_t robot = 0; robot < robots; ++robot) {
+    const std::span<const double> values = simulation_->command(robot);
+    command_offsets_[robot] = commands_before_.size();
+    commands_before_.insert(commands_before_.end(), values.begin(), values.end());
+  }
 }
 
 void Recorder::write_snapshot(Importance importance) {

@@ -61,6 +61,7 @@ class Recorder {
   void write_snapshot(Importance importance);
   void write_poses();
   void write_observations();
+  void keep_commands();
   bool is_now(std::uint64_t interval) const { return interval != 0 && simulation_->tick() % interval == 0; }
 
   RecordingFile file_;
@@ -79,7 +80,11 @@ class Recorder {
     Topic topic;
   };
   std::vector<Observed> observed_;
-  CdrWriter cdr_;  // reused
+  // As they stand at the boundary, robot after robot: an empty battery changes them too.
+  std::vector<double> commands_before_;
+  std::vector<std::size_t> command_offsets_;  // by robot
+  Commands changes_;                          // reused, like the next
+  CdrWriter cdr_;
 };
 
 }  // namespace cohort::recording

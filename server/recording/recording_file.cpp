@@ -1,6 +1,8 @@
 #include "server/recording/recording_file.hpp"
 
 #include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -15,6 +17,7 @@ namespace {
 constexpr std::size_t block_size = 256U << 10U;
 constexpr std::size_t wake_size = 512U << 10U;  // so much waits before the writer is woken early
 constexpr std::size_t most_spare = 16;
+constexpr int writer_niceness = 10;
 
 // What stands before each message in a block, or in its place.
 struct Entry {
@@ -157,6 +160,8 @@ void RecordingFile::close() {
 
 // The writer's thread, down to the end of `give_up`.
 void RecordingFile::write_blocks() {
+  // Linux has a niceness for each thread: on a machine without a core to spare the run and its controllers come first.
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), writer_niceness);
   std::deque<Block> blocks;
   bool is_last = false;
   while (!is_last) {

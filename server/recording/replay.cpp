@@ -42,16 +42,23 @@ bool Replay::advance() {
 }
 
 void Replay::apply_commands() {
-  std::span<const double> values = recorded_->commands.values;
-  for (const std::uint32_t robot : recorded_->commands.robots) {
-    const std::size_t size = robot < simulation_->robot_count() ? simulation_->command(robot).size() : values.size() + 1;
-    if (size > values.size())
-      throw McapError(recording_.file(), 0,
-                      "the commands of tick " + std::to_string(recorded_->tick) + " are not for the robots of its world");
-    if (const auto fault = simulation_->check_command(robot, values.first(size)))
-      throw McapError(recording_.file(), 0, "a command of tick " + std::to_string(recorded_->tick) + " cannot act: " + fault->text);
-    simulation_->set_command(robot, values.first(size));
-    values = values.subspan(size);
+  const Commands& changes = recorded_->commands;
+  const auto fail = [&](const std::string& problem) {
+    throw McapError(recording_.file(), 0, "the commands of tick " + std::to_string(recorded_->tick) + problem);
+  };
+  const std::size_t count = changes.robots.size();
+  if (changes.places.size() != count || changes.values.size() != count) fail(" are not whole");
+  for (std::size_t i = 0; i < count;) {
+    const std::uint32_t robot = changes.robots[i];
+    if (robot >= simulation_->robot_count()) fail(" are not for the robots of its world");
+    const std::span<const double> before = simulation_->command(robot);
+    std::vector<double> command(before.begin(), before.end());
+    for (; i < count && changes.robots[i] == robot; ++i) {
+      if (changes.places[i] >= command.size()) fail(" are not for the robots of its world");
+      command[changes.places[i]] = changes.values[i];
+    }
+    if (const auto fault = simulation_->check_command(robot, command)) fail(" cannot act: " + fault->text);
+    simulation_->set_command(robot, command);
   }
 }
 

@@ -53,9 +53,10 @@ struct RecordedRobot {
   std::string name;
   std::string team;
   std::uint32_t kind = 0;  ///< index into Roster::kinds
+  std::vector<double> command;  ///< as the world begins
   static constexpr const char* type = "cohort_msgs/msg/Robot";
   static constexpr auto fields = std::tuple(field("name", &RecordedRobot::name), field("team", &RecordedRobot::team),
-                                            field("kind", &RecordedRobot::kind));
+                                            field("kind", &RecordedRobot::kind), field("command", &RecordedRobot::command));
 };
 /// The robots by id; with each world that begins.
 struct Roster {
@@ -75,15 +76,17 @@ struct Boundary {
   static constexpr auto fields = std::tuple(field("tick", &Boundary::tick), field("state_hash", &Boundary::state_hash));
 };
 
-/// Commands that act from a boundary on; robots whose commands stay as they were are left out.
+/// Commanded values that are others than before, from a boundary on: `values[i]` is the new one at place `places[i]`
+/// in the command of robot `robots[i]`.
 struct Commands {
   std::uint64_t tick = 0;
   std::vector<std::uint32_t> robots;  ///< ids, ascending
-  std::vector<double> values;         ///< robot after robot, channel after channel
+  std::vector<std::uint32_t> places;  ///< by the channels of the robot's kind, ascending for each robot
+  std::vector<double> values;
   static constexpr const char* topic = "/cohort/commands";
   static constexpr const char* type = "cohort_msgs/msg/Commands";
   static constexpr auto fields = std::tuple(field("tick", &Commands::tick), field("robots", &Commands::robots),
-                                            field("values", &Commands::values));
+                                            field("places", &Commands::places), field("values", &Commands::values));
 };
 
 /// What somebody outside did to the world at a boundary.

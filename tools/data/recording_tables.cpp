@@ -123,6 +123,9 @@ class RecordingTables {
     for (std::uint32_t id = 0; id < roster_.robots.size(); ++id) {
       if (roster_.robots[id].kind >= roster_.kinds.size()) throw CdrError("a robot is of no kind");
       robot_of_topic_["/" + roster_.robots[id].name + observation_topic_end] = id;
+      commanded_[id] = roster_.robots[id].command;
+      if (commanded_[id].size() != size_of(roster_.kinds[roster_.robots[id].kind].command))
+        throw CdrError("a robot's command is not of its kind");
     }
   }
 
@@ -154,15 +157,19 @@ class RecordingTables {
     table(table_of + "_" + roster_.kinds[robot.kind].model, [&] { return columns_of(channels); }).add(row);
   }
 
+  // A row for each robot of which something changed, with all that it is commanded from then on.
   void add_commands(const Commands& commands, const std::vector<Cell>& time) {
-    std::span<const double> values = commands.values;
-    for (const std::uint32_t id : commands.robots) {
+    if (commands.places.size() != commands.robots.size() || commands.values.size() != commands.robots.size())
+      throw CdrError("commands are not whole");
+    for (std::size_t i = 0; i < commands.robots.size();) {
+      const std::uint32_t id = commands.robots[i];
       const RecordedRobot& each = robot(id);
-      const std::vector<RecordedChannel>& channels = roster_.kinds[each.kind].command;
-      const std::size_t size = size_of(channels);
-      if (size > values.size()) throw CdrError("commands have too few values");
-      if (is_selected(each)) add_values("commands", each, channels, values.first(size), time);
-      values = values.subspan(size);
+      std::vector<double>& values = commanded_[id];
+      for (; i < commands.robots.size() && commands.robots[i] == id; ++i) {
+        if (commands.places[i] >= values.size()) throw CdrError("a command is of a channel that its robot does not have");
+        values[commands.places[i]] = commands.values[i];
+      }
+      if (is_selected(each)) add_values("commands", each, roster_.kinds[each.kind].command, values, time);
     }
   }
 
@@ -196,6 +203,7 @@ class RecordingTables {
   std::uint32_t run_ = 0;
   Roster roster_;
   std::map<std::string, std::uint32_t> robot_of_topic_;
+  std::map<std::uint32_t, std::vector<double>> commanded_;  // by robot
   std::map<std::string, LazyTable> tables_;
 };
 

@@ -40,8 +40,7 @@ const Topic Codec<RobotDescription>::topic = {.name = "cohort/v1/robot_descripti
                                               .depth = 1};
 const Topic Codec<Observation>::topic = {
     .name = "cohort/v1/observation", .type = &cohort_v1_Observation_desc, .reliable = false};
-const Topic Codec<Command>::topic = {
-    .name = "cohort/v1/command", .type = &cohort_v1_Command_desc, .reliable = false};
+const Topic Codec<Command>::topic = {.name = "cohort/v1/command", .type = &cohort_v1_Command_desc, .reliable = false};
 const Topic Codec<WorldState>::topic = {
     .name = "cohort/v1/world_state", .type = &cohort_v1_WorldState_desc, .reliable = false, .depth = 1};
 const Topic Codec<Report>::topic = {
@@ -160,8 +159,8 @@ Codec<Command>::Outgoing::Outgoing(const Command& message) {
 }
 
 Command Codec<Command>::decode(const Sample& sample) {
-  return {sample.client, sample.run, sample.epoch, sample.tick, to_span(sample.robots), to_span(sample.values),
-          sample.resent};
+  return {sample.client,          sample.run,   sample.epoch, sample.tick, to_span(sample.robots),
+          to_span(sample.values), sample.resent};
 }
 
 Codec<WorldState>::Outgoing::Outgoing(const WorldState& message) {

@@ -32,8 +32,8 @@ class Barrier {
   /// longer awaited, and has its neutral values. At first all are driven.
   void set_driven(std::uint32_t robot, bool driven);
 
-  /// Starts tick `tick` at time `now`; the first call has tick 0, or that of the boundary at which what was restored was
-  /// saved, each further one the next tick. The tick before must be complete.
+  /// Starts tick `tick` at time `now`; the first call has tick 0, or that of the boundary at which what was restored
+  /// was saved, each further one the next tick. The tick before must be complete.
   void open(std::uint64_t tick, Time now);
 
   std::uint64_t tick() const { return tick_; }
@@ -112,7 +112,9 @@ class Barrier {
     Time heard_at{0};                         // of the last answer, or the opening before the first
     bool silent = false;                      // for too long
   };
-  static Answer& answer_of(Robot& robot, std::uint64_t frame_tick) { return robot.answers[place_of(robot, frame_tick)]; }
+  static Answer& answer_of(Robot& robot, std::uint64_t frame_tick) {
+    return robot.answers[place_of(robot, frame_tick)];
+  }
   static const Answer& answer_of(const Robot& robot, std::uint64_t frame_tick) {
     return robot.answers[place_of(robot, frame_tick)];
   }

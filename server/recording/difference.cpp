@@ -5,6 +5,7 @@
 #include <charconv>
 #include <set>
 #include <span>
+#include <utility>
 
 namespace cohort::recording {
 namespace {
@@ -49,12 +50,12 @@ class Differences {
     std::size_t i = 0;
     for (const cohort::Channel& channel : channels) {
       for (std::uint32_t k = 0; k < channel.size && i < std::min(first.size(), second.size()); ++k, ++i)
-        if (!compare(quantity, channel.size == 1 ? channel.name : channel.name + "[" + std::to_string(k) + "]", first[i],
-                     second[i]))
+        if (!compare(quantity, channel.size == 1 ? channel.name : channel.name + "[" + std::to_string(k) + "]",
+                     first[i], second[i]))
           return;
     }
   }
-  List take() { return std::move(list_); }
+  List take() { return std::exchange(list_, {}); }
 
  private:
   std::string object_;
@@ -104,7 +105,8 @@ void compare_contacts(const Simulation& first, const Simulation& second, Differe
   found.begin("");
   for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
     if (i >= a.size() || i >= b.size() || a[i].body_a != b[i].body_a || a[i].body_b != b[i].body_b)
-      return found.add("contact", "", i < a.size() ? text_of(a[i], first) : "none", i < b.size() ? text_of(b[i], second) : "none");
+      return found.add("contact", "", i < a.size() ? text_of(a[i], first) : "none",
+                       i < b.size() ? text_of(b[i], second) : "none");
     const std::string who = text_of(a[i], first);
     if (!found.compare("contact", who + ", impulse", a[i].impulse, b[i].impulse)) return;
     if (!found.compare("contact", who + ", distance", a[i].distance, b[i].distance)) return;
@@ -120,7 +122,8 @@ std::string value_at(const Commands& changes, std::uint32_t robot, std::uint32_t
 
 std::string channel_at(const std::vector<cohort::Channel>& channels, std::uint32_t place) {
   for (const cohort::Channel& channel : channels) {
-    if (place < channel.size) return channel.size == 1 ? channel.name : channel.name + "[" + std::to_string(place) + "]";
+    if (place < channel.size)
+      return channel.size == 1 ? channel.name : channel.name + "[" + std::to_string(place) + "]";
     place -= channel.size;
   }
   return "";

@@ -65,7 +65,8 @@ std::string media_type_of(const std::filesystem::path& file) {
 
 StringMap facts_of(const description::Experiment& experiment) {
   std::string not_portable;
-  for (const std::string& function : functions_not_portable()) not_portable += (not_portable.empty() ? "" : " ") + function;
+  for (const std::string& function : functions_not_portable())
+    not_portable += (not_portable.empty() ? "" : " ") + function;
   utsname machine{};
   uname(&machine);
   return {
@@ -104,9 +105,10 @@ Attachment attachment_of(const description::KeptFile& input) {
 description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem::path& file) {
   const std::optional<Metadata> metadata = reader.metadata(inputs_name);
   if (!metadata)
-    throw McapError(file, 0, "it has no metadata '" + std::string(inputs_name) +
-                                 "', so the world of its run is not known: it was not recorded by Cohort from an "
-                                 "experiment's file, or its beginning is lost");
+    throw McapError(file, 0,
+                    "it has no metadata '" + std::string(inputs_name) +
+                        "', so the world of its run is not known: it was not recorded by Cohort from an "
+                        "experiment's file, or its beginning is lost");
   StringMap entries = metadata->entries;
   description::KeptFiles inputs;
   inputs.experiment = entries["experiment"];
@@ -122,8 +124,9 @@ description::KeptFiles inputs_of(const McapReader& reader, const std::filesystem
   }
   std::ranges::sort(inputs.files, {}, &description::KeptFile::path);
   if (std::to_string(inputs.files.size()) != entries["files"])
-    throw McapError(file, 0, "it has " + std::to_string(inputs.files.size()) + " input files of its run, expected " +
-                                 entries["files"]);
+    throw McapError(
+        file, 0,
+        "it has " + std::to_string(inputs.files.size()) + " input files of its run, expected " + entries["files"]);
   return inputs;
 }
 

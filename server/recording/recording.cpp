@@ -24,11 +24,11 @@ MessageStream messages_of(const McapReader& reader, ChannelId channel) {
 TickStream::TickStream(const McapReader& reader, const std::filesystem::path& file, Timestamp from)
     : reader_(&reader),
       file_(file),
-      messages_(reader.messages({.channels = channels_of(reader, {WorldBegins::topic, ActionTaken::topic,
-                                                                  Boundary::topic, RecordedSnapshot::topic,
-                                                                  Commands::topic}),
-                                 .from = from,
-                                 .order = Order::file})) {}
+      messages_(
+          reader.messages({.channels = channels_of(reader, {WorldBegins::topic, ActionTaken::topic, Boundary::topic,
+                                                            RecordedSnapshot::topic, Commands::topic}),
+                           .from = from,
+                           .order = Order::file})) {}
 
 std::optional<RecordedTick> TickStream::next() {
   std::optional<RecordedTick> result = std::exchange(waiting_, std::nullopt);
@@ -71,8 +71,9 @@ Recording::Recording(const std::filesystem::path& file) : file_(file), reader_(f
   const std::optional<Metadata> facts = reader_.metadata(facts_name);
   const Channel* const worlds = reader_.channel(WorldBegins::topic);
   if (!facts || worlds == nullptr)
-    throw McapError(file, 0, reader_.is_complete() ? "it is an MCAP file, but no recording of Cohort's"
-                                                   : "no run can be read in it: " + reader_.damage());
+    throw McapError(file, 0,
+                    reader_.is_complete() ? "it is an MCAP file, but no recording of Cohort's"
+                                          : "no run can be read in it: " + reader_.damage());
   facts_ = facts->entries;
   try {
     MessageStream stream = messages_of(reader_, worlds->id);

@@ -78,9 +78,9 @@ void Replay::take_actions() {
 
 bool Replay::seek(std::chrono::nanoseconds log_time) {
   // Where it can begin: at a world, or at a snapshot of one.
-  const Recording::World* world = nullptr;
+  const Recording::World* world = &recording_.worlds().front();
   for (const Recording::World& each : recording_.worlds())
-    if (world == nullptr || each.log_time <= log_time) world = &each;
+    if (each.log_time <= log_time) world = &each;
   std::chrono::nanoseconds start = world->log_time;
   const auto& snapshots = recording_.snapshots();
   const auto after = std::ranges::upper_bound(snapshots, log_time);

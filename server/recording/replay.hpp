@@ -10,16 +10,16 @@
 
 namespace cohort::recording {
 
-/// Runs the world of a recording again, from what the barrier gave out and what was done to it: no controller, no policy,
-/// no wall clock. One thread.
+/// Runs the world of a recording again, from what the barrier gave out and what was done to it: no controller, no
+/// policy, no wall clock. One thread.
 class Replay {
  public:
   /// Stands before the first boundary. `recording` must outlive this.
   Replay(const Recording& recording, unsigned threads);
   ~Replay();
 
-  /// Goes on to the last boundary before `log_time` at which a world begins or a snapshot was taken, if it is before it,
-  /// and from there to the first one that is not before it. False if there is none.
+  /// Goes on to the last boundary before `log_time` at which a world begins or a snapshot was taken, if it is before
+  /// it, and from there to the first one that is not before it. False if there is none.
   bool seek(std::chrono::nanoseconds log_time);
 
   /// Goes on to the next boundary. False at the end. Throws McapError for a recording that cannot be read or replayed

@@ -16,7 +16,7 @@ enum class Beginning : std::uint8_t {
 
 /// A world begins; what follows is of it. Ticks of one world go up, from `tick` on, without a gap.
 struct WorldBegins {
-  std::uint32_t run = 0;  ///< number of the run in this recording, from 0
+  std::uint32_t run = 0;    ///< number of the run in this recording, from 0
   std::uint8_t reason = 0;  ///< a Beginning
   std::uint64_t seed = 0;
   std::uint64_t tick = 0;          ///< of its first boundary
@@ -52,11 +52,12 @@ struct RecordedKind {
 struct RecordedRobot {
   std::string name;
   std::string team;
-  std::uint32_t kind = 0;  ///< index into Roster::kinds
+  std::uint32_t kind = 0;       ///< index into Roster::kinds
   std::vector<double> command;  ///< as the world begins
   static constexpr const char* type = "cohort_msgs/msg/Robot";
-  static constexpr auto fields = std::tuple(field("name", &RecordedRobot::name), field("team", &RecordedRobot::team),
-                                            field("kind", &RecordedRobot::kind), field("command", &RecordedRobot::command));
+  static constexpr auto fields =
+      std::tuple(field("name", &RecordedRobot::name), field("team", &RecordedRobot::team),
+                 field("kind", &RecordedRobot::kind), field("command", &RecordedRobot::command));
 };
 /// The robots by id; with each world that begins.
 struct Roster {

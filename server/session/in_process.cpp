@@ -70,7 +70,8 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       exchange.open(begin.time_since_epoch());
       book.at_boundary();
       for (std::size_t team = 0; team < hosts.size(); ++team) {
-        const auto taken = ask(exchange, frame, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team]);
+        const auto taken =
+            ask(exchange, frame, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team]);
         if (!taken.is_fault) continue;
         book.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
         if (taken.ends_run) return book.finish(RunResult::End::failed, taken.rejection->text);

@@ -23,6 +23,7 @@ void RunBook::start() {
   start_ = Clock::now();
   last_report_ = start_;
   resume();
+  if (listener_.stepped) listener_.stepped();
 }
 
 void RunBook::stop() {
@@ -33,6 +34,7 @@ void RunBook::stop() {
 void RunBook::stepped() {
   for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
   for (const std::string& text : simulation_.happened()) add_event("event", text);
+  if (listener_.stepped) listener_.stepped();
   if (is_over()) at_boundary();  // no frame goes out any more
 }
 

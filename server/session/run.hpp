@@ -73,6 +73,8 @@ struct RunListener {
   std::function<void(const Event&)> event{};        ///< each time; its count is that of this time
   std::function<void(const Event&)> news{};         ///< the first event of its kind and text
   std::function<void(const Miss&)> miss{};
+  /// A step is done, or the run begins: no frame of this tick is out.
+  std::function<void()> stepped{};
   /// The state of a tick is complete and its frames are out: once for each tick, from the run's first to its last.
   std::function<void()> boundary{};
   /// A tick has its answers: the wall time since its first frame was sent.

@@ -6,7 +6,7 @@
 
 #include "server/recording/mcap_writer.hpp"
 #include "server/recording/replay.hpp"
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/controlled_run.hpp"
 
 namespace cohort::testing {
 namespace {
@@ -43,10 +43,9 @@ class SameHashOnReplay : public ::testing::TestWithParam<std::string> {};
 TEST_P(SameHashOnReplay, OfAShippedExperiment) {
   const ScratchFolder folder;
   const std::filesystem::path file = folder / "run.mcap";
-  const auto summary =
-      run_experiment(COHORT_SOURCE_DIR "/worlds/experiments/" + GetParam() + ".yaml",
-                     {"--controllers", "inprocess", "--duration", "12", "--record", file, "--record-snapshots", "5",
-                      "--record-observations", "10"});
+  const auto summary = run_experiment(COHORT_SOURCE_DIR "/worlds/experiments/" + GetParam() + ".yaml",
+                                      {"--controllers", "inprocess", "--duration", "12", "--record", file,
+                                       "--record-snapshots", "5", "--record-observations", "10"});
   const std::uint64_t ticks = summary["ticks"];
   expect_identical(verified(file), ticks + 1);
   const std::chrono::nanoseconds time(summary["sim_time_ns"].get<std::int64_t>());
@@ -85,6 +84,43 @@ TEST(SameHashOnReplayOf, ARunWithLateJoinsAndCrashes) {
   Process again(FieldOfRobots::host(domain, "1"));
   ASSERT_EQ(server.wait_for_exit(), 0) << server.output();
   expect_identical(verified(file), 1001);
+}
+
+// Everything that `cohort ctl` does to a world, a reset with another seed, and a snapshot gone back to.
+TEST(SameHashOnReplayOf, ARunThatIsControlled) {
+  const FieldOfRobots field(4, 6.0);
+  const std::filesystem::path file = field / "run.mcap";
+  const std::string saved = field / "saved";
+  const std::string box = field / "box.sdf";
+  write_file(box,
+             "<sdf version='1.9'><model name='box'><link name='body'><collision name='c'><geometry><box><size>0.1 0.1 "
+             "0.1</size></box></geometry></collision></link></model></sdf>");
+  ControlledRun run(field, {"--paused", "--record", file, "--record-snapshots", "1"});
+  run.done({"step", "100"});
+  run.done({"set-pose", "swarm/sbot_1", "--pose", "2 2 0.1 0 0 1"});
+  run.done({"set-velocity", "swarm/sbot_2", "--linear", "0.3 0 0"});
+  run.done({"step", "50"});
+  run.done({"spawn", box, "--name", "crate", "--pose", "1.5 0 0.5"});
+  run.done({"save", saved});
+  run.done({"apply-force", "crate", "--force", "0 2 20", "--duration", "0.2"});
+  run.done({"step", "70"});
+  run.done({"load", saved});
+  run.done({"step", "30"});
+  run.done({"remove", "crate"});
+  run.done({"step", "20"});
+  run.done({"reset", "--seed", "9"});
+  run.done({"step", "10"});
+  run.done({"apply-force", "swarm/sbot_0", "--force", "0 5 0", "--duration", "0.1"});
+  run.done({"resume"});
+  run.finish();
+
+  const Recording recorded(file);
+  ASSERT_EQ(recorded.worlds().size(), 3u);
+  EXPECT_EQ(recorded.worlds()[1].begins.tick, 150u);
+  EXPECT_EQ(recorded.worlds()[2].begins.seed, 9u);
+  expect_identical(verified(file), 221 + 51 + 601);
+  // The second world begins at 2.21 s of the recording, so this is its tick 170.
+  expect_identical(verified(file, 2.41, 2.42), 2);
 }
 
 // Answers that miss their deadlines, under each policy with which a run goes on.
@@ -176,8 +212,8 @@ TEST(SameHashOnReplayOf, AServerThatWasKilled) {
   const Recording recorded(file);
   EXPECT_NE(recorded.damage(), "");
   recording::Replay replay(recorded, 2);
-  const Verification found = recording::verify(replay, {}, std::chrono::nanoseconds::max(),
-                                               [](std::chrono::nanoseconds) { return true; });
+  const Verification found =
+      recording::verify(replay, {}, std::chrono::nanoseconds::max(), [](std::chrono::nanoseconds) { return true; });
   EXPECT_EQ(found.problem, "");
   EXPECT_FALSE(found.difference);
   EXPECT_GT(found.boundaries, 100u);

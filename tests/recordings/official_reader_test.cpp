@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/file.h>
 
+#include <map>
 #include <set>
 
 #include "server/recording/recording_file.hpp"
@@ -201,6 +202,28 @@ TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
   ASSERT_EQ(found["messages"].size(), written.size());
   for (std::size_t i = 0; i < written.size(); ++i)
     EXPECT_EQ(found["messages"][i]["message"], written[i]) << found["schemas"][i / 5];
+}
+
+// What Cohort records of a run, with its own messages.
+TEST_F(OfficialReader, ReadsARunOfCohort) {
+  const testing::ScratchFolder scratch;
+  testing::run_demo({"--controllers", "inprocess", "--duration", "1", "--record", scratch / "run.mcap",
+                     "--record-observations", "10", "--record-snapshots", "0.5"});
+  const json found = read(scratch / "run.mcap");
+  std::map<std::string, std::vector<json>> messages;  // by topic
+  for (const json& message : found["messages"]) messages[message["topic"]].push_back(message["message"]);
+  EXPECT_EQ(messages["/cohort/boundary"].size(), 101u);
+  EXPECT_EQ(messages["/cohort/boundary"][50]["tick"], 50);
+  ASSERT_EQ(messages["/tf"].size(), 11u);
+  ASSERT_EQ(messages["/tf"][0]["transforms"].size(), 16u);
+  EXPECT_EQ(messages["/tf"][0]["transforms"][3]["child_frame_id"], "explorers/sbot_3");
+  EXPECT_EQ(messages["/tf"][10]["transforms"][3]["header"]["stamp"]["sec"], 1);
+  EXPECT_EQ(messages["/cohort/roster"][0]["robots"][15]["name"], "explorers/sbot_15");
+  EXPECT_EQ(messages["/cohort/world"][0]["duration_ns"], 1'000'000'000);
+  EXPECT_EQ(messages["/cohort/snapshot"].size(), 2u);
+  ASSERT_EQ(messages["/explorers/sbot_7/observation"].size(), 11u);
+  EXPECT_TRUE(messages["/explorers/sbot_7/observation"][5]["proximity_3_reading"].is_number());
+  ASSERT_GE(found["attachments"].size(), 3u) << "experiment, world and robot";
 }
 
 }  // namespace

@@ -36,11 +36,11 @@ enum class Controllers {
 
 /// What a recording holds, where the experiment says something else.
 struct RecordOptions {
-  std::filesystem::path file;  ///< empty: no recording
-  std::optional<double> pose_rate{};                  ///< [Hz]
-  std::optional<double> observation_rate{};           ///< [Hz]
-  std::vector<std::string> robots{};                  ///< selectors: whose observations
-  std::optional<double> snapshot_interval{};          ///< [s]
+  std::filesystem::path file;                 ///< empty: no recording
+  std::optional<double> pose_rate{};          ///< [Hz]
+  std::optional<double> observation_rate{};   ///< [Hz]
+  std::vector<std::string> robots{};          ///< selectors: whose observations
+  std::optional<double> snapshot_interval{};  ///< [s]
 };
 
 struct RunCommand {
@@ -63,7 +63,7 @@ struct RunCommand {
   std::string network = "127.0.0.1";
   std::filesystem::path secure;  ///< folder of identities; empty: without security
 };
-int run(const RunCommand& command, Log& log, const std::atomic<bool>& stop);
+int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop);
 
 struct HostCommand {
   std::string plugin;

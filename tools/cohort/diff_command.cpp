@@ -27,8 +27,8 @@ void print_text(const recording::Comparison& found) {
   if (!found.parting && found.ends.empty()) return fmt::print("identical, {}\n", counted(found.boundaries, "tick"));
   if (!found.parting)
     return fmt::print("{}; until then they are identical, {}\n", found.ends, counted(found.boundaries, "tick"));
-  fmt::print("they part at tick {} ({:.3f} s), after {}\n", found.parting->tick, Seconds(found.parting->log_time).count(),
-             counted(found.boundaries, "identical tick"));
+  fmt::print("they part at tick {} ({:.3f} s), after {}\n", found.parting->tick,
+             Seconds(found.parting->log_time).count(), counted(found.boundaries, "identical tick"));
   for (const auto& difference : found.parting->differences) fmt::print("{}\n", line_of(difference));
   if (found.parting->more > 0) fmt::print("  and {} more\n", found.parting->more);
 }

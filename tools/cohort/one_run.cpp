@@ -86,10 +86,11 @@ bool close_recording(recording::Recorder& recorder, const std::filesystem::path&
                      Log& log) {
   recorder.finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
   if (const std::uint64_t dropped = recorder.dropped(); dropped > 0)
-    log.warning(fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are all "
-                            "there; --record-poses and --record-observations ask for fewer",
-                            dropped, file.string()),
-                {{"dropped", dropped}});
+    log.warning(
+        fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are all "
+                    "there; --record-poses and --record-observations ask for fewer",
+                    dropped, file.string()),
+        {{"dropped", dropped}});
   const std::optional<std::string> error = recorder.error();
   if (error) log.error("the recording ended before its run: " + *error);
   return !error;

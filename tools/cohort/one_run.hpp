@@ -42,7 +42,7 @@ class OneRun {
 };
 
 /// Closes a run's recording, and tells what is missing in it. False if it ended before the run.
-bool close_recording(recording::Recorder& recorder, const std::filesystem::path& file,
-                     const session::RunResult& result, Log& log);
+bool close_recording(recording::Recorder& recorder, const std::filesystem::path& file, const session::RunResult& result,
+                     Log& log);
 
 }  // namespace cohort::tool

@@ -113,14 +113,16 @@ std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, co
     if (command.robots.empty())
       for (std::uint32_t robot = 0; robot < replay.simulation().robot_count(); ++robot) robots.push_back(robot);
     if (robots.size() > most_robots) {
-      log.warning(fmt::format("the first {} of {} robots are drawn; --robots chooses others", most_robots, robots.size()));
+      log.warning(
+          fmt::format("the first {} of {} robots are drawn; --robots chooses others", most_robots, robots.size()));
       robots.resize(most_robots);
     }
     for (const std::string& what : command.what) {
       quantities.push_back(plotted(what, replay.simulation(), robots.front()));
       figures::Panel panel{quantities.back().title, "", "time [s]", fmt::format("[{}]", quantities.back().unit), {}};
       for (const std::uint32_t robot : robots)
-        panel.series.push_back({.name = replay.simulation().robot_name(robot), .measured = {}, .is_joined = true, .has_dots = false});
+        panel.series.push_back(
+            {.name = replay.simulation().robot_name(robot), .measured = {}, .is_joined = true, .has_dots = false});
       page.panels.push_back(std::move(panel));
     }
   };
@@ -147,10 +149,10 @@ void write_png(const std::filesystem::path& file, const std::string& svg) {
   const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
   const std::filesystem::path source = file.string() + ".svg";
   write_file("the picture", source, svg);
-  const ProgramResult result = run_program({"rsvg-convert", "--background-color", "white", "--zoom", "2", "--output",
-                                            std::filesystem::absolute(file).string(),
-                                            std::filesystem::absolute(source).string()},
-                                           folder);
+  const ProgramResult result =
+      run_program({"rsvg-convert", "--background-color", "white", "--zoom", "2", "--output",
+                   std::filesystem::absolute(file).string(), std::filesystem::absolute(source).string()},
+                  folder);
   std::filesystem::remove(source);
   if (result.exit_code != 0)
     throw std::runtime_error(fmt::format("{} cannot be drawn: rsvg-convert says {}", file.string(), result.errors));
@@ -162,13 +164,14 @@ int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
   try {
     const std::string extension = command.output.extension().string();
     if (extension != ".svg" && extension != ".png")
-      throw std::invalid_argument(fmt::format("{}: expected a file name that ends in .svg or .png", command.output.string()));
+      throw std::invalid_argument(
+          fmt::format("{}: expected a file name that ends in .svg or .png", command.output.string()));
     check_writable("the picture", command.output);
     const recording::Recording recording(command.file);
     if (!recording.damage().empty()) log.warning(recording.damage());
     Replay replay(recording, std::max(1u, std::thread::hardware_concurrency()));
-    const std::string svg = command.what.empty() ? draw_paths(replay, command, log, stop)
-                                                 : draw_series(replay, command, log, stop);
+    const std::string svg =
+        command.what.empty() ? draw_paths(replay, command, log, stop) : draw_series(replay, command, log, stop);
     if (stop) return exit_interrupted;
     if (extension == ".svg")
       write_file("the picture", command.output, svg);

@@ -40,9 +40,10 @@ int report(const recording::Verification& found, const ReplayCommand& command, L
   if (found.difference) {
     const auto& difference = *found.difference;
     log.clear_progress();
-    say(false, fmt::format("differs at tick {} ({:.3f} s): recorded {:016x}, replayed {:016x}; {} before it {} identical",
-                           difference.tick, Seconds(difference.log_time).count(), difference.recorded,
-                           difference.replayed, counted(found.boundaries, "tick"), found.boundaries == 1 ? "is" : "are"));
+    say(false,
+        fmt::format("differs at tick {} ({:.3f} s): recorded {:016x}, replayed {:016x}; {} before it {} identical",
+                    difference.tick, Seconds(difference.log_time).count(), difference.recorded, difference.replayed,
+                    counted(found.boundaries, "tick"), found.boundaries == 1 ? "is" : "are"));
     return exit_failed;
   }
   if (!found.problem.empty()) {
@@ -60,11 +61,11 @@ std::chrono::nanoseconds end_of(const RecordingPart& part) {
 
 int verify(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
   ReplayProgress progress(log);
-  const recording::Verification found = recording::verify(
-      replay, nanoseconds(command.part.from), end_of(command.part), [&](std::chrono::nanoseconds log_time) {
-        if (!command.quiet) progress.at(log_time, "replayed");
-        return !stop;
-      });
+  const recording::Verification found = recording::verify(replay, nanoseconds(command.part.from), end_of(command.part),
+                                                          [&](std::chrono::nanoseconds log_time) {
+                                                            if (!command.quiet) progress.at(log_time, "replayed");
+                                                            return !stop;
+                                                          });
   log.clear_progress();
   return stop ? exit_interrupted : report(found, command, log);
 }

@@ -10,7 +10,8 @@ namespace cohort::tool {
 /// selector that selects no robot.
 void set_recorded(description::Experiment& experiment, const RecordOptions& options);
 
-/// Lets `recorder` see all that `listener` is told, before the listener's own functions. It has begun with `simulation`.
+/// Lets `recorder` see all that `listener` is told, before the listener's own functions. It has begun with
+/// `simulation`.
 void add_recorder(session::RunListener& listener, recording::Recorder& recorder);
 
 /// How a run ended, in a word.

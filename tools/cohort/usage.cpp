@@ -48,7 +48,7 @@ std::string unexpected(const CLI::App& app) {
     const std::string name = option->substr(0, option->find('='));
     return fmt::format("there is no option '{}'{}", name, suggestion(name, options_of(command_of(app))));
   }
-  if (extras.empty()) return "expected a command" + suggestion("", commands_of(app));
+  if (extras.empty()) return fmt::format("expected a command; known: {}", fmt::join(commands_of(app), ", "));
   if (&command_of(app) == &app)
     return fmt::format("there is no command '{}'{}", extras.front(), suggestion(extras.front(), commands_of(app)));
   return fmt::format("unexpected '{}'", extras.front());

@@ -96,13 +96,15 @@ class RecordingTables {
           {boundary.tick, fmt::format("{:016x}", boundary.state_hash)});
     } else if (topic == RecordedEvent::topic) {
       const auto event = decode<RecordedEvent>(message.data);
-      add("events",
-          {{"tick", Type::whole}, {"kind", Type::text}, {"text", Type::text}, {"count", Type::whole}}, time,
+      add("events", {{"tick", Type::whole}, {"kind", Type::text}, {"text", Type::text}, {"count", Type::whole}}, time,
           {event.tick, event.kind, event.text, event.count});
     } else if (topic == RecordedMiss::topic) {
       const auto miss = decode<RecordedMiss>(message.data);
       add("misses",
-          {{"tick", Type::whole}, {"frame_tick", Type::whole}, {"robot", Type::text}, {"on_late", Type::text},
+          {{"tick", Type::whole},
+           {"frame_tick", Type::whole},
+           {"robot", Type::text},
+           {"on_late", Type::text},
            {"waited", Type::real, "s"}},
           time, {miss.tick, miss.frame_tick, robot(miss.robot).name, miss.on_late, miss.waited});
     } else if (topic == ActionTaken::topic) {
@@ -149,9 +151,8 @@ class RecordingTables {
     return tables_.try_emplace(name, sink_, name, columns()).first->second;
   }
 
-  void add_values(const std::string& table_of, const RecordedRobot& robot,
-                  const std::vector<RecordedChannel>& channels, std::span<const double> values,
-                  std::vector<Cell> row) {
+  void add_values(const std::string& table_of, const RecordedRobot& robot, const std::vector<RecordedChannel>& channels,
+                  std::span<const double> values, std::vector<Cell> row) {
     row.emplace_back(robot.name);
     row.insert(row.end(), values.begin(), values.end());
     table(table_of + "_" + roster_.kinds[robot.kind].model, [&] { return columns_of(channels); }).add(row);
@@ -166,7 +167,8 @@ class RecordingTables {
       const RecordedRobot& each = robot(id);
       std::vector<double>& values = commanded_[id];
       for (; i < commands.robots.size() && commands.robots[i] == id; ++i) {
-        if (commands.places[i] >= values.size()) throw CdrError("a command is of a channel that its robot does not have");
+        if (commands.places[i] >= values.size())
+          throw CdrError("a command is of a channel that its robot does not have");
         values[commands.places[i]] = commands.values[i];
       }
       if (is_selected(each)) add_values("commands", each, roster_.kinds[each.kind].command, values, time);
@@ -178,8 +180,14 @@ class RecordingTables {
       const auto& p = each.transform.translation;
       const auto& q = each.transform.rotation;
       add("trajectories",
-          {{"object", Type::text}, {"x", Type::real, "m"}, {"y", Type::real, "m"}, {"z", Type::real, "m"},
-           {"qx", Type::real, "1"}, {"qy", Type::real, "1"}, {"qz", Type::real, "1"}, {"qw", Type::real, "1"}},
+          {{"object", Type::text},
+           {"x", Type::real, "m"},
+           {"y", Type::real, "m"},
+           {"z", Type::real, "m"},
+           {"qx", Type::real, "1"},
+           {"qy", Type::real, "1"},
+           {"qz", Type::real, "1"},
+           {"qw", Type::real, "1"}},
           time, {each.child_frame_id, p.x, p.y, p.z, q.x, q.y, q.z, q.w});
     }
   }

@@ -52,7 +52,7 @@ void LockstepRun::open_domains(std::size_t wanted) {
 
 void LockstepRun::run(const LockstepListener& listener, const std::atomic<bool>& interrupted) {
   session::RunListener of_server;
-  of_server.boundary = listener.boundary;
+  of_server.stepped = listener.boundary;
   of_server.barrier = [&](std::chrono::nanoseconds latency) {
     if (listener.barrier) listener.barrier(std::chrono::duration<double>(latency).count());
   };

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include "server/recording/recording.hpp"
+#include "tests/support/field_of_robots.hpp"
+
+namespace cohort::testing {
+namespace {
+
+// `cohort` and these arguments.
+Ended cohort(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), cohort_program());
+  return run_to_end(arguments);
+}
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::vector<std::string> lines;
+  std::istringstream text(read_file(file));
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+// Two robots that drive for two seconds, recorded.
+class Recordings : public ::testing::Test {
+ protected:
+  std::string record(const std::string& name, const std::vector<std::string>& more = {},
+                     const std::string& velocity = "0.1") {
+    const FieldOfRobots field(
+        2, 2.0, "", "constant, parameters: {treel/left/velocity: 0.1, treel/right/velocity: " + velocity + "}");
+    const std::string file = folder_ / name;
+    std::vector<std::string> arguments = {"--controllers", "inprocess", "--record", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_experiment(field.file(), arguments);
+    return file;
+  }
+  std::string operator/(const std::string& name) const { return folder_ / name; }
+
+ private:
+  ScratchFolder folder_;
+};
+
+TEST_F(Recordings, AreReplayedWithoutTheirExperiment) {
+  const std::string file = record("run.mcap");
+  const Ended replayed = cohort({"replay", file});
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+  EXPECT_TRUE(replayed.out.starts_with("replayed 201 ticks, state hash ")) << replayed.out;
+  EXPECT_EQ(cohort({"replay", file, "--verify", "--from", "0.5", "--to", "1"}).out, "identical, 51 ticks\n");
+}
+
+TEST_F(Recordings, SayWhereTwoRunsPart) {
+  const std::string file = record("run.mcap");
+  const Ended same = cohort({"diff", file, record("again.mcap")});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_EQ(same.out, "identical, 201 ticks\n");
+
+  const Ended other = cohort({"diff", "--json", file, record("other.mcap", {}, "0.11")});
+  EXPECT_EQ(other.exit_code, 1);
+  const auto found = nlohmann::json::parse(other.out);
+  EXPECT_EQ(found["tick"], 0);
+  ASSERT_EQ(found["differences"].size(), 2u) << other.out;
+  EXPECT_EQ(found["differences"][0],
+            nlohmann::json::parse(R"({"object": "swarm/sbot_0", "quantity": "command", "detail":
+            "treel/right/velocity", "first": "0.1", "second": "0.11"})"));
+
+  const Ended shorter = cohort({"diff", file, record("shorter.mcap", {"--duration", "1"})});
+  EXPECT_EQ(shorter.exit_code, 1);
+  EXPECT_NE(shorter.out.find("shorter.mcap ends at tick 100, and the other goes on"), std::string::npos) << shorter.out;
+  EXPECT_NE(shorter.out.find("identical, 101 ticks"), std::string::npos) << shorter.out;
+
+  const Ended noise = cohort({"diff", file, record("seed.mcap", {"--seed", "2"})});
+  EXPECT_EQ(noise.exit_code, 1);
+  EXPECT_TRUE(
+      noise.out.starts_with("they part at tick 0 (0.000 s), after 0 identical ticks\n  observation  swarm/sbot_0"))
+      << noise.out;
+}
+
+TEST_F(Recordings, HoldWhatIsAskedFor) {
+  const recording::Recording recorded(record("run.mcap", {"--record-poses", "50", "--record-observations", "20",
+                                                          "--record-robots", "1", "--record-snapshots", "0.5"}));
+  const auto count = [&](const std::string& topic) {
+    const recording::Channel* const channel = recorded.reader().channel(topic);
+    if (channel == nullptr) return std::uint64_t{0};
+    const auto& counts = recorded.reader().statistics().messages_of_channels;
+    return counts.contains(channel->id) ? counts.at(channel->id) : 0;
+  };
+  EXPECT_EQ(count("/tf"), 101u);
+  EXPECT_EQ(count("/clock"), 101u);
+  EXPECT_EQ(count("/swarm/sbot_1/observation"), 41u);
+  EXPECT_EQ(count("/swarm/sbot_0/observation"), 0u);
+  EXPECT_EQ(count("/cohort/snapshot"), 4u);
+  EXPECT_EQ(count("/cohort/boundary"), 201u);
+  EXPECT_EQ(count("/cohort/commands"), 1u) << "they are always the same";
+  EXPECT_EQ(recorded.end(), "finished");
+  EXPECT_EQ(recorded.facts().at("robots"), "2");
+}
+
+TEST_F(Recordings, BecomeTables) {
+  const std::string file = record("run.mcap", {"--record-observations", "10"});
+  ASSERT_EQ(cohort({"export-data", file, "--csv", *this / "tables"}).exit_code, 0);
+  const auto poses = lines_of(*this / "tables/trajectories.csv");
+  ASSERT_EQ(poses.size(), 1u + 2 * 21);
+  EXPECT_EQ(poses[0], "run,time,object,x,y,z,qx,qy,qz,qw");
+  EXPECT_TRUE(poses[2].starts_with("0,0,swarm/sbot_1,")) << poses[2];
+  const auto commands = lines_of(*this / "tables/commands_sbot.csv");
+  ASSERT_EQ(commands.size(), 3u);
+  EXPECT_TRUE(commands[0].starts_with("run,time,robot,treel_left_velocity,treel_right_velocity,")) << commands[0];
+  EXPECT_TRUE(commands[1].starts_with("0,0,swarm/sbot_0,0.1,0.1,")) << commands[1];
+  EXPECT_EQ(lines_of(*this / "tables/observations_sbot.csv").size(), 1u + 2 * 21);
+  EXPECT_EQ(lines_of(*this / "tables/ticks.csv").size(), 202u);
+
+  ASSERT_EQ(
+      cohort({"export-data", file, "--csv", *this / "part", "--robots", "1", "--from", "1", "--to", "1.5"}).exit_code,
+      0);
+  const auto part = lines_of(*this / "part/observations_sbot.csv");
+  ASSERT_EQ(part.size(), 1u + 6);
+  EXPECT_TRUE(part[1].starts_with("0,1,swarm/sbot_1,")) << part[1];
+
+  ASSERT_EQ(cohort({"export-data", file, "--hdf5", *this / "run.h5"}).exit_code, 0);
+  EXPECT_TRUE(read_file(*this / "run.h5").starts_with("\x89HDF\r\n"));
+}
+
+TEST_F(Recordings, AreDrawn) {
+  const std::string file = record("run.mcap", {"--plot", *this / "live.svg"});
+  ASSERT_EQ(cohort({"plot", file, "-o", *this / "paths.svg"}).exit_code, 0);
+  EXPECT_EQ(read_file(*this / "paths.svg"), read_file(*this / "live.svg")) << "the picture that the run drew itself";
+  const Ended series = cohort({"plot", file, "-o", *this / "series.svg", "--what", "speed,treel/left/position"});
+  ASSERT_EQ(series.exit_code, 0) << series.err;
+  EXPECT_NE(read_file(*this / "series.svg").find("treel/left/position"), std::string::npos);
+  const Ended png = cohort({"plot", file, "-o", *this / "paths.png"});
+  ASSERT_EQ(png.exit_code, 0) << png.err;
+  EXPECT_TRUE(read_file(*this / "paths.png").starts_with("\x89PNG"));
+}
+
+TEST_F(Recordings, ThatAreNoneAreRefusedWithTheReason) {
+  write_file(*this / "text.mcap", "not a recording");
+  const std::string file = record("run.mcap");
+  const auto refused = [](const std::vector<std::string>& arguments, const std::string& reason) {
+    const Ended ended = cohort(arguments);
+    EXPECT_EQ(ended.exit_code, 2) << arguments[0];
+    EXPECT_NE(ended.err.find(reason), std::string::npos) << arguments[0] << ": " << ended.err;
+  };
+  for (const char* command : {"replay", "diff", "plot", "export-data"}) {
+    std::vector<std::string> arguments = {command, *this / "text.mcap"};
+    if (command == std::string("diff")) arguments.push_back(file);
+    if (command == std::string("plot")) arguments.insert(arguments.end(), {"-o", *this / "x.svg"});
+    if (command == std::string("export-data")) arguments.insert(arguments.end(), {"--csv", *this / "x"});
+    refused(arguments, "text.mcap: byte 0");
+  }
+  refused({"replay", *this / "none.mcap"}, "none.mcap");
+  refused({"plot", file, "-o", *this / "x.svg", "--what", "treel/left/positon"}, "did you mean 'treel/left/position'?");
+  refused({"plot", file, "-o", *this / "x.jpg"}, "expected a file name that ends in .svg or .png");
+  refused({"plot", file, "-o", *this / "x.svg", "--from", "5"}, "nothing in the time that is asked for");
+  refused({"export-data", file, "--csv", *this / "x", "--robots", "7"}, "7");
+  refused({"run", demo_experiment(), "--record", "/nowhere/run.mcap"}, "/nowhere");
+}
+
+}  // namespace
+}  // namespace cohort::testing

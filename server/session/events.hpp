@@ -16,7 +16,8 @@ struct Event {
   std::uint64_t count = 1;
 };
 
-/// The events of a run. The same again only counts, so that no stranger can fill the memory.
+/// The events of a run. The same again only counts, and so does what exceeds a thousand of its kind: no stranger can
+/// fill the memory, nor hide what else happens.
 class EventLog {
  public:
   /// True if it is the first of its kind and text.
@@ -24,7 +25,7 @@ class EventLog {
   std::span<const Event> events() const { return events_; }
 
  private:
-  static constexpr std::size_t most = 1000;
+  static constexpr std::size_t most_of_kind = 1000;
   std::vector<Event> events_;
 };
 

@@ -149,8 +149,10 @@ TEST(EventLog, CountsWhatIsTheSameAndIsBounded) {
   EXPECT_EQ(log.events()[0].tick, 3u);
   EXPECT_EQ(log.events()[0].count, 5u);
   for (int i = 0; i < 5000; ++i) log.add(10, "rejected", std::to_string(i));
-  EXPECT_LE(log.events().size(), 1000u);
+  EXPECT_EQ(log.events().size(), 1001u);
   EXPECT_EQ(log.events().back().kind, "more");
+  EXPECT_EQ(log.events().back().count, 5001u - 1000u);
+  EXPECT_TRUE(log.add(11, "joined", "somebody")) << "others have their own room";
 }
 
 class Straight final : public Controller {

@@ -191,8 +191,9 @@ Parting parting_at(const Recording& first, const Recording& second, const Record
   }
   for (const auto& [recording, replay] : {std::pair(&first, &first_replay), std::pair(&second, &second_replay)})
     if (replay->recorded().state_hash && !replay->is_identical())
-      parting.differences.push_back({"", "state", recording->file().string() + ", recorded and replayed",
-                                     "differ: it was recorded by another build, or changed", ""});
+      parting.differences.insert(parting.differences.begin(),
+                                 {"", "state", recording->file().string() + ", recorded and replayed",
+                                  "differ: it was recorded by another build, or changed", ""});
   if (parting.differences.size() > most_listed) {
     parting.more = parting.differences.size() - most_listed;
     parting.differences.resize(most_listed);

@@ -36,7 +36,7 @@ struct Comparison {
 };
 
 /// Compares two recordings by what they hold, and where they part runs both again to find what differs there. Throws as
-/// Recording and Replay do. `progress` is called now and then; if it returns false nothing further is compared.
+/// Recording and Replay do. `progress` is called at each boundary; if it returns false nothing further is compared.
 Comparison compare(const Recording& first, const Recording& second, unsigned threads,
                    const std::function<bool(std::chrono::nanoseconds)>& progress);
 

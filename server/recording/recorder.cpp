@@ -193,8 +193,7 @@ void Recorder::write_poses() {
 }
 
 bool Recorder::is_static(std::uint32_t object) const {
-  const description::World& world = experiment_->world;
-  return object < world.instances.size() && world.models[world.instances[object].model].is_static;
+  return simulation_->description().models[simulation_->world().model_of(object)].is_static;
 }
 
 void Recorder::write_observations() {

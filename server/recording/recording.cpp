@@ -1,6 +1,6 @@
 #include "server/recording/recording.hpp"
 
-#include <array>
+#include <utility>
 
 #include "server/recording/mcap_error.hpp"
 
@@ -57,7 +57,7 @@ std::optional<RecordedTick> TickStream::next() {
         auto snapshot = decode<RecordedSnapshot>(message->data);
         tick_of(*message, snapshot.tick).snapshot = std::move(snapshot);
       } else {
-        auto commands = decode<Commands>(message->data);
+        auto commands = decode_commands(message->data);
         tick_of(*message, commands.tick).commands = std::move(commands);
       }
     }

@@ -47,7 +47,6 @@ void Replay::apply_commands() {
     throw McapError(recording_.file(), 0, "the commands of tick " + std::to_string(recorded_->tick) + problem);
   };
   const std::size_t count = changes.robots.size();
-  if (changes.places.size() != count || changes.values.size() != count) fail(" are not whole");
   for (std::size_t i = 0; i < count;) {
     const std::uint32_t robot = changes.robots[i];
     if (robot >= simulation_->robot_count()) fail(" are not for the robots of its world");

@@ -61,7 +61,7 @@ struct Verification {
 };
 
 /// Replays and compares the state of every boundary from one log time to another, up to the first that differs.
-/// `progress` is called now and then with the log time; if it returns false the replay ends.
+/// `progress` is called at each of them with its log time; if it returns false the replay ends.
 Verification verify(Replay& replay, std::chrono::nanoseconds from, std::chrono::nanoseconds to,
                     const std::function<bool(std::chrono::nanoseconds)>& progress);
 

@@ -10,6 +10,15 @@ bool is_alphanumeric(char letter) { return std::isalnum(static_cast<unsigned cha
 
 }  // namespace
 
+Commands decode_commands(ByteView bytes) {
+  auto commands = decode<Commands>(bytes);
+  const std::size_t count = commands.robots.size();
+  if (commands.places.size() != count || commands.values.size() != count)
+    throw CdrError("commands have " + std::to_string(count) + " robots, " + std::to_string(commands.places.size()) +
+                   " places and " + std::to_string(commands.values.size()) + " values");
+  return commands;
+}
+
 // Lower case, digits and single underscores, a letter first.
 std::string ros_field_name(std::string_view channel) {
   std::string name;

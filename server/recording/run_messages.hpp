@@ -90,6 +90,9 @@ struct Commands {
                                             field("places", &Commands::places), field("values", &Commands::values));
 };
 
+/// Throws CdrError if the three lists are not of one length.
+Commands decode_commands(ByteView bytes);
+
 /// What somebody outside did to the world at a boundary.
 struct ActionTaken {
   std::uint64_t tick = 0;

@@ -118,6 +118,18 @@ TEST_F(Recordings, BecomeTables) {
   EXPECT_TRUE(read_file(*this / "run.h5").starts_with("\x89HDF\r\n"));
 }
 
+// What was commanded before the part, and stands in it, is in its rows.
+TEST_F(Recordings, GiveTheSameRowsForAPart) {
+  run_demo({"--controllers", "inprocess", "--duration", "2", "--record", *this / "demo.mcap"});
+  ASSERT_EQ(cohort({"export-data", *this / "demo.mcap", "--csv", *this / "whole"}).exit_code, 0);
+  ASSERT_EQ(cohort({"export-data", *this / "demo.mcap", "--csv", *this / "part", "--from", "1"}).exit_code, 0);
+  const auto whole = lines_of(*this / "whole/commands_sbot.csv");
+  const auto part = lines_of(*this / "part/commands_sbot.csv");
+  ASSERT_GT(part.size(), 100u);
+  ASSERT_GT(whole.size(), part.size());
+  EXPECT_TRUE(std::equal(part.rbegin(), part.rend() - 1, whole.rbegin()));
+}
+
 TEST_F(Recordings, AreDrawn) {
   const std::string file = record("run.mcap", {"--plot", *this / "live.svg"});
   ASSERT_EQ(cohort({"plot", file, "-o", *this / "paths.svg"}).exit_code, 0);
@@ -148,6 +160,8 @@ TEST_F(Recordings, ThatAreNoneAreRefusedWithTheReason) {
   refused({"replay", *this / "none.mcap"}, "none.mcap");
   refused({"plot", file, "-o", *this / "x.svg", "--what", "treel/left/positon"}, "did you mean 'treel/left/position'?");
   refused({"plot", file, "-o", *this / "x.jpg"}, "expected a file name that ends in .svg or .png");
+  refused({"replay", file, "--from", "5"}, "nothing in the time that is asked for");
+  refused({"replay", file, "--verify", "--from", "5"}, "nothing in the time that is asked for");
   refused({"plot", file, "-o", *this / "x.svg", "--from", "5"}, "nothing in the time that is asked for");
   refused({"export-data", file, "--csv", *this / "x", "--robots", "7"}, "7");
   refused({"run", demo_experiment(), "--record", "/nowhere/run.mcap"}, "/nowhere");

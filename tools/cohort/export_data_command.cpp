@@ -12,7 +12,9 @@
 #include "tools/data/recording_tables.hpp"
 
 namespace cohort::tool {
+namespace {
 
+// Of the recording's first world; none for no selectors.
 std::set<std::string> selected_names(const recording::Recording& recording, const std::vector<std::string>& selectors) {
   std::set<std::string> names;
   if (selectors.empty()) return names;
@@ -23,13 +25,15 @@ std::set<std::string> selected_names(const recording::Recording& recording, cons
   return names;
 }
 
+}  // namespace
+
 int export_data(const ExportDataCommand& command, Log& log) {
   try {
     const recording::Recording recording(command.file);
     if (!recording.damage().empty()) log.warning(recording.damage());
     data::Selection selection{.robots = selected_names(recording, command.robots)};
-    selection.from = nanoseconds(command.part.from);
-    if (command.part.to) selection.to = nanoseconds(*command.part.to);
+    selection.from = start_of(command.part);
+    selection.to = end_of(command.part);
     if (!command.hdf5.empty()) check_writable("the tables", command.hdf5);
     const auto sink = command.csv.empty() ? data::hdf5_tables(command.hdf5) : data::csv_tables(command.csv);
     const std::uint64_t rows = data::write_tables(recording, selection, *sink);

@@ -12,37 +12,15 @@
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
 #include "tools/cohort/recording_part.hpp"
-#include "tools/cohort/replay_progress.hpp"
 #include "tools/figures/chart.hpp"
 
 namespace cohort::tool {
 namespace {
 
-using Visit = std::function<void()>;
 using recording::Replay;
 
 constexpr std::size_t most_points = 2000;  // of a series
 constexpr std::size_t most_robots = 12;    // in a chart
-
-std::chrono::nanoseconds end_of(const RecordingPart& part) {
-  return part.to ? nanoseconds(*part.to) : std::chrono::nanoseconds::max();
-}
-
-// Calls `visit` at each boundary of the part that is asked for; false if it was stopped.
-bool replay_part(Replay& replay, const RecordingPart& part, Log& log, const std::atomic<bool>& stop,
-                 const Visit& visit) {
-  ReplayProgress progress(log);
-  bool goes_on = replay.seek(nanoseconds(part.from));
-  if (!goes_on || replay.recorded().log_time > end_of(part))
-    throw std::invalid_argument("the recording has nothing in the time that is asked for");
-  for (; goes_on && replay.recorded().log_time <= end_of(part); goes_on = replay.advance()) {
-    if (stop) return false;
-    progress.at(replay.recorded().log_time, "replayed");
-    visit();
-  }
-  log.clear_progress();
-  return true;
-}
 
 // Where a world begins anew, the paths begin anew.
 std::string draw_paths(Replay& replay, const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {

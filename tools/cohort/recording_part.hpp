@@ -1,19 +1,22 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <set>
-#include <string>
-#include <vector>
+#include <functional>
 
-#include "server/recording/recording.hpp"
+#include "server/recording/replay.hpp"
+#include "tools/cohort/commands.hpp"
 
 namespace cohort::tool {
 
-inline std::chrono::nanoseconds nanoseconds(double seconds) {
-  return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
-}
+inline constexpr const char* nothing_in_part = "the recording has nothing in the time that is asked for";
 
-/// The robots that selectors select in a recording's first world; none for no selectors. Throws std::invalid_argument.
-std::set<std::string> selected_names(const recording::Recording& recording, const std::vector<std::string>& selectors);
+std::chrono::nanoseconds start_of(const RecordingPart& part);
+std::chrono::nanoseconds end_of(const RecordingPart& part);
+
+/// Calls `visit` at each boundary of the part, and shows where it is. False if it was stopped. Throws
+/// std::invalid_argument if there is no boundary in the part.
+bool replay_part(recording::Replay& replay, const RecordingPart& part, Log& log, const std::atomic<bool>& stop,
+                 const std::function<void()>& visit);
 
 }  // namespace cohort::tool

@@ -55,31 +55,23 @@ int report(const recording::Verification& found, const ReplayCommand& command, L
   return exit_ok;
 }
 
-std::chrono::nanoseconds end_of(const RecordingPart& part) {
-  return part.to ? nanoseconds(*part.to) : std::chrono::nanoseconds::max();
-}
-
 int verify(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
   ReplayProgress progress(log);
-  const recording::Verification found = recording::verify(replay, nanoseconds(command.part.from), end_of(command.part),
-                                                          [&](std::chrono::nanoseconds log_time) {
-                                                            if (!command.quiet) progress.at(log_time, "replayed");
-                                                            return !stop;
-                                                          });
+  const recording::Verification found =
+      recording::verify(replay, start_of(command.part), end_of(command.part), [&](std::chrono::nanoseconds log_time) {
+        if (!command.quiet) progress.at(log_time, "replayed");
+        return !stop;
+      });
   log.clear_progress();
+  if (found.boundaries == 0 && !found.difference && found.problem.empty() && !stop)
+    throw std::invalid_argument(nothing_in_part);
   return stop ? exit_interrupted : report(found, command, log);
 }
 
 // Without looking at what was recorded of the states.
 int run_again(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
-  ReplayProgress progress(log);
   std::uint64_t ticks = 0;
-  bool goes_on = replay.seek(nanoseconds(command.part.from));
-  for (; goes_on && !stop && replay.recorded().log_time < end_of(command.part); goes_on = replay.advance()) {
-    if (!command.quiet) progress.at(replay.recorded().log_time, "replayed");
-    ++ticks;
-  }
-  log.clear_progress();
+  if (!replay_part(replay, command.part, log, stop, [&] { ++ticks; })) return exit_interrupted;
   say(command.quiet,
       fmt::format("replayed {}, state hash {:016x}", counted(ticks, "tick"), replay.simulation().state_hash()));
   return exit_ok;

@@ -88,7 +88,10 @@ class RecordingTables {
     const std::string& topic = recording_.reader().channels().at(message.channel).topic;
     if (topic == WorldBegins::topic) run_ = decode<WorldBegins>(message.data).run;
     if (topic == Roster::topic) return read_roster(decode<Roster>(message.data));
-    if (std::chrono::nanoseconds(message.log_time) < selection_.from) return;
+    const bool is_before = std::chrono::nanoseconds(message.log_time) < selection_.from;
+    // They count from then on.
+    if (topic == Commands::topic && is_before) return take_commands(decode_commands(message.data), nullptr);
+    if (is_before) return;
     const std::vector<Cell> time = {std::uint64_t{run_}, seconds(message.publish_time)};
     if (topic == Boundary::topic) {
       const auto boundary = decode<Boundary>(message.data);
@@ -111,7 +114,7 @@ class RecordingTables {
       const auto action = decode<ActionTaken>(message.data);
       add("actions", {{"tick", Type::whole}, {"text", Type::text}}, time, {action.tick, action.text});
     } else if (topic == Commands::topic) {
-      add_commands(decode<Commands>(message.data), time);
+      take_commands(decode_commands(message.data), &time);
     } else if (topic == "/tf") {
       add_poses(decode<ros::TFMessage>(message.data), time);
     } else if (topic.ends_with(observation_topic_end)) {
@@ -158,10 +161,9 @@ class RecordingTables {
     table(table_of + "_" + roster_.kinds[robot.kind].model, [&] { return columns_of(channels); }).add(row);
   }
 
-  // A row for each robot of which something changed, with all that it is commanded from then on.
-  void add_commands(const Commands& commands, const std::vector<Cell>& time) {
-    if (commands.places.size() != commands.robots.size() || commands.values.size() != commands.robots.size())
-      throw CdrError("commands are not whole");
+  // A row for each robot of which something changed, with all that it is commanded from then on. `time`: null for no
+  // rows.
+  void take_commands(const Commands& commands, const std::vector<Cell>* time) {
     for (std::size_t i = 0; i < commands.robots.size();) {
       const std::uint32_t id = commands.robots[i];
       const RecordedRobot& each = robot(id);
@@ -171,7 +173,8 @@ class RecordingTables {
           throw CdrError("a command is of a channel that its robot does not have");
         values[commands.places[i]] = commands.values[i];
       }
-      if (is_selected(each)) add_values("commands", each, roster_.kinds[each.kind].command, values, time);
+      if (time != nullptr && is_selected(each))
+        add_values("commands", each, roster_.kinds[each.kind].command, values, *time);
     }
   }
 
@@ -200,7 +203,9 @@ class RecordingTables {
     const std::vector<RecordedChannel>& channels = roster_.kinds[each.kind].observation;
     CdrReader reader(data);
     reader.get<ros::Time>();
-    std::vector<double> values(size_of(channels));
+    const std::size_t size = size_of(channels);
+    if (size > reader.left() / sizeof(double)) throw CdrError("an observation has too few values");
+    std::vector<double> values(size);
     for (double& value : values) reader.read(value);
     add_values("observations", each, channels, values, time);
   }

@@ -120,9 +120,10 @@ TEST_F(Recordings, BecomeTables) {
 
 // What was commanded before the part, and stands in it, is in its rows.
 TEST_F(Recordings, GiveTheSameRowsForAPart) {
-  run_demo({"--controllers", "inprocess", "--duration", "2", "--record", *this / "demo.mcap"});
-  ASSERT_EQ(cohort({"export-data", *this / "demo.mcap", "--csv", *this / "whole"}).exit_code, 0);
-  ASSERT_EQ(cohort({"export-data", *this / "demo.mcap", "--csv", *this / "part", "--from", "1"}).exit_code, 0);
+  run_experiment(COHORT_SOURCE_DIR "/worlds/experiments/chain.yaml",
+                 {"--controllers", "inprocess", "--duration", "12", "--record", *this / "run.mcap"});
+  ASSERT_EQ(cohort({"export-data", *this / "run.mcap", "--csv", *this / "whole"}).exit_code, 0);
+  ASSERT_EQ(cohort({"export-data", *this / "run.mcap", "--csv", *this / "part", "--from", "6"}).exit_code, 0);
   const auto whole = lines_of(*this / "whole/commands_sbot.csv");
   const auto part = lines_of(*this / "part/commands_sbot.csv");
   ASSERT_GT(part.size(), 100u);

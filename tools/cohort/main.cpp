@@ -7,6 +7,7 @@
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
 #include "tools/cohort/bench_options.hpp"
+#include "tools/cohort/build_facts.hpp"
 #include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
@@ -182,7 +183,7 @@ void add_samples_options(CLI::App& app, SamplesCommand& command) {
 
 int main(int argc, char** argv) {
   CLI::App app("Cohort: a deterministic simulator for groups of robots", "cohort");
-  app.set_version_flag("--version", COHORT_VERSION, "Print the version and exit");
+  app.set_version_flag("--version", version_text, "Print the version, and how this was built");
   app.set_help_flag("-h,--help", "Print this text and exit");
   app.require_subcommand(1);
   LogFlags log_flags;

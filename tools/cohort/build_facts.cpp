@@ -27,7 +27,7 @@ std::string version_text() {
       "architecture  {}\n"
       "libraries     Cyclone DDS {}, {}\n"
       "mathematics   {}",
-      build::version, build::commit, build::compiler, build::flags, build::architecture, wire::dds_version(),
+      COHORT_VERSION, build::commit, build::compiler, build::flags, build::architecture, wire::dds_version(),
       build::libraries, mathematics());
 }
 

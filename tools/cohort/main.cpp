@@ -10,7 +10,9 @@
 #include "tools/cohort/build_facts.hpp"
 #include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
+#include "tools/cohort/completion.hpp"
 #include "tools/cohort/log.hpp"
+#include "tools/cohort/man_page.hpp"
 #include "tools/cohort/recording_options.hpp"
 #include "tools/cohort/usage.hpp"
 
@@ -32,6 +34,7 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+const std::map<std::string, Shell> shells = {{"bash", Shell::bash}, {"zsh", Shell::zsh}, {"fish", Shell::fish}};
 const std::vector<std::string> log_formats = {"text", "json"};
 const std::vector<std::pair<std::string, LogLevel>> log_levels = {{"debug", LogLevel::debug},
                                                                   {"info", LogLevel::info},
@@ -87,7 +90,7 @@ LogFormat format_of_unreadable(int argc, char** argv) {
 void add_log_options(CLI::App& app, LogFlags& flags) {
   app.add_option("--log-format", flags.format, "Messages as text or as json (default: $COHORT_LOG_FORMAT, or text)")
       ->check(one_of(log_formats))
-      ->type_name("FORMAT");
+      ->type_name("text|json");
   app.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
 }
 
@@ -179,6 +182,11 @@ void add_samples_options(CLI::App& app, SamplesCommand& command) {
   app.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
 }
 
+int print(const std::string& text) {
+  std::cout << text;
+  return exit_ok;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -208,7 +216,7 @@ int main(int argc, char** argv) {
       ->add_option("--controllers", controllers,
                    "process for each team (the default), per-robot, inprocess with the server, or external")
       ->check(one_of({"process", "per-robot", "inprocess", "external"}))
-      ->type_name("WHERE");
+      ->type_name("process|per-robot|inprocess|external");
   run_app->footer("Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10 --plot run.svg");
 
   RunCommand serve_options;
@@ -292,6 +300,18 @@ int main(int argc, char** argv) {
   add_log_options(*help_app, log_flags);
   help_app->footer("Example: cohort help sensors");
 
+  std::string shell;
+  CLI::App* completion_app = app.add_subcommand("completion", "Print a script that completes command lines in a shell");
+  completion_app->add_option("SHELL", shell, "Which one")
+      ->required()
+      ->check(one_of({"bash", "zsh", "fish"}))
+      ->type_name("bash|zsh|fish");
+  add_log_options(*completion_app, log_flags);
+  completion_app->footer("Example: source <(cohort completion bash)");
+  CLI::App* man_page_app = app.add_subcommand("man-page", "Print the manual page, which tells what all of --help tell");
+  add_log_options(*man_page_app, log_flags);
+  man_page_app->footer("Example: cohort man-page | man -l -");
+
   BenchOptions bench_options;
   CLI::App* bench_app = add_bench(app, bench_options);
   add_log_options(*bench_app, log_flags);
@@ -333,6 +353,8 @@ int main(int argc, char** argv) {
   if (doctor_app->parsed()) return doctor(doctor_command, log);
   if (const auto code = recording_commands.run(log, stop_requested)) return *code;
   if (help_app->parsed()) return help(help_topic, log);
+  if (completion_app->parsed()) return print(completion(command_tree(app), shells.at(shell)));
+  if (man_page_app->parsed()) return print(man_page(command_tree(app)));
   if (bench_app->parsed()) return bench(bench_options.command(), log, stop_requested);
   return check(checked_file, log);
 }

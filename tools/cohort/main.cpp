@@ -113,7 +113,7 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--threads", options.threads,
-                 "Threads that step the world, with the same results (default: the cores)")
+                 "Threads that step the world, with the same results (default: the cores that it may use)")
       ->check(whole_number(1, 1024))
       ->type_name("N");
   app.add_option("--duration", options.duration, "Simulated seconds, instead of the experiment's")
@@ -227,6 +227,7 @@ int main(int argc, char** argv) {
       ->type_name("");
   add_run_options(*serve_app, serve_options, speed, log_flags);
   serve_app->add_option("--network", serve_options.network, "Address of the interface to serve on")
+      ->envname("COHORT_NETWORK")
       ->capture_default_str()
       ->type_name("ADDRESS");
   serve_app->footer("Example: cohort serve worlds/experiments/obstacle_avoidance.yaml --domain 7 --network 10.0.0.5");

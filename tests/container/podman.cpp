@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <functional>
 #include <utility>
 
@@ -62,6 +63,8 @@ Ended Podman::build(const std::string& target, const std::string& tag) const {
       "--format", "docker"};
   const std::string cache = first_line(run_to_end({"/bin/sh", "-c", "ccache --get-config cache_dir"}).out);
   if (fs::is_directory(cache)) append(arguments, {"--volume", cache + ":/root/.cache/ccache"});
+  if (const char* language = std::getenv("LANG"); language != nullptr)
+    append(arguments, {"--build-arg", fmt::format("LANG={}", language)});
   append(arguments, {"--build-arg", "COHORT_COMMIT=of-the-test", "--target", target, "--tag", tag, COHORT_SOURCE_DIR});
   return (*this)(arguments);
 }

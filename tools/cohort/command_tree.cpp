@@ -13,7 +13,7 @@ std::vector<std::string> words_of(const std::string& text) {
   if (text.find('|') == std::string::npos) return {};
   std::vector<std::string> words = CLI::detail::split(text, '|');
   std::erase_if(words, [](const std::string& word) {
-    return word.empty() || !std::ranges::all_of(word, [](unsigned char c) { return std::islower(c) || c == '-'; });
+    return word.empty() || !std::ranges::all_of(word, [](unsigned char c) { return std::islower(c) != 0 || c == '-'; });
   });
   return words;
 }

@@ -44,6 +44,10 @@ std::size_t size_of(const Request& request) {
          request.link.size() + request.data.size();
 }
 
+bool may_ask(const wire::Identity& identity, Operation operation) {
+  return identity.may_control || (identity.door == wire::observers_door && wire::is_looking_on(operation));
+}
+
 bool ends_the_run(const Request& request) {
   switch (request.operation) {
     case Operation::reset_simulation:
@@ -132,7 +136,7 @@ void Control::take(const Asked& asked) {
     return reject("foreign: a Request comes in another's name, or in nobody's");
   if (requester_of(asked) == nullptr)
     return reject("flood: " + std::to_string(most_requesters) + " clients control this run already");
-  if (const auto& identity = asked.door->identity(); identity && !identity->may_control) {
+  if (const auto& identity = asked.door->identity(); identity && !may_ask(*identity, request.operation)) {
     reject("forbidden: " + label_of(request.client) + " may not control the run");
     Reply reply = reply_to(request);
     reply.result = ResultCode::not_permitted;
@@ -182,6 +186,7 @@ void Control::lose(const wire::Sender& sender) {
   if (requester == requesters_.end() || requester->second.writer != sender.writer) return;
   requesters_.erase(requester);
   desk_.leave(client);
+  recordings_.leave(client);
 }
 
 void Control::send(Reply reply, bool is_kept) {
@@ -276,6 +281,7 @@ void Control::do_one(const Request& request) {
       case Operation::set_speed: return set_speed(request);
       case Operation::save_snapshot: return save(request);
       case Operation::load_snapshot: return load(request);
+      case Operation::start_recording: return start_recording(request);
       default:
         return answer(request, ResultCode::feature_unsupported, wire::name_of(request.operation) + " is not there yet");
     }
@@ -353,6 +359,14 @@ void Control::save(const Request& request) {
   reply.error_message = "saved at tick " + std::to_string(snapshot.tick);
   desk_.offer(request.client, std::move(bytes));
   send(std::move(reply), true);
+}
+
+void Control::start_recording(const Request& request) {
+  if (run_->book.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
+  const std::string text = "recorded from tick " + std::to_string(run_->simulation.tick()) + " on";
+  recordings_.start(request.client, request.resource_string);
+  tell(request, text);
+  answer(request, ResultCode::ok, text);
 }
 
 void Control::load(const Request& request) {

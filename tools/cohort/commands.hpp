@@ -171,6 +171,15 @@ struct CtlCommand {
 };
 int ctl(CtlCommand command, Log& log, const std::atomic<bool>& stop);
 
+/// `cohort record`: docs/recordings.md.
+struct RecordCommand {
+  RecordOptions record;
+  std::string server;
+  std::vector<std::uint32_t> domains{};  ///< of the server; the first is used. Empty: 0
+  std::filesystem::path secure{};        ///< folder of an identity; empty: without security
+};
+int record(const RecordCommand& command, Log& log, const std::atomic<bool>& stop);
+
 /// `cohort security`: docs/security.md.
 struct SecurityCommand {
   enum class What { init, add, list };

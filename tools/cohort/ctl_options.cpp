@@ -183,10 +183,7 @@ void add_world_commands(Requests& requests, CtlCommand& command) {
 void add_ctl_commands(CLI::App& app, CtlCommand& command) {
   app.require_subcommand(1);
   app.fallthrough();
-  app.add_option("--server", command.server, "Address of the server")
-      ->envname("COHORT_SERVER")
-      ->default_val("127.0.0.1")
-      ->type_name("ADDRESS");
+  add_server_option(app, command.server);
   app.add_option("--timeout", command.timeout,
                  "Seconds to wait (default: 5 for a server, 30 for what is asked, no end for step, reset and load)")
       ->check(number_above_zero(9e6))

@@ -32,6 +32,7 @@ enum class Operation : std::uint32_t {
   start_recording = 108,
   get_recording = 109,
   stop_recording = 110,
+  go_back = 111,
 };
 
 /// The operation's name in docs/protocol.md, such as `StepSimulation`; empty if there is none of this number.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int depth = static_cast<int>(requests_under_way);
 
-constexpr std::array<std::pair<Operation, const char*>, 21> names = {{
+constexpr std::array<std::pair<Operation, const char*>, 22> names = {{
     {Operation::get_simulator_features, "GetSimulatorFeatures"},
     {Operation::get_simulation_state, "GetSimulationState"},
     {Operation::set_simulation_state, "SetSimulationState"},
@@ -31,6 +31,7 @@ constexpr std::array<std::pair<Operation, const char*>, 21> names = {{
     {Operation::start_recording, "StartRecording"},
     {Operation::get_recording, "GetRecording"},
     {Operation::stop_recording, "StopRecording"},
+    {Operation::go_back, "GoBack"},
 }};
 
 cohort_v1_Vector3 encode(const Vector3& v) { return {v.x, v.y, v.z}; }

@@ -11,6 +11,7 @@
 
 #include "idl/control.hpp"
 #include "server/session/control_desk.hpp"
+#include "server/session/kept_snapshots.hpp"
 #include "server/session/live_recordings.hpp"
 #include "server/session/play.hpp"
 #include "server/session/run.hpp"
@@ -102,6 +103,8 @@ class Control {
   void set_speed(const wire::Request& request);
   void save(const wire::Request& request);
   void load(const wire::Request& request);
+  void go_back(const wire::Request& request);
+  void go_on_from(const wire::Request& request, std::shared_ptr<const SessionSnapshot> snapshot);
   void start_recording(const wire::Request& request);
   void quit(const wire::Request& request);
   // Actions on the world (control_actions.cpp).
@@ -115,6 +118,8 @@ class Control {
   Play play_;
   std::optional<Ending> ending_;
   std::vector<wire::Request> answered_by_next_run_;
+  KeptSnapshots kept_{0, 0};
+  bool goes_back_ = false;  // the next run is this one's past
   ControlDesk desk_;
   std::map<std::uint64_t, Requester> requesters_;            // by client
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of requests

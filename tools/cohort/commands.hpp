@@ -58,6 +58,7 @@ struct RunCommand {
   RecordOptions record;
   bool quiet = false;
   bool paused = false;                 ///< at first
+  double keep_interval = 0.0;          ///< [s], simulated, between snapshots to go back to; 0: none
   std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
   std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
   std::string network = "127.0.0.1";

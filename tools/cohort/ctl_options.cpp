@@ -122,6 +122,17 @@ void add_time_commands(Requests& requests, CtlCommand& command) {
           "Another seed")
       ->check(whole_number(0, most))
       ->type_name("N");
+  CLI::App& back = requests.add("back", "Go back to the last kept snapshot at or before a time", Operation::go_back);
+  back.add_option_function<double>(
+          "T",
+          [&](const double& seconds) {
+            command.request.duration_ns =
+                std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)).count();
+          },
+          "Simulated seconds from the run's beginning")
+      ->required()
+      ->check(number_from_zero(most_seconds))
+      ->type_name("");
   requests.add("shutdown", "End the run and the server", Operation::set_simulation_state, SimulationState::quitting);
 }
 

@@ -119,6 +119,10 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   add_record_options(app, options.record);
   app.add_flag("--paused", options.paused, "Begin paused, until 'cohort ctl resume' or 'step'");
+  app.add_option("--keep-snapshots", options.keep_interval,
+                 "Simulated seconds between snapshots in memory, for 'cohort ctl back' (default: none)")
+      ->check(number_above_zero(most_seconds))
+      ->type_name("S");
   app.add_option("--from", options.from, "Go on from this snapshot of 'cohort ctl save'")->type_name("FILE");
   add_domains(app, options.domains, "DDS domains to serve (default: free ones, or 0 if others start controllers)");
   add_secure_option(app, options.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");

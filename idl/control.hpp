@@ -29,12 +29,18 @@ enum class Operation : std::uint32_t {
   get_data = 105,
   put_data = 106,
   load_snapshot = 107,
+  start_recording = 108,
+  get_recording = 109,
+  stop_recording = 110,
+  go_back = 111,
 };
 
 /// The operation's name in docs/protocol.md, such as `StepSimulation`; empty if there is none of this number.
 std::string name_of(Operation operation);
 /// One that changes nothing of the world, and so is answered at once.
 bool is_query(Operation operation);
+/// One that only looks on, and so is anybody's who is let in; all others need the right to control.
+bool is_looking_on(Operation operation);
 
 enum class SimulationState : std::uint32_t { stopped = 0, playing = 1, paused = 2, quitting = 3 };
 

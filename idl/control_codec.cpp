@@ -9,7 +9,7 @@ namespace {
 
 constexpr int depth = static_cast<int>(requests_under_way);
 
-constexpr std::array<std::pair<Operation, const char*>, 18> names = {{
+constexpr std::array<std::pair<Operation, const char*>, 22> names = {{
     {Operation::get_simulator_features, "GetSimulatorFeatures"},
     {Operation::get_simulation_state, "GetSimulationState"},
     {Operation::set_simulation_state, "SetSimulationState"},
@@ -28,6 +28,10 @@ constexpr std::array<std::pair<Operation, const char*>, 18> names = {{
     {Operation::get_data, "GetData"},
     {Operation::put_data, "PutData"},
     {Operation::load_snapshot, "LoadSnapshot"},
+    {Operation::start_recording, "StartRecording"},
+    {Operation::get_recording, "GetRecording"},
+    {Operation::stop_recording, "StopRecording"},
+    {Operation::go_back, "GoBack"},
 }};
 
 cohort_v1_Vector3 encode(const Vector3& v) { return {v.x, v.y, v.z}; }
@@ -141,9 +145,16 @@ bool is_query(Operation operation) {
     case Operation::get_entity_state:
     case Operation::get_status:
     case Operation::get_data:
-    case Operation::put_data: return true;
+    case Operation::put_data:
+    case Operation::get_recording:
+    case Operation::stop_recording: return true;
     default: return false;
   }
+}
+
+bool is_looking_on(Operation operation) {
+  if (operation == Operation::put_data) return false;
+  return is_query(operation) || operation == Operation::save_snapshot || operation == Operation::start_recording;
 }
 
 const Topic Codec<Request>::topic = {.name = "cohort/v1/request", .type = &cohort_v1_Request_desc, .depth = depth};

@@ -36,10 +36,10 @@ std::string host_name() {
 std::optional<wire::Identity> identity_of(const ControlOptions& options) {
   if (options.secure.empty()) return std::nullopt;
   wire::Identity identity = wire::read_identity(options.secure);
-  if (!identity.may_control)
+  if (!identity.may_control && identity.role != wire::Role::observer)
     throw wire::WireError("the identity in " + options.secure +
-                          " may not control a run; one that may is made by 'cohort security add DIR NAME --robots "
-                          "none,control'");
+                          " may neither control a run nor look on; one that may control is made by 'cohort security "
+                          "add DIR NAME --robots none,control', and that of observers looks on");
   return identity;
 }
 
@@ -176,6 +176,33 @@ wire::Reply ControlClient::load(std::span<const std::byte> snapshot, std::chrono
   wire::Request load;
   load.operation = wire::Operation::load_snapshot;
   return expect(load, at_most, stop);
+}
+
+std::string ControlClient::start_recording(const std::string& recorded, std::chrono::milliseconds at_most,
+                                           const std::atomic<bool>& stop) {
+  wire::Request request;
+  request.operation = wire::Operation::start_recording;
+  request.resource_string = recorded;
+  return expect(std::move(request), at_most, stop).error_message;
+}
+
+ControlClient::RecordingPart ControlClient::get_recording(std::uint64_t offset, std::chrono::milliseconds at_most,
+                                                          const std::atomic<bool>& stop) {
+  wire::Request request;
+  request.operation = wire::Operation::get_recording;
+  request.offset = offset;
+  wire::Reply reply = expect(std::move(request), at_most, stop);
+  RecordingPart part{std::move(reply.data), reply.size != 0 && reply.size == offset + reply.data.size(),
+                     std::move(reply.error_message)};
+  if (reply.offset != offset || (reply.size != 0 && reply.size < offset + part.bytes.size()))
+    throw ControlError("the server sends another part of the recording than it was asked for");
+  return part;
+}
+
+void ControlClient::stop_recording(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
+  wire::Request request;
+  request.operation = wire::Operation::stop_recording;
+  expect(std::move(request), at_most, stop);
 }
 
 }  // namespace cohort

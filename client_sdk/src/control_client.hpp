@@ -56,6 +56,21 @@ class ControlClient {
   wire::Reply load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,
                    const std::atomic<bool>& stop);
 
+  /// Begins a recording of the run at its next boundary (StartRecording). `recorded`: what it is to hold, in YAML as
+  /// after an experiment's `record`; empty: what the experiment says. The server's sentence about it. Throws
+  /// ControlError.
+  std::string start_recording(const std::string& recorded, std::chrono::milliseconds at_most,
+                              const std::atomic<bool>& stop);
+  struct RecordingPart {
+    std::vector<std::uint8_t> bytes;  ///< of the file; maybe none yet
+    bool is_last = false;
+    std::string problem;  ///< with the last: why the file holds less than was asked for
+  };
+  /// What there is of it from byte `offset` on, which says that all before is safe (GetRecording). Throws ControlError.
+  RecordingPart get_recording(std::uint64_t offset, std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+  /// Ends it where it is (StopRecording); the rest of the file is still to be fetched. Throws ControlError.
+  void stop_recording(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+
  private:
   struct State;
   wire::Reply expect(wire::Request request, std::chrono::milliseconds at_most, const std::atomic<bool>& stop);

@@ -16,6 +16,18 @@ namespace cohort::description {
 
 enum class OnLate { wait, hold, zero, detach, stop };
 
+/// As experiments write it.
+inline const char* word_of(OnLate on_late) {
+  switch (on_late) {
+    case OnLate::wait: return "wait";
+    case OnLate::hold: return "hold";
+    case OnLate::zero: return "zero";
+    case OnLate::detach: return "detach";
+    case OnLate::stop: return "stop";
+  }
+  return "unknown";
+}
+
 enum class Mode {
   lockstep,  ///< the world waits for each answer, as `on_late` says
   free,      ///< never waited for; the newest answer acts from the tick after which it came
@@ -81,5 +93,9 @@ Experiment read_experiment(const std::filesystem::path& file, std::optional<std:
 /// file: the same experiment bit for bit, if `seed` and `duration` are those that it had.
 Experiment read_experiment(std::shared_ptr<const KeptFiles> kept, std::optional<std::uint64_t> seed,
                            std::optional<std::chrono::nanoseconds> duration);
+
+/// What a recording of the experiment is to hold, in YAML, as the experiment itself would say it after its key `record`.
+/// What is not said is as the experiment has it. Throws InputError.
+Recorded read_recorded(const std::string& text, const Experiment& experiment);
 
 }  // namespace cohort::description

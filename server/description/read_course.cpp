@@ -11,6 +11,7 @@
 #include "server/description/course_entry.hpp"
 #include "server/description/experiment_keys.hpp"
 #include "server/description/read_effects.hpp"
+#include "server/description/read_recorded.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
 #include "server/description/yaml_values.hpp"
@@ -344,19 +345,9 @@ void CourseReader::read_recorded(Experiment& experiment) const {
   recorded.observed.resize(experiment.world.robots.size());
   std::iota(recorded.observed.begin(), recorded.observed.end(), 0u);
   if (!top_.has("record")) return;
-  const CourseEntry entry(top_.where("record"), "record", experiment_part("record", "experiment"), report_);
-  if (entry.values().has("poses")) recorded.pose_rate = entry.values().real("poses");
-  if (entry.values().has("observations")) recorded.observation_rate = entry.values().real("observations");
-  recorded.snapshot_interval = entry.time("snapshots").value_or(recorded.snapshot_interval);
-  if (!entry.is_written("robots")) return;
-  std::set<std::uint32_t> observed;
-  try {
-    for (const std::string& selector : entry.values().texts("robots"))
-      for (const std::uint32_t robot : select_robots(experiment.world, selector)) observed.insert(robot);
-  } catch (const std::invalid_argument& error) {
-    entry.problem("robots", error.what());
-  }
-  recorded.observed.assign(observed.begin(), observed.end());
+  description::read_recorded(
+      CourseEntry(top_.where("record"), "record", experiment_part("record", "experiment"), report_), experiment.world,
+      recorded);
 }
 
 }  // namespace cohort::description

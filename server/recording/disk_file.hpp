@@ -2,28 +2,24 @@
 
 #include <filesystem>
 
-#include "server/recording/mcap.hpp"
+#include "server/recording/byte_store.hpp"
 
 namespace cohort::recording {
 
-/// A file that is written from its beginning to its end. While it is open nobody else can open it so. `write`,
-/// `cut_off` and `size` by one thread, `sync` by another if need be. What fails throws FileError: what, where, why,
-/// what to do.
-class DiskFile {
+/// A file that is written from its beginning to its end. While it is open nobody else can open it so. What fails throws
+/// FileError: what, where, why, what to do.
+class DiskFile : public ByteStore {
  public:
   /// Makes the file, or empties it.
   explicit DiskFile(std::filesystem::path path);
-  DiskFile(const DiskFile&) = delete;
-  DiskFile& operator=(const DiskFile&) = delete;
-  ~DiskFile();
+  ~DiskFile() override;
 
   const std::filesystem::path& path() const { return path_; }
-  /// All of them; if it throws, maybe some.
-  void write(ByteView bytes);
-  /// Forgets what was written after the first `size` bytes.
-  void cut_off(std::uint64_t size);
+  void write(ByteView bytes) override;
+  void cut_off(std::uint64_t size) override;
   /// Returns when everything that was written is on the disk.
-  void sync();
+  void sync() override;
+  void finish() override { sync(); }
 
  private:
   [[noreturn]] void fail(int error) const;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "server/recording/disk_file.hpp"
 #include "server/recording/facts.hpp"
 
 namespace cohort::recording {
@@ -52,7 +53,12 @@ Recorder::Topic Recorder::add_topic(const std::string& topic, bool is_latched) {
 }
 
 Recorder::Recorder(const std::filesystem::path& file, const description::Experiment& experiment)
-    : file_(file),
+    : Recorder(std::make_shared<DiskFile>(file), {}, experiment, experiment.recorded) {}
+
+Recorder::Recorder(std::shared_ptr<ByteStore> store, RecordingOptions options,
+                   const description::Experiment& experiment, description::Recorded recorded)
+    : file_(std::move(store), std::move(options)),
+      recorded_(std::move(recorded)),
       world_(add_topic<WorldBegins>(WorldBegins::topic, true)),
       roster_(add_topic<Roster>(Roster::topic, true)),
       boundary_(add_topic<Boundary>(Boundary::topic)),
@@ -77,9 +83,9 @@ void Recorder::begin(const description::Experiment& experiment, const Simulation
   experiment_ = &experiment;
   simulation_ = &simulation;
   const std::chrono::nanoseconds step = experiment.world.step;
-  pose_interval_ = ticks_at_rate(experiment.recorded.pose_rate, step);
-  observation_interval_ = ticks_at_rate(experiment.recorded.observation_rate, step);
-  snapshot_interval_ = ticks_every(experiment.recorded.snapshot_interval, step);
+  pose_interval_ = ticks_at_rate(recorded_.pose_rate, step);
+  observation_interval_ = ticks_at_rate(recorded_.observation_rate, step);
+  snapshot_interval_ = ticks_every(recorded_.snapshot_interval, step);
   if (observed_.empty() && observation_interval_ != 0) add_observed();
 
   write(world_, WorldBegins{run_, static_cast<std::uint8_t>(reason), experiment.seed, simulation.tick(),
@@ -92,7 +98,7 @@ void Recorder::add_observed() {
   std::vector<SchemaId> schemas;
   for (const RobotKind& kind : simulation_->kinds())
     schemas.push_back(file_.add_schema(observation_type(kind.model), "ros2msg", observation_schema(kind)));
-  for (const std::uint32_t robot : experiment_->recorded.observed) {
+  for (const std::uint32_t robot : recorded_.observed) {
     const std::string topic = "/" + simulation_->robot_name(robot) + observation_topic_end;
     observed_.push_back({robot, {add_ros_channel(file_, topic, schemas[simulation_->kind_of(robot)])}});
   }
@@ -214,12 +220,17 @@ std::uint64_t Recorder::dropped() const {
 }
 
 void Recorder::finish(std::string_view end, std::string_view reason) {
+  begin_finishing(end, reason);
+  file_.close();
+}
+
+void Recorder::begin_finishing(std::string_view end, std::string_view reason) {
   file_.add_metadata({end_name,
                       {{"end", std::string(end)},
                        {"reason", std::string(reason)},
                        {"ticks", std::to_string(simulation_ == nullptr ? 0 : simulation_->tick())},
                        {"dropped", std::to_string(dropped())}}});
-  file_.close();
+  file_.begin_closing();
 }
 
 }  // namespace cohort::recording

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -23,6 +24,9 @@ class Recorder {
   /// Makes the file, and writes down what `experiment` was read from and where it runs. Throws FileError if the file
   /// cannot be made.
   Recorder(const std::filesystem::path& file, const description::Experiment& experiment);
+  /// To a store of the caller's, with `recorded` in place of what the experiment says of recordings.
+  Recorder(std::shared_ptr<ByteStore> store, RecordingOptions options, const description::Experiment& experiment,
+           description::Recorded recorded);
 
   /// From now on it is about this world, which stands at a boundary of which no one has been told yet. Both must
   /// outlive what is recorded of them.
@@ -37,8 +41,11 @@ class Recorder {
   /// The commands of these robots have changed and act from this boundary on.
   void commands(std::span<const std::uint32_t> robots);
 
-  /// Closes the file. `end`: how the run ended, in a word, and why.
+  /// Closes the file, and returns when it is closed. `end`: how the run ended, in a word, and why.
   void finish(std::string_view end, std::string_view reason);
+  /// The same without waiting for it. From here on the world may go.
+  void begin_finishing(std::string_view end, std::string_view reason);
+  bool is_closed() const { return file_.is_closed(); }
 
   /// Why the recording has ended before its run, if it has. Any thread.
   std::optional<std::string> error() const { return file_.error(); }
@@ -65,6 +72,7 @@ class Recorder {
   bool is_now(std::uint64_t interval) const { return interval != 0 && simulation_->tick() % interval == 0; }
 
   RecordingFile file_;
+  description::Recorded recorded_;
   Topic world_, roster_, boundary_, commands_, action_, event_, miss_, snapshot_, clock_, transforms_;
   const description::Experiment* experiment_ = nullptr;
   const Simulation* simulation_ = nullptr;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "server/recording/disk_file.hpp"
 #include "server/recording/mcap_error.hpp"
 
 namespace cohort::recording {
@@ -46,13 +47,20 @@ std::thread quiet_thread(const Function& function) {
 
 }  // namespace
 
-RecordingFile::RecordingFile(std::filesystem::path path, RecordingOptions options)
+RecordingFile::RecordingFile(const std::filesystem::path& path, RecordingOptions options)
+    : RecordingFile(std::make_shared<DiskFile>(path), std::move(options)) {}
+
+RecordingFile::RecordingFile(std::shared_ptr<ByteStore> store, RecordingOptions options)
     : options_(std::move(options)),
-      file_(std::move(path)),
-      writer_([this](ByteView bytes) { file_.write(bytes); }, options_.mcap) {
+      store_(std::move(store)),
+      writer_([this](ByteView bytes) { store_->write(bytes); }, options_.mcap) {
   sync_thread_ = quiet_thread([this] { sync_now_and_then(); });
   try {
-    writer_thread_ = quiet_thread([this] { write_blocks(); });
+    writer_thread_ = quiet_thread([this] {
+      write_blocks();
+      const std::lock_guard lock(mutex_);
+      is_closed_ = true;
+    });
   } catch (...) {
     stop_syncing();
     throw;
@@ -94,6 +102,13 @@ bool RecordingFile::write_message(ChannelId channel, std::uint32_t sequence, Tim
   if (is_closing_ || !error_.empty()) return false;
   if (importance == Importance::display && queued_ + data.size() > options_.most_queued) {
     ++dropped_[channel];
+    return false;
+  }
+  if (options_.most_essential_queued != 0 && queued_ + data.size() > options_.most_essential_queued) {
+    error_ =
+        std::to_string(queued_ >> 20U) + " MiB wait to be written, and more may not. What was recorded before is whole";
+    is_closing_ = true;
+    wake_.notify_one();
     return false;
   }
   add_entry({channel, sequence, log_time, publish_time}, data.size(), false, data);
@@ -148,12 +163,21 @@ std::optional<std::string> RecordingFile::error() const {
   return error_.empty() ? std::nullopt : std::optional(error_);
 }
 
-void RecordingFile::close() {
+void RecordingFile::begin_closing() {
   {
     const std::lock_guard lock(mutex_);
     is_closing_ = true;
   }
   wake_.notify_one();
+}
+
+bool RecordingFile::is_closed() const {
+  const std::lock_guard lock(mutex_);
+  return is_closed_;
+}
+
+void RecordingFile::close() {
+  begin_closing();
   if (writer_thread_.joinable()) writer_thread_.join();
   stop_syncing();
 }
@@ -175,7 +199,7 @@ void RecordingFile::write_blocks() {
       ask_for_sync();
       if (is_last) {
         writer_.close();
-        file_.sync();
+        store_->finish();
       }
     } catch (const std::exception& reason) {
       give_up(reason);
@@ -254,14 +278,14 @@ void RecordingFile::give_up(const std::exception& reason) {
   std::string text = reason.what();
   std::string rest = "can be read as far as it goes, and 'cohort recover' closes it";
   try {
-    file_.cut_off(writer_.size());
+    store_->cut_off(writer_.size());
     writer_.discard_chunk();
     writer_.close();
-    file_.sync();
+    store_->finish();
     rest = "is closed and can be read";
   } catch (const std::exception&) {
     try {
-      file_.cut_off(writer_.size());
+      store_->cut_off(writer_.size());
     } catch (const std::exception& cut) {
       rest += " (" + std::string(cut.what()) + ")";
     }
@@ -284,7 +308,7 @@ void RecordingFile::sync_now_and_then() {
     lock.unlock();
     std::string problem;
     try {
-      file_.sync();
+      store_->sync();
     } catch (const std::exception& error) {
       problem = error.what();
     }

@@ -3,11 +3,12 @@
 #include <condition_variable>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
 
-#include "server/recording/disk_file.hpp"
+#include "server/recording/byte_store.hpp"
 #include "server/recording/mcap_writer.hpp"
 
 namespace cohort::recording {
@@ -20,13 +21,16 @@ enum class Importance {
 struct RecordingOptions {
   McapWriterOptions mcap{};
   std::size_t most_queued = std::size_t{64} << 20U;  ///< bytes
+  /// Bytes of all that waits: the recording ends with an error when they are more. 0: there is no limit.
+  std::size_t most_essential_queued = 0;
   /// How long a message waits at the most before its chunk is ended and written, in wall time.
   std::chrono::nanoseconds flush_interval = std::chrono::milliseconds(750);
 };
 
 /// An MCAP file that a thread of its own compresses and writes: whoever records only copies bytes, and never waits for
-/// the disk. What is older than `flush_interval` and the time that compressing and writing it takes has been given to
-/// the operating system, so that a killed process loses no more; once a second the disk is told to have it.
+/// the disk, or for whatever the store is. What is older than `flush_interval` and the time that compressing and
+/// writing it takes has been given to the operating system, so that a killed process loses no more; once a second the
+/// disk is told to have it.
 ///
 /// After the constructor nothing throws. If writing fails, the chunk that could not be written whole is cut off, the
 /// file is closed if there is room for its summary, everything later is ignored, and `error` says what happened.
@@ -35,7 +39,9 @@ struct RecordingOptions {
 class RecordingFile {
  public:
   /// Makes the file, or replaces it. Throws FileError: no such folder, no permission, another process records to it.
-  explicit RecordingFile(std::filesystem::path path, RecordingOptions options = {});
+  explicit RecordingFile(const std::filesystem::path& path, RecordingOptions options = {});
+  /// The same to a store of the caller's.
+  explicit RecordingFile(std::shared_ptr<ByteStore> store, RecordingOptions options = {});
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
   /// Closes it.
@@ -62,6 +68,10 @@ class RecordingFile {
   /// Writes what waits and the summary, and returns when all of it is on the disk or `error` says why not. Whatever is
   /// written afterwards is ignored.
   void close();
+  /// The same without waiting for it.
+  void begin_closing();
+  /// Whether nothing will be written any more.
+  bool is_closed() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -86,7 +96,7 @@ class RecordingFile {
   void stop_syncing();
 
   RecordingOptions options_;
-  DiskFile file_;
+  std::shared_ptr<ByteStore> store_;
   McapWriter writer_;  // of the writer's thread, once that runs
 
   mutable std::mutex mutex_;  // guards all below up to the next line
@@ -100,6 +110,7 @@ class RecordingFile {
   ChannelId last_channel_ = 0;
   std::string error_;
   bool is_closing_ = false;
+  bool is_closed_ = false;
 
   std::optional<Clock::time_point> chunk_began_at_;  // the writer's, like the next
   std::uint64_t size_to_sync_ = 0;

@@ -19,6 +19,7 @@ using wire::SimulationState;
 constexpr std::size_t most_requesters = 64;
 constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
 constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
+constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;
 constexpr std::uint32_t scope_default = 0;
 constexpr std::uint32_t scope_all = 255;
 constexpr std::chrono::milliseconds sample_interval{500};
@@ -44,10 +45,15 @@ std::size_t size_of(const Request& request) {
          request.link.size() + request.data.size();
 }
 
+bool may_ask(const wire::Identity& identity, Operation operation) {
+  return identity.may_control || (identity.door == wire::observers_door && wire::is_looking_on(operation));
+}
+
 bool ends_the_run(const Request& request) {
   switch (request.operation) {
     case Operation::reset_simulation:
-    case Operation::load_snapshot: return true;
+    case Operation::load_snapshot:
+    case Operation::go_back: return true;
     case Operation::set_simulation_state:
       return request.state == SimulationState::stopped || request.state == SimulationState::quitting;
     default: return false;
@@ -85,6 +91,9 @@ void Control::begin(ControlledRun run) {
   play_ = Play(run_->book.options().state);
   older_ = newer_ = {Clock::now(), run_->simulation.time()};
   hash_.reset();
+  if (!std::exchange(goes_back_, false))
+    kept_ = KeptSnapshots(static_cast<std::uint64_t>(run_->book.options().keep_interval / run_->experiment.world.step),
+                          most_kept_bytes);
   for (const Request& request : std::exchange(answered_by_next_run_, {}))
     answer(request, ResultCode::ok,
            "run " + std::to_string(run_->number) + " stands at tick " + std::to_string(run_->simulation.tick()) +
@@ -95,7 +104,8 @@ void Control::end(RunResult::End how) {
   const std::string at = "the run has ended at tick " + std::to_string(run_->simulation.tick());
   answer_steps(play_.set(PlayState::playing), ResultCode::operation_failed, at);
   for (const Request& request : std::exchange(desk_.waiting(), {})) answer(request, ResultCode::incorrect_state, at);
-  if (how == RunResult::End::shut_down)
+  const bool goes_on = how == RunResult::End::reset || how == RunResult::End::restored;
+  if (!goes_on)  // the server may be gone soon
     for (auto& [id, requester] : requesters_) requester.replies.wait_until_received(last_reply);
   run_.reset();
 }
@@ -132,7 +142,7 @@ void Control::take(const Asked& asked) {
     return reject("foreign: a Request comes in another's name, or in nobody's");
   if (requester_of(asked) == nullptr)
     return reject("flood: " + std::to_string(most_requesters) + " clients control this run already");
-  if (const auto& identity = asked.door->identity(); identity && !identity->may_control) {
+  if (const auto& identity = asked.door->identity(); identity && !may_ask(*identity, request.operation)) {
     reject("forbidden: " + label_of(request.client) + " may not control the run");
     Reply reply = reply_to(request);
     reply.result = ResultCode::not_permitted;
@@ -182,6 +192,7 @@ void Control::lose(const wire::Sender& sender) {
   if (requester == requesters_.end() || requester->second.writer != sender.writer) return;
   requesters_.erase(requester);
   desk_.leave(client);
+  recordings_.leave(client);
 }
 
 void Control::send(Reply reply, bool is_kept) {
@@ -235,6 +246,7 @@ void Control::note_progress(Clock::time_point now) {
 void Control::reach_boundary() {
   hash_.reset();
   note_progress(Clock::now());
+  if (kept_.wants(run_->simulation.tick())) kept_.keep(run_->take_snapshot());
   if (!play_.has_steps()) return;
   const auto done = play_.reached(run_->simulation.tick());
   answer_steps(done, ResultCode::ok, "paused at tick " + std::to_string(run_->simulation.tick()));
@@ -276,6 +288,8 @@ void Control::do_one(const Request& request) {
       case Operation::set_speed: return set_speed(request);
       case Operation::save_snapshot: return save(request);
       case Operation::load_snapshot: return load(request);
+      case Operation::go_back: return go_back(request);
+      case Operation::start_recording: return start_recording(request);
       default:
         return answer(request, ResultCode::feature_unsupported, wire::name_of(request.operation) + " is not there yet");
     }
@@ -355,12 +369,41 @@ void Control::save(const Request& request) {
   send(std::move(reply), true);
 }
 
+void Control::start_recording(const Request& request) {
+  if (run_->book.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
+  const std::string text = "recorded from tick " + std::to_string(run_->simulation.tick()) + " on";
+  recordings_.start(request.client, request.resource_string);
+  tell(request, text);
+  answer(request, ResultCode::ok, text);
+}
+
 void Control::load(const Request& request) {
   const auto bytes = desk_.take_all(request.client);
   if (!bytes)
     return answer(request, ResultCode::incorrect_state, "there is no snapshot to load: PutData brings it, whole");
   auto snapshot = std::make_shared<SessionSnapshot>(snapshot_from_bytes(*bytes));
   expect_same_experiment(*snapshot, run_->experiment);
+  go_on_from(request, std::move(snapshot));
+}
+
+void Control::go_back(const Request& request) {
+  if (kept_.size() == 0)
+    return answer(request, ResultCode::not_found, "this server keeps no snapshots; --keep-snapshots lets it");
+  const std::int64_t tick = request.duration_ns / run_->experiment.world.step.count();
+  auto snapshot = tick < 0 ? nullptr : kept_.last_until(static_cast<std::uint64_t>(tick));
+  if (snapshot == nullptr)
+    return answer(request, ResultCode::not_found,
+                  "the first snapshot that is kept is of tick " + std::to_string(kept_.first_tick()) +
+                      ", the last of tick " + std::to_string(kept_.last_tick()) + "; none is at or before tick " +
+                      std::to_string(tick));
+  const std::uint64_t at = snapshot->tick;
+  go_on_from(request, std::move(snapshot));
+  if (!ending_) return;
+  kept_.forget_after(at);
+  goes_back_ = true;
+}
+
+void Control::go_on_from(const Request& request, std::shared_ptr<const SessionSnapshot> snapshot) {
   const std::string text = "from tick " + std::to_string(snapshot->tick) + " on";
   NextRun next{.seed = snapshot->seed, .state = play_.state_without_steps(), .speed = run_->book.speed()};
   if (next.state == PlayState::stopped) next.state = PlayState::paused;

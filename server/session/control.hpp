@@ -11,6 +11,8 @@
 
 #include "idl/control.hpp"
 #include "server/session/control_desk.hpp"
+#include "server/session/kept_snapshots.hpp"
+#include "server/session/live_recordings.hpp"
 #include "server/session/play.hpp"
 #include "server/session/run.hpp"
 
@@ -38,6 +40,9 @@ struct ControlledRun {
 class Control {
  public:
   using Clock = RunBook::Clock;
+
+  /// `recordings` must outlive this.
+  explicit Control(LiveRecordings& recordings) : recordings_(recordings) {}
 
   void begin(ControlledRun run);
   /// Tells those who wait for something that it will not come, unless the next run brings it.
@@ -86,6 +91,8 @@ class Control {
   void fill_status(wire::Reply& reply);
   void fill_data(wire::Reply& reply, const wire::Request& request) const;
   void take_data(wire::Reply& reply, const wire::Request& request);
+  void fill_recording(wire::Reply& reply, const wire::Request& request);
+  void stop_recording(wire::Reply& reply, const wire::Request& request);
   std::optional<std::uint32_t> find_entity(wire::Reply& reply, const std::string& name) const;
   std::uint64_t state_hash();
 
@@ -96,6 +103,9 @@ class Control {
   void set_speed(const wire::Request& request);
   void save(const wire::Request& request);
   void load(const wire::Request& request);
+  void go_back(const wire::Request& request);
+  void go_on_from(const wire::Request& request, std::shared_ptr<const SessionSnapshot> snapshot);
+  void start_recording(const wire::Request& request);
   void quit(const wire::Request& request);
   // Actions on the world (control_actions.cpp).
   static bool is_action(const wire::Request& request);
@@ -103,10 +113,13 @@ class Control {
   wire::ResultCode code_of_failure(const wire::Request& request) const;
   void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
 
+  LiveRecordings& recordings_;
   std::optional<ControlledRun> run_;
   Play play_;
   std::optional<Ending> ending_;
   std::vector<wire::Request> answered_by_next_run_;
+  KeptSnapshots kept_{0, 0};
+  bool goes_back_ = false;  // the next run is this one's past
   ControlDesk desk_;
   std::map<std::uint64_t, Requester> requesters_;            // by client
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of requests

@@ -80,6 +80,8 @@ void Control::answer_query(const Request& request) {
       case Operation::get_status: fill_status(reply); break;
       case Operation::get_data: fill_data(reply, request); break;
       case Operation::put_data: take_data(reply, request); break;
+      case Operation::get_recording: fill_recording(reply, request); break;
+      case Operation::stop_recording: stop_recording(reply, request); break;
       default: break;  // every reply has the state
     }
   } catch (const std::exception& error) {
@@ -166,6 +168,25 @@ void Control::fill_data(Reply& reply, const Request& request) const {
   reply.offset = request.offset;
   const auto* const begin = reinterpret_cast<const std::uint8_t*>(part->bytes.data());
   reply.data.assign(begin, begin + part->bytes.size());
+}
+
+void Control::fill_recording(Reply& reply, const Request& request) {
+  const auto part = recordings_.fetch(request.client, request.offset);
+  if (!part) {
+    reply.result = ResultCode::not_found;
+    reply.error_message = "this client records nothing, or has fetched beyond byte " + std::to_string(request.offset);
+    return;
+  }
+  reply.size = part->bytes.size.value_or(0);
+  reply.offset = request.offset;
+  const auto* const begin = reinterpret_cast<const std::uint8_t*>(part->bytes.bytes.data());
+  reply.data.assign(begin, begin + part->bytes.bytes.size());
+  reply.error_message = part->problem;
+}
+
+void Control::stop_recording(Reply& reply, const Request& request) {
+  recordings_.stop(request.client);
+  reply.error_message = "recorded up to tick " + std::to_string(run_->simulation.tick());
 }
 
 void Control::take_data(Reply& reply, const Request& request) {

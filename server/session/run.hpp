@@ -32,6 +32,8 @@ struct RunOptions {
   PlayState state = PlayState::playing;  ///< at first
   /// The simulation was restored from it, and the exchange has to be too; none: the run begins at the beginning.
   std::shared_ptr<const SessionSnapshot> from{};
+  /// Simulated time between snapshots that stay in memory, so that whoever controls the run can go back; 0: none do.
+  std::chrono::nanoseconds keep_interval{0};
   /// Makes the world of a reset or of a snapshot, before this run is ended for it. What it throws is the answer to
   /// whoever asked, and the run goes on. Empty: there are neither resets nor snapshots to load.
   std::function<void(const NextRun&)> prepare{};

@@ -45,13 +45,14 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
                       const RunListener& listener, const std::atomic<bool>& stop) {
   using End = RunResult::End;
   {
-    auto next = std::make_unique<Run>(experiment, simulation, options, listener, next_epoch_);
+    auto next = std::make_unique<Run>(experiment, simulation, options, recordings_.listening(listener), next_epoch_);
     const std::lock_guard lock(mutex_);
     ++run_number_;
     if (options.from) restore(*options.from, next->exchange);
     run_ = std::move(next);
   }
   Run& run = *run_;
+  recordings_.begin(experiment, simulation, options.from != nullptr);
   control_.begin({experiment, simulation, run.book, run_number_,
                   [this](wire::SimulationStatus& status) { fill_status(status); }, [this] { return take_snapshot(); }});
   publish_descriptions();
@@ -61,6 +62,11 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
     run.book.stop();
     handle_inbox();
     report_progress(true);
+    const bool goes_on = how == End::reset || how == End::restored;
+    if (!goes_on) {
+      recordings_.end(how, how == End::finished ? simulation.stop_reason().value_or("") : error);
+      let_recordings_be_fetched();
+    }
     control_.end(how);
     RunResult result = run.book.finish(how, error);
     const std::lock_guard lock(mutex_);

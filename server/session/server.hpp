@@ -22,6 +22,7 @@
 #include "server/lockstep/resend_timer.hpp"
 #include "server/session/control.hpp"
 #include "server/session/exchange.hpp"
+#include "server/session/live_recordings.hpp"
 #include "server/session/run.hpp"
 
 namespace cohort::session {
@@ -175,6 +176,7 @@ class Server {
 
   // Control (server_control.cpp):
   bool stand_at_boundary(const std::atomic<bool>& stop);
+  void let_recordings_be_fetched();
   SessionSnapshot take_snapshot();
   void fill_status(wire::SimulationStatus& status);
   wire::ControllerStatus status_of(std::uint64_t client_id, Client& client, std::chrono::nanoseconds waiting);
@@ -219,7 +221,8 @@ class Server {
   Clock::time_point observers_counted_at_{};
   bool observed_ = false;
   std::vector<double> poses_;  // reused
-  Control control_;
+  LiveRecordings recordings_;
+  Control control_{recordings_};
 
   wire::Writer<wire::WorldState> world_state_;
   // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they

@@ -74,6 +74,21 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
   }
 }
 
+// The run has ended. Whoever fetches nothing is not waited for.
+void Server::let_recordings_be_fetched() {
+  constexpr std::chrono::seconds longest_idle{2};
+  std::uint64_t fetched = recordings_.fetched();
+  for (Clock::time_point since = Clock::now(); !recordings_.are_fetched() && Clock::now() - since < longest_idle;) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, longest_sleep, [&] { return attention_; });
+      attention_ = false;
+    }
+    handle_inbox();
+    if (std::exchange(fetched, recordings_.fetched()) != fetched) since = Clock::now();
+  }
+}
+
 SessionSnapshot Server::take_snapshot() {
   const std::lock_guard lock(mutex_);
   return session::take_snapshot(run_->experiment, run_->simulation, run_->exchange);

@@ -14,22 +14,6 @@ namespace {
 using wire::Operation;
 using wire::ResultCode;
 
-const std::atomic<bool> never = false;
-
-std::string reference(const FieldOfRobots& field, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"--controllers", "inprocess"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return run_experiment(field.file(), arguments)["state_hash"];
-}
-
-ControlClient client_of(const ControlledRun& run) { return ControlClient({.domain = run.domain().number()}); }
-
-wire::Request of(Operation operation) {
-  wire::Request request;
-  request.operation = operation;
-  return request;
-}
-
 TEST(ControlAtTickBoundariesOnly, PausesAndChangesOfSpeedLeaveTheRunItsBits) {
   const FieldOfRobots field(4, 20.0);
   const std::string expected = reference(field);
@@ -120,6 +104,22 @@ TEST(ControlAtTickBoundariesOnly, StatusNamesTheControllerThatTheRunWaitsForAndA
   run.host().signal(SIGCONT);
 }
 
+TEST(ControlAtTickBoundariesOnly, StatusIsWatchedUntilTheServerGoes) {
+  const FieldOfRobots field(2, 1e4);
+  ControlledRun run(field, {"--paused"});
+  Process watching(run.ctl({"status", "--watch", "--json"}));
+  EXPECT_TRUE(watching.wait_for_output("\"tick\":0")) << watching.output();
+  run.done({"step", "123"});
+  EXPECT_TRUE(watching.wait_for_output("\"tick\":123")) << watching.output();
+  Process reader(run.ctl({"status", "--watch"}));
+  EXPECT_TRUE(reader.wait_for_output("p50 us")) << reader.output();
+  reader.signal(SIGINT);
+  EXPECT_EQ(reader.wait_for_exit(), 130);
+  run.done({"shutdown"});
+  run.finish();
+  EXPECT_EQ(watching.wait_for_exit(), 0) << watching.output();
+}
+
 TEST(ControlAtTickBoundariesOnly, AnswersBeforeAnyControllerIsThere) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {}, false);
@@ -149,76 +149,6 @@ TEST(ControlAtTickBoundariesOnly, ControllersComeAndGoWhileItIsPaused) {
   EXPECT_EQ(run.finish()["state_hash"], expected);
 }
 
-TEST(ControlAtTickBoundariesOnly, AResetGivesTheBitsOfTheFirstRunAndAnotherSeedThoseOfAnother) {
-  const FieldOfRobots field(4, 5.0);
-  const std::string expected = reference(field);
-  ControlledRun run(field, {"--speed", "10"});
-  EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 30; }));
-  EXPECT_NE(run.done({"reset", "--seed", "77"}).find("run 2 stands at tick 0, with seed 77"), std::string::npos);
-  EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 10; }));
-  EXPECT_EQ(run.status()["seed"], 77);
-  run.done({"reset", "--seed", "1"});
-  run.done({"speed", "max"});
-  const auto summary = run.finish();
-  EXPECT_EQ(summary["state_hash"], expected);
-  EXPECT_EQ(summary["ticks"], 500);
-  EXPECT_EQ(run.host().wait_for_exit(), 0) << "one process for all: " << run.host().output();
-}
-
-TEST(ControlAtTickBoundariesOnly, ASnapshotGoesOnWithTheSameBitsHereAndElsewhere) {
-  for (const char* team : {"", ", delay: 2"}) {
-    const FieldOfRobots field(4, 5.0, team);
-    const std::string expected = reference(field);
-    const std::string file = (field / "snapshot").string();
-    ControlledRun run(field, {"--paused"});
-    run.done({"step", "200"});
-    run.done({"save", file});
-    const std::string hash = run.status()["state_hash"];
-    run.done({"step", "150"});
-    EXPECT_NE(run.done({"load", file}).find("run 2 stands at tick 200"), std::string::npos);
-    EXPECT_EQ(run.status()["state_hash"], hash);
-    EXPECT_EQ(run.status()["state"], "paused") << "as before";
-    run.done({"resume"});
-    const auto summary = run.finish();
-    EXPECT_EQ(summary["state_hash"], expected) << team;
-    EXPECT_EQ(summary["ticks"], 500) << "the duration counts from the beginning of the world";
-    EXPECT_EQ(reference(field, {"--from", file}), expected) << "in one process" << team;
-    EXPECT_EQ(run_experiment(field.file(), {"--from", file})["state_hash"], expected) << "over DDS" << team;
-  }
-}
-
-TEST(ControlAtTickBoundariesOnly, ASnapshotOfSomethingElseIsRefusedAndTheRunGoesOn) {
-  const FieldOfRobots field(2, 1e4), other(3, 1e4);
-  const std::string file = (field / "snapshot").string();
-  {
-    ControlledRun run(other, {"--paused"});
-    run.done({"step", "3"});
-    run.done({"save", file});
-    run.done({"shutdown"});
-    run.finish();
-  }
-  ControlledRun run(field, {"--paused"});
-  run.done({"step", "3"});
-  const auto refusal = [&] {
-    const Ended refused = run_to_end(run.ctl({"load", file}));
-    EXPECT_EQ(refused.exit_code, 1);
-    return refused.err;
-  };
-  const std::string of_another = refusal();
-  EXPECT_NE(of_another.find("the snapshot"), std::string::npos) << of_another;
-  std::string bytes = read_file(file);
-  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
-  write_file(file, bytes);
-  const std::string damaged = refusal();
-  EXPECT_NE(damaged.find("damaged"), std::string::npos) << damaged;
-  EXPECT_EQ(run.done({"step", "3"}), "paused at tick 6\n");
-  const Ended from = run_to_end({cohort_program(), "run", field.file(), "--from", file});
-  EXPECT_EQ(from.exit_code, 2);
-  EXPECT_NE(from.err.find(file + ": the snapshot is damaged"), std::string::npos) << from.err;
-  run.done({"shutdown"});
-  run.finish();
-}
-
 TEST(ControlAtTickBoundariesOnly, AClientThatDiesLeavesWhatItAskedFor) {
   const FieldOfRobots field(2, 1e5);
   ControlledRun run(field, {"--paused"});
@@ -230,112 +160,6 @@ TEST(ControlAtTickBoundariesOnly, AClientThatDiesLeavesWhatItAskedFor) {
   EXPECT_TRUE(run.comes_to([&](const auto& now) { return now["tick"] > tick; })) << "it goes on";
   run.done({"pause"});
   EXPECT_EQ(run.status()["state"], "paused");
-  run.done({"shutdown"});
-  run.finish();
-}
-
-wire::EntityState state_of(ControlClient& client, const std::string& name) {
-  wire::Request request = of(Operation::get_entity_state);
-  request.entity = name;
-  const auto reply = client.ask(request, patience, never);
-  EXPECT_TRUE(reply && reply->states.size() == 1) << name;
-  return reply && !reply->states.empty() ? reply->states[0] : wire::EntityState{};
-}
-
-constexpr const char* box = R"(<sdf version="1.9"><model name="box"><link name="body">
-  <inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>
-  <collision name="hull"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
-</link></model></sdf>)";
-
-TEST(ControlAtTickBoundariesOnly, ActionsChangeTheWorldAndAreTheSameTwice) {
-  const FieldOfRobots field(2, 1e4);
-  const std::string model = (field / "box.sdf").string();
-  const std::string file = (field / "snapshot").string();
-  write_file(model, box);
-  const auto act = [&](const std::string& threads) {
-    ControlledRun run(field, {"--paused", "--threads", threads});
-    ControlClient client = client_of(run);
-    run.done({"step", "10"});
-    run.done({"spawn", model, "--name", "crate", "--pose", "-2 0 1 0 0 1.5"});
-    EXPECT_EQ(run.done({"entities", "crate"}), "crate\n");
-    EXPECT_EQ(state_of(client, "crate").pose.position.x, -2.0);
-    EXPECT_NEAR(state_of(client, "crate").pose.orientation.z, std::sin(0.75), 1e-12);
-    run.done({"step", "10"});
-    EXPECT_LT(state_of(client, "crate").twist.linear.z, -0.9) << "it falls";
-    run.done({"set-pose", "crate", "--pose", "2 -2 3"});
-    run.done({"set-velocity", "crate", "--linear", "1 0 -0.5", "--angular", "0 0 2"});
-    const wire::EntityState thrown = state_of(client, "crate");
-    EXPECT_EQ(thrown.pose.position, (wire::Vector3{2, -2, 3}));
-    EXPECT_NEAR(thrown.twist.linear.x, 1.0, 1e-12);
-    EXPECT_NEAR(thrown.twist.angular.z, 2.0, 1e-12);
-    run.done({"apply-force", "crate", "--force", "0 0 30", "--duration", "0.1"});
-    run.done({"step", "5"});
-    run.done({"save", file});
-    run.done({"step", "15"});
-    EXPECT_GT(state_of(client, "crate").twist.linear.z, 0.3) << "0.1 s of 30 N against 9.81 N and 0.5 m/s";
-    const std::string hash = run.status()["state_hash"];
-    run.done({"load", file});
-    run.done({"step", "15"});
-    EXPECT_EQ(run.status()["state_hash"], hash) << "with what was spawned, and the push that was under way";
-    run.done({"remove", "crate"});
-    EXPECT_EQ(run.done({"entities", "crate"}), "");
-    run.done({"step", "5"});
-    run.done({"shutdown"});
-    return run.finish();
-  };
-  const auto first = act("1");
-  EXPECT_EQ(act("4")["state_hash"], first["state_hash"]);
-  EXPECT_EQ(first["ticks"], 45);
-  EXPECT_GE(events_of(first, "control").size(), 4u) << first["events"].dump(1);
-}
-
-TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndChangeNothing) {
-  const FieldOfRobots field(2, 1e4);
-  ControlledRun run(field, {"--paused"});
-  ControlClient client = client_of(run);
-  const std::string hash = run.status()["state_hash"];
-  wire::Request spawn = of(Operation::spawn_entity);
-  spawn.entity = "crate";
-  const auto result_of = [&](const wire::Request& request) {
-    const auto reply = client.ask(request, patience, never);
-    EXPECT_TRUE(reply && !reply->error_message.empty());
-    return reply ? reply->result : ResultCode::ok;
-  };
-  EXPECT_EQ(result_of(spawn), ResultCode::no_resource);
-  spawn.resource_string = "<sdf version='1.9'><model name='box'><link";
-  EXPECT_EQ(result_of(spawn), ResultCode::operation_failed);
-  spawn.resource_string = box;
-  spawn.pose.orientation = {0, 0, 0, 0};
-  EXPECT_EQ(result_of(spawn), ResultCode::invalid_spawn_pose);
-  spawn.pose.orientation = {0, 0, 0, 1};
-  spawn.entity = "swarm/sbot_0";
-  EXPECT_EQ(result_of(spawn), ResultCode::name_not_unique);
-  for (const Operation operation : {Operation::delete_entity, Operation::apply_force, Operation::set_entity_state}) {
-    wire::Request request = of(operation);
-    request.entity = "swarm/nobody";
-    request.set_pose = true;
-    request.force = {1, 0, 0};
-    EXPECT_EQ(result_of(request), ResultCode::not_found) << wire::name_of(operation);
-  }
-  wire::Request push = of(Operation::set_entity_state);
-  push.entity = "ground";
-  push.set_twist = true;
-  push.twist.linear.x = 1;
-  EXPECT_EQ(result_of(push), ResultCode::operation_failed) << "it is static";
-  wire::Request light = of(Operation::set_light);
-  light.entity = "ground";
-  EXPECT_EQ(result_of(light), ResultCode::operation_failed);
-  EXPECT_EQ(run.status()["state_hash"], hash);
-
-  // Another name where that is allowed, and the reply says which.
-  spawn.allow_renaming = true;
-  spawn.pose.position = {2, 2, 1};
-  const auto renamed = client.ask(spawn, patience, never);
-  ASSERT_TRUE(renamed);
-  EXPECT_EQ(renamed->result, ResultCode::ok) << renamed->error_message;
-  EXPECT_NE(renamed->entity, "swarm/sbot_0");
-  EXPECT_EQ(state_of(client, renamed->entity).pose.position.x, 2.0);
-  EXPECT_NE(run.status()["state_hash"], hash);
   run.done({"shutdown"});
   run.finish();
 }
@@ -450,39 +274,6 @@ TEST(ControlAtTickBoundariesOnly, WhatCannotBeIsRefusedWithASentence) {
       patience, never);
   ASSERT_TRUE(state && state->states.size() == 1);
   EXPECT_EQ(state->states[0].pose.position.z, 0.0);
-  run.done({"shutdown"});
-  run.finish();
-}
-
-TEST(ControlAtTickBoundariesOnly, DataOfManyMegabytesGoesInPartsAndIsBounded) {
-  const FieldOfRobots field(2, 1e4);
-  ControlledRun run(field, {"--paused"});
-  ControlClient client = client_of(run);
-  const std::vector<std::byte> nonsense(20'000'000, std::byte{'x'});
-  try {
-    client.load(nonsense, patience, never);
-    ADD_FAILURE() << "it loads anything";
-  } catch (const ControlError& error) {
-    EXPECT_NE(std::string(error.what()).find("this is no snapshot"), std::string::npos) << error.what();
-  }
-  const std::vector<std::byte> too_large(wire::largest_data + 1);
-  EXPECT_THROW(client.load(too_large, patience, never), ControlError);
-  EXPECT_EQ(run.done({"step"}), "paused at tick 1\n");
-  run.done({"shutdown"});
-  run.finish();
-}
-
-TEST(ControlAtTickBoundariesOnly, SnapshotsOfManyRobotsComeWhole) {
-  const FieldOfRobots field(400, 1e4);
-  ControlledRun run(field, {"--paused"});
-  run.done({"step", "2"});
-  const std::string file = (field / "snapshot").string();
-  run.done({"save", file});
-  const std::string hash = run.status()["state_hash"];
-  EXPECT_GT(std::filesystem::file_size(file), 2 * wire::largest_part);
-  run.done({"step", "2"});
-  run.done({"load", file});
-  EXPECT_EQ(run.status()["state_hash"], hash);
   run.done({"shutdown"});
   run.finish();
 }

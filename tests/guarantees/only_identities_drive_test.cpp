@@ -164,7 +164,7 @@ TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
     EXPECT_EQ(ctl(domain, "both", "resume").exit_code, 0) << server.output();
     const Ended refused = ctl(domain, "red", "pause");
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_NE(refused.err.find("may not control a run"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("may neither control a run nor look on"), std::string::npos) << refused.err;
     // One that says that it may: DDS knows better, by what was signed.
     write_file(disguised, red_identity + "control: yes\n");
     EXPECT_NE(ctl(domain, "red", "pause").exit_code, 0);
@@ -189,6 +189,36 @@ TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
   EXPECT_NE(ctl(domain, "both", "status").out.find("paused"), std::string::npos);
   EXPECT_EQ(ctl(domain, "both", "shutdown").exit_code, 0);
   EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+}
+
+TEST(OnlyIdentitiesDrive, AndObserversLookOnAndRecord) {
+  const ScratchFolder folder;
+  const std::string keys = (folder / "keys").string();
+  const std::string file = (folder / "run.mcap").string();
+  ASSERT_EQ(run_to_end({cohort_program(), "security", "init", keys, "--client", "operator=none,control"}).exit_code, 0);
+  const ReservedDomain domain;
+  const auto as = [&](const std::string& name, std::vector<std::string> command) {
+    command.insert(command.begin(), cohort_program());
+    command.insert(command.end(), {"--domain", domain.text(), "--secure", keys + "/clients/" + name});
+    return command;
+  };
+  Process server(
+      {cohort_program(), "serve", demo_experiment(), "--paused", "--domain", domain.text(), "--secure", keys});
+  Process recording(as("observer", {"record", "-o", file}));
+  EXPECT_TRUE(recording.wait_for_output("recorded from tick 0 on")) << recording.output();
+  EXPECT_EQ(run_to_end(as("observer", {"ctl", "status"})).exit_code, 0);
+  EXPECT_EQ(run_to_end(as("observer", {"ctl", "save", (folder / "snapshot").string()})).exit_code, 0);
+  for (const std::vector<std::string>& change : {std::vector<std::string>{"ctl", "resume"},
+                                                 {"ctl", "shutdown"},
+                                                 {"ctl", "load", (folder / "snapshot").string()}}) {
+    const Ended refused = run_to_end(as("observer", change));
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.err.find("the identity 'observer' may not control the run"), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(run_to_end(as("operator", {"ctl", "shutdown"})).exit_code, 0);
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(recording.wait_for_exit(), 0) << recording.output();
+  EXPECT_TRUE(std::filesystem::exists(file));
 }
 
 TEST(OnlyIdentitiesDrive, AndAServerOnANetworkWithoutSecurityWarns) {

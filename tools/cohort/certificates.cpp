@@ -100,7 +100,10 @@ std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
       return allowed;
     case wire::Role::observer: break;
   }
-  return {{"subscribe", {"cohort/v1/robot_description"}, ""}, {"subscribe", {"cohort/v1/world_state"}, "view"}};
+  return {{"publish", {"cohort/v1/request"}, ""},
+          {"subscribe", {"cohort/v1/reply"}, "c*"},
+          {"subscribe", {"cohort/v1/robot_description"}, ""},
+          {"subscribe", {"cohort/v1/world_state"}, "view"}};
 }
 
 std::string rules_of(wire::Role role, bool may_control) {

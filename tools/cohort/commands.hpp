@@ -58,6 +58,7 @@ struct RunCommand {
   RecordOptions record;
   bool quiet = false;
   bool paused = false;                 ///< at first
+  double keep_interval = 0.0;          ///< [s], simulated, between snapshots to go back to; 0: none
   std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
   std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
   std::string network = "127.0.0.1";
@@ -170,6 +171,15 @@ struct CtlCommand {
   bool json = false;
 };
 int ctl(CtlCommand command, Log& log, const std::atomic<bool>& stop);
+
+/// `cohort record`: docs/recordings.md.
+struct RecordCommand {
+  RecordOptions record;
+  std::string server;
+  std::vector<std::uint32_t> domains{};  ///< of the server; the first is used. Empty: 0
+  std::filesystem::path secure{};        ///< folder of an identity; empty: without security
+};
+int record(const RecordCommand& command, Log& log, const std::atomic<bool>& stop);
 
 /// `cohort security`: docs/security.md.
 struct SecurityCommand {

@@ -32,7 +32,8 @@ milliseconds patience_for(const CtlCommand& command) {
   const Operation operation = command.request.operation;
   const bool takes_long = command.what == CtlCommand::What::load ||
                           (command.what == CtlCommand::What::request &&
-                           (operation == Operation::step_simulation || operation == Operation::reset_simulation));
+                           (operation == Operation::step_simulation || operation == Operation::reset_simulation ||
+                            operation == Operation::go_back));
   return takes_long ? for_ever : for_a_reply;
 }
 

@@ -122,6 +122,17 @@ void add_time_commands(Requests& requests, CtlCommand& command) {
           "Another seed")
       ->check(whole_number(0, most))
       ->type_name("N");
+  CLI::App& back = requests.add("back", "Go back to the last kept snapshot at or before a time", Operation::go_back);
+  back.add_option_function<double>(
+          "T",
+          [&](const double& seconds) {
+            command.request.duration_ns =
+                std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)).count();
+          },
+          "Simulated seconds from the run's beginning")
+      ->required()
+      ->check(number_from_zero(most_seconds))
+      ->type_name("");
   requests.add("shutdown", "End the run and the server", Operation::set_simulation_state, SimulationState::quitting);
 }
 
@@ -183,10 +194,7 @@ void add_world_commands(Requests& requests, CtlCommand& command) {
 void add_ctl_commands(CLI::App& app, CtlCommand& command) {
   app.require_subcommand(1);
   app.fallthrough();
-  app.add_option("--server", command.server, "Address of the server")
-      ->envname("COHORT_SERVER")
-      ->default_val("127.0.0.1")
-      ->type_name("ADDRESS");
+  add_server_option(app, command.server);
   app.add_option("--timeout", command.timeout,
                  "Seconds to wait (default: 5 for a server, 30 for what is asked, no end for step, reset and load)")
       ->check(number_above_zero(9e6))

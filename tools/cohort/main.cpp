@@ -2,7 +2,6 @@
 #include <iostream>
 #include <limits>
 
-#include "client_sdk/src/domains.hpp"
 #include "client_sdk/src/program.hpp"
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
@@ -94,18 +93,6 @@ void add_log_options(CLI::App& app, LogFlags& flags) {
   app.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
 }
 
-void add_secure_option(CLI::App& app, std::filesystem::path& folder, const char* text) {
-  app.add_option("--secure", folder, text)->envname("COHORT_SECURE")->type_name("DIR");
-}
-
-void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::string& text) {
-  app.add_option_function<std::string>(
-         "--domain", [&domains](const std::string& value) { domains = cohort::parse_domains(value); }, text)
-      ->envname("COHORT_DOMAIN")
-      ->check(domain_range())
-      ->type_name("N|A..B");
-}
-
 void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, LogFlags& flags) {
   app.add_option("--repeat", options.repeat,
                  "How often to run it, the world built anew each time, the controllers attached")
@@ -136,11 +123,22 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   add_record_options(app, options.record);
   app.add_flag("--paused", options.paused, "Begin paused, until 'cohort ctl resume' or 'step'");
+  app.add_option("--keep-snapshots", options.keep_interval,
+                 "Simulated seconds between snapshots in memory, for 'cohort ctl back' (default: none)")
+      ->check(number_above_zero(most_seconds))
+      ->type_name("S");
   app.add_option("--from", options.from, "Go on from this snapshot of 'cohort ctl save'")->type_name("FILE");
   add_domains(app, options.domains, "DDS domains to serve (default: free ones, or 0 if others start controllers)");
   add_secure_option(app, options.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");
   add_log_options(app, flags);
   app.add_flag("--quiet", flags.quiet, "Print errors only");
+}
+
+void add_record_command_options(CLI::App& app, RecordCommand& command) {
+  add_live_record_options(app, command.record);
+  add_server_option(app, command.server);
+  add_domains(app, command.domains, "DDS domain of the server, the first if it has several (default: 0)");
+  add_secure_option(app, command.secure, "Folder of an identity that looks on or controls (default: $COHORT_SECURE)");
 }
 
 template <class Command>
@@ -150,10 +148,7 @@ void add_client_options(CLI::App& app, Command& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("SEL[,SEL...]");
-  app.add_option("--server", command.server, "Address of the server")
-      ->envname("COHORT_SERVER")
-      ->default_val("127.0.0.1")
-      ->type_name("ADDRESS");
+  add_server_option(app, command.server);
   add_domains(app, command.domains, "DDS domain of the server, or a range: then one of it (default: 0)");
   add_secure_option(app, command.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
 }
@@ -257,6 +252,11 @@ int main(int argc, char** argv) {
   add_ctl_commands(*ctl_app, ctl_command);
   add_log_options(*ctl_app, log_flags);
 
+  RecordCommand record_command;
+  CLI::App* record_app = app.add_subcommand("record", "Record a run of a server from now on");
+  add_record_command_options(*record_app, record_command);
+  add_log_options(*record_app, log_flags);
+
   std::filesystem::path checked_file;
   CLI::App* check_app =
       app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
@@ -348,6 +348,7 @@ int main(int argc, char** argv) {
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
+  if (record_app->parsed()) return record(record_command, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
   if (security_app->parsed()) return security(security_command, log);

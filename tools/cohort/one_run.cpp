@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "server/session/run_recorder.hpp"
 #include "tools/cohort/output_file.hpp"
 #include "tools/cohort/plot.hpp"
-#include "tools/cohort/run_recording.hpp"
 #include "tools/cohort/summary_file.hpp"
 #include "tools/cohort/team_controllers.hpp"
 
@@ -21,13 +21,13 @@ OneRun::OneRun(const RunCommand& command, std::size_t number, std::size_t count,
                const description::Experiment& experiment, Simulation& simulation, recording::Recorder* recorder,
                Log& log)
     : experiment_(experiment),
-      recorder_(recorder),
       log_(log),
       summary_(numbered(command.summary, number, count)),
       plot_(numbered(command.plot, number, count)),
       csv_(numbered(command.csv, number, count)),
       terminal_(log, {.quiet = command.quiet,
                       .own_controllers = command.controllers != Controllers::external && !has_keyboard(experiment)}) {
+  if (recorder != nullptr) recorders_.push_back(recorder);
   if (!plot_.empty()) trace_.emplace(experiment.world, simulation, command.viewpoint);
   if (!experiment.prints.empty()) table_.emplace(experiment, simulation, csv_.empty() && !command.quiet);
 }
@@ -42,7 +42,7 @@ session::RunListener OneRun::listener() {
             if (table_) table_->boundary();
           },
   };
-  if (recorder_ != nullptr) add_recorder(listener, *recorder_);
+  session::add_recorders(listener, recorders_);
   return listener;
 }
 

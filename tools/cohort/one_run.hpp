@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "server/recording/recorder.hpp"
 #include "server/session/run.hpp"
@@ -33,7 +34,7 @@ class OneRun {
   bool write_files(const session::RunResult& result, double cpu_seconds);
 
   const description::Experiment& experiment_;
-  recording::Recorder* recorder_;
+  std::vector<recording::Recorder*> recorders_;  // one or none
   Log& log_;
   std::filesystem::path summary_, plot_, csv_;
   Terminal terminal_;

@@ -98,22 +98,37 @@ std::optional<int> RecordingCommands::run(Log& log, const std::atomic<bool>& sto
   return std::nullopt;
 }
 
-void add_record_options(CLI::App& app, RecordOptions& options) {
+namespace {
+
+// `prefix`: of the options' names.
+void add_recorded_options(CLI::App& app, RecordOptions& options, const std::string& prefix) {
   constexpr double most_hertz = 1e9;
-  app.add_option("--record", options.file, "Record the run to this file (MCAP)")->type_name("FILE");
-  app.add_option("--record-poses", options.pose_rate, "Poses a simulated second in it, 0 for none")
+  app.add_option(prefix + "poses", options.pose_rate, "Poses a simulated second in it, 0 for none")
       ->check(number_from_zero(most_hertz))
       ->type_name("HZ");
-  app.add_option("--record-observations", options.observation_rate, "Observations of a robot a simulated second")
+  app.add_option(prefix + "observations", options.observation_rate, "Observations of a robot a simulated second")
       ->check(number_from_zero(most_hertz))
       ->type_name("HZ");
-  app.add_option("--record-robots", options.robots, "Whose observations: as --robots of 'cohort host'")
+  app.add_option(prefix + "robots", options.robots, "Whose observations: as --robots of 'cohort host'")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("SEL[,SEL...]");
-  app.add_option("--record-snapshots", options.snapshot_interval, "Simulated seconds between snapshots, 0 for none")
+  app.add_option(prefix + "snapshots", options.snapshot_interval, "Simulated seconds between snapshots, 0 for none")
       ->check(number_from_zero(most_seconds))
       ->type_name("S");
+}
+
+}  // namespace
+
+void add_record_options(CLI::App& app, RecordOptions& options) {
+  app.add_option("--record", options.file, "Record the run to this file (MCAP)")->type_name("FILE");
+  add_recorded_options(app, options, "--record-");
+}
+
+void add_live_record_options(CLI::App& app, RecordOptions& options) {
+  app.add_option("-o,--output", options.file, "File to write (MCAP)")->required()->type_name("FILE");
+  add_recorded_options(app, options, "--");
+  app.footer("Example: cohort record --server 10.0.0.5 --domain 7 -o run.mcap");
 }
 
 }  // namespace cohort::tool

@@ -31,5 +31,7 @@ void add_recording_commands(CLI::App& app, RecordingCommands& commands);
 
 /// What `cohort run` and `cohort serve` record.
 void add_record_options(CLI::App& app, RecordOptions& options);
+/// What `cohort record` does.
+void add_live_record_options(CLI::App& app, RecordOptions& options);
 
 }  // namespace cohort::tool

@@ -52,6 +52,13 @@ double speed_of(const RunCommand& command, const description::Experiment& experi
   return command.speed.value_or(has_keyboard(experiment) || has_free ? 1.0 : 0.0);
 }
 
+// At least one step.
+std::chrono::nanoseconds keep_interval_of(const RunCommand& command, const description::Experiment& experiment) {
+  if (command.keep_interval <= 0.0) return std::chrono::nanoseconds(0);
+  return std::max(experiment.world.step,
+                  std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(command.keep_interval)));
+}
+
 void refuse_keyboard(const description::Experiment& experiment) {
   for (const description::Team& team : experiment.teams)
     if (team.controller == keyboard_controller)
@@ -156,7 +163,8 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
   const RunCommand& command = runs.command;
   session::RunOptions options = {.speed = speed_of(command, *world.experiment),
                                  .state = command.paused ? session::PlayState::paused : session::PlayState::playing,
-                                 .from = runs.from};
+                                 .from = runs.from,
+                                 .keep_interval = keep_interval_of(command, *world.experiment)};
   const std::filesystem::path file = numbered(command.record.file, number, count);
   std::optional<recording::Recorder> recorder;
   if (!file.empty()) {
@@ -190,7 +198,10 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
     one.reset();  // it looks at what goes now
     world.simulation.reset();
     world = std::move(*next);
-    options = {.speed = result.next->speed, .state = result.next->state, .from = result.next->snapshot};
+    options = {.speed = result.next->speed,
+               .state = result.next->state,
+               .from = result.next->snapshot,
+               .keep_interval = options.keep_interval};
   }
 }
 
@@ -243,6 +254,10 @@ int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
     if (in_process && command.paused)
       throw std::invalid_argument(
           "a run with its controllers in the server's process cannot be controlled: --paused "
+          "goes with other --controllers");
+    if (in_process && command.keep_interval > 0.0)
+      throw std::invalid_argument(
+          "a run with its controllers in the server's process cannot be controlled: --keep-snapshots "
           "goes with other --controllers");
     runs.from = snapshot_of(command);
     for (const std::filesystem::path& file : command.files) {

@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/controlled_run.hpp"
+
+// What is added, removed, moved and pushed.
+namespace cohort::testing {
+namespace {
+
+using wire::Operation;
+using wire::ResultCode;
+
+wire::EntityState state_of(ControlClient& client, const std::string& name) {
+  wire::Request request = of(Operation::get_entity_state);
+  request.entity = name;
+  const auto reply = client.ask(request, patience, never);
+  EXPECT_TRUE(reply && reply->states.size() == 1) << name;
+  return reply && !reply->states.empty() ? reply->states[0] : wire::EntityState{};
+}
+
+constexpr const char* box = R"(<sdf version="1.9"><model name="box"><link name="body">
+  <inertial><mass>1</mass><inertia><ixx>0.01</ixx><iyy>0.01</iyy><izz>0.01</izz></inertia></inertial>
+  <collision name="hull"><geometry><box><size>0.2 0.2 0.2</size></box></geometry></collision>
+</link></model></sdf>)";
+
+TEST(ControlAtTickBoundariesOnly, ActionsChangeTheWorldAndAreTheSameTwice) {
+  const FieldOfRobots field(2, 1e4);
+  const std::string model = (field / "box.sdf").string();
+  const std::string file = (field / "snapshot").string();
+  write_file(model, box);
+  const auto act = [&](const std::string& threads) {
+    ControlledRun run(field, {"--paused", "--threads", threads});
+    ControlClient client = client_of(run);
+    run.done({"step", "10"});
+    run.done({"spawn", model, "--name", "crate", "--pose", "-2 0 1 0 0 1.5"});
+    EXPECT_EQ(run.done({"entities", "crate"}), "crate\n");
+    EXPECT_EQ(state_of(client, "crate").pose.position.x, -2.0);
+    EXPECT_NEAR(state_of(client, "crate").pose.orientation.z, std::sin(0.75), 1e-12);
+    run.done({"step", "10"});
+    EXPECT_LT(state_of(client, "crate").twist.linear.z, -0.9) << "it falls";
+    run.done({"set-pose", "crate", "--pose", "2 -2 3"});
+    run.done({"set-velocity", "crate", "--linear", "1 0 -0.5", "--angular", "0 0 2"});
+    const wire::EntityState thrown = state_of(client, "crate");
+    EXPECT_EQ(thrown.pose.position, (wire::Vector3{2, -2, 3}));
+    EXPECT_NEAR(thrown.twist.linear.x, 1.0, 1e-12);
+    EXPECT_NEAR(thrown.twist.angular.z, 2.0, 1e-12);
+    run.done({"apply-force", "crate", "--force", "0 0 30", "--duration", "0.1"});
+    run.done({"step", "5"});
+    run.done({"save", file});
+    run.done({"step", "15"});
+    EXPECT_GT(state_of(client, "crate").twist.linear.z, 0.3) << "0.1 s of 30 N against 9.81 N and 0.5 m/s";
+    const std::string hash = run.status()["state_hash"];
+    run.done({"load", file});
+    run.done({"step", "15"});
+    EXPECT_EQ(run.status()["state_hash"], hash) << "with what was spawned, and the push that was under way";
+    run.done({"remove", "crate"});
+    EXPECT_EQ(run.done({"entities", "crate"}), "");
+    run.done({"step", "5"});
+    run.done({"shutdown"});
+    return run.finish();
+  };
+  const auto first = act("1");
+  EXPECT_EQ(act("4")["state_hash"], first["state_hash"]);
+  EXPECT_EQ(first["ticks"], 45);
+  EXPECT_GE(events_of(first, "control").size(), 4u) << first["events"].dump(1);
+}
+
+constexpr const char* lamp = R"(<sdf version="1.9"><model name="lamp"><static>true</static><link name="post">
+  <collision name="hull"><geometry><box><size>0.1 0.1 1</size></box></geometry></collision>
+  <light name="bulb" type="point"><pose>0 0 0.6 0 0 0</pose><diffuse>1 1 1 1</diffuse><attenuation><range>5</range></attenuation></light>
+</link></model></sdf>)";
+
+TEST(ControlAtTickBoundariesOnly, LightsAreSwitchedByTheirObjectOrByName) {
+  const FieldOfRobots field(2, 1e4);
+  const std::string model = (field / "lamp.sdf").string();
+  write_file(model, lamp);
+  ControlledRun run(field, {"--paused"});
+  run.done({"spawn", model, "--name", "lamp", "--pose", "1 1 0.5"});
+  const auto hash = [&] { return run.status()["state_hash"].get<std::string>(); };
+  const std::string lit = hash();
+  run.done({"set-light", "lamp/bulb", "off"});
+  const std::string dark = hash();
+  EXPECT_NE(dark, lit);
+  run.done({"set-light", "lamp", "on"});
+  EXPECT_EQ(hash(), lit);
+  run.done({"set-light", "lamp/bulb", "on", "--intensity", "3", "--color", "1 0 0"});
+  EXPECT_NE(hash(), lit);
+  EXPECT_NE(hash(), dark);
+  const Ended refused = run_to_end(run.ctl({"set-light", "lamp/bulbb", "on"}));
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("did you mean 'bulb'?"), std::string::npos) << refused.err;
+  run.done({"shutdown"});
+  run.finish();
+}
+
+TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndChangeNothing) {
+  const FieldOfRobots field(2, 1e4);
+  ControlledRun run(field, {"--paused"});
+  ControlClient client = client_of(run);
+  const std::string hash = run.status()["state_hash"];
+  wire::Request spawn = of(Operation::spawn_entity);
+  spawn.entity = "crate";
+  const auto result_of = [&](const wire::Request& request) {
+    const auto reply = client.ask(request, patience, never);
+    EXPECT_TRUE(reply && !reply->error_message.empty());
+    return reply ? reply->result : ResultCode::ok;
+  };
+  EXPECT_EQ(result_of(spawn), ResultCode::no_resource);
+  spawn.resource_string = "<sdf version='1.9'><model name='box'><link";
+  EXPECT_EQ(result_of(spawn), ResultCode::operation_failed);
+  spawn.resource_string = box;
+  spawn.pose.orientation = {0, 0, 0, 0};
+  EXPECT_EQ(result_of(spawn), ResultCode::invalid_spawn_pose);
+  spawn.pose.orientation = {0, 0, 0, 1};
+  spawn.entity = "swarm/sbot_0";
+  EXPECT_EQ(result_of(spawn), ResultCode::name_not_unique);
+  for (const Operation operation : {Operation::delete_entity, Operation::apply_force, Operation::set_entity_state}) {
+    wire::Request request = of(operation);
+    request.entity = "swarm/nobody";
+    request.set_pose = true;
+    request.force = {1, 0, 0};
+    EXPECT_EQ(result_of(request), ResultCode::not_found) << wire::name_of(operation);
+  }
+  wire::Request push = of(Operation::set_entity_state);
+  push.entity = "ground";
+  push.set_twist = true;
+  push.twist.linear.x = 1;
+  EXPECT_EQ(result_of(push), ResultCode::operation_failed) << "it is static";
+  wire::Request light = of(Operation::set_light);
+  light.entity = "ground";
+  EXPECT_EQ(result_of(light), ResultCode::operation_failed);
+  EXPECT_EQ(run.status()["state_hash"], hash);
+
+  // Another name where that is allowed, and the reply says which.
+  spawn.allow_renaming = true;
+  spawn.pose.position = {2, 2, 1};
+  const auto renamed = client.ask(spawn, patience, never);
+  ASSERT_TRUE(renamed);
+  EXPECT_EQ(renamed->result, ResultCode::ok) << renamed->error_message;
+  EXPECT_NE(renamed->entity, "swarm/sbot_0");
+  EXPECT_EQ(state_of(client, renamed->entity).pose.position.x, 2.0);
+  EXPECT_NE(run.status()["state_hash"], hash);
+  run.done({"shutdown"});
+  run.finish();
+}
+
+}  // namespace
+}  // namespace cohort::testing

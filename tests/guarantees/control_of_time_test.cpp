@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include "tests/support/controlled_run.hpp"
+
+// Back to the beginning, to a snapshot, and to what is kept.
+namespace cohort::testing {
+namespace {
+
+using wire::Operation;
+using wire::ResultCode;
+
+TEST(ControlAtTickBoundariesOnly, AResetGivesTheBitsOfTheFirstRunAndAnotherSeedThoseOfAnother) {
+  const FieldOfRobots field(4, 5.0);
+  const std::string expected = reference(field);
+  ControlledRun run(field, {"--speed", "10"});
+  EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 30; }));
+  EXPECT_NE(run.done({"reset", "--seed", "77"}).find("run 2 stands at tick 0, with seed 77"), std::string::npos);
+  EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 10; }));
+  EXPECT_EQ(run.status()["seed"], 77);
+  run.done({"reset", "--seed", "1"});
+  run.done({"speed", "max"});
+  const auto summary = run.finish();
+  EXPECT_EQ(summary["state_hash"], expected);
+  EXPECT_EQ(summary["ticks"], 500);
+  EXPECT_EQ(run.host().wait_for_exit(), 0) << "one process for all: " << run.host().output();
+}
+
+TEST(ControlAtTickBoundariesOnly, ASnapshotGoesOnWithTheSameBitsHereAndElsewhere) {
+  for (const char* team : {"", ", delay: 2"}) {
+    const FieldOfRobots field(4, 5.0, team);
+    const std::string expected = reference(field);
+    const std::string file = (field / "snapshot").string();
+    ControlledRun run(field, {"--paused"});
+    run.done({"step", "200"});
+    run.done({"save", file});
+    const std::string hash = run.status()["state_hash"];
+    run.done({"step", "150"});
+    EXPECT_NE(run.done({"load", file}).find("run 2 stands at tick 200"), std::string::npos);
+    EXPECT_EQ(run.status()["state_hash"], hash);
+    EXPECT_EQ(run.status()["state"], "paused") << "as before";
+    run.done({"resume"});
+    const auto summary = run.finish();
+    EXPECT_EQ(summary["state_hash"], expected) << team;
+    EXPECT_EQ(summary["ticks"], 500) << "the duration counts from the beginning of the world";
+    EXPECT_EQ(reference(field, {"--from", file}), expected) << "in one process" << team;
+    EXPECT_EQ(run_experiment(field.file(), {"--from", file})["state_hash"], expected) << "over DDS" << team;
+  }
+}
+
+TEST(ControlAtTickBoundariesOnly, ASnapshotOfSomethingElseIsRefusedAndTheRunGoesOn) {
+  const FieldOfRobots field(2, 1e4), other(3, 1e4);
+  const std::string file = (field / "snapshot").string();
+  {
+    ControlledRun run(other, {"--paused"});
+    run.done({"step", "3"});
+    run.done({"save", file});
+    run.done({"shutdown"});
+    run.finish();
+  }
+  ControlledRun run(field, {"--paused"});
+  run.done({"step", "3"});
+  const auto refusal = [&] {
+    const Ended refused = run_to_end(run.ctl({"load", file}));
+    EXPECT_EQ(refused.exit_code, 1);
+    return refused.err;
+  };
+  const std::string of_another = refusal();
+  EXPECT_NE(of_another.find("the snapshot"), std::string::npos) << of_another;
+  std::string bytes = read_file(file);
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_file(file, bytes);
+  const std::string damaged = refusal();
+  EXPECT_NE(damaged.find("damaged"), std::string::npos) << damaged;
+  EXPECT_EQ(run.done({"step", "3"}), "paused at tick 6\n");
+  const Ended from = run_to_end({cohort_program(), "run", field.file(), "--from", file});
+  EXPECT_EQ(from.exit_code, 2);
+  EXPECT_NE(from.err.find(file + ": the snapshot is damaged"), std::string::npos) << from.err;
+  run.done({"shutdown"});
+  run.finish();
+}
+
+TEST(ControlAtTickBoundariesOnly, GoesBackToWhatIsKept) {
+  const FieldOfRobots field(4, 5.0);
+  ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
+  run.done({"step", "200"});
+  const std::string hash = run.status()["state_hash"];
+  run.done({"step", "140"});
+  EXPECT_EQ(run.done({"back", "2.3"}), "run 2 stands at tick 200, with seed 1\n");
+  EXPECT_EQ(run.status()["state_hash"], hash);
+  EXPECT_EQ(run.status()["state"], "paused") << "as before";
+  EXPECT_EQ(run.done({"back", "0.99"}), "run 3 stands at tick 50, with seed 1\n");
+  EXPECT_EQ(run.done({"back", "4"}), "run 4 stands at tick 50, with seed 1\n") << "what came later has not been yet";
+  run.done({"step", "150"});
+  EXPECT_EQ(run.status()["state_hash"], hash);
+  EXPECT_EQ(run.done({"back", "1"}), "run 5 stands at tick 100, with seed 1\n") << "kept anew";
+  run.done({"reset"});
+  EXPECT_EQ(run.done({"back", "1"}), "run 7 stands at tick 0, with seed 1\n") << "another run, with a past of its own";
+  run.done({"resume"});
+  EXPECT_EQ(run.finish()["state_hash"], reference(field));
+}
+
+TEST(ControlAtTickBoundariesOnly, GoesBackToNothingThatIsNotKept) {
+  const FieldOfRobots field(2, 1e4);
+  ControlledRun run(field, {"--paused"});
+  run.done({"step", "10"});
+  const Ended refused = run_to_end(run.ctl({"back", "0.05"}));
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("--keep-snapshots"), std::string::npos) << refused.err;
+  EXPECT_EQ(run.tick(), 10u);
+  run.done({"shutdown"});
+  run.finish();
+}
+
+TEST(ControlAtTickBoundariesOnly, DataOfManyMegabytesGoesInPartsAndIsBounded) {
+  const FieldOfRobots field(2, 1e4);
+  ControlledRun run(field, {"--paused"});
+  ControlClient client = client_of(run);
+  const std::vector<std::byte> nonsense(20'000'000, std::byte{'x'});
+  try {
+    client.load(nonsense, patience, never);
+    ADD_FAILURE() << "it loads anything";
+  } catch (const ControlError& error) {
+    EXPECT_NE(std::string(error.what()).find("this is no snapshot"), std::string::npos) << error.what();
+  }
+  const std::vector<std::byte> too_large(wire::largest_data + 1);
+  EXPECT_THROW(client.load(too_large, patience, never), ControlError);
+  EXPECT_EQ(run.done({"step"}), "paused at tick 1\n");
+  run.done({"shutdown"});
+  run.finish();
+}
+
+TEST(ControlAtTickBoundariesOnly, SnapshotsOfManyRobotsComeWhole) {
+  const FieldOfRobots field(400, 1e4);
+  ControlledRun run(field, {"--paused"});
+  run.done({"step", "2"});
+  const std::string file = (field / "snapshot").string();
+  run.done({"save", file});
+  const std::string hash = run.status()["state_hash"];
+  EXPECT_GT(std::filesystem::file_size(file), 2 * wire::largest_part);
+  run.done({"step", "2"});
+  run.done({"load", file});
+  EXPECT_EQ(run.status()["state_hash"], hash);
+  run.done({"shutdown"});
+  run.finish();
+}
+
+}  // namespace
+}  // namespace cohort::testing

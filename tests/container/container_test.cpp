@@ -149,21 +149,25 @@ class ComposeFiles : public Container, public ::testing::WithParamInterface<cons
 
 TEST_P(ComposeFiles, RunServerControllersAndRecorderToTheBitsOfOneProcess) {
   if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose";
-  std::vector<std::string> project = {"--project-name", fmt::format("cohort-test-{}", getpid()), "--file",
-                                      COHORT_SOURCE_DIR "/docker/compose.yaml"};
-  if (*GetParam() != '\0') project.insert(project.end(), {"--file", GetParam()});
+  const std::string project = fmt::format("cohort-test-{}", getpid());
+  std::vector<std::string> files = {"--project-name", project, "--file", COHORT_SOURCE_DIR "/docker/compose.yaml"};
+  if (*GetParam() != '\0') files.insert(files.end(), {"--file", GetParam()});
   const auto compose = [&](const std::vector<std::string>& arguments) {
-    std::vector<std::string> command = project;
+    std::vector<std::string> command = files;
     command.insert(command.end(), arguments.begin(), arguments.end());
     return podman->compose(command);
   };
   const Ended run = compose({"up", "--no-build"});
   const bool has_names = run.out.find("name resolution") == std::string::npos;
+  const Ended replayed = (*podman)(
+      {"run", "--rm", "--volume", project + "_state:/var/lib/cohort:ro", image, "replay", "run.mcap", "--verify"});
   EXPECT_EQ(compose({"down", "--volumes"}).exit_code, 0);
   if (!has_names)
     GTEST_SKIP() << "podman knows no names of containers: golang-github-containernetworking-plugin-dnsname";
   const auto summary = run_demo({"--controllers", "inprocess"});
   EXPECT_NE(run.out.find(summary.value("state_hash", "no summary")), std::string::npos) << run.out;
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out << run.out;
+  EXPECT_NE(replayed.out.find("identical"), std::string::npos) << replayed.out;
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, ComposeFiles, ::testing::Values("", COHORT_SOURCE_DIR "/docker/compose.secure.yaml"),

@@ -9,9 +9,8 @@
 #include "tools/cohort/build_facts.hpp"
 #include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
-#include "tools/cohort/completion.hpp"
 #include "tools/cohort/log.hpp"
-#include "tools/cohort/man_page.hpp"
+#include "tools/cohort/page_commands.hpp"
 #include "tools/cohort/recording_options.hpp"
 #include "tools/cohort/usage.hpp"
 
@@ -33,7 +32,6 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-const std::map<std::string, Shell> shells = {{"bash", Shell::bash}, {"zsh", Shell::zsh}, {"fish", Shell::fish}};
 const std::vector<std::string> log_formats = {"text", "json"};
 const std::vector<std::pair<std::string, LogLevel>> log_levels = {{"debug", LogLevel::debug},
                                                                   {"info", LogLevel::info},
@@ -177,9 +175,13 @@ void add_samples_options(CLI::App& app, SamplesCommand& command) {
   app.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
 }
 
-int print(const std::string& text) {
-  std::cout << text;
-  return exit_ok;
+void log_dds_to(Log& log) {
+  dds_log = &log;
+  cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
+    using cohort::wire::DdsLogKind;
+    if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
+    dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
+  });
 }
 
 }  // namespace
@@ -301,17 +303,8 @@ int main(int argc, char** argv) {
   add_log_options(*help_app, log_flags);
   help_app->footer("Example: cohort help sensors");
 
-  std::string shell;
-  CLI::App* completion_app = app.add_subcommand("completion", "Print a script that completes command lines in a shell");
-  completion_app->add_option("SHELL", shell, "Which one")
-      ->required()
-      ->check(one_of({"bash", "zsh", "fish"}))
-      ->type_name("bash|zsh|fish");
-  add_log_options(*completion_app, log_flags);
-  completion_app->footer("Example: source <(cohort completion bash)");
-  CLI::App* man_page_app = app.add_subcommand("man-page", "Print the manual page, which tells what all of --help tell");
-  add_log_options(*man_page_app, log_flags);
-  man_page_app->footer("Example: cohort man-page | man -l -");
+  const PageCommands page_commands(app);
+  for (CLI::App* page_app : page_commands.apps()) add_log_options(*page_app, log_flags);
 
   BenchOptions bench_options;
   CLI::App* bench_app = add_bench(app, bench_options);
@@ -336,12 +329,7 @@ int main(int argc, char** argv) {
   run_options.quiet = serve_options.quiet = log_flags.quiet;
 
   Log log(*options);
-  dds_log = &log;
-  cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
-    using cohort::wire::DdsLogKind;
-    if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
-    dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
-  });
+  log_dds_to(log);
   const std::atomic<bool>& stop_requested = cohort::stop_on_signals();
   if (run_app->parsed()) return run(run_options, log, stop_requested);
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
@@ -355,8 +343,7 @@ int main(int argc, char** argv) {
   if (doctor_app->parsed()) return doctor(doctor_command, log);
   if (const auto code = recording_commands.run(log, stop_requested)) return *code;
   if (help_app->parsed()) return help(help_topic, log);
-  if (completion_app->parsed()) return print(completion(command_tree(app), shells.at(shell)));
-  if (man_page_app->parsed()) return print(man_page(command_tree(app)));
+  if (const auto code = page_commands.run()) return *code;
   if (bench_app->parsed()) return bench(bench_options.command(), log, stop_requested);
   return check(checked_file, log);
 }

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tests/container/podman.hpp"
+#include "tests/support/file_lock.hpp"
 
 namespace cohort::testing {
 namespace {
@@ -27,6 +28,7 @@ class Container : public ::testing::Test {
     missing = make_base(folder);
     if (missing) return;
     podman.emplace(folder / "podman");
+    const FileLock lock(folder / "podman/lock");
     missing = podman->prepare(folder);
     if (missing) return;
     // The first is named so that it stays, for what of it is needed again.

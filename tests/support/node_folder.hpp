@@ -1,15 +1,13 @@
 #pragma once
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "tests/support/file_lock.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::testing {
@@ -26,10 +24,8 @@ class NodeFolder {
     if (node_.empty()) return "there is no node: Debian's packages nodejs and npm";
     if (npm_.empty()) return "there is no npm: Debian's package npm";
     std::filesystem::create_directories(folder_);
-    const int lock = open((folder_ / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    flock(lock, LOCK_EX);
+    const FileLock lock(folder_ / "lock");
     install(script);
-    close(lock);
     return std::nullopt;
   }
 

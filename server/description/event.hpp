@@ -111,6 +111,7 @@ struct History {
 /// What a recording holds beside what replays the run. Rates are of simulated time, in whole ticks; 0: none.
 struct Recorded {
   double pose_rate = 10.0;              ///< of every object that moves [Hz]
+  double joint_rate = 0.0;              ///< of joint states, and of the poses of all links [Hz]
   double observation_rate = 0.0;        ///< at the most, and no more often than the robot is asked [Hz]
   std::vector<std::uint32_t> observed;  ///< robots, ascending
   std::chrono::nanoseconds snapshot_interval = std::chrono::seconds(30);

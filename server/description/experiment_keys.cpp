@@ -134,6 +134,7 @@ constexpr ExtensionKey history[] = {
 
 constexpr ExtensionKey record[] = {
     {"poses", non_negative, "Hz", "10", "how often the poses of all that moves"},
+    {"joints", non_negative, "Hz", "0", "how often the states of all joints, and the poses of all links"},
     {"observations", non_negative, "Hz", "0", "how often what robots observe, at the most as often as they are asked"},
     {"robots", name, "", "all", "a selector or a list of selectors: whose observations", true},
     {"snapshots", non_negative, "s", "30", "from one snapshot of the world to the next; 0: none"},

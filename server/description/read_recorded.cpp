@@ -12,6 +12,7 @@ namespace cohort::description {
 
 void read_recorded(const CourseEntry& entry, const World& world, Recorded& recorded) {
   if (entry.values().has("poses")) recorded.pose_rate = entry.values().real("poses");
+  if (entry.values().has("joints")) recorded.joint_rate = entry.values().real("joints");
   if (entry.values().has("observations")) recorded.observation_rate = entry.values().real("observations");
   recorded.snapshot_interval = entry.time("snapshots").value_or(recorded.snapshot_interval);
   if (!entry.is_written("robots")) return;

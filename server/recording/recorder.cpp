@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <set>
 
 #include "server/recording/disk_file.hpp"
 #include "server/recording/facts.hpp"
@@ -27,6 +28,28 @@ std::vector<RecordedChannel> recorded(const std::vector<cohort::Channel>& channe
   result.reserve(channels.size());
   for (const cohort::Channel& channel : channels) result.push_back({channel.name, channel.unit, channel.size});
   return result;
+}
+
+ros::TransformStamped transform(const std::string& frame, const Pose& X_WF, const ros::Time& now) {
+  const auto& p = X_WF.position;
+  const auto& q = X_WF.orientation;
+  return {{now, "world"}, frame, {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+// Of the joints that have one coordinate.
+ros::JointState joint_state(const description::Model& model, const physics::World& world, std::uint32_t body,
+                            ros::Header header) {
+  ros::JointState state;
+  state.header = std::move(header);
+  for (std::size_t joint = 0; joint < model.joints.size(); ++joint) {
+    const description::JointType type = model.joints[joint].type;
+    if (type != description::JointType::revolute && type != description::JointType::prismatic) continue;
+    state.name.push_back(model.joints[joint].name);
+    state.position.push_back(world.joint_position(body, joint));
+    state.velocity.push_back(world.joint_velocity(body, joint));
+    state.effort.push_back(world.joint_effort(body, joint));
+  }
+  return state;
 }
 
 // A message with a field for each channel, whose names ROS allows.
@@ -84,6 +107,7 @@ void Recorder::begin(const description::Experiment& experiment, const Simulation
   simulation_ = &simulation;
   const std::chrono::nanoseconds step = experiment.world.step;
   pose_interval_ = ticks_at_rate(recorded_.pose_rate, step);
+  joint_interval_ = ticks_at_rate(recorded_.joint_rate, step);
   observation_interval_ = ticks_at_rate(recorded_.observation_rate, step);
   snapshot_interval_ = ticks_every(recorded_.snapshot_interval, step);
   if (observed_.empty() && observation_interval_ != 0) add_observed();
@@ -95,12 +119,26 @@ void Recorder::begin(const description::Experiment& experiment, const Simulation
 }
 
 void Recorder::add_observed() {
+  const std::span<const RobotKind> kinds = simulation_->kinds();
+  sensors_.resize(kinds.size());
+  std::set<std::uint32_t> seen;
+  for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
+    if (const std::uint32_t kind = simulation_->kind_of(robot); seen.insert(kind).second)
+      sensors_[kind] = standard_sensors(simulation_->description().robot_model(robot), kinds[kind]);
   std::vector<SchemaId> schemas;
-  for (const RobotKind& kind : simulation_->kinds())
+  for (const RobotKind& kind : kinds)
     schemas.push_back(file_.add_schema(observation_type(kind.model), "ros2msg", observation_schema(kind)));
+  std::map<std::string, SchemaId> schema_of;  // by type
   for (const std::uint32_t robot : recorded_.observed) {
-    const std::string topic = "/" + simulation_->robot_name(robot) + observation_topic_end;
-    observed_.push_back({robot, {add_ros_channel(file_, topic, schemas[simulation_->kind_of(robot)])}});
+    const std::string name = "/" + simulation_->robot_name(robot);
+    const std::uint32_t kind = simulation_->kind_of(robot);
+    Observed& observed = observed_.emplace_back();
+    observed.robot = robot;
+    observed.topic = {add_ros_channel(file_, name + observation_topic_end, schemas[kind])};
+    for (const StandardSensor& sensor : sensors_[kind]) {
+      if (!schema_of.contains(sensor.type)) schema_of[sensor.type] = sensor.add_schema(file_);
+      observed.sensors.push_back({add_ros_channel(file_, name + "/" + sensor.name, schema_of[sensor.type])});
+    }
   }
 }
 
@@ -146,6 +184,7 @@ void Recorder::boundary() {
   keep_commands();
   if (is_now(snapshot_interval_) && simulation_->tick() > 0) write_snapshot(Importance::display);
   if (is_now(pose_interval_)) write_poses();
+  if (is_now(joint_interval_)) write_joints();
   if (is_now(observation_interval_)) write_observations();
 }
 
@@ -189,13 +228,34 @@ void Recorder::write_poses() {
   const Objects& objects = simulation_->objects();
   for (std::uint32_t object = 0; object < objects.size(); ++object) {
     if (!objects.is_present(object) || is_static(object)) continue;
-    const Pose X_WL = simulation_->object_pose(object);
-    const auto& p = X_WL.position;
-    const auto& q = X_WL.orientation;
-    message.transforms.push_back(
-        {{now, "world"}, objects.name(object), {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}});
+    message.transforms.push_back(transform(objects.name(object), simulation_->object_pose(object), now));
   }
   write(transforms_, message, Importance::display);
+}
+
+// Of all that has joints, with the poses of all links but the root's, which is among the poses.
+void Recorder::write_joints() {
+  const ros::Time now = ros::time(simulation_->time());
+  ros::TFMessage places;
+  const Objects& objects = simulation_->objects();
+  for (std::uint32_t object = 0; object < objects.size(); ++object) {
+    const description::Model& model = simulation_->description().models[simulation_->world().model_of(object)];
+    if (!objects.is_present(object) || model.joints.empty()) continue;
+    for (std::size_t link = 1; link < model.links.size(); ++link)
+      places.transforms.push_back(transform(objects.name(object) + "/" + model.links[link].name,
+                                            simulation_->world().link_pose(object, link), now));
+    const ros::JointState state = joint_state(model, simulation_->world(), object, {now, objects.name(object)});
+    if (!state.name.empty()) write(topic_of_joints(object), state, Importance::display);
+  }
+  if (!places.transforms.empty()) write(transforms_, places, Importance::display);
+}
+
+Recorder::Topic& Recorder::topic_of_joints(std::uint32_t object) {
+  const std::string& name = simulation_->objects().name(object);
+  const auto known = joints_.find(name);
+  if (known != joints_.end()) return known->second;
+  if (joint_schema_ == 0) joint_schema_ = add_ros_schema<ros::JointState>(file_);
+  return joints_[name] = {add_ros_channel(file_, "/" + name + "/joint_states", joint_schema_)};
 }
 
 bool Recorder::is_static(std::uint32_t object) const {
@@ -204,12 +264,31 @@ bool Recorder::is_static(std::uint32_t object) const {
 
 void Recorder::write_observations() {
   const ros::Time now = ros::time(simulation_->time());
-  for (auto& [robot, topic] : observed_) {
+  ros::TFMessage places;
+  for (auto& [robot, topic, sensors] : observed_) {
     if (!simulation_->is_present(robot) || !simulation_->is_due(robot, simulation_->tick())) continue;
     cdr_.clear();
     cdr_.add(now);
     for (const double value : simulation_->observation(robot)) cdr_.add(value);
     write_bytes(topic, cdr_.bytes(), Importance::display);
+    write_sensors(robot, sensors, places);
+  }
+  if (!places.transforms.empty()) write(transforms_, places, Importance::display);
+}
+
+void Recorder::write_sensors(std::uint32_t robot, std::span<Topic> topics, ros::TFMessage& places) {
+  const std::vector<StandardSensor>& sensors = sensors_[simulation_->kind_of(robot)];
+  const std::string* placed = nullptr;  // the device that was placed last
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const StandardSensor& sensor = sensors[i];
+    const ros::Header header{ros::time(simulation_->time()), simulation_->robot_name(robot) + "/" + sensor.device};
+    cdr_.clear();
+    sensor.add(cdr_, header, simulation_->observation(robot));
+    write_bytes(topics[i], cdr_.bytes(), Importance::display);
+    if (!sensor.place || (placed != nullptr && *placed == sensor.device)) continue;
+    placed = &sensor.device;
+    places.transforms.push_back(
+        transform(header.frame_id, sensor.place(simulation_->world(), simulation_->body_of(robot)), header.stamp));
   }
 }
 

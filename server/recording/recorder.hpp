@@ -2,16 +2,19 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/description/experiment.hpp"
 #include "server/recording/recording_file.hpp"
 #include "server/recording/ros_messages.hpp"
 #include "server/recording/run_messages.hpp"
+#include "server/recording/standard_sensors.hpp"
 #include "server/simulation/simulation.hpp"
 
 namespace cohort::recording {
@@ -67,7 +70,10 @@ class Recorder {
   void write_roster();
   void write_snapshot(Importance importance);
   void write_poses();
+  void write_joints();
   void write_observations();
+  void write_sensors(std::uint32_t robot, std::span<Topic> topics, ros::TFMessage& places);
+  Topic& topic_of_joints(std::uint32_t object);
   void keep_commands();
   bool is_now(std::uint64_t interval) const { return interval != 0 && simulation_->tick() % interval == 0; }
 
@@ -81,13 +87,18 @@ class Recorder {
   std::chrono::nanoseconds last_log_time_{0};
   // In ticks; 0: never.
   std::uint64_t pose_interval_ = 0;
+  std::uint64_t joint_interval_ = 0;
   std::uint64_t observation_interval_ = 0;
   std::uint64_t snapshot_interval_ = 0;
   struct Observed {
     std::uint32_t robot = 0;
     Topic topic;
+    std::vector<Topic> sensors;  // as those of its kind
   };
   std::vector<Observed> observed_;
+  std::vector<std::vector<StandardSensor>> sensors_;  // by kind
+  std::map<std::string, Topic> joints_;               // by object
+  SchemaId joint_schema_ = 0;
   // As they stand at the boundary, robot after robot: an empty battery changes them too.
   std::vector<double> commands_before_;
   std::vector<std::size_t> command_offsets_;  // by robot

@@ -199,6 +199,42 @@ struct LaserScan {
   bool operator==(const LaserScan&) const = default;
 };
 
+/// A number of each point: `offset` bytes from its beginning, `count` of `datatype`.
+struct PointField {
+  std::string name{};
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 0;
+  std::uint32_t count = 0;
+  static constexpr std::uint8_t float32 = 7;
+  static constexpr const char* type = "sensor_msgs/msg/PointField";
+  static constexpr auto fields =
+      std::tuple(field("name", &PointField::name), field("offset", &PointField::offset),
+                 field("datatype", &PointField::datatype), field("count", &PointField::count));
+  bool operator==(const PointField&) const = default;
+};
+
+/// `height` rows of `width` points of `point_step` bytes.
+struct PointCloud2 {
+  Header header{};
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::vector<PointField> point_fields{};
+  bool is_bigendian = false;
+  std::uint32_t point_step = 0;
+  std::uint32_t row_step = 0;
+  std::vector<std::uint8_t> data{};
+  bool is_dense = false;
+  static constexpr const char* type = "sensor_msgs/msg/PointCloud2";
+  static constexpr auto fields = std::tuple(
+      field("header", &PointCloud2::header), field("height", &PointCloud2::height), field("width", &PointCloud2::width),
+      field("fields", &PointCloud2::point_fields), field("is_bigendian", &PointCloud2::is_bigendian),
+      field("point_step", &PointCloud2::point_step), field("row_step", &PointCloud2::row_step),
+      field("data", &PointCloud2::data), field("is_dense", &PointCloud2::is_dense));
+  bool operator==(const PointCloud2&) const = default;
+  /// One row of points x, y, z [m], three numbers each.
+  void set_points(const std::vector<float>& coordinates);
+};
+
 /// Covariances row by row; -1 as the first number: this quantity is not measured.
 struct Imu {
   Header header{};
@@ -317,6 +353,7 @@ struct BatteryState {
   std::vector<float> cell_temperature{};
   std::string location{};
   std::string serial_number{};
+  static constexpr std::uint8_t discharging = 2;
   static constexpr const char* type = "sensor_msgs/msg/BatteryState";
   static constexpr auto fields = std::tuple(
       field("header", &BatteryState::header), field("voltage", &BatteryState::voltage),

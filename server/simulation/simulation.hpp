@@ -82,6 +82,8 @@ class Simulation {
   std::span<const RobotKind> kinds() const { return kinds_; }
   std::uint32_t kind_of(std::uint32_t robot) const { return robots_[robot].kind; }
   const description::Policy& policy(std::uint32_t robot) const { return robots_[robot].policy; }
+  /// Its body in `world()`, which is its index among `objects()`.
+  std::uint32_t body_of(std::uint32_t robot) const { return robots_[robot].body; }
   /// Whether the robot is in the world: an event of the experiment may bring it later, or take it out.
   bool is_present(std::uint32_t robot) const { return objects_.is_present(robots_[robot].body); }
   /// Whether the robot is asked at this tick, if it is in the world then.

@@ -176,7 +176,7 @@ TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
                               ros::PoseArray, ros::Transform, ros::TransformStamped, ros::Twist, ros::TwistStamped,
                               ros::WrenchStamped, ros::TFMessage, ros::LaserScan, ros::Imu, ros::MagneticField,
                               ros::FluidPressure, ros::Temperature, ros::RelativeHumidity, ros::JointState, ros::Range,
-                              ros::BatteryState, ros::NavSatFix>;
+                              ros::BatteryState, ros::NavSatFix, ros::PointCloud2>;
   write_all(static_cast<Messages*>(nullptr));
   writer.close();
   const TemporaryFile file(bytes);
@@ -206,6 +206,81 @@ TEST_F(OfficialReader, ReadsARunOfCohort) {
   ASSERT_EQ(messages["/explorers/sbot_7/observation"].size(), 11u);
   EXPECT_TRUE(messages["/explorers/sbot_7/observation"][5]["proximity_3_reading"].is_number());
   ASSERT_GE(found["attachments"].size(), 3u) << "experiment, world and robot";
+}
+
+// A wall 2 m before a robot that has every sensor for which ROS has a message, and an arm.
+constexpr const char* sensors = R"(world:
+  name: sensors
+  gravity: [0, 0, -9.81]
+  magnetic_field: [2e-5, 0, -4e-5]
+  model:
+    - {name: wall, static: true, pose: [2.05, 0, 0, 0, 0, 0], link: {name: body, collision: {name: wall, geometry: {box: {size: [0.1, 8, 8]}}}}}
+    - name: robot
+      cohort:battery: {name: cell, capacity: 3600, charge: 0.75, idle_power: 0}
+      cohort:climate_sensor: {name: air, link: base}
+      cohort:accelerometer: {name: shake, link: base}
+      joint:
+        - {name: mount, type: fixed, parent: world, child: base}
+        - {name: hinge, type: revolute, parent: base, child: arm, axis: {xyz: [0, 1, 0], limit: {lower: 0, upper: 0}},
+           sensor: {name: strain, type: force_torque, force_torque: {frame: child, measure_direction: child_to_parent}}}
+      link:
+        - name: base
+          inertial: {mass: 1}
+          sensor:
+            - {name: scan, type: lidar, pose: [0, 0, 0.5, 0, 0, 0], lidar: {scan: {horizontal: {samples: 5, min_angle: -1, max_angle: 1}}, range: {min: 0.1, max: 3}}}
+            - {name: cloud, type: lidar, lidar: {scan: {horizontal: {samples: 3, min_angle: -2, max_angle: 2}, vertical: {samples: 2, min_angle: 0, max_angle: 0.5}}, range: {min: 0.1, max: 3}}}
+            - {name: imu, type: imu}
+            - {name: compass, type: magnetometer}
+            - {name: barometer, type: air_pressure}
+        - {name: arm, pose: [0, 0, 1, 0, 0, 0], inertial: {mass: 2}}
+)";
+
+TEST_F(OfficialReader, ReadsStandardSensorsAsRosHasThem) {
+  const testing::ScratchFolder scratch;
+  testing::write_file(scratch / "world.yaml", sensors);
+  testing::write_file(scratch / "experiment.yaml",
+                      "world: world.yaml\nduration: 1\nrecord: {observations: 10, joints: 5}\n"
+                      "teams:\n  - {name: all, robots: robot, controller: constant}\n");
+  testing::run_experiment(scratch / "experiment.yaml",
+                          {"--controllers", "inprocess", "--record", scratch / "run.mcap"});
+  const json found = read(scratch / "run.mcap");
+  std::map<std::string, json> last;  // by topic
+  for (const json& message : found["messages"]) last[message["topic"]] = message["message"];
+  const auto near = [](const json& value, double expected, double tolerance = 1e-6) {
+    return value.is_number() && std::abs(value.get<double>() - expected) < tolerance;
+  };
+
+  const json& scan = last["/robot/scan"];
+  EXPECT_EQ(scan["header"]["frame_id"], "robot/scan");
+  EXPECT_EQ(scan["header"]["stamp"]["sec"], 1);
+  EXPECT_TRUE(near(scan["angle_increment"], 0.5)) << scan;
+  ASSERT_EQ(scan["ranges"].size(), 5U);
+  EXPECT_TRUE(near(scan["ranges"][2], 2.0)) << scan;
+  EXPECT_TRUE(near(scan["ranges"][1], 2.0 / std::cos(0.5))) << scan;
+  EXPECT_TRUE(scan["ranges"][0].is_null()) << "infinite: nothing within 3 m. " << scan;
+  const json& cloud = last["/robot/cloud"];
+  EXPECT_EQ(cloud["width"], 2) << "straight ahead, in both rows";
+  EXPECT_EQ(cloud["data"].size(), 24U);
+  EXPECT_EQ(cloud["fields"][2]["name"], "z");
+  EXPECT_TRUE(near(last["/robot/imu"]["linear_acceleration"]["z"], 9.81)) << last["/robot/imu"];
+  EXPECT_TRUE(near(last["/robot/imu"]["orientation"]["w"], 1.0)) << last["/robot/imu"];
+  EXPECT_EQ(last["/robot/shake"]["orientation_covariance"][0], -1.0) << "not measured";
+  EXPECT_TRUE(near(last["/robot/compass"]["magnetic_field"]["z"], -4e-5, 1e-12)) << last["/robot/compass"];
+  EXPECT_TRUE(near(last["/robot/barometer"]["fluid_pressure"], 101325.0, 1.0)) << last["/robot/barometer"];
+  EXPECT_TRUE(near(last["/robot/cell"]["percentage"], 0.75)) << last["/robot/cell"];
+  EXPECT_TRUE(last["/robot/air/temperature"]["temperature"].is_number());
+  EXPECT_TRUE(last["/robot/air/humidity"]["relative_humidity"].is_number());
+  EXPECT_TRUE(near(last["/robot/strain"]["wrench"]["force"]["z"], -2 * 9.81, 1e-3)) << last["/robot/strain"];
+  EXPECT_EQ(last["/robot/joint_states"]["name"], json{"hinge"});
+
+  std::map<std::string, json> places;  // by frame
+  for (const json& message : found["messages"])
+    if (message["topic"] == "/tf")
+      for (const json& each : message["message"]["transforms"]) places[each["child_frame_id"]] = each["transform"];
+  EXPECT_EQ(places["robot/scan"]["translation"]["z"], 0.5);
+  EXPECT_EQ(places["robot/arm"]["translation"]["z"], 1.0);
+  EXPECT_TRUE(places.contains("robot/strain"));
+  EXPECT_FALSE(places.contains("robot/cell")) << "it is nowhere";
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ enum class Controllers {
 struct RecordOptions {
   std::filesystem::path file;                 ///< empty: no recording
   std::optional<double> pose_rate{};          ///< [Hz]
+  std::optional<double> joint_rate{};         ///< [Hz]
   std::optional<double> observation_rate{};   ///< [Hz]
   std::vector<std::string> robots{};          ///< selectors: whose observations
   std::optional<double> snapshot_interval{};  ///< [s]

@@ -25,6 +25,7 @@ constexpr milliseconds until_a_notice{2'000};
 std::string recorded_text(const RecordOptions& options) {
   nlohmann::json text;
   if (options.pose_rate) text["poses"] = *options.pose_rate;
+  if (options.joint_rate) text["joints"] = *options.joint_rate;
   if (options.observation_rate) text["observations"] = *options.observation_rate;
   if (options.snapshot_interval) text["snapshots"] = *options.snapshot_interval;
   if (!options.robots.empty()) text["robots"] = options.robots;

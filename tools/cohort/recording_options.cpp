@@ -106,6 +106,9 @@ void add_recorded_options(CLI::App& app, RecordOptions& options, const std::stri
   app.add_option(prefix + "poses", options.pose_rate, "Poses a simulated second in it, 0 for none")
       ->check(number_from_zero(most_hertz))
       ->type_name("HZ");
+  app.add_option(prefix + "joints", options.joint_rate, "Joint states and poses of all links a simulated second")
+      ->check(number_from_zero(most_hertz))
+      ->type_name("HZ");
   app.add_option(prefix + "observations", options.observation_rate, "Observations of a robot a simulated second")
       ->check(number_from_zero(most_hertz))
       ->type_name("HZ");

@@ -14,10 +14,6 @@ std::string script_for(const std::string& shell) {
   return ended.out;
 }
 
-bool is_installed(const std::string& program) {
-  return run_to_end({"/bin/sh", "-c", "command -v " + program}).exit_code == 0;
-}
-
 struct Case {
   std::string written;  ///< the last word is being completed
   std::string offered;  ///< one of the completions

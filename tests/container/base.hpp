@@ -9,17 +9,12 @@
 
 namespace cohort::testing {
 
-/// Runs to its end, however long that takes: ctest has a limit.
+/// Runs to its end, however long that takes: ctest has a limit. All that it writes is in `out`.
 inline Ended run_for_long(std::vector<std::string> command, const Process::Environment& environment = {}) {
   command.insert(command.begin(), "/usr/bin/env");
   Process process(command, environment);
   while (process.running()) process.wait_for_exit();
-  const std::string output = process.output();
-  return {process.wait_for_exit(), output, output};
-}
-
-inline bool is_installed(const std::string& program) {
-  return run_to_end({"/bin/sh", "-c", "command -v " + program}).exit_code == 0;
+  return {process.wait_for_exit(), process.output(), ""};
 }
 
 /// Makes the archives of a clean Debian 12 in the folder; why it cannot be done here, or nothing.

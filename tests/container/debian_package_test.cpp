@@ -33,7 +33,7 @@ TEST(DebianPackage, InstallsOnACleanDebianAndRunsTheDemoToTheSameBits) {
   if (const auto reason = make_base(folder)) GTEST_SKIP() << *reason;
   const ScratchFolder packages;
   const Ended packed =
-      run_for_long({"cpack", "--config", COHORT_BUILD_DIR "/CPackConfig.cmake", "-B", packages.path()});
+      run_for_long({COHORT_CPACK, "--config", COHORT_BUILD_DIR "/CPackConfig.cmake", "-B", packages.path()});
   ASSERT_EQ(packed.exit_code, 0) << packed.out;
 
   const CleanDebian debian(folder / "bookworm.tar");

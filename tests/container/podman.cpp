@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <functional>
+#include <sstream>
 #include <utility>
 
 namespace cohort::testing {
@@ -28,7 +29,9 @@ Podman::Podman(const fs::path& folder) {
   write_file(folder / "storage.conf",
              fmt::format("[storage]\ndriver = \"overlay\"\ngraphroot = \"{}\"\nrunroot = \"{}\"\n",
                          (folder / "images").string(), run_root));
-  std::string settings = "[containers]\ndefault_ulimits = [\"nofile=1024:1024\", \"nproc=1024:1024\"]\n[engine]\n";
+  fs::create_directories(folder / "networks");
+  std::string settings = fmt::format("[network]\nnetwork_config_dir = \"{}\"\n", (folder / "networks").string());
+  settings += "[containers]\ndefault_ulimits = [\"nofile=1024:1024\", \"nproc=1024:1024\"]\n[engine]\n";
   if (is_installed("runc")) settings += "runtime = \"runc\"\n";
   write_file(folder / "containers.conf", settings);
   environment_ = {{"CONTAINERS_STORAGE_CONF", folder / "storage.conf"},
@@ -40,10 +43,19 @@ Ended Podman::operator()(std::vector<std::string> arguments) const {
   return run_for_long(arguments, environment_);
 }
 
-Ended Podman::compose(std::vector<std::string> arguments, Process::Environment more) const {
+Ended Podman::compose(std::vector<std::string> arguments) const {
   arguments.insert(arguments.begin(), "podman-compose");
-  more.insert(environment_.begin(), environment_.end());
-  return run_for_long(arguments, more);
+  return run_for_long(arguments, environment_);
+}
+
+void Podman::remove(const std::string& project) const {
+  std::istringstream ids(
+      (*this)({"ps", "--all", "--quiet", "--filter", "label=io.podman.compose.project=" + project}).out);
+  for (std::string id; ids >> id;) (*this)({"rm", "--force", "--volumes", id});
+  std::istringstream volumes(
+      (*this)({"volume", "ls", "--quiet", "--filter", "label=io.podman.compose.project=" + project}).out);
+  for (std::string volume; volumes >> volume;) (*this)({"volume", "rm", volume});
+  (*this)({"network", "rm", project + "_robots"});
 }
 
 std::optional<std::string> Podman::prepare(const fs::path& base) const {
@@ -77,7 +89,7 @@ Containers::Containers(const Podman& podman) : podman_(podman), prefix_(fmt::for
 }
 
 Containers::~Containers() {
-  for (const std::string& name : names_) podman_({"rm", "--force", "--time", "0", full(name)});
+  for (const std::string& name : names_) podman_({"rm", "--force", "--volumes", "--time", "0", full(name)});
   for (const char* kind : {"network", "volume"}) podman_({kind, "rm", full("shared")});
 }
 
@@ -131,8 +143,8 @@ void Containers::kill(const std::string& name) const { podman_({"kill", full(nam
 void Containers::stop(const std::string& name) const { podman_({"stop", "--time", "60", full(name)}); }
 int Containers::wait(const std::string& name) const { return std::stoi(podman_({"wait", full(name)}).out); }
 std::string Containers::logs(const std::string& name) const { return podman_({"logs", full(name)}).out; }
-std::string Containers::health(const std::string& name) const {
-  return podman_({"healthcheck", "run", full(name)}).exit_code == 0 ? "healthy" : "unhealthy";
+bool Containers::is_healthy(const std::string& name) const {
+  return podman_({"healthcheck", "run", full(name)}).exit_code == 0;
 }
 
 }  // namespace cohort::testing

@@ -8,14 +8,17 @@
 
 namespace cohort::testing {
 
-/// podman with images and settings of its own, in the build's folder: what else is on this machine is left alone.
+/// podman with images, networks and settings of its own, in the build's folder: the machine's are left alone.
 class Podman {
  public:
   explicit Podman(const std::filesystem::path& folder);
 
   Ended operator()(std::vector<std::string> arguments) const;
   /// podman-compose, on the same images.
-  Ended compose(std::vector<std::string> arguments, Process::Environment more = {}) const;
+  Ended compose(std::vector<std::string> arguments) const;
+
+  /// Takes away what `compose` has left of a project.
+  void remove(const std::string& project) const;
 
   /// Why there are no containers here, or nothing. Imports the base of all images.
   std::optional<std::string> prepare(const std::filesystem::path& base) const;
@@ -46,7 +49,7 @@ class Containers {
   void stop(const std::string& name) const;
   int wait(const std::string& name) const;
   std::string logs(const std::string& name) const;
-  std::string health(const std::string& name) const;
+  bool is_healthy(const std::string& name) const;
 
  private:
   std::string full(const std::string& name) const { return prefix_ + name; }

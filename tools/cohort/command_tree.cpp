@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "tools/cohort/usage.hpp"
-
 namespace cohort::tool {
 namespace {
 

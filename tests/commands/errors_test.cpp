@@ -250,7 +250,8 @@ INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
         Typed{{},
-              "expected a command; known: run, serve, host, teleop, ctl, check, export, samples, security, doctor, replay, "
+              "expected a command; known: run, serve, host, teleop, ctl, check, export, samples, security, doctor, "
+              "replay, "
               "diff, export-data, plot, recover, help, bench. Try 'cohort --help'"},
         Typed{{"rn", "x"}, "there is no command 'rn'; did you mean 'run'?"},
         Typed{{"run"}, "FILE is required. Try 'cohort run --help'"}, Typed{{"run", "x", "y"}, "unexpected 'y'"},
@@ -261,7 +262,8 @@ INSTANTIATE_TEST_SUITE_P(
         Typed{{"run", "x", "--duration", "1e300"}, "--duration: expected a number above 0"},
         Typed{{"run", "x", "--seed", "-1"}, "--seed: expected a whole number"},
         Typed{{"run", "x", "--speed", "fast"}, "--speed: expected max, or a number above 0"},
-        Typed{{"run", "x", "--domain", "231"}, "--domain: expected a domain from 0 to 230, or a range such as 7..14, not '231'"},
+        Typed{{"run", "x", "--domain", "231"},
+              "--domain: expected a domain from 0 to 230, or a range such as 7..14, not '231'"},
         Typed{{"run", "x"}, "not 'five' (COHORT_DOMAIN is 'five')", {{"COHORT_DOMAIN", "five"}}},
         Typed{{"run", "x", "--controllers", "proces"}, "there is no 'proces'; did you mean 'process'?"},
         Typed{{"run", "x", "--quiet", "--verbose"}, "choose one of --verbose and --quiet"},
@@ -288,10 +290,13 @@ TEST(Help, IsThereForEveryCommandWithAnExample) {
   }
 }
 
-TEST(Help, TellsTheVersion) {
+TEST(Help, TellsTheVersionAndHowThisWasBuilt) {
   const Ended version = run_to_end({cohort_program(), "--version"});
   EXPECT_EQ(version.exit_code, 0);
-  EXPECT_TRUE(std::regex_match(version.out, std::regex(R"(\d+\.\d+\.\d+\n)"))) << version.out;
+  EXPECT_TRUE(std::regex_search(version.out, std::regex(R"(^cohort \d+\.\d+\.\d+\ncommit +\w)"))) << version.out;
+  for (const char* fact :
+       {"\ncompiler  ", "-ffp-contract=off", "\narchitecture  ", "Cyclone DDS ", "\nmathematics   portable"})
+    EXPECT_NE(version.out.find(fact), std::string::npos) << fact << version.out;
 }
 
 }  // namespace

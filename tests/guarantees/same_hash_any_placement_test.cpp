@@ -28,6 +28,44 @@ TEST(SameHashAnyPlacement, ControllersThatAttachFromOutsideGiveTheSameBits) {
   EXPECT_NE(server.output().find(reference_hash(5)), std::string::npos) << server.output();
 }
 
+// The server on one of two hosts, controllers on both: network namespaces, with a pair of virtual interfaces as the
+// cable.
+TEST(SameHashAnyPlacement, ControllersOnTheServersHostAndOnAnotherGiveTheSameBits) {
+  const ScratchFolder folder;
+  write_file(folder / "two_hosts.sh", R"(set -e
+mount -t tmpfs none /run
+ip netns add here
+ip netns add there
+ip link add cable netns here type veth peer name cable netns there
+for side in here:10.98.0.1/24 there:10.98.0.2/24; do
+  ip -n ${side%%:*} link set lo up
+  ip -n ${side%%:*} addr add ${side#*:} dev cable
+  ip -n ${side%%:*} link set cable up
+done
+export COHORT_SERVER=10.98.0.1
+COHORT_NETWORK=10.98.0.1 ip netns exec here "$COHORT" serve "$EXPERIMENT" --duration 10 --summary summary.json > server.out 2>&1 &
+server=$!
+ip netns exec here "$COHORT" host obstacle_avoidance --robots 0..4 > here.out 2>&1 &
+ip netns exec there "$COHORT" host obstacle_avoidance --robots 5..9 > there.out 2>&1 &
+ip netns exec there "$PROGRAM" --robots 10..15 > program.out 2>&1 &
+wait $server
+wait
+)");
+  const Ended hosts = run_to_end({"/usr/bin/unshare", "--map-root-user", "--net", "--mount", "/bin/bash", "-c",
+                                  "cd " + folder.path().string() + " && . ./two_hosts.sh"},
+                                 {{"COHORT", cohort_program()},
+                                  {"EXPERIMENT", demo_experiment()},
+                                  {"PROGRAM", COHORT_BUILD_DIR "/bin/obstacle_avoidance"}});
+  if (hosts.err.find("ermitted") != std::string::npos || hosts.err.find("Unknown device type") != std::string::npos)
+    GTEST_SKIP() << "no two hosts here: " << hosts.err;
+  ASSERT_EQ(hosts.exit_code, 0) << hosts.err << read_file(folder / "server.out") << read_file(folder / "there.out");
+  const auto summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  EXPECT_EQ(summary["state_hash"], reference_hash(10));
+  int joined = 0;
+  for (const auto& event : summary["events"]) joined += event["kind"] == "joined" ? 1 : 0;
+  EXPECT_EQ(joined, 3);
+}
+
 // Wherever it runs: as a plugin, as a program, and from a loop of its own.
 TEST(SameHashAnyPlacement, AControllerInCGivesTheBitsOfItsTwinInCpp) {
   const std::string expected = reference_hash(5);

@@ -1,6 +1,4 @@
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
 
 #include <map>
 #include <set>
@@ -9,6 +7,7 @@
 #include "server/recording/recover.hpp"
 #include "server/recording/ros_messages.hpp"
 #include "tests/support/any_message.hpp"
+#include "tests/support/node_folder.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/recordings.hpp"
 
@@ -19,22 +18,15 @@ using nlohmann::json;
 using test::TemporaryFile;
 namespace fs = std::filesystem;
 
-// The script and the packages that it needs, in the build's folder: installed once, by whoever comes first.
 class OfficialReader : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (std::string(COHORT_NODE).empty()) GTEST_SKIP() << "there is no node: Debian's packages nodejs and npm";
-    if (std::string(COHORT_NPM).empty()) GTEST_SKIP() << "there is no npm: Debian's package npm";
-    fs::create_directories(folder);
-    const int lock = open((folder / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    flock(lock, LOCK_EX);
-    install();
-    close(lock);
+    if (const auto missing = folder.prepare(script)) GTEST_SKIP() << *missing;
   }
 
   // What the reader found in the file.
   static json read(const fs::path& file) {
-    const testing::Ended ended = testing::run_to_end({COHORT_NODE, (folder / "read_recording.mjs").string(), file});
+    const testing::Ended ended = folder.run(script, {file});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
     json found = json::parse(ended.out, nullptr, false);
     EXPECT_TRUE(found.is_object()) << ended.out;
@@ -43,19 +35,9 @@ class OfficialReader : public ::testing::Test {
   }
 
  private:
-  static void install() {
-    const fs::path source = COHORT_SOURCE_DIR "/tests/recordings";
-    for (const char* name : {"package.json", "package-lock.json", "read_recording.mjs"})
-      fs::copy_file(source / name, folder / name, fs::copy_options::overwrite_existing);
-    const std::string wanted = testing::read_file(folder / "package-lock.json");
-    if (testing::read_file(folder / "installed") == wanted) return;
-    const testing::Ended ended =
-        testing::run_to_end({COHORT_NPM, "ci", "--no-audit", "--no-fund", "--prefix", folder.string()});
-    ASSERT_EQ(ended.exit_code, 0) << ended.out << ended.err;
-    testing::write_file(folder / "installed", wanted);
-  }
-
-  inline static const fs::path folder = COHORT_NODE_FOLDER;
+  inline static const std::string script = "read_recording.mjs";
+  inline static const testing::NodeFolder folder{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/recordings",
+                                                 COHORT_NODE_FOLDER};
 };
 
 // Messages are text: a channel without a schema that has to be parsed.

@@ -124,6 +124,10 @@ Ended run_to_end(std::vector<std::string> command, const Process::Environment& e
   return {exit_code, read_file(folder / "out"), read_file(folder / "err")};
 }
 
+bool is_installed(const std::string& program) {
+  return run_to_end({"/bin/sh", "-c", "command -v " + program}).exit_code == 0;
+}
+
 bool is_alive(pid_t pid) {
   const std::string stat = read_file("/proc/" + std::to_string(pid) + "/stat");
   const std::size_t name_end = stat.rfind(')');  // the name before may hold anything

@@ -65,6 +65,9 @@ struct Ended {
 };
 Ended run_to_end(std::vector<std::string> command, const Process::Environment& environment = {});
 
+/// Whether a shell finds the program.
+bool is_installed(const std::string& program);
+
 /// Whether the process runs. One that has ended does not, even if nobody has waited for it yet.
 bool is_alive(pid_t pid);
 /// Waits until it has ended; false if patience ran out.

@@ -164,7 +164,7 @@ void add_world_commands(Requests& requests, CtlCommand& command) {
           "STATE", [&](const std::string& state) { request.on = state == "on"; }, "on or off")
       ->required()
       ->check(one_of({"on", "off"}))
-      ->type_name("");
+      ->type_name("on|off");
   light
       .add_option_function<double>(
           "--intensity",

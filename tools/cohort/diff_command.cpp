@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "server/core/processors.hpp"
 #include "server/recording/difference.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/replay_progress.hpp"
@@ -61,10 +61,9 @@ int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
     const recording::Recording second(command.second);
     for (const recording::Recording* each : {&first, &second})
       if (!each->damage().empty()) log.warning(each->damage());
-    const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
     ReplayProgress progress(log);
     const recording::Comparison found =
-        recording::compare(first, second, threads, [&](std::chrono::nanoseconds log_time) {
+        recording::compare(first, second, available_processors(), [&](std::chrono::nanoseconds log_time) {
           progress.at(log_time, "compared");
           return !stop;
         });

@@ -84,6 +84,7 @@ void add_doctor_options(CLI::App& app, DoctorCommand& command) {
       ->check(whole_number(0, last_domain))
       ->type_name("N");
   app.add_option("--network", command.network, "Address of the interface that this machine is to serve on")
+      ->envname("COHORT_NETWORK")
       ->capture_default_str()
       ->type_name("ADDRESS");
   app.add_option("--secure", command.secure, "Folder of 'cohort security', or of one identity of it")

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "idl/survey.hpp"
+#include "server/core/processors.hpp"
 #include "tools/cohort/doctor.hpp"
 
 namespace cohort::tool {
@@ -132,6 +133,8 @@ Finding check_processor(const fs::path& sys) {
     if (!governor.empty()) governors.insert(std::move(governor));
   }
   Finding finding{"processor", Health::ok, fmt::format("{} core{}", cores, cores == 1 ? "" : "s")};
+  if (const unsigned available = available_processors(); available < cores)
+    finding.found += fmt::format(", a control group's quota lets {} work", available);
   if (!governors.empty()) finding.found += fmt::format(", frequency governor {}", fmt::join(governors, ", "));
   if (governors.contains("powersave") || governors.contains("conservative")) {
     finding.health = Health::warning;

@@ -6,9 +6,11 @@
 #include "idl/wire.hpp"
 #include "server/description/text.hpp"
 #include "tools/cohort/bench_options.hpp"
+#include "tools/cohort/build_facts.hpp"
 #include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
+#include "tools/cohort/page_commands.hpp"
 #include "tools/cohort/recording_options.hpp"
 #include "tools/cohort/usage.hpp"
 
@@ -85,7 +87,7 @@ LogFormat format_of_unreadable(int argc, char** argv) {
 void add_log_options(CLI::App& app, LogFlags& flags) {
   app.add_option("--log-format", flags.format, "Messages as text or as json (default: $COHORT_LOG_FORMAT, or text)")
       ->check(one_of(log_formats))
-      ->type_name("FORMAT");
+      ->type_name("text|json");
   app.add_flag("--verbose", flags.verbose, "Say what happens, not only what goes wrong; $COHORT_LOG has more levels");
 }
 
@@ -96,7 +98,7 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--threads", options.threads,
-                 "Threads that step the world, with the same results (default: the cores)")
+                 "Threads that step the world, with the same results (default: the cores that it may use)")
       ->check(whole_number(1, 1024))
       ->type_name("N");
   app.add_option("--duration", options.duration, "Simulated seconds, instead of the experiment's")
@@ -173,11 +175,20 @@ void add_samples_options(CLI::App& app, SamplesCommand& command) {
   app.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
 }
 
+void log_dds_to(Log& log) {
+  dds_log = &log;
+  cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
+    using cohort::wire::DdsLogKind;
+    if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
+    dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("Cohort: a deterministic simulator for groups of robots", "cohort");
-  app.set_version_flag("--version", COHORT_VERSION, "Print the version and exit");
+  app.set_version_flag("--version", version_text, "Print the version, and how this was built");
   app.set_help_flag("-h,--help", "Print this text and exit");
   app.require_subcommand(1);
   LogFlags log_flags;
@@ -202,7 +213,7 @@ int main(int argc, char** argv) {
       ->add_option("--controllers", controllers,
                    "process for each team (the default), per-robot, inprocess with the server, or external")
       ->check(one_of({"process", "per-robot", "inprocess", "external"}))
-      ->type_name("WHERE");
+      ->type_name("process|per-robot|inprocess|external");
   run_app->footer("Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10 --plot run.svg");
 
   RunCommand serve_options;
@@ -213,6 +224,7 @@ int main(int argc, char** argv) {
       ->type_name("");
   add_run_options(*serve_app, serve_options, speed, log_flags);
   serve_app->add_option("--network", serve_options.network, "Address of the interface to serve on")
+      ->envname("COHORT_NETWORK")
       ->capture_default_str()
       ->type_name("ADDRESS");
   serve_app->footer("Example: cohort serve worlds/experiments/obstacle_avoidance.yaml --domain 7 --network 10.0.0.5");
@@ -291,6 +303,9 @@ int main(int argc, char** argv) {
   add_log_options(*help_app, log_flags);
   help_app->footer("Example: cohort help sensors");
 
+  const PageCommands page_commands(app);
+  for (CLI::App* page_app : page_commands.apps()) add_log_options(*page_app, log_flags);
+
   BenchOptions bench_options;
   CLI::App* bench_app = add_bench(app, bench_options);
   add_log_options(*bench_app, log_flags);
@@ -314,12 +329,7 @@ int main(int argc, char** argv) {
   run_options.quiet = serve_options.quiet = log_flags.quiet;
 
   Log log(*options);
-  dds_log = &log;
-  cohort::wire::set_dds_log([](std::string_view message, cohort::wire::DdsLogKind kind) noexcept {
-    using cohort::wire::DdsLogKind;
-    if (kind == DdsLogKind::refusal) return dds_log->warning(std::string(message));
-    dds_log->write(kind == DdsLogKind::fatal ? LogLevel::error : LogLevel::debug, "dds: " + std::string(message));
-  });
+  log_dds_to(log);
   const std::atomic<bool>& stop_requested = cohort::stop_on_signals();
   if (run_app->parsed()) return run(run_options, log, stop_requested);
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
@@ -333,6 +343,7 @@ int main(int argc, char** argv) {
   if (doctor_app->parsed()) return doctor(doctor_command, log);
   if (const auto code = recording_commands.run(log, stop_requested)) return *code;
   if (help_app->parsed()) return help(help_topic, log);
+  if (const auto code = page_commands.run()) return *code;
   if (bench_app->parsed()) return bench(bench_options.command(), log, stop_requested);
   return check(checked_file, log);
 }

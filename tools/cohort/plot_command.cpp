@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
+#include "server/core/processors.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/text.hpp"
 #include "server/recording/replay.hpp"
@@ -147,7 +147,7 @@ int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
     check_writable("the picture", command.output);
     const recording::Recording recording(command.file);
     if (!recording.damage().empty()) log.warning(recording.damage());
-    Replay replay(recording, std::max(1u, std::thread::hardware_concurrency()));
+    Replay replay(recording, available_processors());
     const std::string svg =
         command.what.empty() ? draw_paths(replay, command, log, stop) : draw_series(replay, command, log, stop);
     if (stop) return exit_interrupted;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <thread>
 
+#include "server/core/processors.hpp"
 #include "server/recording/replay.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/recording_part.hpp"
@@ -84,8 +84,7 @@ int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop
     const recording::Recording recording(command.file);
     if (!recording.damage().empty()) log.warning(recording.damage());
     warn_of_other_build(recording, log);
-    const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-    recording::Replay replay(recording, command.threads == 0 ? cores : command.threads);
+    recording::Replay replay(recording, command.threads == 0 ? available_processors() : command.threads);
 
     const auto start = std::chrono::steady_clock::now();
     const int code = command.verify ? verify(replay, command, log, stop) : run_again(replay, command, log, stop);

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "client_sdk/math/portable_math.hpp"
+#include "server/core/processors.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/session/exchange.hpp"
@@ -103,9 +103,8 @@ description::Experiment read(const RunCommand& command, const std::filesystem::p
 }
 
 std::unique_ptr<Simulation> build(const RunCommand& command, const description::Experiment& experiment, Log& log) {
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   const unsigned wanted = command.threads == 0 ? experiment.threads : command.threads;
-  const unsigned threads = wanted == 0 ? cores : wanted;
+  const unsigned threads = wanted == 0 ? available_processors() : wanted;
   const Stopwatch building;
   auto simulation = std::make_unique<Simulation>(experiment, threads);
   log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/container/podman.hpp"
+#include "tests/support/file_lock.hpp"
+
+namespace cohort::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t most_bytes = 300'000'000;
+const std::string demo = "/usr/share/cohort/worlds/experiments/obstacle_avoidance.yaml";
+const std::string image = "localhost/cohort:" COHORT_VERSION;
+const std::string sdk_image = "localhost/cohort-sdk:" COHORT_VERSION;
+
+// The images of docker/, built of these sources.
+class Container : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const fs::path folder = COHORT_CONTAINER_DIR;
+    if (!is_installed("podman")) {
+      missing = "there is no podman: tools/install-packages tools/packages-container.txt";
+      return;
+    }
+    missing = make_base(folder);
+    if (missing) return;
+    podman.emplace(folder / "podman");
+    const FileLock lock(folder / "podman/lock");
+    missing = podman->prepare(folder);
+    if (missing) return;
+    // The first is named so that it stays, for what of it is needed again.
+    for (const auto& [target, tag] : {std::pair{std::string("build"), std::string("localhost/cohort-build")},
+                                      {"runtime", image},
+                                      {"sdk", sdk_image}}) {
+      const Ended built = podman->build(target, tag);
+      ASSERT_EQ(built.exit_code, 0) << built.out;
+    }
+    (*podman)({"image", "prune", "--force"});
+  }
+  void SetUp() override {
+    if (missing) GTEST_SKIP() << *missing;
+  }
+
+  static void start_server(Containers& containers, const std::vector<std::string>& more) {
+    std::vector<std::string> command = {"serve", demo, "--verbose"};
+    command.insert(command.end(), more.begin(), more.end());
+    containers.start("server", {"--env", "COHORT_NETWORK=server", "--env", "COHORT_SERVER=server", "--cpus", "1"},
+                     command);
+  }
+  static void start_controller(Containers& containers, const std::string& name, const std::string& robots) {
+    containers.start(name, {"--env", "COHORT_SERVER=server", "--add-host", containers.server_host()},
+                     {"host", "obstacle_avoidance", "--robots", robots});
+  }
+  static std::uint64_t tick_of(const Containers& containers) {
+    const Ended status = containers.execute("server", {"cohort", "ctl", "status", "--json"});
+    const auto json = nlohmann::json::parse(status.out, nullptr, false);
+    return json.is_object() ? json.value("tick", std::uint64_t{0}) : 0;
+  }
+  static bool reaches(const Containers& containers, std::uint64_t tick) {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (tick_of(containers) < tick)
+      if (std::chrono::steady_clock::now() > deadline) return false;
+    return true;
+  }
+
+  static inline std::optional<std::string> missing;
+  static inline std::optional<Podman> podman;
+};
+
+TEST_F(Container, OfTheServerIsSmallAndWithoutCompilersRightsAndSecrets) {
+  const Ended size = (*podman)({"image", "inspect", "--format", "{{.Size}}", image});
+  EXPECT_LT(std::stoull(size.out), most_bytes);
+  RecordProperty("megabytes", std::to_string(std::stoull(size.out) / 1'000'000));
+  const Ended labels = (*podman)({"image", "inspect", "--format", "{{json .Labels}}", image});
+  EXPECT_NE(labels.out.find(R"("org.opencontainers.image.version":")" COHORT_VERSION), std::string::npos) << labels.out;
+  EXPECT_NE(labels.out.find(R"("org.opencontainers.image.revision":"of-the-test")"), std::string::npos) << labels.out;
+
+  const Ended inside =
+      (*podman)({"run", "--rm", "--entrypoint", "sh", image, "-c",
+                 "id -u; pwd; cohort --version; for each in cc gcc g++ cmake git; do command -v $each; "
+                 "done; find / -xdev -name '*.pem' -path '*cohort*'"});
+  EXPECT_TRUE(inside.out.starts_with("10001\n/var/lib/cohort\ncohort " COHORT_VERSION "\ncommit        of-the-test\n"))
+      << inside.out;
+  EXPECT_EQ(inside.out.find("/bin/"), std::string::npos) << "a compiler: " << inside.out;
+  EXPECT_EQ(inside.out.find(".pem"), std::string::npos) << "a key: " << inside.out;
+}
+
+TEST_F(Container, ServerAndControllersInSeparateOnesGiveTheBitsOfOneProcess) {
+  Containers containers(*podman);
+  start_server(containers, {"--duration", "10"});
+  start_controller(containers, "red", "0..7");
+  start_controller(containers, "blue", "8..15");
+  EXPECT_EQ(containers.wait("server"), 0);
+  EXPECT_EQ(containers.wait("red"), 0) << containers.logs("red");
+  EXPECT_EQ(containers.wait("blue"), 0) << containers.logs("blue");
+  const std::string log = containers.logs("server");
+  EXPECT_NE(log.find(reference_hash(10)), std::string::npos) << log;
+  EXPECT_NE(log.find("built the world for 1 thread "), std::string::npos) << "of a quota of one core: " << log;
+}
+
+TEST_F(Container, ARunSurvivesTheKillingOfAControllersContainer) {
+  Containers containers(*podman);
+  start_server(containers, {"--duration", "10", "--speed", "4", "--record", "run.mcap"});
+  start_controller(containers, "red", "0..7");
+  start_controller(containers, "blue", "8..15");
+  ASSERT_TRUE(reaches(containers, 100)) << containers.logs("server");
+  containers.kill("red");
+  start_controller(containers, "red_again", "0..7");
+  EXPECT_EQ(containers.wait("server"), 0);
+  EXPECT_EQ(containers.wait("red"), 137);
+  const std::string log = containers.logs("server");
+  EXPECT_NE(log.find(reference_hash(10)), std::string::npos) << log;
+  const Ended replayed = containers.run({"replay", "run.mcap", "--verify"});
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+}
+
+TEST_F(Container, IsHealthyWhileItServesAndClosesItsRecordingWhenItIsStopped) {
+  Containers containers(*podman);
+  start_server(containers, {"--speed", "1", "--record", "run.mcap"});
+  start_controller(containers, "all", "all");
+  ASSERT_TRUE(reaches(containers, 50)) << containers.logs("server");
+  EXPECT_TRUE(containers.is_healthy("server"));
+  containers.stop("server");
+  EXPECT_EQ(containers.wait("server"), 130) << containers.logs("server");
+  EXPECT_EQ(containers.wait("all"), 0) << "it was told that the run is over: " << containers.logs("all");
+  const Ended replayed = containers.run({"replay", "run.mcap", "--verify"});
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out;
+  EXPECT_EQ(replayed.out.find("warning"), std::string::npos) << "the recording was not closed: " << replayed.out;
+}
+
+TEST_F(Container, OfTheSdkBuildsAControllerThatTheServersRuns) {
+  const ScratchFolder folder;
+  fs::copy(COHORT_SOURCE_DIR "/tests/install/outside", folder / "robots", fs::copy_options::recursive);
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::permissions(folder / "robots", fs::perms::all);
+  const std::string robots = (folder / "robots").string() + ":/robots";
+  const Ended built = (*podman)({"run", "--rm", "--volume", robots, "--workdir", "/robots", sdk_image, "sh", "-ec",
+                                 "cmake -G Ninja -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build"});
+  ASSERT_EQ(built.exit_code, 0) << built.out;
+  const Ended inside = (*podman)({"run", "--rm", "--volume", robots + ":ro", image, "run", "/robots/experiment.yaml"});
+  EXPECT_EQ(inside.exit_code, 0) << inside.out;
+  EXPECT_NE(inside.out.find("state hash"), std::string::npos) << inside.out;
+}
+
+// As docker/README.md says, with podman-compose.
+class ComposeFiles : public Container, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ComposeFiles, RunServerControllersAndRecorderToTheBitsOfOneProcess) {
+  if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose";
+  const std::string project = fmt::format("cohort-test-{}", getpid());
+  std::vector<std::string> arguments = {"--project-name", project, "--file", COHORT_SOURCE_DIR "/docker/compose.yaml"};
+  if (*GetParam() != '\0') arguments.insert(arguments.end(), {"--file", GetParam()});
+  arguments.insert(arguments.end(), {"up", "--no-build"});
+  const Ended run = podman->compose(arguments);
+  const bool has_names = run.out.find("name resolution") == std::string::npos;
+  const Ended replayed = (*podman)(
+      {"run", "--rm", "--volume", project + "_state:/var/lib/cohort:ro", image, "replay", "run.mcap", "--verify"});
+  podman->remove(project);
+  if (!has_names)
+    GTEST_SKIP() << "podman knows no names of containers: golang-github-containernetworking-plugin-dnsname";
+  const auto summary = run_demo({"--controllers", "inprocess"});
+  EXPECT_NE(run.out.find(summary.value("state_hash", "no summary")), std::string::npos) << run.out;
+  EXPECT_EQ(replayed.exit_code, 0) << replayed.out << run.out;
+  EXPECT_NE(replayed.out.find("identical"), std::string::npos) << replayed.out;
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, ComposeFiles, ::testing::Values("", COHORT_SOURCE_DIR "/docker/compose.secure.yaml"),
+                         [](const auto& variant) { return *variant.param == '\0' ? "Open" : "Secure"; });
+
+}  // namespace
+}  // namespace cohort::testing

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include "tests/container/base.hpp"
+
+namespace cohort::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A Debian 12 that has nothing but its base, in a mount namespace of its own.
+class CleanDebian {
+ public:
+  explicit CleanDebian(const fs::path& archive) {
+    const Ended unpacked = run_for_long({"tar", "-C", root_.path(), "-xf", archive});
+    if (unpacked.exit_code != 0) throw std::runtime_error(unpacked.out);
+    fs::copy_file("/etc/resolv.conf", root_ / "etc/resolv.conf", fs::copy_options::overwrite_existing);
+  }
+
+  fs::path operator/(const std::string& name) const { return root_ / name; }
+
+  Ended run(const std::string& script) const {
+    return run_for_long({"unshare", "--mount", "/bin/sh", "-ec",
+                         R"(mount -t proc proc "$0/proc"; exec chroot "$0" /bin/sh -ec "$1")", root_.path(), script},
+                        {{"DEBIAN_FRONTEND", "noninteractive"}, {"LC_ALL", "C"}, {"COHORT_PLUGIN_PATH", ""}});
+  }
+
+ private:
+  ScratchFolder root_;
+};
+
+TEST(DebianPackage, InstallsOnACleanDebianAndRunsTheDemoToTheSameBits) {
+  const fs::path folder = COHORT_CONTAINER_DIR;
+  if (const auto reason = make_base(folder)) GTEST_SKIP() << *reason;
+  const ScratchFolder packages;
+  const Ended packed =
+      run_for_long({COHORT_CPACK, "--config", COHORT_BUILD_DIR "/CPackConfig.cmake", "-B", packages.path()});
+  ASSERT_EQ(packed.exit_code, 0) << packed.out;
+
+  const CleanDebian debian(folder / "bookworm.tar");
+  for (const auto& entry : fs::directory_iterator(packages.path()))
+    if (entry.path().extension() == ".deb")
+      fs::copy_file(entry.path(), debian / ("tmp/" + entry.path().filename().string()));
+  const Ended updated = debian.run("apt-get update -q");
+  if (updated.exit_code != 0) GTEST_SKIP() << "no Debian mirror is reached: " << updated.out;
+  const Ended installed =
+      debian.run("apt-get install -y -q --no-install-recommends /tmp/cohort_" COHORT_VERSION "_*.deb");
+  ASSERT_EQ(installed.exit_code, 0) << installed.out;
+
+  const std::string worlds = "/usr/share/cohort/worlds";
+  const Ended run = debian.run("su nobody -s /bin/sh -c 'cohort run " + worlds +
+                               "/experiments/obstacle_avoidance.yaml --duration 5'");
+  EXPECT_EQ(run.exit_code, 0) << run.out;
+  EXPECT_NE(run.out.find(reference_hash(5)), std::string::npos) << run.out;
+
+  const Ended version = debian.run("cohort --version");
+  EXPECT_NE(version.out.find("cohort " COHORT_VERSION), std::string::npos) << version.out;
+  EXPECT_NE(version.out.find("mathematics   portable"), std::string::npos) << version.out;
+  for (const char* file : {"usr/share/man/man1/cohort.1", "usr/share/bash-completion/completions/cohort",
+                           "usr/lib/systemd/system/cohort@.service", "usr/share/doc/cohort/docs/install.md"})
+    EXPECT_TRUE(fs::exists(debian / file)) << file;
+  EXPECT_NE(read_file(debian / "usr/lib/systemd/system/cohort@.service").find("ExecStart=/usr/bin/cohort serve"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(debian / "usr/include/cohort")) << "that is for cohort-dev";
+
+  const Ended development = debian.run("apt-get install -y -s --no-install-recommends /tmp/cohort-dev_*.deb");
+  EXPECT_EQ(development.exit_code, 0) << development.out;
+  EXPECT_NE(development.out.find("Inst cyclonedds-dev"), std::string::npos) << development.out;
+
+  const Ended removed = debian.run("apt-get purge -y -q cohort");
+  EXPECT_EQ(removed.exit_code, 0) << removed.out;
+  EXPECT_FALSE(fs::exists(debian / "usr/share/cohort"));
+}
+
+}  // namespace
+}  // namespace cohort::testing

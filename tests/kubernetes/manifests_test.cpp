@@ -1,0 +1,65 @@
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "tests/support/node_folder.hpp"
+
+namespace cohort::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path docker = COHORT_SOURCE_DIR "/docker";
+
+class Manifests : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (const auto missing = folder.prepare(script)) GTEST_SKIP() << *missing;
+  }
+  static Ended check(const fs::path& file) { return folder.run(script, {file}); }
+
+ private:
+  inline static const std::string script = "check_manifests.mjs";
+  inline static const NodeFolder folder{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/kubernetes",
+                                        COHORT_NODE_FOLDER};
+};
+
+TEST_F(Manifests, AreAsKubernetesWantsThem) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(docker / "kubernetes")) {
+    const Ended checked = check(entry.path());
+    EXPECT_EQ(checked.exit_code, 0) << checked.out << checked.err;
+    ++files;
+  }
+  EXPECT_EQ(files, 2);
+}
+
+TEST_F(Manifests, WithAKeyOrAValueThatIsWrongAreFound) {
+  const ScratchFolder scratch;
+  const std::string right = read_file(docker / "kubernetes/job.yaml");
+  for (const auto& [from, to] : {std::pair<std::string, std::string>{"runAsNonRoot: true", "runAsNoRoot: true"},
+                                 {"backoffLimit: 0", "backoffLimit: none"}}) {
+    std::string wrong = right;
+    wrong.replace(wrong.find(from), from.size(), to);
+    write_file(scratch / "wrong.yaml", wrong);
+    const Ended checked = check(scratch / "wrong.yaml");
+    EXPECT_EQ(checked.exit_code, 1) << to;
+    EXPECT_NE(checked.out.find(to.substr(0, to.find(':'))), std::string::npos) << checked.out << checked.err;
+  }
+}
+
+TEST(FilesOfDocker, NameTheImageOfThisVersion) {
+  const std::regex image(R"(\bcohort(?:-sdk)?:(\d+\.\d+\.\d+)\b)");
+  int images = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(docker)) {
+    if (!entry.is_regular_file()) continue;
+    const std::string text = read_file(entry.path());
+    for (std::sregex_iterator match(text.begin(), text.end(), image), end; match != end; ++match, ++images)
+      EXPECT_EQ((*match)[1], COHORT_VERSION) << entry.path();
+  }
+  EXPECT_GE(images, 5);
+  EXPECT_NE(read_file(docker / "Dockerfile").find("image.version=\"" COHORT_VERSION "\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cohort::testing

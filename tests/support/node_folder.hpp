@@ -1,0 +1,55 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "tests/support/file_lock.hpp"
+#include "tests/support/process.hpp"
+
+namespace cohort::testing {
+
+/// A script for node with the packages of npm that it needs, copied from the sources to the build's folder.
+class NodeFolder {
+ public:
+  /// `node` and `npm` are programs, empty where there are none. `source` has package.json and package-lock.json too.
+  NodeFolder(std::string node, std::string npm, std::filesystem::path source, std::filesystem::path folder)
+      : node_(std::move(node)), npm_(std::move(npm)), source_(std::move(source)), folder_(std::move(folder)) {}
+
+  /// Installs the packages, once, by whoever comes first. Why it cannot, or nothing.
+  std::optional<std::string> prepare(const std::string& script) const {
+    if (node_.empty()) return "there is no node: Debian's packages nodejs and npm";
+    if (npm_.empty()) return "there is no npm: Debian's package npm";
+    std::filesystem::create_directories(folder_);
+    const FileLock lock(folder_ / "lock");
+    install(script);
+    return std::nullopt;
+  }
+
+  Ended run(const std::string& script, const std::vector<std::string>& arguments) const {
+    std::vector<std::string> command = {node_, (folder_ / script).string()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run_to_end(command);
+  }
+
+ private:
+  void install(const std::string& script) const {
+    for (const std::string& name : {std::string("package.json"), std::string("package-lock.json"), script})
+      std::filesystem::copy_file(source_ / name, folder_ / name, std::filesystem::copy_options::overwrite_existing);
+    const std::string wanted = read_file(folder_ / "package-lock.json");
+    if (read_file(folder_ / "installed") == wanted) return;
+    const Ended ended = run_to_end({npm_, "ci", "--no-audit", "--no-fund", "--prefix", folder_.string()});
+    ASSERT_EQ(ended.exit_code, 0) << ended.out << ended.err;
+    write_file(folder_ / "installed", wanted);
+  }
+
+  std::string node_;
+  std::string npm_;
+  std::filesystem::path source_;
+  std::filesystem::path folder_;
+};
+
+}  // namespace cohort::testing

@@ -247,6 +247,13 @@ int main(int argc, char** argv) {
   add_ctl_commands(*ctl_app, ctl_command);
   add_log_options(*ctl_app, log_flags);
 
+  ViewCommand view_command;
+  CLI::App* view_app = app.add_subcommand("view", "Show a recording or a running server in a browser");
+  add_view_options(*view_app, view_command);
+  add_domains(*view_app, view_command.domains, "DDS domain of the server, the first if it has several (default: 0)");
+  add_secure_option(*view_app, view_command.secure, "Folder of this viewer's identity (default: $COHORT_SECURE)");
+  add_log_options(*view_app, log_flags);
+
   std::filesystem::path checked_file;
   CLI::App* check_app =
       app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
@@ -326,6 +333,7 @@ int main(int argc, char** argv) {
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
   if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
+  if (view_app->parsed()) return view(view_command, log, stop_requested);
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
   if (security_app->parsed()) return security(security_command, log);

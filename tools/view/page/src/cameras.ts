@@ -47,7 +47,7 @@ export class Cameras {
 
   /** Looks at everything that is there. */
   frame(centre: Vector3, radius: number): void {
-    const distance = (1.02 * radius) / Math.tan((this.camera.fov * Math.PI) / 360);
+    const distance = (0.86 * radius) / Math.tan((this.camera.fov * Math.PI) / 360);
     this.target.copy(centre);
     this.camera.position.copy(centre).add(new Vector3(0.28, -0.78, 0.62).normalize().multiplyScalar(distance));
     this.controls.update();

@@ -16,8 +16,17 @@ function segments(color: number, opacity = 1): LineSegments<BufferGeometry, Line
   return lines;
 }
 
-function setPoints(geometry: BufferGeometry, points: Float32Array): void {
-  geometry.setAttribute("position", new BufferAttribute(points, 3));
+// In the buffer that is there, as long as they fit.
+function setPoints(geometry: BufferGeometry, points: ArrayLike<number>): void {
+  let attribute = geometry.getAttribute("position") as BufferAttribute | undefined;
+  if (!attribute || attribute.array.length < points.length) {
+    geometry.dispose();
+    attribute = new BufferAttribute(new Float32Array(2 * points.length + 3 * 64), 3);
+    geometry.setAttribute("position", attribute);
+  }
+  (attribute.array as Float32Array).set(points);
+  attribute.needsUpdate = true;
+  geometry.setDrawRange(0, points.length / 3);
 }
 
 /** Contact points, the forces there, and what is gripped. */
@@ -66,8 +75,8 @@ export class Rays {
       const first = firstValue(model.observation, sensor.channel);
       addRays(poses, poses.placeOf(entity, sensor.link), sensor, first === undefined ? [] : robot.observation.subarray(first), free, hit);
     }
-    setPoints(this.free.geometry, new Float32Array(free));
-    setPoints(this.hit.geometry, new Float32Array(hit));
+    setPoints(this.free.geometry, free);
+    setPoints(this.hit.geometry, hit);
   }
 }
 
@@ -99,6 +108,7 @@ export class Trails {
   private readonly trails = new Map<number, { line: Line; points: number[]; last: Vector3 }>();
 
   clear(): void {
+    for (const { line } of this.trails.values()) line.geometry.dispose();
     this.group.clear();
     this.trails.clear();
   }
@@ -114,7 +124,7 @@ export class Trails {
       trail.last.copy(at);
       trail.points.push(at.x, at.y, Math.max(at.z, 0.004));
       if (trail.points.length > 3 * trailLength) trail.points.splice(0, 3);
-      setPoints(trail.line.geometry, new Float32Array(trail.points));
+      setPoints(trail.line.geometry, trail.points);
     }
   }
 

@@ -50,7 +50,6 @@ function playbackWords({ connection, timeBar }: Parts): Command[] {
   return [
     plain("play", "goes on"),
     plain("pause", "stands still"),
-    { name: "toggle-play", usage: "", help: "plays or pauses", run: () => { timeBar.toggle(); return ""; } },
     { name: "step", usage: "[TICKS]", help: "goes on by ticks, one if none is said; of a recording also back",
       run: ([ticks]) => ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }) },
     { name: "seek", usage: "SECONDS", help: "goes to a time of a recording", run: ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }) },

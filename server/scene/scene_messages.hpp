@@ -211,4 +211,11 @@ struct SceneRobot {
                  field("observation", &SceneRobot::observation), field("command", &SceneRobot::command));
 };
 
+/// Some of the robots.
+struct SceneRobots {
+  std::vector<SceneRobot> robots;
+  static constexpr const char* type = "cohort_msgs/msg/SceneRobots";
+  static constexpr auto fields = std::tuple(field("robots", &SceneRobots::robots));
+};
+
 }  // namespace cohort::scene

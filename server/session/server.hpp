@@ -23,6 +23,7 @@
 #include "server/session/control.hpp"
 #include "server/session/exchange.hpp"
 #include "server/session/run.hpp"
+#include "server/session/scene_broadcast.hpp"
 
 namespace cohort::session {
 
@@ -171,6 +172,7 @@ class Server {
   std::vector<std::uint64_t> frames_under_way(const std::vector<std::uint32_t>& robots) const;
   void report_progress(bool now_anyway);
   void publish_world_state();
+  void publish_scene(SceneBroadcast::When when);
   std::string error();
 
   // Control (server_control.cpp):
@@ -222,6 +224,7 @@ class Server {
   Control control_;
 
   wire::Writer<wire::WorldState> world_state_;
+  SceneBroadcast scenes_;
   // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they
   // are.
   std::list<Door> doors_;

@@ -100,7 +100,8 @@ std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
       return allowed;
     case wire::Role::observer: break;
   }
-  return {{"subscribe", {"cohort/v1/robot_description"}, ""}, {"subscribe", {"cohort/v1/world_state"}, "view"}};
+  return {{"subscribe", {"cohort/v1/robot_description"}, ""},
+          {"subscribe", {"cohort/v1/world_state", "cohort/v1/scene_description", "cohort/v1/scene_update"}, "view"}};
 }
 
 std::string rules_of(wire::Role role, bool may_control) {

@@ -202,8 +202,9 @@ int help(const std::string& topic, Log& log);
 struct ViewCommand {
   std::filesystem::path recording;  ///< what is shown; empty: a server
   std::string server = "127.0.0.1";
-  std::vector<std::uint32_t> domains{};  ///< of the server; the first of them is used. Empty: 0
-  std::filesystem::path secure{};        ///< folder of an identity; empty: without security
+  std::vector<std::uint32_t> domains{};    ///< of the server; the first of them is used. Empty: 0
+  std::filesystem::path secure{};          ///< folder of an identity; empty: without security
+  std::filesystem::path secure_control{};  ///< the same, of one that may control
   bool may_control = false;
   std::string network = "127.0.0.1";  ///< address of the interface to serve on
   std::uint16_t port = 8080;

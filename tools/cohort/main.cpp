@@ -251,7 +251,7 @@ int main(int argc, char** argv) {
   CLI::App* view_app = app.add_subcommand("view", "Show a recording or a running server in a browser");
   add_view_options(*view_app, view_command);
   add_domains(*view_app, view_command.domains, "DDS domain of the server, the first if it has several (default: 0)");
-  add_secure_option(*view_app, view_command.secure, "Folder of this viewer's identity (default: $COHORT_SECURE)");
+  add_secure_option(*view_app, view_command.secure, "Folder of the observers' identity (default: $COHORT_SECURE)");
   add_log_options(*view_app, log_flags);
 
   std::filesystem::path checked_file;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
 #include "server/recording/recording.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/installed_page.hpp"
 #include "tools/view/admission.hpp"
+#include "tools/view/live_source.hpp"
 #include "tools/view/recording_source.hpp"
 #include "tools/view/web_server.hpp"
 
@@ -46,29 +48,45 @@ void serve_until(view::WebServer& server, view::Source& source, const std::atomi
   server.run(source);
 }
 
-int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
-  const recording::Recording recording(command.recording);
-  if (!recording.damage().empty()) log.warning(recording.damage());
-  const view::WebOptions options = web_options(command, recording.file().filename().string());
+// `make_source` makes what publishes to its topics.
+template <class MakeSource>
+int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
+          MakeSource make_source) {
   view::WebServer* published_to = nullptr;
   view::Topics topics([&] {
     if (published_to != nullptr) published_to->published();
   });
+  const view::WebOptions options = web_options(command, name);
   view::WebServer server(options, page_or_warning(log), topics);
   published_to = &server;
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  view::RecordingSource source(recording, topics, command.threads == 0 ? cores : command.threads);
+  const auto source = make_source(topics);
   say_where(command, options, server.port());
-  serve_until(server, source, stop);
+  serve_until(server, *source, stop);
   return stop ? exit_interrupted : exit_ok;
+}
+
+int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const recording::Recording recording(command.recording);
+  if (!recording.damage().empty()) log.warning(recording.damage());
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  const unsigned threads = command.threads == 0 ? cores : command.threads;
+  return serve(command, recording.file().filename().string(), log, stop, [&](view::Topics& topics) {
+    return std::make_unique<view::RecordingSource>(recording, topics, threads);
+  });
+}
+
+int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const view::LiveOptions live{command.server, command.domains.empty() ? 0 : command.domains.front(),
+                               command.secure.string(), command.secure_control.string(), command.may_control};
+  return serve(command, "Cohort at " + command.server, log, stop,
+               [&](view::Topics& topics) { return std::make_unique<view::LiveSource>(live, topics); });
 }
 
 }  // namespace
 
 int view(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
   try {
-    if (!command.recording.empty()) return view_recording(command, log, stop);
-    log.error("a running server cannot be shown yet: name a recording");
+    return command.recording.empty() ? view_server(command, log, stop) : view_recording(command, log, stop);
   } catch (const std::exception& error) {
     log.error(error.what());
   }

@@ -174,7 +174,11 @@ void RecordingSource::step_back(std::int64_t ticks) {
 
 void RecordingSource::play(const Wanted& wanted) {
   const Clock::time_point begin = Clock::now();
-  if (!pace_ || pace_->speed != wanted.speed) pace_ = {begin, log_time_, wanted.speed};
+  if (!pace_ || pace_->speed != wanted.speed) {
+    pace_ = {begin, log_time_, wanted.speed};
+    measured_at_ = begin;
+    real_time_factor_ = wanted.speed;
+  }
   const Nanoseconds before = log_time_;
   const double elapsed = Seconds(begin - pace_->wall).count();
   const Nanoseconds target =
@@ -183,9 +187,9 @@ void RecordingSource::play(const Wanted& wanted) {
     if (!advance()) break;
   // What could not be kept up with is not made up for.
   if (wanted.speed > 0.0 && log_time_ < target) pace_ = {Clock::now(), log_time_, wanted.speed};
-  constexpr double smoothing = 0.1;
-  const double now = Seconds(log_time_ - before).count() / Seconds(frame_interval).count();
-  real_time_factor_ += smoothing * (now - real_time_factor_);
+  constexpr double smoothing = 0.05;
+  const double wall = Seconds(begin - std::exchange(measured_at_, begin)).count();
+  if (wall > 0.0) real_time_factor_ += smoothing * (Seconds(log_time_ - before).count() / wall - real_time_factor_);
 }
 
 bool RecordingSource::advance() {
@@ -223,7 +227,7 @@ void RecordingSource::show() {
   publisher_.show(maker_->frame(run_, state_hash_), log_time_);
   publisher_.show(maker_->signals(), log_time_);
   if (publisher_.is_read(Topic::contacts)) publisher_.publish(Topic::contacts, maker_->contacts(), log_time_);
-  ViewRobots robots;
+  scene::SceneRobots robots;
   robots.robots.reserve(watched_.size());
   for (const std::uint32_t robot : watched_)
     if (robot < replay_.simulation().robot_count()) robots.robots.push_back(maker_->robot(robot));

@@ -83,6 +83,7 @@ class RecordingSource final : public Source {
     double speed = 0.0;
   };
   std::optional<Pace> pace_;
+  Clock::time_point measured_at_{};
   double real_time_factor_ = 0.0;
   std::thread thread_;
 };

@@ -15,6 +15,8 @@ class ScenePublisher {
 
   /// Publishes it unless it was published last. Returns the revision that it has with viewers.
   std::uint32_t show(scene::Scene scene, std::chrono::nanoseconds time);
+  /// Publishes it with the revision that it has.
+  void show_as_it_is(scene::Scene scene, std::chrono::nanoseconds time);
   /// Of the scene that was shown last.
   void show(const scene::SceneFrame& frame, std::chrono::nanoseconds time);
   void show(const scene::SceneSignals& signals, std::chrono::nanoseconds time);

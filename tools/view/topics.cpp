@@ -24,7 +24,7 @@ const std::array<TopicInfo, topic_count>& topic_table() {
       topic<scene::SceneSignals>("/cohort/signals"),
       topic<scene::SceneContacts>("/cohort/contacts"),
       topic<ViewStatus>("/cohort/status"),
-      topic<ViewRobots>("/cohort/robots"),
+      topic<scene::SceneRobots>("/cohort/robots"),
       topic<ViewEvents>("/cohort/events"),
       topic<recording::ros::TFMessage>("/tf"),
       topic<MarkerArray>("/markers"),

@@ -50,11 +50,4 @@ struct ViewEvents {
   static constexpr auto fields = std::tuple(field("events", &ViewEvents::events));
 };
 
-/// Those that somebody watches.
-struct ViewRobots {
-  std::vector<scene::SceneRobot> robots;
-  static constexpr const char* type = "cohort_msgs/msg/ViewRobots";
-  static constexpr auto fields = std::tuple(field("robots", &ViewRobots::robots));
-};
-
 }  // namespace cohort::view

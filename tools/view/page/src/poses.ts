@@ -19,6 +19,7 @@ export class Poses {
   private readonly firstOfLink: number[][] = [];
   private readonly placeInModel: number[] = [];
   private readonly entitiesOfModel: number[][];
+  private readonly linkCount: number;
   private arrival = 0;
   private interval = 33;
 
@@ -36,6 +37,7 @@ export class Poses {
         return first;
       }));
     });
+    this.linkCount = next;
   }
 
   entitiesOf(model: number): readonly number[] { return this.entitiesOfModel[model]; }
@@ -47,7 +49,7 @@ export class Poses {
 
   /** False if the frame is of another scene. */
   take(frame: SceneFrame, now: number): boolean {
-    if (frame.revision !== this.scene.revision) return false;
+    if (frame.revision !== this.scene.revision || frame.positions.length !== 3 * this.linkCount) return false;
     const elapsed = now - this.arrival;
     const goesOn = this.frame !== undefined && frame.tick > this.frame.tick && elapsed < longestBlend;
     this.arrival = now;

@@ -220,8 +220,8 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
     response_.keep_alive(request.keep_alive());
+    response_.content_length(content.size());
     if (request.method() != http::verb::head) response_.body() = content;
-    response_.prepare_payload();
     http::async_write(stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {
       if (!error && self->response_.keep_alive()) self->read();
     });

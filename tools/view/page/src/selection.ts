@@ -59,7 +59,7 @@ export class Outline {
   }
 
   draw(poses: Poses): void {
-    if (this.entity === undefined) return;
+    if (this.entity === undefined || !poses.frame) return;
     for (const { mesh, link } of this.parts) {
       poses.read(poses.placeOf(this.entity, link), mesh.position, mesh.quaternion);
       const centre = (mesh.userData.centre as Vector3).clone().applyQuaternion(mesh.quaternion);

@@ -48,6 +48,8 @@ export class Viewer {
   // What comes from the server.
 
   show(scene: Scene): void {
+    const selected = this.selected === undefined ? undefined : this.poses!.scene.entities[this.selected].name;
+    const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
     if (this.instances) this.stage.remove(this.instances.group);
     if (this.glow) this.stage.remove(this.glow.group);
     this.instances?.dispose();
@@ -58,8 +60,9 @@ export class Viewer {
     this.stage.add(this.glow.group);
     this.stage.lay(scene);
     this.trails.clear();
-    this.selected = undefined;
-    this.select(undefined);
+    const again = scene.entities.findIndex(({ name }) => name === selected);
+    this.select(again >= 0 ? again : undefined);
+    if (followed) this.cameras.choose(again >= 0 ? followed : "orbit", again);
     if (scene.entities.length > manyEntities && scene.world !== this.world) this.layers.delete("shadows");
     this.apply();
   }

@@ -2,10 +2,14 @@
 // is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { parse } from "@foxglove/rosmsg";
-import { MessageReader } from "@foxglove/rosmsg2-serialization";
-import { FoxgloveClient } from "@foxglove/ws-protocol";
+import rosmsg from "@foxglove/rosmsg";
+import serialization from "@foxglove/rosmsg2-serialization";
+import protocol from "@foxglove/ws-protocol";
 import { WebSocket } from "ws";
+
+const { parse } = rosmsg;
+const { MessageReader } = serialization;
+const { FoxgloveClient } = protocol;
 
 const patience = 30_000; // [ms]
 

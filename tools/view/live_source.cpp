@@ -15,6 +15,7 @@ using wire::SimulationState;
 constexpr auto for_a_server = 1s;
 constexpr auto for_a_reply = 5s;
 constexpr auto status_interval = 250ms;
+constexpr auto newcomer_interval = 100ms;
 constexpr std::size_t most_wishes = 64;
 
 recording::Bytes copied(std::span<const std::uint8_t> bytes) {
@@ -74,7 +75,9 @@ void LiveSource::show_what_arrives() {
     Arrived arrived;
     {
       std::unique_lock lock(mutex_);
-      arrived_changed_.wait(lock, [&] { return is_stopping_ || arrived_.scene || arrived_.has_update; });
+      arrived_changed_.wait_for(lock, newcomer_interval, [&] {
+        return is_stopping_ || arrived_.scene || arrived_.has_update || arrived_.has_other_watched;
+      });
       arrived = std::exchange(arrived_, {});
     }
     try {
@@ -90,7 +93,10 @@ void LiveSource::show_what_arrives() {
 
 void LiveSource::show(Arrived& arrived) {
   if (arrived.scene) publisher_.show_as_it_is(recording::decode<scene::Scene>(*arrived.scene), time_);
-  if (!arrived.has_update) return;
+  if (!arrived.has_update) {
+    if (arrived.has_other_watched || arrivals_ != topics_.arrivals()) show_extras();
+    return;
+  }
   const auto frame = recording::decode<scene::SceneFrame>(arrived.frame);
   {
     const std::lock_guard lock(mutex_);
@@ -98,13 +104,19 @@ void LiveSource::show(Arrived& arrived) {
   }
   publisher_.show(frame, time_);
   publisher_.show(recording::decode<scene::SceneSignals>(arrived.signals), time_);
-  if (!arrived.contacts.empty() && publisher_.is_read(Topic::contacts))
-    topics_.publish(Topic::contacts, time_, std::move(arrived.contacts));
-  if (!arrived.robots.empty() && publisher_.is_read(Topic::robots)) show_robots(arrived.robots);
+  contacts_ = std::move(arrived.contacts);
+  robots_ = std::move(arrived.robots);
+  show_extras();
 }
 
-void LiveSource::show_robots(const Bytes& bytes) {
-  auto robots = recording::decode<scene::SceneRobots>(bytes);
+void LiveSource::show_extras() {
+  arrivals_ = topics_.arrivals();
+  if (!contacts_.empty() && publisher_.is_read(Topic::contacts)) topics_.publish(Topic::contacts, time_, contacts_);
+  if (!robots_.empty() && publisher_.is_read(Topic::robots)) show_robots();
+}
+
+void LiveSource::show_robots() {
+  auto robots = recording::decode<scene::SceneRobots>(robots_);
   const std::lock_guard lock(mutex_);
   std::erase_if(robots.robots, [&](const scene::SceneRobot& each) {
     return std::ranges::find(watched_, each.robot) == watched_.end();
@@ -115,6 +127,8 @@ void LiveSource::show_robots(const Bytes& bytes) {
 void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
   const std::lock_guard lock(mutex_);
   watched_ = robots;
+  arrived_.has_other_watched = true;
+  arrived_changed_.notify_all();
 }
 
 void LiveSource::ask(const Wish& wish, std::function<void(const Answer&)> answer) {

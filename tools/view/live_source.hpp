@@ -48,13 +48,15 @@ class LiveSource final : public Source {
     std::optional<Bytes> scene{};
     Bytes frame{}, signals{}, contacts{}, robots{};
     bool has_update = false;
+    bool has_other_watched = false;  // robots
   };
 
   void on_scene(const wire::SceneDescription& description);
   void on_update(const wire::SceneUpdate& update);
   void show_what_arrives();
   void show(Arrived& arrived);
-  void show_robots(const Bytes& bytes);
+  void show_extras();
+  void show_robots();
   void serve_wishes();
   void do_asked(ControlClient& client, Asked& asked);
   void ask_status(ControlClient& client);
@@ -80,6 +82,10 @@ class LiveSource final : public Source {
   wire::Participant participant_;
   wire::Reader<wire::SceneDescription> descriptions_;
   wire::Reader<wire::SceneUpdate> updates_;
+  // Of the thread that shows: what only some clients read, and how many had come when they got it.
+  Bytes contacts_;
+  Bytes robots_;
+  std::uint64_t arrivals_ = 0;
   std::thread shower_;
   std::thread steward_;
 };

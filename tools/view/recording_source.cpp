@@ -58,6 +58,7 @@ Answer RecordingSource::take(const Wish& wish) {
   }
   if (wish.operation == "pause") {
     wanted_.is_playing = false;
+    ++interruptions_;
     return done("paused");
   }
   if (wish.operation == "step") {
@@ -76,6 +77,7 @@ Answer RecordingSource::take(const Wish& wish) {
   if (wish.operation == "seek") {
     if (!(wish.number >= 0.0 && wish.number <= longest_recording)) return {false, "a time is in seconds, from 0 on"};
     wanted_.seek = nanoseconds_of(wish.number);
+    ++interruptions_;
     wanted_.steps = 0;
     return done(fmt::format("at {:.3f} s", wish.number));
   }
@@ -104,6 +106,7 @@ void RecordingSource::run() {
       wanted_.seek.reset();
       wanted_.steps = 0;
       wishes_taken_ = wishes_;
+      interruptions_taken_ = interruptions_;
     }
     const bool has_wishes = wanted.seek || wanted.plays_again || wanted.steps != 0 || wanted.watched != watched_;
     watched_ = wanted.watched;
@@ -113,7 +116,7 @@ void RecordingSource::run() {
     arrivals = topics_.arrivals();
     show_status(wanted);
     std::unique_lock lock(mutex_);
-    changed_.wait_until(lock, next, [&] { return is_newer_wish() && !is_moving; });
+    changed_.wait_until(lock, next, [&] { return has_newer_wish() && !is_moving; });
   }
 }
 
@@ -125,7 +128,7 @@ void RecordingSource::act(const Wanted& wanted) {
   }
   if (wanted.steps != 0) pace_.reset();
   if (wanted.steps < 0) step_back(-wanted.steps);
-  for (std::int64_t i = 0; i < wanted.steps && !is_newer_wish(); ++i)
+  for (std::int64_t i = 0; i < wanted.steps && !is_interrupted(); ++i)
     if (!advance()) break;
   if (wanted.is_playing && !is_at_end_)
     play(wanted);
@@ -159,7 +162,7 @@ void RecordingSource::go_to(Nanoseconds log_time) {
       log_time_ = replay_.recorded().log_time;
       state_hash_ = replay_.simulation().state_hash();
     }
-    while (log_time_ < target && !is_newer_wish())
+    while (log_time_ < target && !is_interrupted())
       if (!advance()) return;
   } catch (const std::exception& error) {
     problem_ = error.what();
@@ -183,7 +186,7 @@ void RecordingSource::play(const Wanted& wanted) {
   const double elapsed = Seconds(begin - pace_->wall).count();
   const Nanoseconds target =
       wanted.speed > 0.0 ? pace_->time + nanoseconds_of(elapsed * wanted.speed) : Nanoseconds::max();
-  while (log_time_ < target && Clock::now() - begin < frame_interval && !is_newer_wish())
+  while (log_time_ < target && Clock::now() - begin < frame_interval && !has_newer_wish())
     if (!advance()) break;
   // What could not be kept up with is not made up for.
   if (wanted.speed > 0.0 && log_time_ < target) pace_ = {Clock::now(), log_time_, wanted.speed};

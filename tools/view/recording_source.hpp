@@ -43,7 +43,8 @@ class RecordingSource final : public Source {
   Answer take(const Wish& wish);
   void run();
   void act(const Wanted& wanted);
-  bool is_newer_wish() const { return wishes_ != wishes_taken_ || is_stopping_; }
+  bool has_newer_wish() const { return wishes_ != wishes_taken_ || is_stopping_; }
+  bool is_interrupted() const { return interruptions_ != interruptions_taken_ || is_stopping_; }
   void go_to(Nanoseconds log_time);
   void step_back(std::int64_t ticks);
   void play(const Wanted& wanted);
@@ -63,10 +64,12 @@ class RecordingSource final : public Source {
   std::condition_variable changed_;
   Wanted wanted_;
   std::atomic<std::uint64_t> wishes_{0};
+  std::atomic<std::uint64_t> interruptions_{0};  // of them those that end what is under way
   std::atomic<bool> is_stopping_{false};
 
   // Of the thread.
   std::uint64_t wishes_taken_ = 0;
+  std::uint64_t interruptions_taken_ = 0;
   std::optional<scene::SceneMaker> maker_;
   bool is_new_world_ = false;
   bool is_at_end_ = false;

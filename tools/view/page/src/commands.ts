@@ -122,7 +122,6 @@ export class Commands {
   }
 
   private ownCommands(): Command[] {
-    const { profile } = this;
     const list = (of: Record<string, string>): string => Object.entries(of).map(([key, to]) => `${key.padEnd(10)} ${to}`).join("\n");
     const need = (args: string[], count: number, usage: string): void => {
       if (args.length < count) throw new Error(`expected: ${usage}`);
@@ -143,7 +142,7 @@ export class Commands {
     return [
       { name: "help", usage: "[COMMAND]", help: "says what there is", complete: () => this.names(), run: ([name]) => this.help(name) },
       { name: "bind", usage: "[KEY COMMAND]", help: "a key or mouse button does a command; without arguments lists them",
-        complete: (index) => (index === 0 ? Object.keys(profile.keys) : this.names()), run: change("keys", "bind KEY COMMAND") },
+        complete: (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()), run: change("keys", "bind KEY COMMAND") },
       { name: "unbind", usage: "KEY", help: "the key does nothing any more", complete: () => Object.keys(this.profile.keys), run: forget("keys", "unbind KEY") },
       { name: "alias", usage: "[NAME COMMAND]", help: "a word for a command; without arguments lists them", run: change("aliases", "alias NAME COMMAND") },
       { name: "unalias", usage: "NAME", help: "forgets it", complete: () => Object.keys(this.profile.aliases), run: forget("aliases", "unalias NAME") },

@@ -169,18 +169,22 @@ function pictureWords({ viewer, connection, console, timeBar, commands, canvas }
 function worldWords({ viewer, connection }: Parts): Command[] {
   const names = (): string[] => viewer.poses?.scene.entities.map(({ name }) => name) ?? [];
   const models = (): string[] => viewer.poses?.scene.models.map(({ name }) => name) ?? [];
+  const whole = (name: string | undefined): string | undefined => {
+    const found = name === undefined ? undefined : viewer.find(name);
+    return found === undefined ? name : viewer.poses!.scene.entities[found].name;
+  };
   const numbers = (args: string[], count: number, what: string): number[] => Array.from({ length: count }, (_, i) => numberOf(args[i], what));
   return [
     { name: "reset", usage: "", help: "begins the run anew", run: () => ask(connection, { operation: "reset" }) },
     { name: "spawn", usage: "MODEL NAME X Y [Z]", help: "brings an object into the world", complete: (index) => (index === 0 ? models() : []),
       run: ([model, name, ...at]) => ask(connection, { operation: "spawn", name, text: model, numbers: [...numbers(at, 2, "x and y"), Number(at[2] ?? 0)] }) },
-    { name: "remove", usage: "NAME", help: "takes an object out", complete: names, run: ([name]) => ask(connection, { operation: "remove", name }) },
+    { name: "remove", usage: "NAME", help: "takes an object out", complete: names, run: ([name]) => ask(connection, { operation: "remove", name: whole(name) }) },
     { name: "move", usage: "NAME X Y [Z]", help: "puts an object elsewhere", complete: (index) => (index === 0 ? names() : []),
-      run: ([name, ...at]) => ask(connection, { operation: "move", name, numbers: [...numbers(at, 2, "x and y"), ...(at[2] ? [numberOf(at[2], "z")] : [])] }) },
+      run: ([name, ...at]) => ask(connection, { operation: "move", name: whole(name), numbers: [...numbers(at, 2, "x and y"), ...(at[2] ? [numberOf(at[2], "z")] : [])] }) },
     { name: "light", usage: "NAME on|off", help: "switches a light", complete: (index) => (index === 0 ? names() : ["on", "off"]),
-      run: ([name, on]) => ask(connection, { operation: "light", name, number: on === "off" ? 0 : 1 }) },
+      run: ([name, on]) => ask(connection, { operation: "light", name: whole(name), number: on === "off" ? 0 : 1 }) },
     { name: "push", usage: "NAME FX FY [FZ]", help: "a force for a tenth of a second [N]", complete: (index) => (index === 0 ? names() : []),
-      run: ([name, ...force]) => ask(connection, { operation: "push", name, numbers: [...numbers(force, 2, "a force"), Number(force[2] ?? 0)] }) },
+      run: ([name, ...force]) => ask(connection, { operation: "push", name: whole(name), numbers: [...numbers(force, 2, "a force"), Number(force[2] ?? 0)] }) },
   ];
 }
 

@@ -13,7 +13,7 @@ class ObserversNeverCount : public Viewing {
   void SetUp() override {
     Viewing::SetUp();
     if (!has_browser() && !IsSkipped())
-      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-view.txt";
+      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
   }
 
   // Runs the demo while a browser looks at it in such a way; its hash is that of a run that nobody looks at.

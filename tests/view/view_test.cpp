@@ -41,7 +41,7 @@ class InTheBrowser : public Viewing {
   void SetUp() override {
     Viewing::SetUp();
     if (!has_browser() && !IsSkipped())
-      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-view.txt";
+      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
   }
   ScratchFolder scratch;
 };

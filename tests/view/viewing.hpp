@@ -18,7 +18,7 @@ class Viewing : public ::testing::Test {
  protected:
   void SetUp() override {
     if (std::string(COHORT_NODE).empty() || std::string(COHORT_NPM).empty())
-      GTEST_SKIP() << "there is no node or npm: tools/install-packages tools/packages-view.txt";
+      GTEST_SKIP() << "there is no node or npm: tools/install-packages tools/packages-node.txt";
     std::filesystem::create_directories(folder);
     const int lock = open((folder / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
     flock(lock, LOCK_EX);

@@ -29,7 +29,7 @@ view::PageFiles page_or_warning(Log& log) {
   if (page.empty())
     log.warning(
         "the page was not built, so that only other viewers can connect: it needs node 18 and npm ('tools/"
-        "install-packages tools/packages-view.txt'), then 'cmake --build build/release --target view_page'");
+        "install-packages tools/packages-node.txt'), then 'cmake --build build/release --target view_page'");
   return page;
 }
 

@@ -78,7 +78,7 @@ export class Instances {
 
   private add(model: number, link: number, shapes: SceneShape[]): void {
     const count = this.poses.entitiesOf(model).length;
-    const shape = count > 0 ? linkGeometry(this.poses.scene, shapes) : undefined;
+    const shape = count > 0 ? linkGeometry(this.poses.scene, shapes, count) : undefined;
     if (!shape) return;
     this.links.push({ model, link, geometry: shape, sphere: shape.boundingSphere! });
     const geometry = new InstancedBufferGeometry();

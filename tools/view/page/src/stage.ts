@@ -44,7 +44,7 @@ export class Stage {
     this.fill.position.set(0, 0, 1);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
-    this.sun.shadow.normalBias = 0.004;
+    this.sun.shadow.normalBias = 0.002;
     this.scene.add(this.sun, this.sun.target, this.fill);
   }
 

@@ -12,6 +12,7 @@ import { Stage } from "./stage";
 
 export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
 
+const homeMargin = 0.4; // [m] around robots
 const manyEntities = 1500; // above, shadows are off unless asked for
 
 /** What is seen and heard of the world. */
@@ -117,21 +118,23 @@ export class Viewer {
     return found >= 0 ? found : undefined;
   }
 
+  /** All robots, or everything where there are none. */
   home(): void {
     if (!this.poses?.frame) return;
     const position = new Vector3();
     const low = new Vector3(Infinity, Infinity, Infinity);
     const high = low.clone().negate();
-    this.poses.scene.entities.forEach((_, entity) => {
-      if (this.poses!.absent.has(entity)) return;
-      this.poses!.read(this.poses!.placeOf(entity), position, new Quaternion());
+    const robots = this.robotEntities();
+    const wanted = robots.length > 0 ? robots : this.poses.scene.entities.map((_, entity) => entity);
+    for (const entity of wanted.filter((each) => !this.poses!.absent.has(each))) {
+      this.poses.read(this.poses.placeOf(entity), position, new Quaternion());
       low.min(position);
       high.max(position);
-    });
+    }
     if (low.x > high.x) return;
     const centre = low.clone().add(high).multiplyScalar(0.5);
     this.cameras.choose("orbit");
-    this.cameras.frame(centre, Math.max(0.4, 0.5 * low.distanceTo(high)));
+    this.cameras.frame(centre, homeMargin + 0.5 * low.distanceTo(high));
   }
 
   toggle(layer: Layer): boolean {

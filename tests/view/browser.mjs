@@ -60,6 +60,28 @@ async function draws(page, file) {
   assert.ok(!isOrange(ground), `the ground is ${ground}`);
 }
 
+async function drawsMany(page, file) {
+  const expected = JSON.parse(readFileSync(file, "utf8"));
+  await run(page, `pause; seek ${expected.time}`);
+  await atTick(page, expected.tick);
+  const { places, calls } = await page.evaluate(() => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000);
+    return { places: viewer.robotEntities().map((entity) => viewer.poseOf(entity).position), calls: viewer.stage.renderer.info.render.calls };
+  });
+  assert.equal(places.length, expected.robots.length);
+  expected.robots.forEach(({ name, x, y }, i) => {
+    assert.ok(Math.hypot(places[i][0] - x, places[i][1] - y) < 1e-4, `${name} is at ${places[i]}, not at ${x} ${y}`);
+  });
+  assert.ok(calls < 10, `${calls} draw calls`);
+  const { x, y } = expected.robots[7];
+  await page.evaluate(([left, ahead]) => {
+    window.cohort.viewer.cameras.look({ position: [left, ahead - 0.3, 0.9], target: [left, ahead, 0.1] });
+  }, [x, y]);
+  const [pixel] = await pixelsAt(page, [[x, y, 0.1]]);
+  assert.ok(isOrange(pixel), `where robot 7 is, the picture is ${pixel}`);
+}
+
 async function click(page, name) {
   const at = await page.evaluate((text) => {
     const { viewer } = window.cohort;
@@ -227,7 +249,7 @@ async function isSuspended(page) {
 }
 
 const scenarios = {
-  draws, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
+  draws, draws_many: drawsMany, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
   steers_server: steersServer, only_looks: onlyLooks, looks, is_suspended: isSuspended,
 };
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -92,6 +94,36 @@ TEST_F(InTheBrowser, WhoMayOnlyLookSteersNothing) {
   const View view({"--domain", domain.text()});
   run_script("browser.mjs", {"only_looks", view.address()});
 }
+
+// So many s-bots on a plane, for a tenth of a second.
+void record_many(const ScratchFolder& folder, int count) {
+  const int half = static_cast<int>(std::ceil(0.25 * std::sqrt(count)));
+  testing::write_file(folder / "world.yaml", fmt::format(R"(world:
+  name: field
+  model: {{name: ground, static: true, link: {{name: body, collision: {{name: floor, geometry: {{plane: {{normal: [0, 0, 1], size: [3, 3]}}}}}}}}}}
+  cohort:physics: {{fidelity: planar}}
+  cohort:population:
+    name: swarm
+    uri: model://sbot
+    count: {}
+    placement: {{uniform: {{min: [-{}, -{}], max: [{}, {}]}}, gap: 0.05}}
+)",
+                                                         count, half, half, half, half));
+  testing::write_file(folder / "many.yaml",
+                      "world: world.yaml\nduration: 0.1\nteams:\n  - {name: swarm, robots: swarm/*, controller: "
+                      "obstacle_avoidance}\n");
+  testing::run_experiment(folder / "many.yaml", {"--controllers", "inprocess", "--record", folder / "run.mcap"});
+}
+
+class ManyRobotsInTheBrowser : public InTheBrowser, public ::testing::WithParamInterface<int> {};
+
+TEST_P(ManyRobotsInTheBrowser, AreDrawnAtOnce) {
+  record_many(scratch, GetParam());
+  testing::write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 0.05).dump());
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"draws_many", view.address(), scratch / "expected.json"});
+}
+INSTANTIATE_TEST_SUITE_P(AThousandAndTenThousand, ManyRobotsInTheBrowser, ::testing::Values(1000, 10'000));
 
 using ByItsProtocol = Viewing;
 

@@ -43,6 +43,12 @@ const Topic Codec<Observation>::topic = {
 const Topic Codec<Command>::topic = {.name = "cohort/v1/command", .type = &cohort_v1_Command_desc, .reliable = false};
 const Topic Codec<WorldState>::topic = {
     .name = "cohort/v1/world_state", .type = &cohort_v1_WorldState_desc, .reliable = false, .depth = 1};
+const Topic Codec<SceneDescription>::topic = {.name = "cohort/v1/scene_description",
+                                              .type = &cohort_v1_SceneDescription_desc,
+                                              .transient_local = true,
+                                              .depth = 1};
+const Topic Codec<SceneUpdate>::topic = {
+    .name = "cohort/v1/scene_update", .type = &cohort_v1_SceneUpdate_desc, .reliable = false, .depth = 1};
 const Topic Codec<Report>::topic = {
     .name = "cohort/v1/report", .type = &cohort_v1_Report_desc, .transient_local = true, .depth = 16};
 
@@ -174,6 +180,36 @@ Codec<WorldState>::Outgoing::Outgoing(const WorldState& message) {
 
 WorldState Codec<WorldState>::decode(const Sample& sample) {
   return {sample.run, sample.tick, sample.time_ns, sample.state_hash, to_span(sample.robots), to_span(sample.poses)};
+}
+
+Codec<SceneDescription>::Outgoing::Outgoing(const SceneDescription& message) {
+  sample.run = message.run;
+  sample.revision = message.revision;
+  lend(message.scene, sample.scene);
+}
+
+SceneDescription Codec<SceneDescription>::decode(const Sample& sample) {
+  return {sample.run, sample.revision, to_span(sample.scene)};
+}
+
+Codec<SceneUpdate>::Outgoing::Outgoing(const SceneUpdate& message) {
+  sample.run = message.run;
+  sample.revision = message.revision;
+  sample.tick = message.tick;
+  lend(message.frame, sample.frame);
+  lend(message.signals, sample.signals);
+  lend(message.contacts, sample.contacts);
+  lend(message.robots, sample.robots);
+}
+
+SceneUpdate Codec<SceneUpdate>::decode(const Sample& sample) {
+  return {sample.run,
+          sample.revision,
+          sample.tick,
+          to_span(sample.frame),
+          to_span(sample.signals),
+          to_span(sample.contacts),
+          to_span(sample.robots)};
 }
 
 Codec<Report>::Outgoing::Outgoing(const Report& message) {

@@ -103,6 +103,28 @@ struct Codec<WorldState> {
 };
 
 template <>
+struct Codec<SceneDescription> {
+  using Sample = cohort_v1_SceneDescription;
+  struct Outgoing {
+    explicit Outgoing(const SceneDescription& message);
+    Sample sample{};
+  };
+  static const Topic topic;
+  static SceneDescription decode(const Sample& sample);
+};
+
+template <>
+struct Codec<SceneUpdate> {
+  using Sample = cohort_v1_SceneUpdate;
+  struct Outgoing {
+    explicit Outgoing(const SceneUpdate& message);
+    Sample sample{};
+  };
+  static const Topic topic;
+  static SceneUpdate decode(const Sample& sample);
+};
+
+template <>
 struct Codec<Report> {
   using Sample = cohort_v1_Report;
   struct Outgoing {

@@ -108,6 +108,22 @@ struct WorldState {
   std::span<const double> poses{};
 };
 
+struct SceneDescription {
+  std::uint32_t run = 0;
+  std::uint32_t revision = 0;
+  std::span<const std::uint8_t> scene{};
+};
+
+struct SceneUpdate {
+  std::uint32_t run = 0;
+  std::uint32_t revision = 0;
+  std::uint64_t tick = 0;
+  std::span<const std::uint8_t> frame{};
+  std::span<const std::uint8_t> signals{};
+  std::span<const std::uint8_t> contacts{};
+  std::span<const std::uint8_t> robots{};
+};
+
 enum class ReportKind : std::uint32_t { finished = 0, rejected = 1, superseded = 2, failed = 3 };
 
 struct Report {

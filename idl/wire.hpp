@@ -139,6 +139,8 @@ extern template class Writer<RobotDescription>;
 extern template class Writer<Observation>;
 extern template class Writer<Command>;
 extern template class Writer<WorldState>;
+extern template class Writer<SceneDescription>;
+extern template class Writer<SceneUpdate>;
 extern template class Writer<Report>;
 extern template class Reader<Join>;
 extern template class Reader<Admit>;
@@ -146,6 +148,8 @@ extern template class Reader<RobotDescription>;
 extern template class Reader<Observation>;
 extern template class Reader<Command>;
 extern template class Reader<WorldState>;
+extern template class Reader<SceneDescription>;
+extern template class Reader<SceneUpdate>;
 extern template class Reader<Report>;
 
 }  // namespace cohort::wire

@@ -32,6 +32,14 @@ struct Collision {
   Surface surface;
 };
 
+/// What is shown of a link: to people, never to sensors.
+struct Visual {
+  std::string name;
+  Pose X_LV;
+  Shape shape;
+  Eigen::Vector4d color;  ///< red, green, blue and opacity, from 0 to 1
+};
+
 struct Inertial {
   double mass = 1.0;                                      ///< [kg], > 0
   Pose X_LI;                                              ///< I: the centre of mass and the axes of `inertia`
@@ -47,6 +55,7 @@ struct Link {
   Inertial inertial;
   std::vector<Collision> collisions;
   Eigen::Vector3d color = default_color();  ///< for cameras: that of the first visual; red, green, blue from 0 to 1
+  std::vector<Visual> visuals{};            ///< those whose shape can be read
 };
 
 /// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.

@@ -130,15 +130,35 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   return surface;
 }
 
-// What cameras see of it. The parts are floats in SDF: what is written with up to six digits comes out as written.
-Eigen::Vector3d read_color(const sdf::Link& link) {
+// The parts are floats in SDF: what is written with up to six digits comes out as written.
+double read_part(float part) {
   constexpr double digits = 1e6;
-  const sdf::Visual* const visual = link.VisualCount() > 0 ? link.VisualByIndex(0) : nullptr;
-  if (visual == nullptr || !find(visual->Element(), {"material", "diffuse"})) return default_color();
-  const ignition::math::Color color = visual->Material()->Diffuse();
-  Eigen::Vector3d rounded(color.R(), color.G(), color.B());
-  for (double& part : rounded) part = std::clamp(std::round(part * digits) / digits, 0.0, 1.0);
+  return std::clamp(std::round(static_cast<double>(part) * digits) / digits, 0.0, 1.0);
+}
+
+Eigen::Vector3d read_color(const sdf::Visual& visual) {
+  if (!find(visual.Element(), {"material", "diffuse"})) return default_color();
+  const ignition::math::Color color = visual.Material()->Diffuse();
+  const Eigen::Vector3d rounded(read_part(color.R()), read_part(color.G()), read_part(color.B()));
   return rounded.allFinite() ? rounded : default_color();
+}
+
+double read_opacity(const sdf::Visual& visual) {
+  const double opacity = visual.Material() == nullptr ? 1.0 : read_part(visual.Material()->Diffuse().A());
+  return std::clamp(opacity - read_part(visual.Transparency()), 0.0, 1.0);
+}
+
+void read_visuals(const sdf::Link& sdf_link, const ModelReading& reading, Link& link) {
+  if (sdf_link.VisualCount() > 0) link.color = read_color(*sdf_link.VisualByIndex(0));
+  link.visuals.reserve(sdf_link.VisualCount());
+  for (std::uint64_t i = 0; i < sdf_link.VisualCount(); ++i) {
+    const sdf::Visual& visual = *sdf_link.VisualByIndex(i);
+    std::optional<Shape> shape = read_visual_shape(*visual.Geom(), reading);
+    if (!shape) continue;
+    Eigen::Vector4d color;
+    color << read_color(visual), read_opacity(visual);
+    link.visuals.push_back({visual.Name(), resolved_pose(visual, reading), *std::move(shape), color});
+  }
 }
 
 }  // namespace
@@ -147,7 +167,7 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
   Link link;
   link.name = sdf_link.Name();
   link.X_ML = resolved_pose(sdf_link, reading);
-  link.color = read_color(sdf_link);
+  read_visuals(sdf_link, reading, link);
   for (std::uint64_t i = 0; i < sdf_link.CollisionCount(); ++i) {
     const sdf::Collision& sdf_collision = *sdf_link.CollisionByIndex(i);
     const sdf::Geometry& geometry = *sdf_collision.Geom();

@@ -33,7 +33,10 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading);
 /// Nothing if there is no such shape; the report then has it.
 std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading);
 
-/// A link with its inertial and its collisions.
+/// The same of a visual, whose mistakes are nobody's: nothing is simulated of it. Nothing for what is not shown.
+std::optional<Shape> read_visual_shape(const sdf::Geometry& geometry, const ModelReading& reading);
+
+/// A link with its inertial, its visuals and its collisions.
 Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
 
 /// Its lights, and its `cohort:` elements that emit; of link 0.

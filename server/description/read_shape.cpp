@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <sdf/Box.hh>
@@ -9,6 +10,7 @@
 #include <sdf/Plane.hh>
 #include <sdf/Sphere.hh>
 #include <stdexcept>
+#include <utility>
 
 #include "server/description/extension_values.hpp"
 #include "server/description/read_model.hpp"
@@ -42,6 +44,21 @@ std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& 
     reading.report.problem(uri, error.what());
     return std::nullopt;
   }
+}
+
+std::optional<Shape> read_visual_mesh(const sdf::Mesh& mesh, const ModelReading& reading) {
+  const Eigen::Vector3d scale = to_eigen(mesh.Scale());
+  const sdf::ElementPtr uri = find(mesh.Element(), {"uri"});
+  if (!uri || !scale.allFinite() || (scale.array() == 0.0).any()) return std::nullopt;
+  try {
+    return Mesh{reading.shape_files.mesh(uri, scale, false), false};
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<Shape> shown(Shape shape, double least) {
+  return least > 0.0 && std::isfinite(least) ? std::optional(std::move(shape)) : std::nullopt;
 }
 
 std::optional<Shape> read_terrain(const sdf::ElementPtr& element, const Eigen::Vector3d& size,
@@ -115,6 +132,21 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   report.problem(element, (kind ? "<" + kind->GetName() + "> is not supported; expected " : "expected ") +
                               std::string(geometries));
   return std::nullopt;
+}
+
+std::optional<Shape> read_visual_shape(const sdf::Geometry& geometry, const ModelReading& reading) {
+  const sdf::ElementPtr element = geometry.Element();
+  if (const sdf::Box* const box = geometry.BoxShape()) return shown(Box{to_eigen(box->Size())}, box->Size().Min());
+  if (const sdf::Sphere* const sphere = geometry.SphereShape())
+    return shown(Sphere{sphere->Radius()}, sphere->Radius());
+  if (const sdf::Cylinder* const cylinder = geometry.CylinderShape())
+    return shown(Cylinder{cylinder->Radius(), cylinder->Length()}, std::min(cylinder->Radius(), cylinder->Length()));
+  if (const sdf::Capsule* const capsule = geometry.CapsuleShape())
+    return shown(Capsule{capsule->Radius(), capsule->Length()}, std::min(capsule->Radius(), capsule->Length()));
+  if (const sdf::Ellipsoid* const ellipsoid = geometry.EllipsoidShape())
+    return shown(Ellipsoid{to_eigen(ellipsoid->Radii())}, ellipsoid->Radii().Min());
+  if (const sdf::Mesh* const mesh = geometry.MeshShape()) return read_visual_mesh(*mesh, reading);
+  return std::nullopt;  // planes and height maps are shown as what they collide as
 }
 
 }  // namespace cohort::description

@@ -82,6 +82,8 @@ class Emitters {
   const Tone& tone(std::uint32_t index) const { return tones_[index]; }
   const Marker& marker(std::uint32_t index) const { return markers_[index]; }
   std::span<const Lamp> lamps() const { return lamps_; }
+  std::span<const Tone> tones() const { return tones_; }
+  std::span<const Marker> markers() const { return markers_; }
   std::span<const ClimateSource> climate_sources() const { return climate_sources_; }
   bool is_in_world(const Mount& mount) const { return world_.is_active(mount.body); }
 

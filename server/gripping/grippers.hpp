@@ -40,6 +40,10 @@ class Grippers {
   /// After what it held was torn away or has left the world it grasps again only once it has been open.
   void command(std::uint32_t gripper, double opening);
 
+  std::uint32_t size() const { return static_cast<std::uint32_t>(grippers_.size()); }
+  Eigen::Vector3d place(std::uint32_t gripper) const {
+    return jaw_pose(grippers_[gripper]).position;
+  }  ///< of its jaw, p_W
   double opening(std::uint32_t gripper) const { return grippers_[gripper].opening; }
   bool is_gripping(std::uint32_t gripper) const;
   /// At the connection, over the last step [N]; 0 if it holds nothing.

@@ -30,7 +30,8 @@ Server::Run::Run(const description::Experiment& its_experiment, Simulation& its_
                        [&](std::uint32_t robot) { return !its_simulation.policy(robot).required; });
 }
 
-Server::Server(std::span<wire::Participant> participants) : world_state_(participants.front(), view_partition) {
+Server::Server(std::span<wire::Participant> participants)
+    : world_state_(participants.front(), view_partition), scenes_(participants.front(), view_partition) {
   for (wire::Participant& participant : participants) doors_.emplace_back(*this, participant);
 }
 
@@ -101,6 +102,7 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
     run.book.stepped();
   }
   publish_world_state();
+  publish_scene(SceneBroadcast::When::at_once);
   return end(End::finished);
 }
 
@@ -134,6 +136,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
   send_frames();
   run_->book.at_boundary();
   publish_world_state();
+  publish_scene(SceneBroadcast::When::due);
   if (!handle_misses(begin)) return false;
   std::span<const std::uint32_t> changed;
   for (;;) {
@@ -312,6 +315,10 @@ void Server::publish_world_state() {
   }
   world_state_.write(
       {run_number_, simulation.tick(), simulation.time().count(), simulation.state_hash(), present, poses_});
+}
+
+void Server::publish_scene(SceneBroadcast::When when) {
+  scenes_.publish({run_->experiment, run_->simulation, run_number_}, when);
 }
 
 }  // namespace cohort::session

@@ -24,6 +24,7 @@
 #include "server/session/exchange.hpp"
 #include "server/session/live_recordings.hpp"
 #include "server/session/run.hpp"
+#include "server/session/scene_broadcast.hpp"
 
 namespace cohort::session {
 
@@ -172,6 +173,7 @@ class Server {
   std::vector<std::uint64_t> frames_under_way(const std::vector<std::uint32_t>& robots) const;
   void report_progress(bool now_anyway);
   void publish_world_state();
+  void publish_scene(SceneBroadcast::When when);
   std::string error();
 
   // Control (server_control.cpp):
@@ -225,6 +227,7 @@ class Server {
   Control control_{recordings_};
 
   wire::Writer<wire::WorldState> world_state_;
+  SceneBroadcast scenes_;
   // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they
   // are.
   std::list<Door> doors_;

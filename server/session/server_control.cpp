@@ -62,6 +62,7 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
     }
     if (control_.holds()) {
       if (!was_held || had_work) publish_world_state();  // no tick is about to
+      publish_scene(was_held && !had_work ? SceneBroadcast::When::for_newcomers : SceneBroadcast::When::at_once);
       was_held = true;
       decide_claims();
       report_progress(false);

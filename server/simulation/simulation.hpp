@@ -161,6 +161,7 @@ class Simulation {
   Pose robot_pose(std::uint32_t robot) const;  ///< of its root link, X_WL
   const physics::World& world() const { return world_; }
   const emission::Emitters& emitters() const { return emitters_; }
+  const gripping::Grippers& grippers() const { return grippers_; }
   const BreakableJoints& breakable_joints() const { return breakable_joints_; }
   const TouchCounts& touches() const { return touches_; }
 

@@ -103,7 +103,7 @@ std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
   return {{"publish", {"cohort/v1/request"}, ""},
           {"subscribe", {"cohort/v1/reply"}, "c*"},
           {"subscribe", {"cohort/v1/robot_description"}, ""},
-          {"subscribe", {"cohort/v1/world_state"}, "view"}};
+          {"subscribe", {"cohort/v1/world_state", "cohort/v1/scene_description", "cohort/v1/scene_update"}, "view"}};
 }
 
 std::string rules_of(wire::Role role, bool may_control) {

@@ -17,5 +17,6 @@ void add_domains(CLI::App& app, std::vector<std::uint32_t>& domains, const std::
 void add_security_commands(CLI::App& app, SecurityCommand& command);
 void add_ctl_commands(CLI::App& app, CtlCommand& command);
 void add_doctor_options(CLI::App& app, DoctorCommand& command);
+void add_view_options(CLI::App& app, ViewCommand& command);
 
 }  // namespace cohort::tool

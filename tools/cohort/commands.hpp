@@ -209,6 +209,22 @@ int doctor(DoctorCommand command, Log& log);
 /// `topic`: empty for the list of topics.
 int help(const std::string& topic, Log& log);
 
+/// `cohort view`: docs/view.md.
+struct ViewCommand {
+  std::filesystem::path recording;  ///< what is shown; empty: a server
+  std::string server = "127.0.0.1";
+  std::vector<std::uint32_t> domains{};    ///< of the server; the first of them is used. Empty: 0
+  std::filesystem::path secure{};          ///< folder of an identity; empty: without security
+  std::filesystem::path secure_control{};  ///< the same, of one that may control
+  bool may_control = false;
+  std::string network = "127.0.0.1";  ///< address of the interface to serve on
+  std::uint16_t port = 8080;
+  std::string token{};                 ///< that browsers have to give; empty: one is made where strangers can connect
+  std::vector<std::string> origins{};  ///< of other pages that may connect
+  unsigned threads = 0;                ///< that replay a recording; 0: one for each core
+};
+int view(const ViewCommand& command, Log& log, const std::atomic<bool>& stop);
+
 struct BenchCommand {
   bench::Options options;
   std::optional<bench::ThesisOptions> thesis;      ///< the thesis's tables, in place of the scenes

@@ -7,6 +7,7 @@
 #include "server/description/text.hpp"
 #include "tools/cohort/bench_options.hpp"
 #include "tools/cohort/build_facts.hpp"
+#include "tools/cohort/client_commands.hpp"
 #include "tools/cohort/command_lines.hpp"
 #include "tools/cohort/commands.hpp"
 #include "tools/cohort/log.hpp"
@@ -132,13 +133,6 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
   app.add_flag("--quiet", flags.quiet, "Print errors only");
 }
 
-void add_record_command_options(CLI::App& app, RecordCommand& command) {
-  add_live_record_options(app, command.record);
-  add_server_option(app, command.server);
-  add_domains(app, command.domains, "DDS domain of the server, the first if it has several (default: 0)");
-  add_secure_option(app, command.secure, "Folder of an identity that looks on or controls (default: $COHORT_SECURE)");
-}
-
 template <class Command>
 void add_client_options(CLI::App& app, Command& command) {
   app.add_option("--robots", command.robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
@@ -247,17 +241,9 @@ int main(int argc, char** argv) {
   add_log_options(*teleop_app, log_flags);
   teleop_app->footer("Example: cohort teleop --robots 0");
 
-  CtlCommand ctl_command;
-  CLI::App* ctl_app = app.add_subcommand("ctl", "Control a run: pause, step, change its world, save, ask how it is");
-  add_domains(*ctl_app, ctl_command.domains, "DDS domain of the server, the first if it has several (default: 0)");
-  add_secure_option(*ctl_app, ctl_command.secure, "Folder of an identity that may control (default: $COHORT_SECURE)");
-  add_ctl_commands(*ctl_app, ctl_command);
-  add_log_options(*ctl_app, log_flags);
-
-  RecordCommand record_command;
-  CLI::App* record_app = app.add_subcommand("record", "Record a run of a server from now on");
-  add_record_command_options(*record_app, record_command);
-  add_log_options(*record_app, log_flags);
+  ClientCommands client_commands;
+  add_client_commands(app, client_commands);
+  for (CLI::App* client_app : client_commands.apps()) add_log_options(*client_app, log_flags);
 
   std::filesystem::path checked_file;
   CLI::App* check_app =
@@ -335,8 +321,7 @@ int main(int argc, char** argv) {
   if (serve_app->parsed()) return run(serve_options, log, stop_requested);
   if (host_app->parsed()) return host(host_options, log, stop_requested);
   if (teleop_app->parsed()) return teleop(teleop_options, log, stop_requested);
-  if (ctl_app->parsed()) return ctl(ctl_command, log, stop_requested);
-  if (record_app->parsed()) return record(record_command, log, stop_requested);
+  if (const auto code = client_commands.run(log, stop_requested)) return *code;
   if (export_app->parsed()) return export_world(export_options, log);
   if (samples_app->parsed()) return take_samples(samples_options, log);
   if (security_app->parsed()) return security(security_command, log);

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/view/admission.hpp"
+#include "tools/view/client_session.hpp"
+#include "tools/view/control_requests.hpp"
+
+namespace cohort::view {
+namespace {
+
+using nlohmann::json;
+
+recording::Bytes some(std::size_t size) { return recording::Bytes(size); }
+
+// A session whose wishes are kept.
+struct Visit {
+  Topics topics;
+  std::vector<Wish> wishes;
+  ClientSession session{
+      topics, "test", "session", {[this](const auto&, const Wish& wish) { wishes.push_back(wish); }, [] {}}};
+
+  Visit() {
+    for (int greeting = 0; greeting < 3; ++greeting) session.next();
+  }
+  json next_text() {
+    const auto next = session.next();
+    return next && std::holds_alternative<ClientSession::Text>(*next)
+               ? json::parse(std::get<ClientSession::Text>(*next).text)
+               : json();
+  }
+  // The version of the message that comes next, 0 if none does.
+  std::uint64_t next_version() {
+    const auto next = session.next();
+    return next ? std::get<ClientSession::Data>(*next).published->version : 0;
+  }
+};
+
+TEST(ViewSession, GreetsWithItsChannelsAndServices) {
+  Topics topics;
+  ClientSession session(topics, "test", "1", {});
+  const auto operation = [&] { return json::parse(std::get<ClientSession::Text>(session.next().value()).text)["op"]; };
+  EXPECT_EQ(operation(), "serverInfo");
+  EXPECT_EQ(operation(), "advertise");
+  EXPECT_EQ(operation(), "advertiseServices");
+  EXPECT_FALSE(session.next());
+}
+
+TEST(ViewSession, WhoReadsSlowlyGetsTheNewestOnly) {
+  Visit visit;
+  visit.topics.publish(Topic::frame, {}, some(10));
+  visit.session.take_text(R"({"op": "subscribe", "subscriptions": [{"id": 5, "channelId": 1}]})");
+  EXPECT_EQ(visit.next_version(), 1U);  // what was there before
+  for (int i = 0; i < 1000; ++i) visit.topics.publish(Topic::frame, {}, some(10));
+  EXPECT_EQ(visit.next_version(), 1001U);
+  EXPECT_EQ(visit.next_version(), 0U);
+}
+
+TEST(ViewSession, ABusyTopicKeepsNoOtherBack) {
+  Visit visit;
+  visit.session.take_text(
+      R"({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 1}, {"id": 2, "channelId": 4}]})");
+  visit.topics.publish(Topic::status, {}, some(1));
+  int statuses = 0;
+  for (int i = 0; i < 4; ++i) {
+    visit.topics.publish(Topic::frame, {}, some(10));
+    const auto next = visit.session.next();
+    ASSERT_TRUE(next);
+    statuses += std::get<ClientSession::Data>(*next).published->data.size() == 1 ? 1 : 0;
+  }
+  EXPECT_EQ(statuses, 1);
+}
+
+TEST(ViewSession, CountsWhoReadsATopic) {
+  Topics topics;
+  {
+    ClientSession session(topics, "test", "1", {});
+    session.take_text(R"({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 3}]})");
+    EXPECT_TRUE(topics.is_read(Topic::contacts));
+    session.take_text(R"({"op": "unsubscribe", "subscriptionIds": [1]})");
+    EXPECT_FALSE(topics.is_read(Topic::contacts));
+    session.take_text(R"({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 3}]})");
+  }
+  EXPECT_FALSE(topics.is_read(Topic::contacts));
+}
+
+TEST(ViewSession, AnswersThatNobodyReadsAreBounded) {
+  Visit visit;
+  for (int i = 0; i < 10'000; ++i) visit.session.take_text("nonsense");
+  std::size_t replies = 0;
+  while (visit.session.next()) ++replies;
+  EXPECT_EQ(replies, ClientSession::most_replies);
+}
+
+TEST(ViewSession, TellsWhatIsWrongWithAMessage) {
+  Visit visit;
+  visit.session.take_text(R"({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 77}]})");
+  EXPECT_EQ(visit.next_text()["message"], "there is no channel 77");
+  visit.session.take_text(R"({"op": "getParameters"})");
+  EXPECT_EQ(visit.next_text()["message"], "the operation 'getParameters' is not offered");
+  EXPECT_TRUE(visit.wishes.empty());
+}
+
+TEST(ViewAdmission, OnlyOurPageAndProgramsMayConnect) {
+  const Admission ours{true, "", {"https://app.foxglove.dev"}};
+  EXPECT_FALSE(refusal(ours, {"localhost:8080", std::nullopt, "/"}));
+  EXPECT_FALSE(refusal(ours, {"127.0.0.1:8080", "http://127.0.0.1:8080", "/"}));
+  EXPECT_FALSE(refusal(ours, {"[::1]:8080", "https://app.foxglove.dev", "/"}));
+  EXPECT_TRUE(refusal(ours, {"localhost:8080", "http://localhost:9090", "/"}));
+  EXPECT_TRUE(refusal(ours, {"localhost:8080", "null", "/"}));
+  EXPECT_TRUE(refusal(ours, {"stranger.example:8080", std::nullopt, "/"}));
+  EXPECT_TRUE(refusal(ours, {"localhost.stranger.example", std::nullopt, "/"}));
+}
+
+TEST(ViewAdmission, ATokenIsWholeOrWrong) {
+  const Admission network{false, "secret", {}};
+  const auto is_let_in = [&](const std::string& target) {
+    return !refusal(network, {"robot.lan:8080", std::nullopt, target});
+  };
+  EXPECT_TRUE(is_let_in("/?token=secret"));
+  EXPECT_TRUE(is_let_in("/?more=1&token=secret&x"));
+  for (const char* target : {"/", "/?token=", "/?token=secre", "/?token=secrets", "/?xtoken=secret", "/token=secret"})
+    EXPECT_FALSE(is_let_in(target)) << target;
+  EXPECT_EQ(random_token().size(), 32U);
+  EXPECT_NE(random_token(), random_token());
+}
+
+TEST(ViewWishes, BecomeRequestsOrAreExplained) {
+  EXPECT_EQ(request_of({.operation = "pause"}).state, wire::SimulationState::paused);
+  EXPECT_EQ(request_of({.operation = "step", .number = 3.0}).steps, 3U);
+  const wire::Request move = request_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0}});
+  EXPECT_EQ(move.entity, "bar");
+  EXPECT_EQ(move.pose.position, (wire::Vector3{1.0, 2.0, 0.0}));
+  EXPECT_THROW(request_of({.operation = "move", .name = "bar", .numbers = {1.0}}), std::invalid_argument);
+  EXPECT_THROW(request_of({.operation = "move", .numbers = {1.0, 2.0}}), std::invalid_argument);
+  EXPECT_THROW(request_of({.operation = "step", .number = 0.0 / 0.0}), std::invalid_argument);
+  EXPECT_THROW(request_of({.operation = "shutdown"}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace cohort::view

@@ -1,0 +1,272 @@
+// Drives the page in a browser without a window: node browser.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { chromium } from "playwright-core";
+
+const patience = 60_000; // [ms]; a browser that draws in software is slow
+
+// Runs `look` in the page until it gives something that is true, and gives that back.
+async function until(page, look, argument) {
+  const handle = await page.waitForFunction(look, argument, { timeout: patience });
+  return handle.jsonValue();
+}
+const run = (page, line) => page.evaluate((text) => window.cohort.run(text), line);
+const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.poses.frame.tick));
+const atTick = (page, wanted) => until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
+
+// Pixels of the picture at places of the world: red, green, blue of each.
+const pixelsAt = (page, places) => page.evaluate((points) => {
+  const { viewer } = window.cohort;
+  const { camera, renderer } = viewer.stage;
+  viewer.draw(performance.now());
+  const gl = renderer.getContext();
+  return points.map(([x, y, z]) => {
+    const at = viewer.cameras.target.clone().set(x, y, z).project(camera);
+    const pixel = new Uint8Array(4);
+    const column = Math.round(0.5 * (at.x + 1) * gl.drawingBufferWidth);
+    const row = Math.round(0.5 * (at.y + 1) * gl.drawingBufferHeight);
+    gl.readPixels(column, row, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    return [...pixel.slice(0, 3)];
+  });
+}, places);
+
+const isOrange = ([red, green, blue]) => red > 120 && red > 1.5 * green && green > blue;
+
+async function draws(page, file) {
+  const expected = JSON.parse(readFileSync(file, "utf8"));
+  await run(page, `pause; seek ${expected.time}; toggle shadows`);
+  await atTick(page, expected.tick);
+  const { poses, shown } = await page.evaluate((names) => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000); // past the blend of the last two frames
+    return {
+      poses: names.map((name) => viewer.poseOf(viewer.find(name))),
+      shown: ["tick", "hash", "robots"].map((id) => document.getElementById(id).textContent),
+    };
+  }, expected.robots.map(({ name }) => name));
+  assert.equal(poses.length, 16);
+  expected.robots.forEach(({ name, x, y, heading }, i) => {
+    const { position, heading: found } = poses[i];
+    assert.ok(Math.hypot(position[0] - x, position[1] - y) < 1e-4, `${name} is at ${position}, not at ${x} ${y}`);
+    assert.ok(Math.cos(found - heading) > 0.99999, `${name} heads ${found}, not ${heading}`);
+  });
+  assert.deepEqual(shown, [String(expected.tick), expected.hash, "16"]);
+  await run(page, "home; top");
+  await page.waitForTimeout(500);
+  const turretHeight = 0.1; // [m]
+  const pixels = await pixelsAt(page, expected.robots.map(({ x, y }) => [x, y, turretHeight]));
+  pixels.forEach((pixel, i) => assert.ok(isOrange(pixel), `where ${expected.robots[i].name} is, the picture is ${pixel}`));
+  const [ground] = await pixelsAt(page, [[1.9, 1.9, 0]]);
+  assert.ok(!isOrange(ground), `the ground is ${ground}`);
+}
+
+async function drawsMany(page, file) {
+  const expected = JSON.parse(readFileSync(file, "utf8"));
+  await run(page, `pause; seek ${expected.time}`);
+  await atTick(page, expected.tick);
+  const { places, calls } = await page.evaluate(() => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000);
+    return { places: viewer.robotEntities().map((entity) => viewer.poseOf(entity).position), calls: viewer.stage.renderer.info.render.calls };
+  });
+  assert.equal(places.length, expected.robots.length);
+  expected.robots.forEach(({ name, x, y }, i) => {
+    assert.ok(Math.hypot(places[i][0] - x, places[i][1] - y) < 1e-4, `${name} is at ${places[i]}, not at ${x} ${y}`);
+  });
+  assert.ok(calls < 10, `${calls} draw calls`);
+  const { x, y } = expected.robots[7];
+  await page.evaluate(([left, ahead]) => {
+    window.cohort.viewer.cameras.look({ position: [left, ahead - 0.3, 0.9], target: [left, ahead, 0.1] });
+  }, [x, y]);
+  const [pixel] = await pixelsAt(page, [[x, y, 0.1]]);
+  assert.ok(isOrange(pixel), `where robot 7 is, the picture is ${pixel}`);
+}
+
+async function click(page, name) {
+  const at = await page.evaluate((text) => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000);
+    const [x, y, z] = viewer.poseOf(viewer.find(text)).position;
+    const seen = viewer.cameras.target.clone().set(x, y, z + 0.08).project(viewer.stage.camera);
+    const { width, height } = document.getElementById("canvas").getBoundingClientRect();
+    return { x: 0.5 * (seen.x + 1) * width, y: 0.5 * (1 - seen.y) * height };
+  }, name);
+  await page.mouse.click(at.x, at.y);
+}
+
+async function steersRecording(page) {
+  await run(page, "pause; seek 1");
+  await atTick(page, 100);
+  await run(page, "step 3");
+  await atTick(page, 103);
+  await run(page, "step -2");
+  await atTick(page, 101);
+  await page.locator("#canvas").focus();
+  await page.keyboard.press(".");
+  await atTick(page, 102);
+
+  await run(page, "home; top");
+  await click(page, "explorers/sbot_7");
+  await until(page, () => document.getElementById("inspected").textContent === "explorers/sbot_7");
+  await until(page, () => document.querySelectorAll("#dial line").length >= 15);
+  await page.keyboard.press("f");
+  await until(page, () => window.cohort.viewer.cameras.mode === "follow");
+  await run(page, "play; speed 2");
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 150);
+  const distance = await page.evaluate(() => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now());
+    const [x, y] = viewer.poseOf(viewer.selected).position;
+    return Math.hypot(viewer.cameras.target.x - x, viewer.cameras.target.y - y);
+  });
+  assert.ok(distance < 0.02, `the camera looks ${distance} m beside what it follows`);
+  await run(page, "pause; orbit");
+
+  // The time bar, by hand.
+  const bar = await page.locator("#track").boundingBox();
+  await page.mouse.click(bar.x + 0.5 * bar.width, bar.y + 0.5 * bar.height);
+  const near = await until(page, () => {
+    const found = Number(window.cohort.viewer.poses.frame.tick);
+    return found > 180 && found < 220 ? found : undefined;
+  });
+  assert.ok(near);
+
+  // The console, by hand: completion and history.
+  await page.locator("#canvas").focus();
+  await page.keyboard.press("`");
+  await page.keyboard.type("see");
+  await page.keyboard.press("Tab");
+  await page.keyboard.type("0.5");
+  await page.keyboard.press("Enter");
+  await atTick(page, 50);
+  await page.keyboard.type("step");
+  await page.keyboard.press("Enter");
+  await atTick(page, 51);
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("ArrowUp");
+  await page.keyboard.press("Enter");
+  await atTick(page, 50);
+  await page.keyboard.type("seeek 1");
+  await page.keyboard.press("Enter");
+  await until(page, () => document.querySelector("#lines .wrong")?.textContent.includes("there is no command 'seeek'"));
+  await page.keyboard.press("Escape");
+
+  const [download] = await Promise.all([page.waitForEvent("download", { timeout: patience }), run(page, "screenshot")]);
+  const picture = readFileSync(await download.path());
+  assert.equal(picture.subarray(1, 4).toString(), "PNG");
+  const colours = await page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    const found = new Set();
+    for (let i = 0; i < data.length; i += 4 * 37) found.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+    return found.size;
+  }, picture.toString("base64"));
+  assert.ok(colours > 50, `the picture has ${colours} colours`);
+}
+
+async function keepsProfile(page) {
+  await run(page, "pause");
+  await run(page, 'bind k "seek 0.2"; alias hop "step 4"; script tour "seek 0.1; hop"');
+  await page.reload();
+  await until(page, () => window.cohort?.viewer.poses?.frame);
+  await page.locator("#canvas").focus();
+  await page.keyboard.press("k");
+  await atTick(page, 20);
+  await run(page, "hop");
+  await atTick(page, 24);
+  await run(page, "exec tour");
+  await atTick(page, 14);
+  await assert.rejects(run(page, "alias loop loop; loop"), /leads back to itself/);
+  const profile = await page.evaluate(() => window.cohort.commands.exportProfile());
+  await run(page, "unbind k; unalias hop");
+  assert.equal(await page.evaluate(() => window.cohort.commands.commandOfKey("k")), undefined);
+  await page.evaluate((text) => window.cohort.commands.importProfile(text), profile);
+  assert.equal(await page.evaluate(() => window.cohort.commands.commandOfKey("k")), "seek 0.2");
+  await assert.rejects(page.evaluate(() => window.cohort.commands.importProfile('{"keys": 3}')), /no profile/);
+}
+
+async function isFoundAgain(page) {
+  console.log("connected");
+  await until(page, () => !document.getElementById("lost").hidden);
+  console.log("lost");
+  await until(page, () => document.getElementById("lost").hidden);
+  await run(page, "pause; seek 0.3");
+  await atTick(page, 30);
+}
+
+async function steersServer(page) {
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 20);
+  await run(page, "pause");
+  await page.waitForTimeout(500);
+  const before = await tick(page);
+  await run(page, "step 5");
+  await atTick(page, before + 5);
+  await run(page, "move sbot_3 0.25 -0.5");
+  await until(page, () => {
+    const { viewer } = window.cohort;
+    const [x, y] = viewer.poseOf(viewer.find("explorers/sbot_3")).position;
+    return Math.hypot(x - 0.25, y + 0.5) < 1e-3;
+  }).catch(async (error) => { throw new Error(`${error.message}\n${await run(page, "where sbot_3")}`); });
+  await assert.rejects(run(page, "move nobody 0 0"), /nobody/);
+  await assert.rejects(run(page, "step -1"), /ahead/);
+  await run(page, "select sbot_3");
+  await until(page, () => document.querySelectorAll("#dial line").length >= 15);
+  await run(page, "reset");
+  await until(page, () => Number(window.cohort.viewer.poses.frame.run) === 2);
+  assert.equal(await page.evaluate(() => document.getElementById("inspected").textContent), "explorers/sbot_3");
+  await run(page, "play");
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 10);
+}
+
+async function onlyLooks(page) {
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 20);
+  for (const line of ["pause", "step", "reset", "move sbot_3 0 0", "speed 0.1"]) await assert.rejects(run(page, line), /only look/);
+  assert.equal(await page.locator("#play").isVisible(), false);
+  const before = await tick(page);
+  await until(page, (each) => Number(window.cohort.viewer.poses.frame.tick) > each + 20, before);
+}
+
+// Until it is told otherwise, by being killed.
+async function looks(page) {
+  console.log("looking");
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 100);
+  console.log("seen");
+  await new Promise(() => setInterval(() => undefined, 1000));
+}
+
+async function isSuspended(page) {
+  const session = await page.context().newCDPSession(page);
+  await session.send("Page.setWebLifecycleState", { state: "frozen" });
+  await session.send("Debugger.enable");
+  await session.send("Debugger.pause");
+  console.log("looking");
+  await new Promise(() => setInterval(() => undefined, 1000));
+}
+
+const scenarios = {
+  draws, draws_many: drawsMany, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
+  steers_server: steersServer, only_looks: onlyLooks, looks, is_suspended: isSuspended,
+};
+
+const [, , scenario, address, file] = process.argv;
+const browser = await chromium.launch({
+  executablePath: process.env.COHORT_CHROMIUM,
+  args: ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+try {
+  const page = await browser.newPage({ viewport: { width: 960, height: 640 } });
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(error.message));
+  await page.goto(address);
+  await until(page, () => window.cohort?.viewer.poses?.frame);
+  await scenarios[scenario](page, file);
+  assert.deepEqual(errors, []);
+} finally {
+  await browser.close();
+}

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "server/recording/replay.hpp"
+#include "tests/view/viewing.hpp"
+
+namespace cohort::view {
+namespace {
+
+using nlohmann::json;
+using testing::Process;
+using testing::ScratchFolder;
+
+// The demo's first seconds, recorded with a snapshot every second.
+void record_demo(const std::filesystem::path& file, const std::string& seconds) {
+  testing::run_demo({"--duration", seconds, "--record", file, "--record-snapshots", "1"});
+}
+
+// Where the demo's robots are at a time, by the recording.
+json robots_at(const std::filesystem::path& file, double seconds) {
+  const recording::Recording recording(file);
+  recording::Replay replay(recording, 1);
+  EXPECT_TRUE(replay.seek(std::chrono::nanoseconds(std::llround(seconds * 1e9))));
+  const Simulation& simulation = replay.simulation();
+  json robots = json::array();
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
+    const Pose X_WL = simulation.robot_pose(robot);
+    const Eigen::Vector3d forward = X_WL.orientation * Eigen::Vector3d::UnitX();
+    robots.push_back({{"name", simulation.robot_name(robot)},
+                      {"x", X_WL.position.x()},
+                      {"y", X_WL.position.y()},
+                      {"heading", std::atan2(forward.y(), forward.x())}});
+  }
+  std::array<char, 17> hash{};
+  std::snprintf(hash.data(), hash.size(), "%016llx", static_cast<unsigned long long>(simulation.state_hash()));
+  return {{"time", seconds}, {"tick", simulation.tick()}, {"hash", hash.data()}, {"robots", robots}};
+}
+
+class InTheBrowser : public Viewing {
+ protected:
+  void SetUp() override {
+    Viewing::SetUp();
+    if (!has_browser() && !IsSkipped())
+      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
+  }
+  ScratchFolder scratch;
+};
+
+TEST_F(InTheBrowser, RobotsOfARecordingAreDrawnWhereItSaysTheyAre) {
+  record_demo(scratch / "run.mcap", "4");
+  testing::write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 2.5).dump());
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"draws", view.address(), scratch / "expected.json"});
+}
+
+TEST_F(InTheBrowser, ARecordingIsSteeredByMouseKeysAndConsole) {
+  record_demo(scratch / "run.mcap", "4");
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"steers_recording", view.address()});
+}
+
+TEST_F(InTheBrowser, WhatKeysDoIsChangedAndKept) {
+  record_demo(scratch / "run.mcap", "1");
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"keeps_profile", view.address()});
+}
+
+TEST_F(InTheBrowser, ALostConnectionIsFoundAgain) {
+  record_demo(scratch / "run.mcap", "2");
+  auto view = std::make_unique<View>(std::vector<std::string>{scratch / "run.mcap"});
+  const std::string port = view->port();
+  Process script = start_script("browser.mjs", {"is_found_again", view->address()});
+  ASSERT_TRUE(script.wait_for_output("connected")) << script.output();
+  view.reset();
+  ASSERT_TRUE(script.wait_for_output("lost")) << script.output();
+  const View again({scratch / "run.mcap", "--port", port});
+  EXPECT_EQ(script.wait_for_exit(), 0) << script.output();
+}
+
+TEST_F(InTheBrowser, ARunningServerIsSeenAndSteered) {
+  const testing::ReservedDomain domain;
+  Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",
+               "--duration", "600"});
+  const View view({"--domain", domain.text(), "--control"});
+  run_script("browser.mjs", {"steers_server", view.address()});
+}
+
+TEST_F(InTheBrowser, WhoMayOnlyLookSteersNothing) {
+  const testing::ReservedDomain domain;
+  Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",
+               "--duration", "600"});
+  const View view({"--domain", domain.text()});
+  run_script("browser.mjs", {"only_looks", view.address()});
+}
+
+// So many s-bots on a plane, for a tenth of a second.
+void record_many(const ScratchFolder& folder, int count) {
+  const int half = static_cast<int>(std::ceil(0.25 * std::sqrt(count)));
+  testing::write_file(folder / "world.yaml", fmt::format(R"(world:
+  name: field
+  model: {{name: ground, static: true, link: {{name: body, collision: {{name: floor, geometry: {{plane: {{normal: [0, 0, 1], size: [3, 3]}}}}}}}}}}
+  cohort:physics: {{fidelity: planar}}
+  cohort:population:
+    name: swarm
+    uri: model://sbot
+    count: {}
+    placement: {{uniform: {{min: [-{}, -{}], max: [{}, {}]}}, gap: 0.05}}
+)",
+                                                         count, half, half, half, half));
+  testing::write_file(folder / "many.yaml",
+                      "world: world.yaml\nduration: 0.1\nteams:\n  - {name: swarm, robots: swarm/*, controller: "
+                      "obstacle_avoidance}\n");
+  testing::run_experiment(folder / "many.yaml", {"--controllers", "inprocess", "--record", folder / "run.mcap"});
+}
+
+class ManyRobotsInTheBrowser : public InTheBrowser, public ::testing::WithParamInterface<int> {};
+
+TEST_P(ManyRobotsInTheBrowser, AreDrawnAtOnce) {
+  record_many(scratch, GetParam());
+  testing::write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 0.05).dump());
+  const View view({scratch / "run.mcap"});
+  run_script("browser.mjs", {"draws_many", view.address(), scratch / "expected.json"});
+}
+INSTANTIATE_TEST_SUITE_P(AThousandAndTenThousand, ManyRobotsInTheBrowser, ::testing::Values(1000, 10'000));
+
+using ByItsProtocol = Viewing;
+
+TEST_F(ByItsProtocol, ItsOwnClientReadsWhatIsShown) {
+  const ScratchFolder scratch;
+  record_demo(scratch / "run.mcap", "2");
+  const View view({scratch / "run.mcap"});
+  run_script("client.mjs", {"reads", view.address()});
+}
+
+TEST_F(ByItsProtocol, MalformedFramesAreToldAndNothingElse) {
+  const ScratchFolder scratch;
+  record_demo(scratch / "run.mcap", "2");
+  View view({scratch / "run.mcap"});
+  run_script("client.mjs", {"sends_nonsense", view.address()});
+  run_script("client.mjs", {"reads", view.address()});
+  EXPECT_TRUE(view.process().running());
+}
+
+TEST_F(ByItsProtocol, WhoReadsNothingCostsNoMemory) {
+  const ScratchFolder scratch;
+  record_demo(scratch / "run.mcap", "4");
+  View view({scratch / "run.mcap"});
+  run_script("client.mjs", {"reads_nothing", view.address(), std::to_string(view.process().pid())});
+}
+
+TEST_F(ByItsProtocol, StrangersAreRefused) {
+  const ScratchFolder scratch;
+  record_demo(scratch / "run.mcap", "1");
+  const View view({scratch / "run.mcap", "--token", "0123456789abcdef"});
+  run_script("client.mjs", {"is_refused", view.address()});
+}
+
+}  // namespace
+}  // namespace cohort::view

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "server/recording/recording.hpp"
+#include "tools/cohort/commands.hpp"
+#include "tools/cohort/installed_page.hpp"
+#include "tools/view/admission.hpp"
+#include "tools/view/live_source.hpp"
+#include "tools/view/recording_source.hpp"
+#include "tools/view/web_server.hpp"
+
+namespace cohort::tool {
+namespace {
+
+bool is_loopback(const std::string& address) { return address.starts_with("127.") || address == "::1"; }
+
+view::WebOptions web_options(const ViewCommand& command, const std::string& name) {
+  view::WebOptions options{name, command.network, command.port, command.token, command.origins};
+  if (options.token.empty() && !is_loopback(command.network)) options.token = view::random_token();
+  return options;
+}
+
+view::PageFiles page_or_warning(Log& log) {
+  view::PageFiles page = view::read_page(installed_page_folder());
+  if (page.empty())
+    log.warning(
+        "the page was not built, so that only other viewers can connect: it needs node 18 and npm ('tools/"
+        "install-packages tools/packages-node.txt'), then 'cmake --build build/release --target view_page'");
+  return page;
+}
+
+void say_where(const ViewCommand& command, const view::WebOptions& options, std::uint16_t port) {
+  const std::string host = command.network == "0.0.0.0" ? "127.0.0.1" : command.network;
+  const std::string token = options.token.empty() ? "" : "#token=" + options.token;
+  std::printf("http://%s:%u/%s\n", host.c_str(), static_cast<unsigned>(port), token.c_str());
+  std::fflush(stdout);
+}
+
+void serve_until(view::WebServer& server, view::Source& source, const std::atomic<bool>& stop) {
+  std::jthread watch([&](const std::stop_token& is_over) {
+    while (!stop && !is_over.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    server.stop();
+  });
+  server.run(source);
+}
+
+// `make_source` makes what publishes to its topics.
+template <class MakeSource>
+int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
+          MakeSource make_source) {
+  view::WebServer* published_to = nullptr;
+  view::Topics topics([&] {
+    if (published_to != nullptr) published_to->published();
+  });
+  const view::WebOptions options = web_options(command, name);
+  view::WebServer server(options, page_or_warning(log), topics);
+  published_to = &server;
+  const auto source = make_source(topics);
+  say_where(command, options, server.port());
+  serve_until(server, *source, stop);
+  return stop ? exit_interrupted : exit_ok;
+}
+
+int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const recording::Recording recording(command.recording);
+  if (!recording.damage().empty()) log.warning(recording.damage());
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  const unsigned threads = command.threads == 0 ? cores : command.threads;
+  return serve(command, recording.file().filename().string(), log, stop, [&](view::Topics& topics) {
+    return std::make_unique<view::RecordingSource>(recording, topics, threads);
+  });
+}
+
+int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const view::LiveOptions live{command.server, command.domains.empty() ? 0 : command.domains.front(),
+                               command.secure.string(), command.secure_control.string(), command.may_control};
+  return serve(command, "Cohort at " + command.server, log, stop,
+               [&](view::Topics& topics) { return std::make_unique<view::LiveSource>(live, topics); });
+}
+
+}  // namespace
+
+int view(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  try {
+    return command.recording.empty() ? view_server(command, log, stop) : view_recording(command, log, stop);
+  } catch (const std::exception& error) {
+    log.error(error.what());
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort::tool

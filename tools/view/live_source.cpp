@@ -1,0 +1,240 @@
+#include "tools/view/live_source.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "tools/view/control_requests.hpp"
+
+namespace cohort::view {
+namespace {
+
+using namespace std::chrono_literals;
+using wire::ResultCode;
+using wire::SimulationState;
+
+constexpr auto for_a_server = 1s;
+constexpr auto for_a_reply = 5s;
+constexpr auto status_interval = 250ms;
+constexpr auto newcomer_interval = 100ms;
+constexpr std::size_t most_wishes = 64;
+
+recording::Bytes copied(std::span<const std::uint8_t> bytes) {
+  const auto view = std::as_bytes(bytes);
+  return {view.begin(), view.end()};
+}
+
+std::optional<wire::Identity> identity_in(const std::string& folder) {
+  return folder.empty() ? std::nullopt : std::optional(wire::read_identity(folder));
+}
+
+}  // namespace
+
+LiveSource::LiveSource(const LiveOptions& options, Topics& topics)
+    : options_(options),
+      topics_(topics),
+      publisher_(topics),
+      participant_(wire::Participant::client(options.domain, options.server, identity_in(options.secure))),
+      descriptions_(participant_,
+                    {[this](const wire::SceneDescription& each, const wire::Sender&) { on_scene(each); }, {}}, "view"),
+      updates_(participant_, {[this](const wire::SceneUpdate& each, const wire::Sender&) { on_update(each); }, {}},
+               "view") {
+  show_status(blank_status());
+  shower_ = std::thread([this] { show_what_arrives(); });
+  steward_ = std::thread([this] { serve_wishes(); });
+}
+
+LiveSource::~LiveSource() {
+  {
+    const std::scoped_lock lock(mutex_, wishes_mutex_);
+    is_stopping_ = true;
+  }
+  arrived_changed_.notify_all();
+  wishes_changed_.notify_all();
+  shower_.join();
+  steward_.join();
+}
+
+void LiveSource::on_scene(const wire::SceneDescription& description) {
+  const std::lock_guard lock(mutex_);
+  arrived_.scene = copied(description.scene);
+  arrived_changed_.notify_all();
+}
+
+void LiveSource::on_update(const wire::SceneUpdate& update) {
+  const std::lock_guard lock(mutex_);
+  arrived_.frame = copied(update.frame);
+  arrived_.signals = copied(update.signals);
+  arrived_.contacts = copied(update.contacts);
+  arrived_.robots = copied(update.robots);
+  arrived_.has_update = true;
+  arrived_changed_.notify_all();
+}
+
+void LiveSource::show_what_arrives() {
+  while (!is_stopping_) {
+    Arrived arrived;
+    {
+      std::unique_lock lock(mutex_);
+      arrived_changed_.wait_for(lock, newcomer_interval, [&] {
+        return is_stopping_ || arrived_.scene || arrived_.has_update || arrived_.has_other_watched;
+      });
+      arrived = std::exchange(arrived_, {});
+    }
+    try {
+      show(arrived);
+    } catch (const recording::CdrError& error) {
+      ViewStatus status = blank_status();
+      status.note =
+          std::string("what the server shows cannot be read, perhaps since it is of another version: ") + error.what();
+      show_status(status);
+    }
+  }
+}
+
+void LiveSource::show(Arrived& arrived) {
+  if (arrived.scene) publisher_.show_as_it_is(recording::decode<scene::Scene>(*arrived.scene), time_);
+  if (!arrived.has_update) {
+    if (arrived.has_other_watched || arrivals_ != topics_.arrivals()) show_extras();
+    return;
+  }
+  const auto frame = recording::decode<scene::SceneFrame>(arrived.frame);
+  {
+    const std::lock_guard lock(mutex_);
+    time_ = std::chrono::nanoseconds(frame.time_ns);
+  }
+  publisher_.show(frame, time_);
+  publisher_.show(recording::decode<scene::SceneSignals>(arrived.signals), time_);
+  contacts_ = std::move(arrived.contacts);
+  robots_ = std::move(arrived.robots);
+  show_extras();
+}
+
+void LiveSource::show_extras() {
+  arrivals_ = topics_.arrivals();
+  if (!contacts_.empty() && publisher_.is_read(Topic::contacts)) topics_.publish(Topic::contacts, time_, contacts_);
+  if (!robots_.empty() && publisher_.is_read(Topic::robots)) show_robots();
+}
+
+void LiveSource::show_robots() {
+  auto robots = recording::decode<scene::SceneRobots>(robots_);
+  const std::lock_guard lock(mutex_);
+  std::erase_if(robots.robots, [&](const scene::SceneRobot& each) {
+    return std::ranges::find(watched_, each.robot) == watched_.end();
+  });
+  publisher_.publish(Topic::robots, robots, time_);
+}
+
+void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
+  const std::lock_guard lock(mutex_);
+  watched_ = robots;
+  arrived_.has_other_watched = true;
+  arrived_changed_.notify_all();
+}
+
+void LiveSource::ask(const Wish& wish, std::function<void(const Answer&)> answer) {
+  if (!options_.may_control) return answer({false, "this view may only look: 'cohort view --control' may do more"});
+  try {
+    wire::Request request = request_of(wish);
+    const std::lock_guard lock(wishes_mutex_);
+    if (wishes_.size() < most_wishes) {
+      wishes_.push_back({std::move(request), std::move(answer)});
+      wishes_changed_.notify_all();
+      return;
+    }
+  } catch (const std::invalid_argument& error) {
+    return answer({false, error.what()});
+  }
+  answer({false, "the server has not yet done what was asked for before"});
+}
+
+// Asks for one thing after the other, and in between how the run is.
+void LiveSource::serve_wishes() {
+  while (!is_stopping_) {
+    try {
+      ControlClient client({.server = options_.server,
+                            .domain = options_.domain,
+                            .secure = options_.secure_control,
+                            .label = "cohort view"});
+      while (!is_stopping_ && !client.server_is_gone()) {
+        if (!client.wait_for_server(for_a_server, is_stopping_)) {
+          answer_all("there is no server that can be controlled");
+          show_status(blank_status());
+          continue;
+        }
+        std::optional<Asked> asked;
+        {
+          std::unique_lock lock(wishes_mutex_);
+          wishes_changed_.wait_for(lock, status_interval, [&] { return is_stopping_ || !wishes_.empty(); });
+          if (!wishes_.empty()) {
+            asked = std::move(wishes_.front());
+            wishes_.pop_front();
+          }
+        }
+        if (asked) do_asked(client, *asked);
+        if (!is_stopping_) ask_status(client);
+      }
+    } catch (const std::exception& error) {
+      ViewStatus status = blank_status();
+      status.note = error.what();
+      show_status(status);
+      std::unique_lock lock(wishes_mutex_);
+      wishes_changed_.wait_for(lock, for_a_server, [&] { return is_stopping_.load(); });
+    }
+  }
+  answer_all("the view is closing");
+}
+
+void LiveSource::do_asked(ControlClient& client, Asked& asked) {
+  const bool is_state = asked.request.operation == wire::Operation::set_simulation_state;
+  const auto reply = client.ask(std::move(asked.request), for_a_reply, is_stopping_);
+  if (!reply) return asked.answer({false, "the server has not answered within 5 s; it may still be done"});
+  const bool is_done =
+      reply->result == ResultCode::ok || (is_state && reply->result == ResultCode::already_in_target_state);
+  asked.answer({is_done, reply->error_message});
+}
+
+void LiveSource::answer_all(const std::string& text) {
+  std::deque<Asked> asked;
+  {
+    const std::lock_guard lock(wishes_mutex_);
+    asked.swap(wishes_);
+  }
+  for (const Asked& each : asked) each.answer({false, text});
+}
+
+ViewStatus LiveSource::blank_status() const {
+  ViewStatus status;
+  status.source = "server";
+  status.name = options_.server + ", domain " + std::to_string(options_.domain);
+  status.may_control = options_.may_control;
+  status.note = "waiting for a server";
+  return status;
+}
+
+void LiveSource::ask_status(ControlClient& client) {
+  wire::Request request;
+  request.operation = wire::Operation::get_status;
+  const auto reply = client.ask(std::move(request), for_a_reply, is_stopping_);
+  ViewStatus status = blank_status();
+  if (reply && !reply->status.empty()) {
+    const wire::SimulationStatus& run = reply->status.front();
+    status.name = run.experiment;
+    status.is_playing = reply->state == SimulationState::playing;
+    status.speed = run.speed;
+    status.real_time_factor = run.real_time_factor;
+    status.time_ns = reply->time_ns;
+    status.end_ns = run.duration_ns;
+    status.note = run.started ? "" : "controllers are missing";
+    constexpr auto noticeable = 500ms;
+    if (!run.started || std::chrono::nanoseconds(run.waiting_ns) > noticeable) status.awaited = run.awaited;
+  } else {
+    status.note = reply ? "there is no run" : "the server does not answer";
+  }
+  show_status(status);
+}
+
+void LiveSource::show_status(const ViewStatus& status) {
+  topics_.publish(Topic::status, std::chrono::nanoseconds(status.time_ns), recording::encode(status));
+}
+
+}  // namespace cohort::view

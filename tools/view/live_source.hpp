@@ -1,0 +1,93 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "client_sdk/src/control_client.hpp"
+#include "idl/wire.hpp"
+#include "tools/view/scene_publisher.hpp"
+#include "tools/view/source.hpp"
+
+namespace cohort::view {
+
+struct LiveOptions {
+  std::string server = "127.0.0.1";
+  std::uint32_t domain = 0;
+  std::string secure{};          ///< folder of an observer's identity; empty: without security
+  std::string secure_control{};  ///< folder of an identity that may control
+  bool may_control = false;
+};
+
+/// Shows a running server, as any observer may. Wishes, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
+/// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done.
+class LiveSource final : public Source {
+ public:
+  /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if its address or the identity
+  /// cannot be used.
+  LiveSource(const LiveOptions& options, Topics& topics);
+  ~LiveSource() override;
+
+  void ask(const Wish& wish, std::function<void(const Answer&)> answer) override;
+  void watch(const std::vector<std::uint32_t>& robots) override;
+
+ private:
+  using Bytes = recording::Bytes;
+
+  struct Asked {
+    wire::Request request;
+    std::function<void(const Answer&)> answer;
+  };
+  // What came from the server since it was looked at last. Under the lock.
+  struct Arrived {
+    std::optional<Bytes> scene{};
+    Bytes frame{}, signals{}, contacts{}, robots{};
+    bool has_update = false;
+    bool has_other_watched = false;  // robots
+  };
+
+  void on_scene(const wire::SceneDescription& description);
+  void on_update(const wire::SceneUpdate& update);
+  void show_what_arrives();
+  void show(Arrived& arrived);
+  void show_extras();
+  void show_robots();
+  void serve_wishes();
+  void do_asked(ControlClient& client, Asked& asked);
+  void ask_status(ControlClient& client);
+  void answer_all(const std::string& text);
+  void show_status(const ViewStatus& status);
+  ViewStatus blank_status() const;
+
+  const LiveOptions options_;
+  Topics& topics_;
+  ScenePublisher publisher_;
+  std::atomic<bool> is_stopping_{false};
+
+  std::mutex mutex_;
+  std::condition_variable arrived_changed_;
+  Arrived arrived_;
+  std::vector<std::uint32_t> watched_;
+  std::chrono::nanoseconds time_{0};  // simulated
+
+  std::mutex wishes_mutex_;
+  std::condition_variable wishes_changed_;
+  std::deque<Asked> wishes_;
+
+  wire::Participant participant_;
+  wire::Reader<wire::SceneDescription> descriptions_;
+  wire::Reader<wire::SceneUpdate> updates_;
+  // Of the thread that shows: what only some clients read, and how many had come when they got it.
+  Bytes contacts_;
+  Bytes robots_;
+  std::uint64_t arrivals_ = 0;
+  std::thread shower_;
+  std::thread steward_;
+};
+
+}  // namespace cohort::view

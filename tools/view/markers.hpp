@@ -1,0 +1,94 @@
+#pragma once
+
+#include "server/recording/ros_messages.hpp"
+#include "server/scene/scene_messages.hpp"
+
+/// A scene in ROS 2's own messages, for viewers that know nothing of Cohort. Each link has a frame, `NAME/LINK` in the
+/// frame `world`.
+namespace cohort::view {
+
+using recording::field;
+
+struct ColorRGBA {
+  float r = 0, g = 0, b = 0, a = 1;
+  static constexpr const char* type = "std_msgs/msg/ColorRGBA";
+  static constexpr auto fields = std::tuple(field("r", &ColorRGBA::r), field("g", &ColorRGBA::g),
+                                            field("b", &ColorRGBA::b), field("a", &ColorRGBA::a));
+};
+
+struct Duration {
+  std::int32_t sec = 0;
+  std::uint32_t nanosec = 0;
+  static constexpr const char* type = "builtin_interfaces/msg/Duration";
+  static constexpr auto fields = std::tuple(field("sec", &Duration::sec), field("nanosec", &Duration::nanosec));
+};
+
+struct CompressedImage {
+  recording::ros::Header header{};
+  std::string format{};
+  std::vector<std::uint8_t> data{};
+  static constexpr const char* type = "sensor_msgs/msg/CompressedImage";
+  static constexpr auto fields =
+      std::tuple(field("header", &CompressedImage::header), field("format", &CompressedImage::format),
+                 field("data", &CompressedImage::data));
+};
+
+struct UVCoordinate {
+  float u = 0, v = 0;
+  static constexpr const char* type = "visualization_msgs/msg/UVCoordinate";
+  static constexpr auto fields = std::tuple(field("u", &UVCoordinate::u), field("v", &UVCoordinate::v));
+};
+
+struct MeshFile {
+  std::string filename{};
+  std::vector<std::uint8_t> data{};
+  static constexpr const char* type = "visualization_msgs/msg/MeshFile";
+  static constexpr auto fields = std::tuple(field("filename", &MeshFile::filename), field("data", &MeshFile::data));
+};
+
+struct Marker {
+  enum Kind : std::int32_t { cube = 1, sphere = 2, cylinder = 3, triangle_list = 11 };
+
+  recording::ros::Header header{};
+  std::string ns{};
+  std::int32_t id = 0;
+  std::int32_t kind = cube;
+  std::int32_t action = 0;  ///< 0: add; 3: delete all
+  recording::ros::Pose pose{};
+  recording::ros::Vector3 scale{};
+  ColorRGBA color{};
+  Duration lifetime{};
+  bool frame_locked = true;
+  std::vector<recording::ros::Point> points{};
+  std::vector<ColorRGBA> colors{};
+  std::string texture_resource{};
+  CompressedImage texture{};
+  std::vector<UVCoordinate> uv_coordinates{};
+  std::string text{};
+  std::string mesh_resource{};
+  MeshFile mesh_file{};
+  bool mesh_use_embedded_materials = false;
+  static constexpr const char* type = "visualization_msgs/msg/Marker";
+  static constexpr auto fields = std::tuple(
+      field("header", &Marker::header), field("ns", &Marker::ns), field("id", &Marker::id),
+      field("type", &Marker::kind), field("action", &Marker::action), field("pose", &Marker::pose),
+      field("scale", &Marker::scale), field("color", &Marker::color), field("lifetime", &Marker::lifetime),
+      field("frame_locked", &Marker::frame_locked), field("points", &Marker::points), field("colors", &Marker::colors),
+      field("texture_resource", &Marker::texture_resource), field("texture", &Marker::texture),
+      field("uv_coordinates", &Marker::uv_coordinates), field("text", &Marker::text),
+      field("mesh_resource", &Marker::mesh_resource), field("mesh_file", &Marker::mesh_file),
+      field("mesh_use_embedded_materials", &Marker::mesh_use_embedded_materials));
+};
+
+struct MarkerArray {
+  std::vector<Marker> markers{};
+  static constexpr const char* type = "visualization_msgs/msg/MarkerArray";
+  static constexpr auto fields = std::tuple(field("markers", &MarkerArray::markers));
+};
+
+/// All that is visible; of planes a piece. They take the place of all markers before.
+MarkerArray markers_of(const scene::Scene& scene);
+/// The frames of all links that are in the world.
+recording::ros::TFMessage transforms_of(const scene::Scene& scene, const scene::SceneFrame& frame);
+
+}  // namespace cohort::view

@@ -1,0 +1,180 @@
+/** One word of the console. */
+export interface Command {
+  name: string;
+  usage: string; // its arguments
+  help: string;
+  complete?: (index: number) => readonly string[]; // what an argument may be
+  run: (args: string[]) => string | Promise<string>;
+}
+
+interface Profile {
+  aliases: Record<string, string>;
+  keys: Record<string, string>;
+  scripts: Record<string, string>;
+}
+
+const storage = "cohort.view.profile";
+const deepestAlias = 16;
+const mostLines = 10_000;
+
+export const defaultKeys: Record<string, string> = {
+  " ": "toggle", ".": "step", ",": "step -1", "f": "follow", "o": "orbit", "t": "top", "e": "eye", "g": "fly", "Escape": "deselect",
+  "c": "toggle contacts", "r": "toggle rays", "l": "toggle labels", "p": "screenshot", "F": "fullscreen", "Home": "home",
+  "+": "faster", "-": "slower", "`": "console", "?": "help",
+};
+
+/** Splits a line into words; quotes keep spaces. */
+export function words(line: string): string[] {
+  return [...line.matchAll(/"([^"]*)"|'([^']*)'|(\S+)/g)].map(([, a, b, c]) => a ?? b ?? c);
+}
+
+/** Commands of a line or a script: `;` and new lines part them, `#` begins a remark; both not within quotes. */
+export function statements(text: string): string[] {
+  const found: string[] = [];
+  for (const line of text.split("\n")) {
+    let quote = "";
+    let current = "";
+    for (const letter of line) {
+      if (quote) quote = letter === quote ? "" : quote;
+      else if (letter === '"' || letter === "'") quote = letter;
+      else if (letter === "#") break;
+      else if (letter === ";") {
+        found.push(current);
+        current = "";
+        continue;
+      }
+      current += letter;
+    }
+    found.push(current);
+  }
+  return found.map((each) => each.trim()).filter((each) => each !== "");
+}
+
+/** The commands that there are, aliases, scripts and what keys do; all but the first are kept in the browser. */
+export class Commands {
+  private readonly commands = new Map<string, Command>();
+  private profile: Profile = { aliases: {}, keys: { ...defaultKeys }, scripts: {} };
+
+  constructor() {
+    try {
+      const kept = localStorage.getItem(storage);
+      if (kept) this.profile = readProfile(kept);
+    } catch {
+      // What is kept is damaged, or nothing may be kept: begin with what everybody has.
+    }
+    for (const command of this.ownCommands()) this.add(command);
+  }
+
+  add(command: Command): void { this.commands.set(command.name, command); }
+  names(): string[] { return [...this.commands.keys(), ...Object.keys(this.profile.aliases)].sort(); }
+  commandOfKey(key: string): string | undefined { return this.profile.keys[key]; }
+  keys(): Readonly<Record<string, string>> { return this.profile.keys; }
+
+  /** Runs a line or a script. Throws Error with a sentence for what cannot be done. */
+  async run(text: string, depth = 0): Promise<string> {
+    if (depth > deepestAlias) throw new Error("an alias leads back to itself");
+    const lines = statements(text);
+    if (lines.length > mostLines) throw new Error(`a script has at most ${mostLines} commands`);
+    const said: string[] = [];
+    for (const line of lines) said.push(await this.runOne(line, depth));
+    return said.filter((each) => each !== "").join("\n");
+  }
+
+  /** What the last word of a line may be. */
+  complete(line: string): string[] {
+    const given = words(line);
+    if (line === "" || line.endsWith(" ")) given.push("");
+    const last = given[given.length - 1];
+    const candidates = given.length === 1 ? this.names() : this.commands.get(given[0])?.complete?.(given.length - 2) ?? [];
+    return [...new Set(candidates)].filter((each) => each.startsWith(last));
+  }
+
+  help(name?: string): string {
+    if (!name) return [...this.commands.values()].map(({ name: word, usage, help }) => `${`${word} ${usage}`.padEnd(34)} ${help}`).join("\n");
+    const command = this.commands.get(name);
+    if (command) return `${command.name} ${command.usage}\n  ${command.help}`;
+    const alias = this.profile.aliases[name];
+    if (alias) return `${name} is an alias of: ${alias}`;
+    throw new Error(`there is no command '${name}'`);
+  }
+
+  exportProfile(): string { return JSON.stringify(this.profile, null, 2); }
+  importProfile(text: string): void {
+    this.profile = readProfile(text);
+    this.keep();
+  }
+
+  private async runOne(line: string, depth: number): Promise<string> {
+    const [name, ...args] = words(line);
+    const alias = this.profile.aliases[name];
+    if (alias !== undefined) return this.run([alias, ...args.map((each) => JSON.stringify(each))].join(" "), depth + 1);
+    const command = this.commands.get(name);
+    if (!command) throw new Error(`there is no command '${name}': 'help' lists them`);
+    return command.run(args);
+  }
+
+  private keep(): void {
+    try {
+      localStorage.setItem(storage, JSON.stringify(this.profile));
+    } catch {
+      // It lasts until the page is closed.
+    }
+  }
+
+  private ownCommands(): Command[] {
+    const list = (of: Record<string, string>): string => Object.entries(of).map(([key, to]) => `${key.padEnd(10)} ${to}`).join("\n");
+    const need = (args: string[], count: number, usage: string): void => {
+      if (args.length < count) throw new Error(`expected: ${usage}`);
+    };
+    const change = (kind: keyof Profile, usage: string) => (args: string[]): string => {
+      if (args.length === 0) return list(this.profile[kind]);
+      need(args, 2, usage);
+      this.profile[kind][keyName(args[0])] = args.slice(1).join(" ");
+      this.keep();
+      return "";
+    };
+    const forget = (kind: keyof Profile, usage: string) => (args: string[]): string => {
+      need(args, 1, usage);
+      delete this.profile[kind][keyName(args[0])];
+      this.keep();
+      return "";
+    };
+    return [
+      { name: "help", usage: "[COMMAND]", help: "says what there is", complete: () => this.names(), run: ([name]) => this.help(name) },
+      { name: "bind", usage: "[KEY COMMAND]", help: "a key or mouse button does a command; without arguments lists them",
+        complete: (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()), run: change("keys", "bind KEY COMMAND") },
+      { name: "unbind", usage: "KEY", help: "the key does nothing any more", complete: () => Object.keys(this.profile.keys), run: forget("keys", "unbind KEY") },
+      { name: "alias", usage: "[NAME COMMAND]", help: "a word for a command; without arguments lists them", run: change("aliases", "alias NAME COMMAND") },
+      { name: "unalias", usage: "NAME", help: "forgets it", complete: () => Object.keys(this.profile.aliases), run: forget("aliases", "unalias NAME") },
+      { name: "script", usage: "[NAME COMMANDS]", help: "keeps a script, its commands parted by ';'", run: change("scripts", "script NAME COMMANDS") },
+      { name: "exec", usage: "NAME", help: "runs a script", complete: () => Object.keys(this.profile.scripts),
+        run: ([name]) => {
+          const script = this.profile.scripts[name ?? ""];
+          if (script === undefined) throw new Error(`there is no script '${name ?? ""}'`);
+          return this.run(script, 1);
+        } },
+      { name: "wait", usage: "SECONDS", help: "before the next command", run: async ([time]) => {
+        const seconds = Number(time);
+        if (!(seconds >= 0 && seconds <= 3600)) throw new Error("expected seconds, up to 3600");
+        await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+        return "";
+      } },
+    ];
+  }
+}
+
+const keyName = (word: string): string => (word === "Space" ? " " : word);
+
+function readProfile(text: string): Profile {
+  const read = JSON.parse(text) as Partial<Record<keyof Profile, unknown>>;
+  const strings = (value: unknown, name: string): Record<string, string> => {
+    if (typeof value !== "object" || value === null || !Object.values(value).every((each) => typeof each === "string"))
+      throw new Error(`this is no profile: its ${name} are no texts`);
+    return { ...(value as Record<string, string>) };
+  };
+  return {
+    aliases: strings(read.aliases ?? {}, "aliases"),
+    keys: strings(read.keys ?? defaultKeys, "keys"),
+    scripts: strings(read.scripts ?? {}, "scripts"),
+  };
+}

@@ -1,0 +1,143 @@
+import "uplot/dist/uPlot.min.css";
+import "./page.css";
+import { Commands } from "./commands";
+import { addressOfServer, Connection } from "./connection";
+import { ConsolePanel } from "./console";
+import { seconds, type ViewEvent, type ViewStatus } from "./messages";
+import { TimeBar, clockText } from "./time_bar";
+import { Viewer } from "./viewer";
+import { addWords, preferredTheme, showPressed } from "./words";
+
+const element = (id: string): HTMLElement => document.getElementById(id)!;
+const canvas = element("canvas") as HTMLCanvasElement;
+const clickSlack = 4; // [pixels] that a mouse may move in a click
+
+let bytes = 0;
+
+const viewer = new Viewer(canvas, (robot) => {
+  connection.want("/cohort/robots", robot !== undefined);
+  void connection.ask({ operation: "watch", numbers: robot === undefined ? [] : [robot] });
+});
+const commands = new Commands();
+const consolePanel = new ConsolePanel(commands);
+const timeBar = new TimeBar({
+  play: () => void consolePanel.run("play"),
+  pause: () => void consolePanel.run("pause"),
+  step: (ticks) => void consolePanel.run(`step ${ticks}`),
+  seek: (time) => void connection.ask({ operation: "seek", number: time }),
+  speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
+});
+
+const connection: Connection = new Connection(addressOfServer(location), {
+  "/cohort/scene": (scene, size) => {
+    bytes += size;
+    viewer.show(scene);
+    showPressed(viewer);
+  },
+  "/cohort/frame": (frame, size) => {
+    bytes += size;
+    viewer.take(frame);
+    element("tick").textContent = String(frame.tick);
+    element("hash").textContent = frame.state_hash === 0n ? "–" : frame.state_hash.toString(16).padStart(16, "0");
+    const robots = viewer.robotEntities().filter((entity) => !viewer.poses!.absent.has(entity)).length;
+    element("robots").textContent = String(robots);
+  },
+  "/cohort/signals": (signals, size) => {
+    bytes += size;
+    viewer.takeSignals(signals);
+  },
+  "/cohort/contacts": (contacts) => viewer.takeContacts(contacts),
+  "/cohort/robots": ({ robots }) => viewer.takeRobots(robots),
+  "/cohort/status": showStatus,
+  "/cohort/events": ({ events }) => showEvents(events),
+}, (isConnected) => {
+  element("lost").hidden = isConnected;
+  if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
+});
+for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const) connection.want(topic);
+addWords({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
+
+function showStatus(status: ViewStatus): void {
+  timeBar.take(status);
+  element("name").textContent = status.name;
+  document.title = `${status.name} · Cohort`;
+  element("factor").textContent = status.is_playing ? `${status.real_time_factor.toFixed(2)} ×` : "paused";
+  const waiting = status.awaited.length > 0 ? `waits for ${status.awaited.join(", ")}` : "";
+  element("note").hidden = !status.note && !waiting;
+  element("note").textContent = [status.note, waiting].filter((each) => each !== "").join(" · ");
+}
+
+function showEvents(events: readonly ViewEvent[]): void {
+  timeBar.mark(events);
+  element("events").replaceChildren(...events.slice(-200).map(({ time_ns, kind, text }) => {
+    const line = document.createElement("p");
+    const time = document.createElement("b");
+    time.textContent = `${clockText(seconds(time_ns))} ${kind} `;
+    line.append(time, text);
+    return line;
+  }));
+  element("events").scrollTop = element("events").scrollHeight;
+}
+
+// Keys and mouse.
+
+const flyKeys: Record<string, string> = { w: "forward", s: "back", a: "left", d: "right", q: "up", z: "down" };
+
+function runBound(key: string): boolean {
+  const command = commands.commandOfKey(key);
+  if (command === undefined) return false;
+  if (command === "help") consolePanel.toggle(true);
+  void consolePanel.run(command).then(() => showPressed(viewer));
+  return true;
+}
+
+addEventListener("keydown", (event) => {
+  const isTyping = event.target instanceof HTMLInputElement && event.target.type !== "range";
+  if (isTyping || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (viewer.cameras.mode === "fly" && event.key in flyKeys) viewer.cameras.held.add(flyKeys[event.key]);
+  else if (!runBound(event.key)) return;
+  event.preventDefault();
+});
+addEventListener("keyup", ({ key }) => viewer.cameras.held.delete(flyKeys[key] ?? ""));
+addEventListener("blur", () => viewer.cameras.held.clear());
+
+let pressed = { x: 0, y: 0 };
+canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y }) => { pressed = { x, y }; });
+canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
+  if (Math.hypot(x - pressed.x, y - pressed.y) > clickSlack) return;
+  if (button === 0) viewer.select(viewer.pickAt(x, y));
+  else runBound(`mouse${button}`);
+});
+canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
+  const entity = viewer.pickAt(x, y);
+  if (entity === undefined) return;
+  viewer.select(entity);
+  viewer.cameras.choose("follow", entity);
+  showPressed(viewer);
+});
+element("tools").addEventListener("click", ({ target }) => {
+  const command = (target as HTMLElement).dataset.command;
+  if (command) void consolePanel.run(command).then(() => showPressed(viewer));
+});
+
+// The picture.
+
+const resize = (): void => viewer.stage.resize(canvas.clientWidth, canvas.clientHeight);
+new ResizeObserver(resize).observe(canvas);
+resize();
+viewer.wear(preferredTheme());
+showPressed(viewer);
+function draw(now: number): void {
+  viewer.draw(now);
+  requestAnimationFrame(draw);
+}
+requestAnimationFrame(draw);
+setInterval(() => {
+  element("rate").textContent = String(viewer.framesDrawn);
+  element("traffic").textContent = (bytes / 1000).toFixed(0);
+  viewer.framesDrawn = 0;
+  bytes = 0;
+}, 1000);
+
+/** For tests and for whoever opens the browser's console. */
+Object.assign(window, { cohort: { viewer, commands, connection, run: (line: string) => commands.run(line) } });

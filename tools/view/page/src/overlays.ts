@@ -1,0 +1,167 @@
+import {
+  BufferAttribute, BufferGeometry, Group, Line, LineBasicMaterial, LineSegments, Points, PointsMaterial, Quaternion, Vector3, type PerspectiveCamera,
+} from "three";
+import type { SceneContacts, SceneRobot, SceneSensor } from "./messages";
+import type { Poses } from "./poses";
+import { firstValue } from "./channels";
+
+const metresPerNewton = 0.02;
+const trailLength = 1500; // points
+const trailSpacing = 0.01; // [m]
+const mostLabels = 400;
+
+function segments(color: number, opacity = 1): LineSegments<BufferGeometry, LineBasicMaterial> {
+  const lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color, transparent: opacity < 1, opacity }));
+  lines.frustumCulled = false;
+  return lines;
+}
+
+// In the buffer that is there, as long as they fit.
+function setPoints(geometry: BufferGeometry, points: ArrayLike<number>): void {
+  let attribute = geometry.getAttribute("position") as BufferAttribute | undefined;
+  if (!attribute || attribute.array.length < points.length) {
+    geometry.dispose();
+    attribute = new BufferAttribute(new Float32Array(2 * points.length + 3 * 64), 3);
+    geometry.setAttribute("position", attribute);
+  }
+  (attribute.array as Float32Array).set(points);
+  attribute.needsUpdate = true;
+  geometry.setDrawRange(0, points.length / 3);
+}
+
+/** Contact points, the forces there, and what is gripped. */
+export class Contacts {
+  readonly group = new Group();
+  private readonly points = new Points(new BufferGeometry(), new PointsMaterial({ color: 0xe5484d, size: 5, sizeAttenuation: false }));
+  private readonly grips = new Points(new BufferGeometry(), new PointsMaterial({ color: 0x30a46c, size: 9, sizeAttenuation: false }));
+  private readonly forces = segments(0xe5484d);
+
+  constructor() {
+    this.points.frustumCulled = this.grips.frustumCulled = false;
+    this.group.add(this.points, this.grips, this.forces);
+  }
+
+  take({ positions, forces, grips }: SceneContacts): void {
+    setPoints(this.points.geometry, positions);
+    const lines = new Float32Array(2 * positions.length);
+    for (let i = 0; i < positions.length; i += 3) {
+      lines.set(positions.subarray(i, i + 3), 2 * i);
+      for (let axis = 0; axis < 3; ++axis) lines[2 * i + 3 + axis] = positions[i + axis] + metresPerNewton * forces[i + axis];
+    }
+    setPoints(this.forces.geometry, lines);
+    const jaws = new Float32Array((3 * grips.length) / 4);
+    for (let i = 0; 4 * i < grips.length; ++i) jaws.set(grips.subarray(4 * i, 4 * i + 3), 3 * i);
+    setPoints(this.grips.geometry, jaws);
+  }
+}
+
+/** What the sensors of the selected robot look along: as far as they see, and no further than what they found. */
+export class Rays {
+  readonly group = new Group();
+  private readonly free = segments(0x2f8f6b, 0.55);
+  private readonly hit = segments(0xe5484d);
+
+  constructor() { this.group.add(this.free, this.hit); }
+
+  draw(poses: Poses, robot: SceneRobot | undefined): void {
+    const entity = poses.scene.entities.findIndex(({ robot: id }) => id === robot?.robot);
+    this.group.visible = robot !== undefined && entity >= 0;
+    if (!robot || entity < 0) return;
+    const free: number[] = [];
+    const hit: number[] = [];
+    const model = poses.scene.models[poses.scene.entities[entity].model];
+    for (const sensor of model.sensors) {
+      if (!(sensor.range > 0)) continue;
+      const first = firstValue(model.observation, sensor.channel);
+      addRays(poses, poses.placeOf(entity, sensor.link), sensor, first === undefined ? [] : robot.observation.subarray(first), free, hit);
+    }
+    setPoints(this.free.geometry, free);
+    setPoints(this.hit.geometry, hit);
+  }
+}
+
+/** How far a ray goes, by its reading; its whole range if it has found nothing. */
+export function rayLength({ kind, range }: Pick<SceneSensor, "kind" | "range">, reading: number | undefined): number {
+  if (reading === undefined) return range;
+  if (kind === "lidar") return Math.min(range, reading);
+  return range * (1 - Math.min(1, Math.max(0, reading)));
+}
+
+function addRays(poses: Poses, place: number, sensor: SceneSensor, readings: ArrayLike<number>, free: number[], hit: number[]): void {
+  const origin = new Vector3();
+  const turn = new Quaternion();
+  poses.read(place, origin, turn);
+  const count = sensor.origins.length / 3;
+  for (let i = 0; i < count; ++i) {
+    const from = new Vector3().fromArray(sensor.origins, 3 * i).applyQuaternion(turn).add(origin);
+    const direction = new Vector3().fromArray(sensor.directions, 3 * i).applyQuaternion(turn);
+    const length = rayLength(sensor, readings[i]);
+    const isHit = length < 0.98 * sensor.range;
+    const to = from.clone().addScaledVector(direction, length);
+    (isHit ? hit : free).push(...from.toArray(), ...to.toArray());
+  }
+}
+
+/** Where the selected entity, or every robot, has been. */
+export class Trails {
+  readonly group = new Group();
+  private readonly trails = new Map<number, { line: Line; points: number[]; last: Vector3 }>();
+
+  clear(): void {
+    for (const { line } of this.trails.values()) line.geometry.dispose();
+    this.group.clear();
+    this.trails.clear();
+  }
+
+  add(poses: Poses, entities: readonly number[]): void {
+    const at = new Vector3();
+    const turn = new Quaternion();
+    for (const entity of entities) {
+      if (poses.absent.has(entity)) continue;
+      poses.read(poses.placeOf(entity), at, turn);
+      const trail = this.trails.get(entity) ?? this.begin(entity, entities.length);
+      if (trail.last.distanceTo(at) < trailSpacing) continue;
+      trail.last.copy(at);
+      trail.points.push(at.x, at.y, Math.max(at.z, 0.004));
+      if (trail.points.length > 3 * trailLength) trail.points.splice(0, 3);
+      setPoints(trail.line.geometry, trail.points);
+    }
+  }
+
+  private begin(entity: number, count: number): { line: Line; points: number[]; last: Vector3 } {
+    const material = new LineBasicMaterial({ transparent: true, opacity: 0.8 });
+    material.color.setHSL((entity % Math.max(1, count)) / Math.max(1, count), 0.6, 0.5);
+    const line = new Line(new BufferGeometry(), material);
+    line.frustumCulled = false;
+    this.group.add(line);
+    const trail = { line, points: [], last: new Vector3(Infinity, 0, 0) };
+    this.trails.set(entity, trail);
+    return trail;
+  }
+}
+
+/** Names beside entities, as elements over the picture. */
+export class Labels {
+  private readonly labels: HTMLElement[] = [];
+
+  constructor(private readonly parent: HTMLElement) {}
+
+  draw(poses: Poses | undefined, entities: readonly number[], camera: PerspectiveCamera, width: number, height: number): void {
+    const shown = poses ? entities.slice(0, mostLabels) : [];
+    while (this.labels.length < shown.length) this.labels.push(this.parent.appendChild(document.createElement("span")));
+    const at = new Vector3();
+    const turn = new Quaternion();
+    this.labels.forEach((label, i) => {
+      const entity = shown[i];
+      label.hidden = entity === undefined || poses!.absent.has(entity);
+      if (label.hidden) return;
+      poses!.read(poses!.placeOf(entity), at, turn);
+      at.z += 0.12;
+      at.project(camera);
+      label.hidden = at.z > 1;
+      const { name } = poses!.scene.entities[entity];
+      if (label.textContent !== name) label.textContent = name;
+      label.style.transform = `translate(${(0.5 * (at.x + 1) * width).toFixed(1)}px, ${(0.5 * (1 - at.y) * height).toFixed(1)}px) translate(-50%, -100%)`;
+    });
+  }
+}

@@ -1,0 +1,91 @@
+import { Quaternion, Vector3 } from "three";
+import type { Scene, SceneFrame } from "./messages";
+
+const full = 32767;
+const farAway = 1e9; // [m]; where nothing is drawn
+const longestBlend = 250; // [ms]
+
+/** Where the links of a scene are, between the last two frames. */
+export class Poses {
+  positions: Float32Array = new Float32Array();
+  orientations: Int16Array = new Int16Array();
+  positionsBefore: Float32Array = new Float32Array();
+  orientationsBefore: Int16Array = new Int16Array();
+  absent = new Set<number>();
+  frame: SceneFrame | undefined;
+  /** 0: at the frame before; 1: at the last one. */
+  blend = 1;
+
+  private readonly firstOfLink: number[][] = [];
+  private readonly placeInModel: number[] = [];
+  private readonly entitiesOfModel: number[][];
+  private readonly linkCount: number;
+  private arrival = 0;
+  private interval = 33;
+
+  constructor(readonly scene: Scene) {
+    this.entitiesOfModel = scene.models.map(() => []);
+    scene.entities.forEach(({ model }, entity) => {
+      this.placeInModel.push(this.entitiesOfModel[model].length);
+      this.entitiesOfModel[model].push(entity);
+    });
+    let next = 0;
+    scene.models.forEach((model, index) => {
+      this.firstOfLink.push(model.links.map(() => {
+        const first = next;
+        next += this.entitiesOfModel[index].length;
+        return first;
+      }));
+    });
+    this.linkCount = next;
+  }
+
+  entitiesOf(model: number): readonly number[] { return this.entitiesOfModel[model]; }
+  firstPlace(model: number, link: number): number { return this.firstOfLink[model][link]; }
+  /** Of a link of an entity among all links of a frame. */
+  placeOf(entity: number, link = 0): number {
+    return this.firstOfLink[this.scene.entities[entity].model][link] + this.placeInModel[entity];
+  }
+
+  /** False if the frame is of another scene. */
+  take(frame: SceneFrame, now: number): boolean {
+    if (frame.revision !== this.scene.revision || frame.positions.length !== 3 * this.linkCount) return false;
+    const elapsed = now - this.arrival;
+    const goesOn = this.frame !== undefined && frame.tick > this.frame.tick && elapsed < longestBlend;
+    this.arrival = now;
+    if (goesOn) this.interval += 0.2 * (elapsed - this.interval);
+    this.hideAbsent(frame);
+    this.positionsBefore = goesOn ? this.positions : frame.positions;
+    this.orientationsBefore = goesOn ? this.orientations : frame.orientations;
+    this.positions = frame.positions;
+    this.orientations = frame.orientations;
+    this.frame = frame;
+    return true;
+  }
+
+  advance(now: number): void {
+    this.blend = Math.min(1, (now - this.arrival) / Math.max(1, this.interval));
+  }
+
+  /** Of a link by its place. */
+  read(place: number, position: Vector3, orientation: Quaternion): void {
+    const p = 3 * place;
+    const q = 4 * place;
+    const { positions: a, positionsBefore: b, orientations: c, orientationsBefore: d, blend } = this;
+    const mix = (now: number, before: number): number => before + blend * (now - before);
+    position.set(mix(a[p], b[p]), mix(a[p + 1], b[p + 1]), mix(a[p + 2], b[p + 2]));
+    const dot = c[q] * d[q] + c[q + 1] * d[q + 1] + c[q + 2] * d[q + 2] + c[q + 3] * d[q + 3];
+    const sign = dot < 0 ? -1 : 1;
+    orientation.set(
+      mix(sign * c[q], d[q]) / full, mix(sign * c[q + 1], d[q + 1]) / full,
+      mix(sign * c[q + 2], d[q + 2]) / full, mix(sign * c[q + 3], d[q + 3]) / full).normalize();
+  }
+
+  private hideAbsent(frame: SceneFrame): void {
+    this.absent = new Set(frame.absent);
+    for (const entity of frame.absent) {
+      const links = this.scene.models[this.scene.entities[entity].model].links.length;
+      for (let link = 0; link < links; ++link) frame.positions.fill(farAway, 3 * this.placeOf(entity, link), 3 * this.placeOf(entity, link) + 3);
+    }
+  }
+}

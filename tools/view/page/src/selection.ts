@@ -1,0 +1,69 @@
+import {
+  BackSide, Group, Mesh, MeshBasicMaterial, Quaternion, Raycaster, Ray, Sphere, Vector3, type Vector2, type Camera,
+} from "three";
+import type { Instances, LinkShape } from "./instances";
+import type { Poses } from "./poses";
+
+const outlineWidth = 1.06;
+
+/** Which entity a ray from the camera meets first. */
+export function pick(poses: Poses, instances: Instances, camera: Camera, at: Vector2): number | undefined {
+  const raycaster = new Raycaster();
+  raycaster.setFromCamera(at, camera);
+  const position = new Vector3();
+  const orientation = new Quaternion();
+  const probe = new Mesh();
+  let nearest = Infinity;
+  let found: number | undefined;
+  const isNear = ({ sphere }: LinkShape, ray: Ray): boolean => {
+    const placed = new Sphere(sphere.center.clone().applyQuaternion(orientation).add(position), sphere.radius);
+    return ray.intersectsSphere(placed);
+  };
+  for (const shape of instances.links) {
+    probe.geometry = shape.geometry;
+    for (const entity of poses.entitiesOf(shape.model)) {
+      if (poses.absent.has(entity)) continue;
+      poses.read(poses.placeOf(entity, shape.link), position, orientation);
+      if (!isNear(shape, raycaster.ray)) continue;
+      probe.matrixWorld.compose(position, orientation, new Vector3(1, 1, 1));
+      const [hit] = raycaster.intersectObject(probe, false);
+      if (hit && hit.distance < nearest) {
+        nearest = hit.distance;
+        found = entity;
+      }
+    }
+  }
+  return found;
+}
+
+/** An outline around the selected entity. */
+export class Outline {
+  readonly group = new Group();
+  private readonly material = new MeshBasicMaterial({ color: 0x1f8fff, side: BackSide });
+  private parts: { mesh: Mesh; link: number }[] = [];
+  private entity: number | undefined;
+
+  select(entity: number | undefined, poses: Poses | undefined, instances: Instances | undefined): void {
+    this.entity = entity;
+    this.group.clear();
+    this.parts = [];
+    if (entity === undefined || !poses || !instances) return;
+    for (const { model, link, geometry, sphere } of instances.links) {
+      if (model !== poses.scene.entities[entity].model) continue;
+      const mesh = new Mesh(geometry, this.material);
+      mesh.scale.setScalar(outlineWidth);
+      mesh.userData.centre = sphere.center;
+      this.parts.push({ mesh, link });
+      this.group.add(mesh);
+    }
+  }
+
+  draw(poses: Poses): void {
+    if (this.entity === undefined || !poses.frame) return;
+    for (const { mesh, link } of this.parts) {
+      poses.read(poses.placeOf(this.entity, link), mesh.position, mesh.quaternion);
+      const centre = (mesh.userData.centre as Vector3).clone().applyQuaternion(mesh.quaternion);
+      mesh.position.addScaledVector(centre, 1 - outlineWidth);
+    }
+  }
+}

@@ -1,0 +1,57 @@
+import {
+  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, Matrix4, Quaternion, SphereGeometry, Vector3,
+} from "three";
+import { mergeGeometries, toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
+import { ShapeKind, type Scene, type SceneMesh, type SceneShape } from "./messages";
+
+/** Segments of what is round: fewer where there are many of it. */
+const segmentsOf = (instances: number): number => (instances <= 500 ? 28 : instances <= 3000 ? 16 : 10);
+const crease = 0.6; // [rad]; edges that are sharper are seen as edges
+
+function meshGeometry(mesh: SceneMesh): BufferGeometry {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(mesh.vertices, 3));
+  geometry.setIndex(new BufferAttribute(mesh.triangles, 1));
+  return toCreasedNormals(geometry, crease);
+}
+
+function plainGeometry(scene: Scene, shape: SceneShape, round: number): BufferGeometry {
+  const [a, b, c] = shape.size;
+  const upright = (geometry: BufferGeometry): BufferGeometry => geometry.rotateX(Math.PI / 2); // three's axis is y
+  switch (shape.kind) {
+    case ShapeKind.box: return new BoxGeometry(a, b, c);
+    case ShapeKind.sphere: return new SphereGeometry(a, round, round / 2);
+    case ShapeKind.cylinder: return upright(new CylinderGeometry(a, a, b, round));
+    case ShapeKind.capsule: return upright(new CapsuleGeometry(a, b, 8, round));
+    case ShapeKind.ellipsoid: return new SphereGeometry(1, round, round / 2).scale(a, b, c);
+    case ShapeKind.mesh: return meshGeometry(scene.meshes[shape.mesh]);
+    case ShapeKind.plane: throw new Error("a plane is drawn as ground");
+  }
+}
+
+export function matrixOf(pose: ArrayLike<number>): Matrix4 {
+  return new Matrix4().compose(
+    new Vector3(pose[0], pose[1], pose[2]), new Quaternion(pose[3], pose[4], pose[5], pose[6]), new Vector3(1, 1, 1));
+}
+
+function coloured(geometry: BufferGeometry, color: ArrayLike<number>): BufferGeometry {
+  const linear = new Color().setRGB(color[0], color[1], color[2], "srgb");
+  const count = geometry.getAttribute("position").count;
+  const colors = new Float32Array(3 * count);
+  for (let i = 0; i < count; ++i) linear.toArray(colors, 3 * i);
+  return geometry.setAttribute("color", new BufferAttribute(colors, 3));
+}
+
+/** The shapes of one link as one piece with colours, in the link's frame; nothing if there are none. */
+export function linkGeometry(scene: Scene, shapes: readonly SceneShape[], instances: number): BufferGeometry | undefined {
+  const parts = shapes.filter(({ kind }) => kind !== ShapeKind.plane).map((shape) => {
+    const geometry = plainGeometry(scene, shape, segmentsOf(instances));
+    const plain = geometry.index ? geometry.toNonIndexed() : geometry;
+    plain.deleteAttribute("uv");
+    return coloured(plain.applyMatrix4(matrixOf(shape.pose)), shape.color);
+  });
+  if (parts.length === 0) return undefined;
+  const merged = mergeGeometries(parts);
+  merged.computeBoundingSphere();
+  return merged;
+}

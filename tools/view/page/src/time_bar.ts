@@ -1,0 +1,73 @@
+import { seconds, type ViewEvent, type ViewStatus } from "./messages";
+
+export interface Playback {
+  play(): void;
+  pause(): void;
+  step(ticks: number): void;
+  seek(time: number): void;
+  speed(factor: number): void;
+}
+
+export const clockText = (time: number): string =>
+  `${Math.floor(time / 60)}:${(time % 60).toFixed(2).padStart(5, "0")}`;
+
+/** Play, pause, step, speed, and the bar to scrub. */
+export class TimeBar {
+  private readonly bar = document.getElementById("scrub") as HTMLInputElement;
+  private readonly button = document.getElementById("play") as HTMLButtonElement;
+  private readonly speed = document.getElementById("speed") as HTMLSelectElement;
+  private readonly marks = document.getElementById("marks")!;
+  private isScrubbing = false;
+  private marked: readonly ViewEvent[] = [];
+  private markedEnd = -1;
+  status: ViewStatus | undefined;
+
+  constructor(private readonly playback: Playback) {
+    this.button.addEventListener("click", () => this.toggle());
+    document.getElementById("back")!.addEventListener("click", () => playback.step(-1));
+    document.getElementById("ahead")!.addEventListener("click", () => playback.step(1));
+    this.speed.addEventListener("change", () => playback.speed(Number(this.speed.value)));
+    this.bar.addEventListener("input", () => {
+      this.isScrubbing = true;
+      playback.seek(Number(this.bar.value));
+    });
+    this.bar.addEventListener("change", () => { this.isScrubbing = false; });
+  }
+
+  toggle(): void {
+    if (this.status?.is_playing) this.playback.pause();
+    else this.playback.play();
+  }
+
+  take(status: ViewStatus): void {
+    this.status = status;
+    const [begin, end, now] = [status.begin_ns, status.end_ns, status.time_ns].map(seconds);
+    document.body.classList.toggle("can-seek", status.can_seek);
+    document.body.classList.toggle("can-control", status.may_control);
+    this.button.classList.toggle("playing", status.is_playing);
+    this.button.title = status.is_playing ? "Pause (space)" : "Play (space)";
+    this.bar.min = String(begin);
+    this.bar.max = String(end);
+    if (!this.isScrubbing) this.bar.value = String(now);
+    this.bar.style.setProperty("--done", `${(100 * (now - begin)) / Math.max(1e-9, end - begin)}%`);
+    document.getElementById("now")!.textContent = clockText(now);
+    document.getElementById("whole")!.textContent = end > 0 ? clockText(end) : "";
+    const speed = String(status.speed);
+    if (![...this.speed.options].some(({ value }) => value === speed)) this.speed.add(new Option(`${speed} ×`, speed));
+    if (document.activeElement !== this.speed) this.speed.value = speed;
+    if (end !== this.markedEnd) this.mark(this.marked);
+  }
+
+  mark(events: readonly ViewEvent[]): void {
+    this.marked = events;
+    if (!this.status) return;
+    const [begin, end] = [seconds(this.status.begin_ns), seconds(this.status.end_ns)];
+    this.markedEnd = end;
+    this.marks.replaceChildren(...events.map(({ time_ns, kind, text }) => {
+      const mark = document.createElement("i");
+      mark.style.left = `${(100 * (seconds(time_ns) - begin)) / Math.max(1e-9, end - begin)}%`;
+      mark.title = `${kind}: ${text}`;
+      return mark;
+    }));
+  }
+}

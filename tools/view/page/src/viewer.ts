@@ -1,0 +1,211 @@
+import { Quaternion, Vector2, Vector3 } from "three";
+import { Cameras } from "./cameras";
+import { Glow } from "./glow";
+import { Inspector } from "./inspector";
+import { Instances } from "./instances";
+import { none, seconds, type Scene, type SceneContacts, type SceneFrame, type SceneRobot, type SceneSignals } from "./messages";
+import { Contacts, Labels, Rays, Trails } from "./overlays";
+import { Poses } from "./poses";
+import { Outline, pick } from "./selection";
+import { Sound } from "./sound";
+import { Stage } from "./stage";
+
+export type Layer = "labels" | "contacts" | "rays" | "trails" | "shadows" | "sound" | "collisions";
+
+const homeMargin = 0.4; // [m] around robots
+const manyEntities = 1500; // above, shadows are off unless asked for
+
+/** What is seen and heard of the world. */
+export class Viewer {
+  readonly stage: Stage;
+  readonly cameras: Cameras;
+  readonly layers = new Set<Layer>(["rays", "shadows"]);
+  readonly sound = new Sound();
+  readonly inspector: Inspector;
+  poses: Poses | undefined;
+  selected: number | undefined;
+  signals: SceneSignals | undefined;
+  framesDrawn = 0;
+
+  private instances: Instances | undefined;
+  private glow: Glow | undefined;
+  private robot: SceneRobot | undefined;
+  private readonly outline = new Outline();
+  private readonly contacts = new Contacts();
+  private readonly rays = new Rays();
+  private readonly trails = new Trails();
+  private readonly labels = new Labels(document.getElementById("labels")!);
+  private lastDrawn = performance.now();
+  private world = "";
+
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly onSelect: (robot: number | undefined) => void) {
+    this.stage = new Stage(canvas);
+    this.cameras = new Cameras(this.stage.camera, canvas);
+    this.inspector = new Inspector(() => this.select(undefined));
+    this.stage.add(this.outline.group, this.contacts.group, this.rays.group, this.trails.group);
+    this.contacts.group.visible = false;
+  }
+
+  // What comes from the server.
+
+  show(scene: Scene): void {
+    const selected = this.selected === undefined ? undefined : this.poses!.scene.entities[this.selected].name;
+    const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
+    if (this.instances) this.stage.remove(this.instances.group);
+    if (this.glow) this.stage.remove(this.glow.group);
+    this.instances?.dispose();
+    this.poses = new Poses(scene);
+    this.glow = new Glow(this.poses);
+    this.glow.wear(this.stage.theme === "dark");
+    this.build();
+    this.stage.add(this.glow.group);
+    this.stage.lay(scene);
+    this.trails.clear();
+    const again = scene.entities.findIndex(({ name }) => name === selected);
+    this.select(again >= 0 ? again : undefined);
+    if (followed) this.cameras.choose(again >= 0 ? followed : "orbit", again);
+    if (scene.entities.length > manyEntities && scene.world !== this.world) this.layers.delete("shadows");
+    this.apply();
+  }
+
+  take(frame: SceneFrame): void {
+    const isFirst = this.poses !== undefined && this.poses.frame === undefined;
+    if (!this.poses?.take(frame, performance.now())) return;
+    this.instances?.update();
+    if (isFirst && this.signals) this.glow?.take(this.signals);
+    if (isFirst && this.poses.scene.world !== this.world) {
+      this.world = this.poses.scene.world;
+      this.home();
+    }
+    if (this.layers.has("trails")) this.trails.add(this.poses, this.selected === undefined ? this.robotEntities() : [this.selected]);
+  }
+
+  takeSignals(signals: SceneSignals): void {
+    this.signals = signals;
+    if (this.poses?.frame) this.glow?.take(signals);
+    this.sound.take(signals);
+  }
+
+  takeContacts(contacts: SceneContacts): void { this.contacts.take(contacts); }
+
+  takeRobots(robots: readonly SceneRobot[]): void {
+    const id = this.selected === undefined ? none : this.poses!.scene.entities[this.selected].robot;
+    this.robot = robots.find(({ robot }) => robot === id);
+    if (this.robot) this.inspector.take(this.robot, seconds(this.robot.time_ns));
+  }
+
+  // What people do.
+
+  select(entity: number | undefined): void {
+    this.selected = entity;
+    this.robot = undefined;
+    this.outline.select(entity, this.poses, this.instances);
+    const chosen = entity === undefined ? undefined : this.poses!.scene.entities[entity];
+    this.inspector.select(chosen, chosen && this.poses!.scene.models[chosen.model]);
+    this.onSelect(chosen && chosen.robot !== none ? chosen.robot : undefined);
+  }
+
+  pickAt(x: number, y: number): number | undefined {
+    if (!this.poses?.frame || !this.instances) return undefined;
+    const { width, height } = this.canvas.getBoundingClientRect();
+    return pick(this.poses, this.instances, this.stage.camera, new Vector2((2 * x) / width - 1, 1 - (2 * y) / height));
+  }
+
+  find(name: string): number | undefined {
+    const { entities } = this.poses?.scene ?? { entities: [] };
+    const exact = entities.findIndex((each) => each.name === name || String(each.robot) === name);
+    const found = exact >= 0 ? exact : entities.findIndex((each) => each.name.endsWith(name));
+    return found >= 0 ? found : undefined;
+  }
+
+  /** All robots, or everything where there are none. */
+  home(): void {
+    if (!this.poses?.frame) return;
+    const position = new Vector3();
+    const low = new Vector3(Infinity, Infinity, Infinity);
+    const high = low.clone().negate();
+    const robots = this.robotEntities();
+    const wanted = robots.length > 0 ? robots : this.poses.scene.entities.map((_, entity) => entity);
+    for (const entity of wanted.filter((each) => !this.poses!.absent.has(each))) {
+      this.poses.read(this.poses.placeOf(entity), position, new Quaternion());
+      low.min(position);
+      high.max(position);
+    }
+    if (low.x > high.x) return;
+    const centre = low.clone().add(high).multiplyScalar(0.5);
+    this.cameras.choose("orbit");
+    this.cameras.frame(centre, homeMargin + 0.5 * low.distanceTo(high));
+  }
+
+  toggle(layer: Layer): boolean {
+    const isOn = !this.layers.has(layer);
+    if (isOn) this.layers.add(layer);
+    else this.layers.delete(layer);
+    this.apply(layer);
+    return isOn;
+  }
+
+  wear(theme: "light" | "dark"): void {
+    document.documentElement.dataset.theme = theme;
+    this.stage.wear(theme);
+    this.glow?.wear(theme === "dark");
+  }
+
+  robotEntities(): number[] {
+    return this.poses ? this.poses.scene.entities.flatMap(({ robot }, entity) => (robot === none ? [] : [entity])) : [];
+  }
+
+  poseOf(entity: number): { position: number[]; heading: number } {
+    const position = new Vector3();
+    const turn = new Quaternion();
+    this.poses!.read(this.poses!.placeOf(entity), position, turn);
+    const forward = new Vector3(1, 0, 0).applyQuaternion(turn);
+    return { position: position.toArray(), heading: Math.atan2(forward.y, forward.x) };
+  }
+
+  draw(now: number): void {
+    const elapsed = Math.min(0.1, (now - this.lastDrawn) / 1000);
+    this.lastDrawn = now;
+    const { poses, stage } = this;
+    if (poses?.frame) {
+      poses.advance(now);
+      this.instances!.draw();
+      this.glow!.draw(this.canvas.height);
+      this.outline.draw(poses);
+      this.rays.draw(poses, this.layers.has("rays") ? this.robot : undefined);
+      this.sound.draw(poses, stage.camera);
+      this.showPose();
+    }
+    this.cameras.advance(poses, elapsed);
+    stage.draw(this.cameras.target);
+    const named = this.layers.has("labels") ? this.robotEntities() : this.selected === undefined ? [] : [this.selected];
+    this.labels.draw(poses?.frame ? poses : undefined, named, stage.camera, this.canvas.clientWidth, this.canvas.clientHeight);
+    ++this.framesDrawn;
+  }
+
+  private showPose(): void {
+    if (this.selected === undefined) return;
+    const { position, heading } = this.poseOf(this.selected);
+    const [x, y, z] = position.map((each) => each.toFixed(3));
+    this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${((180 * heading) / Math.PI).toFixed(0)}°`);
+  }
+
+  private build(): void {
+    this.instances = new Instances(this.poses!, this.layers.has("collisions") ? "collision" : "visual");
+    this.stage.add(this.instances.group);
+    if (this.poses!.frame) this.instances.update();
+  }
+
+  private apply(changed?: Layer): void {
+    this.stage.cast(this.layers.has("shadows"));
+    this.contacts.group.visible = this.layers.has("contacts");
+    this.sound.switch(this.layers.has("sound"));
+    if (!this.layers.has("trails")) this.trails.clear();
+    if (changed === "collisions" && this.poses && this.instances) {
+      this.stage.remove(this.instances.group);
+      this.instances.dispose();
+      this.build();
+      this.outline.select(this.selected, this.poses, this.instances);
+    }
+  }
+}

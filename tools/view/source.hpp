@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace cohort::view {
+
+/// What a viewer asks for: a word, and what it needs. Which words there are is in docs/view.md.
+struct Wish {
+  std::string operation;
+  double number = 0.0;
+  std::string name{};  ///< of an object
+  std::string text{};
+  std::vector<double> numbers{};
+};
+
+struct Answer {
+  bool is_done = false;
+  std::string text;  ///< a sentence: what was done, or why not
+};
+
+/// Where scenes come from: publishes to Topics on a thread of its own, from its construction to its destruction.
+class Source {
+ public:
+  virtual ~Source() = default;
+  Source() = default;
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+
+  /// `answer` is called once, on any thread, perhaps before this returns. Any thread.
+  virtual void ask(const Wish& wish, std::function<void(const Answer&)> answer) = 0;
+  /// Whose channels are to be published from now on: ids. Any thread.
+  virtual void watch(const std::vector<std::uint32_t>& robots) = 0;
+};
+
+}  // namespace cohort::view

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "server/scene/scene_messages.hpp"
+
+/// What viewers are told beside the scene (server/scene/scene_messages.hpp).
+namespace cohort::view {
+
+using recording::field;
+
+/// How what is shown goes on. Times of a recording are its log times, of a server simulated ones.
+struct ViewStatus {
+  std::string source;  ///< `recording` or `server`
+  std::string name;    ///< of the recording's file, or the experiment
+  bool may_control = false;
+  bool can_seek = false;
+  bool is_playing = false;
+  double speed = 1.0;             ///< simulated seconds per second that are asked for; 0: as fast as it goes
+  double real_time_factor = 0.0;  ///< and that there are
+  std::int64_t time_ns = 0;
+  std::int64_t begin_ns = 0;
+  std::int64_t end_ns = 0;             ///< at the latest
+  std::string note{};                  ///< what keeps it from going on; empty if nothing does
+  std::vector<std::string> awaited{};  ///< robots
+  static constexpr const char* type = "cohort_msgs/msg/ViewStatus";
+  static constexpr auto fields =
+      std::tuple(field("source", &ViewStatus::source), field("name", &ViewStatus::name),
+                 field("may_control", &ViewStatus::may_control), field("can_seek", &ViewStatus::can_seek),
+                 field("is_playing", &ViewStatus::is_playing), field("speed", &ViewStatus::speed),
+                 field("real_time_factor", &ViewStatus::real_time_factor), field("time_ns", &ViewStatus::time_ns),
+                 field("begin_ns", &ViewStatus::begin_ns), field("end_ns", &ViewStatus::end_ns),
+                 field("note", &ViewStatus::note), field("awaited", &ViewStatus::awaited));
+};
+
+struct ViewEvent {
+  std::int64_t time_ns = 0;
+  std::uint64_t tick = 0;
+  std::string kind;  ///< a word
+  std::string text;
+  static constexpr const char* type = "cohort_msgs/msg/ViewEvent";
+  static constexpr auto fields = std::tuple(field("time_ns", &ViewEvent::time_ns), field("tick", &ViewEvent::tick),
+                                            field("kind", &ViewEvent::kind), field("text", &ViewEvent::text));
+};
+
+/// The newest ones, oldest first; of a recording all that are shown.
+struct ViewEvents {
+  static constexpr std::size_t most = 1000;
+
+  std::vector<ViewEvent> events;
+  static constexpr const char* type = "cohort_msgs/msg/ViewEvents";
+  static constexpr auto fields = std::tuple(field("events", &ViewEvents::events));
+};
+
+}  // namespace cohort::view

@@ -212,6 +212,28 @@ async function steersServer(page) {
     const [x, y] = viewer.poseOf(viewer.find("explorers/sbot_3")).position;
     return Math.hypot(x - 0.25, y + 0.5) < 1e-3;
   }).catch(async (error) => { throw new Error(`${error.message}\n${await run(page, "where sbot_3")}`); });
+  // By the mouse.
+  await run(page, "home; top; toggle shadows");
+  const [from, to] = await page.evaluate(() => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000);
+    return [[0.25, -0.5], [0.25, -0.2]].map(([x, y]) => {
+      const seen = viewer.cameras.target.clone().set(x, y, 0.05).project(viewer.stage.camera);
+      const { width, height } = document.getElementById("canvas").getBoundingClientRect();
+      return { x: 0.5 * (seen.x + 1) * width, y: 0.5 * (1 - seen.y) * height };
+    });
+  });
+  await page.keyboard.down("Shift");
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move(to.x, to.y);
+  await page.mouse.up();
+  await page.keyboard.up("Shift");
+  await until(page, () => {
+    const { viewer } = window.cohort;
+    const [x, y] = viewer.poseOf(viewer.find("explorers/sbot_3")).position;
+    return Math.hypot(x - 0.25, y + 0.2) < 0.05;
+  });
   await assert.rejects(run(page, "move nobody 0 0"), /nobody/);
   await assert.rejects(run(page, "step -1"), /ahead/);
   await run(page, "select sbot_3");

@@ -5,7 +5,6 @@
 namespace cohort::view {
 namespace {
 
-using recording::ros::Point;
 using scene::ShapeKind;
 
 constexpr double plane_size = 20.0;       // [m]

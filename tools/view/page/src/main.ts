@@ -102,12 +102,28 @@ addEventListener("keyup", ({ key }) => viewer.cameras.held.delete(flyKeys[key] ?
 addEventListener("blur", () => viewer.cameras.held.clear());
 
 let pressed = { x: 0, y: 0 };
-canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y }) => { pressed = { x, y }; });
+let dragged: number | undefined; // entity that goes where the mouse lets it
+canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y, shiftKey }) => {
+  pressed = { x, y };
+  dragged = shiftKey ? viewer.pickAt(x, y) : undefined;
+  viewer.cameras.controls.enabled = dragged === undefined && viewer.cameras.mode !== "eye";
+}, { capture: true });
 canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
+  if (dragged !== undefined) {
+    drop(dragged, x, y);
+    return;
+  }
   if (Math.hypot(x - pressed.x, y - pressed.y) > clickSlack) return;
   if (button === 0) viewer.select(viewer.pickAt(x, y));
   else runBound(`mouse${button}`);
 });
+function drop(entity: number, x: number, y: number): void {
+  dragged = undefined;
+  viewer.cameras.controls.enabled = viewer.cameras.mode !== "eye";
+  const [, , height] = viewer.poseOf(entity).position;
+  const place = viewer.placeAt(x, y, height);
+  if (place) void consolePanel.run(`move "${viewer.poses!.scene.entities[entity].name}" ${place.join(" ")} ${height}`);
+}
 canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
   const entity = viewer.pickAt(x, y);
   if (entity === undefined) return;

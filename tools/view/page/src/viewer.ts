@@ -1,4 +1,4 @@
-import { Quaternion, Vector2, Vector3 } from "three";
+import { Plane, Quaternion, Raycaster, Vector2, Vector3 } from "three";
 import { Cameras } from "./cameras";
 import { Glow } from "./glow";
 import { Inspector } from "./inspector";
@@ -109,6 +109,15 @@ export class Viewer {
     if (!this.poses?.frame || !this.instances) return undefined;
     const { width, height } = this.canvas.getBoundingClientRect();
     return pick(this.poses, this.instances, this.stage.camera, new Vector2((2 * x) / width - 1, 1 - (2 * y) / height));
+  }
+
+  /** Where the picture shows a height of the world [m]; nothing above the horizon. */
+  placeAt(x: number, y: number, height: number): [number, number] | undefined {
+    const { width, height: rows } = this.canvas.getBoundingClientRect();
+    const raycaster = new Raycaster();
+    raycaster.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / rows), this.stage.camera);
+    const at = raycaster.ray.intersectPlane(new Plane(new Vector3(0, 0, 1), -height), new Vector3());
+    return at ? [at.x, at.y] : undefined;
   }
 
   find(name: string): number | undefined {

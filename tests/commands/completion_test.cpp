@@ -23,7 +23,7 @@ struct Case {
 const std::vector<Case> cases = {
     {"cohort ctl st", "status", "pause"},
     {"cohort run --vi", "--view", "--seed"},
-    {"cohort run --view s", "side", "above"},
+    {"cohort run --plot-view s", "side", "above"},
     {"cohort ctl --domain 7 set-light lamp/light o", "off", "pause"},
     {"cohort export-data run.mcap --hd", "--hdf5", "--csv"},
     {"cohort check " COHORT_SOURCE_DIR "/READ", COHORT_SOURCE_DIR "/README.md", COHORT_SOURCE_DIR "/LICENSE"},

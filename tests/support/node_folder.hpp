@@ -29,10 +29,13 @@ class NodeFolder {
     return std::nullopt;
   }
 
+  /// What runs the script with these arguments.
+  std::vector<std::string> command(const std::string& script, std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {node_, (folder_ / script).string()});
+    return arguments;
+  }
   Ended run(const std::string& script, const std::vector<std::string>& arguments) const {
-    std::vector<std::string> command = {node_, (folder_ / script).string()};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return run_to_end(command);
+    return run_to_end(command(script, arguments));
   }
 
  private:

@@ -55,6 +55,21 @@ TEST_F(InTheBrowser, RobotsOfARecordingAreDrawnWhereItSaysTheyAre) {
   run_script("browser.mjs", {"draws", view.address(), scratch / "expected.json"});
 }
 
+// Its process goes with the run.
+TEST_F(InTheBrowser, ARunBringsItsView) {
+  Process run(
+      {testing::cohort_program(), "run", testing::demo_experiment(), "--view", "--control", "--duration", "600"});
+  ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
+  const std::string output = run.output();
+  const std::size_t begin = output.find("http://");
+  run_script("browser.mjs", {"steers_server", output.substr(begin, output.find('\n', begin) - begin)});
+  const std::vector<pid_t> children = testing::children_of(run.pid());
+  EXPECT_GE(children.size(), 2u) << "the controllers and the view";
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait_for_exit(), 130) << run.output();
+  for (const pid_t child : children) EXPECT_TRUE(testing::wait_until_gone(child));
+}
+
 TEST_F(InTheBrowser, ARecordingIsSteeredByMouseKeysAndConsole) {
   record_demo(scratch / "run.mcap", "4");
   const View view({scratch / "run.mcap"});

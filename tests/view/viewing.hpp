@@ -1,15 +1,12 @@
 #pragma once
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
-#include "tests/support/process.hpp"
+#include "tests/support/node_folder.hpp"
 
 namespace cohort::view {
 
@@ -17,24 +14,19 @@ namespace cohort::view {
 class Viewing : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (std::string(COHORT_NODE).empty() || std::string(COHORT_NPM).empty())
-      GTEST_SKIP() << "there is no node or npm: tools/install-packages tools/packages-node.txt";
-    std::filesystem::create_directories(folder);
-    const int lock = open((folder / "lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    flock(lock, LOCK_EX);
-    install();
-    close(lock);
+    for (const char* script : {"browser.mjs", "client.mjs"})
+      if (const auto why_not = scripts.prepare(script)) GTEST_SKIP() << *why_not;
   }
 
   static bool has_browser() { return !std::string(COHORT_CHROMIUM).empty(); }
 
   /// Starts a script, whose arguments these are.
   static testing::Process start_script(const std::string& script, std::vector<std::string> arguments) {
-    return testing::Process(command(script, std::move(arguments)), environment());
+    return testing::Process(scripts.command(script, std::move(arguments)), environment());
   }
   /// Runs it to its end; it says itself what is wrong.
   static void run_script(const std::string& script, std::vector<std::string> arguments) {
-    const testing::Ended ended = testing::run_to_end(command(script, std::move(arguments)), environment());
+    const testing::Ended ended = testing::run_to_end(scripts.command(script, std::move(arguments)), environment());
     EXPECT_EQ(ended.exit_code, 0) << ended.out << ended.err;
   }
 
@@ -66,25 +58,10 @@ class Viewing : public ::testing::Test {
   };
 
  private:
-  static std::vector<std::string> command(const std::string& script, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {COHORT_NODE, (folder / script).string()});
-    return arguments;
-  }
   static testing::Process::Environment environment() { return {{"COHORT_CHROMIUM", COHORT_CHROMIUM}}; }
 
-  static void install() {
-    const std::filesystem::path source = COHORT_SOURCE_DIR "/tests/view";
-    for (const char* name : {"package.json", "package-lock.json", "browser.mjs", "client.mjs"})
-      std::filesystem::copy_file(source / name, folder / name, std::filesystem::copy_options::overwrite_existing);
-    const std::string wanted = testing::read_file(folder / "package-lock.json");
-    if (testing::read_file(folder / "installed") == wanted) return;
-    const testing::Ended ended =
-        testing::run_to_end({COHORT_NPM, "ci", "--no-audit", "--no-fund", "--prefix", folder.string()});
-    ASSERT_EQ(ended.exit_code, 0) << ended.out << ended.err;
-    testing::write_file(folder / "installed", wanted);
-  }
-
-  inline static const std::filesystem::path folder = COHORT_NODE_FOLDER;
+  inline static const testing::NodeFolder scripts{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/view",
+                                                  COHORT_NODE_FOLDER};
 };
 
 }  // namespace cohort::view

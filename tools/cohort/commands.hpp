@@ -59,6 +59,8 @@ struct RunCommand {
   RecordOptions record;
   bool quiet = false;
   bool paused = false;                 ///< at first
+  bool view = false;                   ///< in a browser too
+  bool view_controls = false;          ///< which may steer it
   double keep_interval = 0.0;          ///< [s], simulated, between snapshots to go back to; 0: none
   std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
   std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
@@ -218,7 +220,7 @@ struct ViewCommand {
   std::filesystem::path secure_control{};  ///< the same, of one that may control
   bool may_control = false;
   std::string network = "127.0.0.1";  ///< address of the interface to serve on
-  std::uint16_t port = 8080;
+  std::optional<std::uint16_t> port{};  ///< 0: any free one; none: 8080, or any free one where that is taken
   std::string token{};                 ///< that browsers have to give; empty: one is made where strangers can connect
   std::vector<std::string> origins{};  ///< of other pages that may connect
   unsigned threads = 0;                ///< that replay a recording; 0: one for each core

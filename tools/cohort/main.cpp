@@ -108,7 +108,8 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
   app.add_option("--seed", options.seed, "Seed, instead of the experiment's")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->type_name("N");
-  app.add_option("--speed", speed, "Simulated seconds per second at the most (default: max, or 1 if people drive)")
+  app.add_option("--speed", speed,
+                 "Simulated seconds per second at the most (default: max, or 1 if people drive or look)")
       ->check(max_or_number_above_zero(1e9))
       ->type_name("max|X");
   app.add_option("--summary", options.summary, "Write the summary to this file as JSON")->type_name("FILE");
@@ -116,11 +117,14 @@ void add_run_options(CLI::App& app, RunCommand& options, std::string& speed, Log
   const auto set_view = [&options](const std::string& view) {
     options.viewpoint = view == "side" ? Viewpoint::side : Viewpoint::above;
   };
-  app.add_option_function<std::string>("--view", set_view, "Of the plot: from above (the default), or from the side")
+  app.add_option_function<std::string>("--plot-view", set_view,
+                                       "Of the plot: from above (the default), or from the side")
       ->check(one_of({"above", "side"}))
       ->type_name("above|side");
   app.add_option("--csv", options.csv, "Write what the experiment prints to this file as CSV")->type_name("FILE");
   add_record_options(app, options.record);
+  CLI::Option* const view = app.add_flag("--view", options.view, "Show it in a browser, as 'cohort view' does");
+  app.add_flag("--control", options.view_controls, "With --view: let whoever looks control it")->needs(view);
   app.add_flag("--paused", options.paused, "Begin paused, until 'cohort ctl resume' or 'step'");
   app.add_option("--keep-snapshots", options.keep_interval,
                  "Simulated seconds between snapshots in memory, for 'cohort ctl back' (default: none)")

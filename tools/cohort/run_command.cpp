@@ -49,7 +49,7 @@ class Stopwatch {
 double speed_of(const RunCommand& command, const description::Experiment& experiment) {
   const bool has_free = std::ranges::any_of(
       experiment.teams, [](const description::Team& team) { return team.policy.mode == description::Mode::free; });
-  return command.speed.value_or(has_keyboard(experiment) || has_free ? 1.0 : 0.0);
+  return command.speed.value_or(has_keyboard(experiment) || has_free || command.view ? 1.0 : 0.0);
 }
 
 // At least one step.
@@ -80,6 +80,16 @@ void warn_if_not_portable(Log& log) {
   for (const std::string& name : functions_not_portable()) names += " " + name;
   if (!names.empty())
     log.warning("this run's hash may differ on another CPU: the C library's" + names + " are in use instead of ours");
+}
+
+void refuse_what_needs_a_server(const RunCommand& command) {
+  const auto refuse = [](const std::string& option) {
+    throw std::invalid_argument("nobody can reach a run whose controllers are in the server's process: " + option +
+                                " goes with other --controllers");
+  };
+  if (command.paused) refuse("--paused");
+  if (command.keep_interval > 0.0) refuse("--keep-snapshots");
+  if (command.view) refuse("--view");
 }
 
 description::Experiment read(const RunCommand& command, const std::filesystem::path& file, Log& log) {
@@ -251,14 +261,7 @@ int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
       if (!command.csv.empty()) check_writable("the table", numbered(command.csv, number, count));
     }
     const bool in_process = command.controllers == Controllers::in_process;
-    if (in_process && command.paused)
-      throw std::invalid_argument(
-          "a run with its controllers in the server's process cannot be controlled: --paused "
-          "goes with other --controllers");
-    if (in_process && command.keep_interval > 0.0)
-      throw std::invalid_argument(
-          "a run with its controllers in the server's process cannot be controlled: --keep-snapshots "
-          "goes with other --controllers");
+    if (in_process) refuse_what_needs_a_server(command);
     runs.from = snapshot_of(command);
     for (const std::filesystem::path& file : command.files) {
       runs.experiments.push_back(std::make_shared<description::Experiment>(read(command, file, log)));
@@ -272,6 +275,7 @@ int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
     warn_if_not_portable(log);
 
     if (!in_process) runs.serving.emplace(command, first, log);
+    if (runs.serving && command.view) runs.serving->start_view();
     if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
     return run_each(runs, log, stop);
   } catch (const description::InputError& error) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -132,11 +133,30 @@ void Serving::start_controllers(const description::Experiment& experiment,
       listener_of_controllers(*server_, log_));
 }
 
+void Serving::start_view() {
+  Children::Command view;
+  view.arguments = {std::filesystem::read_symlink("/proc/self/exe"),
+                    "view",
+                    "--server",
+                    command_.network,
+                    "--domain",
+                    std::to_string(domains_.front())};
+  if (command_.view_controls) view.arguments.push_back("--control");
+  if (!command_.secure.empty())
+    view.arguments.insert(view.arguments.end(), {"--secure", (command_.secure / "clients" / "observer").string()});
+  view.name = "the view";
+  view.restarts = false;
+  Children::Listener listener;
+  listener.gave_up = [this](const std::string& text) { log_.warning(text); };
+  view_ = std::make_unique<Children>(std::vector{std::move(view)}, std::move(listener));
+}
+
 session::RunResult Serving::run(const description::Experiment& experiment, Simulation& simulation,
                                 const session::RunOptions& options, const session::RunListener& listener,
                                 const std::atomic<bool>& stop, bool is_last) {
   session::RunResult result = server_->run(experiment, simulation, options, listener, stop);
   if (result.next || (!is_last && result.end == session::RunResult::End::finished)) return result;
+  if (view_) view_->stop_restarting();
   if (children_) children_->stop_restarting();
   server_->dismiss(result);
   if (children_) children_->let_finish();

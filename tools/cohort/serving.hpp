@@ -23,6 +23,9 @@ class Serving {
   /// `experiment` must outlive this call only.
   void start_controllers(const description::Experiment& experiment, const std::vector<TeamController>& controllers);
 
+  /// Starts a process that shows the runs in a browser (`cohort view`); that it cannot is a warning.
+  void start_view();
+
   /// `is_last`: controllers may leave afterwards.
   session::RunResult run(const description::Experiment& experiment, Simulation& simulation,
                          const session::RunOptions& options, const session::RunListener& listener,
@@ -35,6 +38,7 @@ class Serving {
   std::vector<wire::Participant> participants_;
   std::optional<session::Server> server_;
   std::unique_ptr<Children> children_;
+  std::unique_ptr<Children> view_;
 };
 
 }  // namespace cohort::tool

@@ -16,10 +16,12 @@
 namespace cohort::tool {
 namespace {
 
+constexpr std::uint16_t usual_port = 8080;
+
 bool is_loopback(const std::string& address) { return address.starts_with("127.") || address == "::1"; }
 
 view::WebOptions web_options(const ViewCommand& command, const std::string& name) {
-  view::WebOptions options{name, command.network, command.port, command.token, command.origins};
+  view::WebOptions options{name, command.network, command.port.value_or(usual_port), command.token, command.origins};
   if (options.token.empty() && !is_loopback(command.network)) options.token = view::random_token();
   return options;
 }
@@ -48,6 +50,18 @@ void serve_until(view::WebServer& server, view::Source& source, const std::atomi
   server.run(source);
 }
 
+std::unique_ptr<view::WebServer> listen(const ViewCommand& command, view::WebOptions options, Log& log,
+                                        view::Topics& topics) {
+  view::PageFiles page = page_or_warning(log);
+  if (command.port) return std::make_unique<view::WebServer>(std::move(options), std::move(page), topics);
+  try {
+    return std::make_unique<view::WebServer>(options, page, topics);
+  } catch (const std::runtime_error&) {
+    options.port = 0;
+    return std::make_unique<view::WebServer>(std::move(options), std::move(page), topics);
+  }
+}
+
 // `make_source` makes what publishes to its topics.
 template <class MakeSource>
 int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
@@ -57,11 +71,11 @@ int serve(const ViewCommand& command, const std::string& name, Log& log, const s
     if (published_to != nullptr) published_to->published();
   });
   const view::WebOptions options = web_options(command, name);
-  view::WebServer server(options, page_or_warning(log), topics);
-  published_to = &server;
+  const auto server = listen(command, options, log, topics);
+  published_to = server.get();
   const auto source = make_source(topics);
-  say_where(command, options, server.port());
-  serve_until(server, *source, stop);
+  say_where(command, options, server->port());
+  serve_until(*server, *source, stop);
   return stop ? exit_interrupted : exit_ok;
 }
 

@@ -15,9 +15,8 @@ void add_view_options(CLI::App& app, ViewCommand& command) {
   app.add_flag("--control", command.may_control, "Let whoever looks control the server")->excludes(recording);
   app.add_option("--secure-control", command.secure_control, "Folder of an identity that may control, for --control")
       ->type_name("DIR");
-  app.add_option("--port", command.port, "Where browsers find it; 0: any free port")
+  app.add_option("--port", command.port, "Where browsers find it (default: 8080, or any free one if that is taken)")
       ->check(whole_number(0, std::numeric_limits<std::uint16_t>::max()))
-      ->capture_default_str()
       ->type_name("N");
   app.add_option("--network", command.network, "Address of the interface to serve browsers on")
       ->capture_default_str()

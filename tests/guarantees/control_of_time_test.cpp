@@ -12,7 +12,7 @@ using wire::ResultCode;
 TEST(ControlAtTickBoundariesOnly, AResetGivesTheBitsOfTheFirstRunAndAnotherSeedThoseOfAnother) {
   const FieldOfRobots field(4, 5.0);
   const std::string expected = reference(field);
-  ControlledRun run(field, {"--speed", "10"});
+  ControlledRun run(field, {"--speed", "1"});
   EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 30; }));
   EXPECT_NE(run.done({"reset", "--seed", "77"}).find("run 2 stands at tick 0, with seed 77"), std::string::npos);
   EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 10; }));

@@ -101,17 +101,18 @@ class Control {
   void set_state(const wire::Request& request);
   void step(const wire::Request& request);
   void set_speed(const wire::Request& request);
+  void quit(const wire::Request& request);
+  // What begins a run anew, and what is kept of one (control_snapshots.cpp).
+  void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
   void save(const wire::Request& request);
   void load(const wire::Request& request);
   void go_back(const wire::Request& request);
   void go_on_from(const wire::Request& request, std::shared_ptr<const SessionSnapshot> snapshot);
   void start_recording(const wire::Request& request);
-  void quit(const wire::Request& request);
   // Actions on the world (control_actions.cpp).
   static bool is_action(const wire::Request& request);
   void act(std::span<const wire::Request> requests);
   wire::ResultCode code_of_failure(const wire::Request& request) const;
-  void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
 
   LiveRecordings& recordings_;
   std::optional<ControlledRun> run_;

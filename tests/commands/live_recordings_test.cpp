@@ -88,13 +88,13 @@ TEST_F(LiveRecordings, AreForgottenWithTheirClientAndMadeAnew) {
     recording.wait_for_exit();
     const std::uint64_t tick = run.tick();
     EXPECT_TRUE(run.comes_to([&](const auto& now) { return now["tick"] > tick; })) << "it goes on";
-    run.comes_to([&](const auto&) {  // the server notices at the latest when its lease is over
+    EXPECT_TRUE(run.comes_to([&](const auto&) {  // the server notices at the latest when its lease is over
       Process next(record(run, "next.mcap"));
       const bool has_begun = next.wait_for_output("recorded from tick ");
       next.signal(SIGINT);
       next.wait_for_exit();
       return has_begun;
-    });
+    }));
   }
   run.done({"shutdown"});
   run.finish();

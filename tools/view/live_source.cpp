@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/scene/check_scene.hpp"
 #include "tools/view/control_requests.hpp"
 
 namespace cohort::view {
@@ -92,12 +93,18 @@ void LiveSource::show_what_arrives() {
 }
 
 void LiveSource::show(Arrived& arrived) {
-  if (arrived.scene) publisher_.show_as_it_is(recording::decode<scene::Scene>(*arrived.scene), time_);
+  if (arrived.scene) {
+    auto scene = recording::decode<scene::Scene>(*arrived.scene);
+    links_ = scene::check_scene(scene);
+    revision_ = scene.revision;
+    publisher_.show_as_it_is(std::move(scene), time_);
+  }
   if (!arrived.has_update) {
     if (arrived.has_other_watched || arrivals_ != topics_.arrivals()) show_extras();
     return;
   }
   const auto frame = recording::decode<scene::SceneFrame>(arrived.frame);
+  if (frame.revision == revision_) scene::check_frame(frame, links_);
   {
     const std::lock_guard lock(mutex_);
     time_ = std::chrono::nanoseconds(frame.time_ns);

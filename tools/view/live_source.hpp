@@ -86,6 +86,8 @@ class LiveSource final : public Source {
   Bytes contacts_;
   Bytes robots_;
   std::uint64_t arrivals_ = 0;
+  std::uint32_t revision_ = 0;  // of the scene that is shown, and how many links it has
+  std::size_t links_ = 0;
   std::thread shower_;
   std::thread steward_;
 };

@@ -1,0 +1,46 @@
+#include "server/scene/check_scene.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cohort::scene {
+namespace {
+
+// Two objects of a model with two links, of which one is a mesh.
+Scene scene_of_two() {
+  Scene scene;
+  scene.meshes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}}};
+  SceneShape shape;
+  shape.kind = static_cast<std::uint8_t>(ShapeKind::mesh);
+  shape.mesh = 0;
+  SceneModel model;
+  model.links = {{"body", {shape}}, {"arm", {}}};
+  scene.models = {model};
+  scene.entities = {{"one", 0}, {"two", 0}};
+  return scene;
+}
+
+TEST(CheckScene, CountsTheLinksOfAFrame) {
+  EXPECT_EQ(check_scene(scene_of_two()), 4U);
+  SceneFrame frame;
+  frame.positions.resize(12);
+  frame.orientations.resize(16);
+  check_frame(frame, 4);
+  EXPECT_THROW(check_frame(frame, 5), recording::CdrError);
+  frame.orientations.pop_back();
+  EXPECT_THROW(check_frame(frame, 4), recording::CdrError);
+}
+
+TEST(CheckScene, RefusesIndicesOfNothing) {
+  Scene of_model = scene_of_two();
+  of_model.entities[1].model = 1;
+  EXPECT_THROW(check_scene(of_model), recording::CdrError);
+  Scene of_mesh = scene_of_two();
+  of_mesh.models[0].links[0].shapes[0].mesh = none;
+  EXPECT_THROW(check_scene(of_mesh), recording::CdrError);
+  Scene of_vertex = scene_of_two();
+  of_vertex.meshes[0].triangles[2] = 3;
+  EXPECT_THROW(check_scene(of_vertex), recording::CdrError);
+}
+
+}  // namespace
+}  // namespace cohort::scene

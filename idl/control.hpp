@@ -33,6 +33,7 @@ enum class Operation : std::uint32_t {
   get_recording = 109,
   stop_recording = 110,
   go_back = 111,
+  get_history = 112,
 };
 
 /// The operation's name in docs/protocol.md, such as `StepSimulation`; empty if there is none of this number.

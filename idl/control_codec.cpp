@@ -9,7 +9,7 @@ namespace {
 
 constexpr int depth = static_cast<int>(requests_under_way);
 
-constexpr std::array<std::pair<Operation, const char*>, 22> names = {{
+constexpr std::array<std::pair<Operation, const char*>, 23> names = {{
     {Operation::get_simulator_features, "GetSimulatorFeatures"},
     {Operation::get_simulation_state, "GetSimulationState"},
     {Operation::set_simulation_state, "SetSimulationState"},
@@ -32,6 +32,7 @@ constexpr std::array<std::pair<Operation, const char*>, 22> names = {{
     {Operation::get_recording, "GetRecording"},
     {Operation::stop_recording, "StopRecording"},
     {Operation::go_back, "GoBack"},
+    {Operation::get_history, "GetHistory"},
 }};
 
 cohort_v1_Vector3 encode(const Vector3& v) { return {v.x, v.y, v.z}; }
@@ -147,7 +148,8 @@ bool is_query(Operation operation) {
     case Operation::get_data:
     case Operation::put_data:
     case Operation::get_recording:
-    case Operation::stop_recording: return true;
+    case Operation::stop_recording:
+    case Operation::get_history: return true;
     default: return false;
   }
 }

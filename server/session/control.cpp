@@ -90,7 +90,6 @@ void Control::begin(ControlledRun run) {
   ending_.reset();
   play_ = Play(run_->book.options().state);
   older_ = newer_ = {Clock::now(), run_->simulation.time()};
-  hash_.reset();
   if (!std::exchange(goes_back_, false))
     kept_ = KeptSnapshots(static_cast<std::uint64_t>(run_->book.options().keep_interval / run_->experiment.world.step),
                           most_kept_bytes);
@@ -244,7 +243,6 @@ void Control::note_progress(Clock::time_point now) {
 }
 
 void Control::reach_boundary() {
-  hash_.reset();
   note_progress(Clock::now());
   if (kept_.wants(run_->simulation.tick())) kept_.keep(run_->take_snapshot());
   if (!play_.has_steps()) return;

@@ -93,8 +93,8 @@ class Control {
   void take_data(wire::Reply& reply, const wire::Request& request);
   void fill_recording(wire::Reply& reply, const wire::Request& request);
   void stop_recording(wire::Reply& reply, const wire::Request& request);
+  void fill_history(wire::Reply& reply, const wire::Request& request) const;
   std::optional<std::uint32_t> find_entity(wire::Reply& reply, const std::string& name) const;
-  std::uint64_t state_hash();
 
   // Operations: done or refused with a reply, or begun.
   void do_one(const wire::Request& request);
@@ -131,7 +131,6 @@ class Control {
   };
   void note_progress(Clock::time_point now);
   Sample older_, newer_;
-  std::optional<std::uint64_t> hash_;  // of this boundary, once somebody has asked
 };
 
 }  // namespace cohort::session

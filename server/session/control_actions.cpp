@@ -114,7 +114,6 @@ void Control::act(std::span<const Request> requests) {
   } catch (const std::exception& error) {
     results.assign(actions.size(), {false, error.what()});
   }
-  hash_.reset();
   for (std::size_t i = 0; i < actions.size();) {
     const Request& request = *origins[i];
     Reply reply = reply_to(request);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 
+#include "server/scene/run_history.hpp"
 #include "server/session/control.hpp"
 
 // What is only asked: answered at once.
@@ -82,6 +83,7 @@ void Control::answer_query(const Request& request) {
       case Operation::put_data: take_data(reply, request); break;
       case Operation::get_recording: fill_recording(reply, request); break;
       case Operation::stop_recording: stop_recording(reply, request); break;
+      case Operation::get_history: fill_history(reply, request); break;
       default: break;  // every reply has the state
     }
   } catch (const std::exception& error) {
@@ -135,11 +137,6 @@ void Control::fill_entity_state(Reply& reply, const Request& request) const {
                           {on_wire(twist.linear_W), on_wire(twist.angular_W)}});
 }
 
-std::uint64_t Control::state_hash() {
-  if (!hash_) hash_ = run_->simulation.state_hash();
-  return *hash_;
-}
-
 void Control::fill_status(Reply& reply) {
   wire::SimulationStatus& status = reply.status.emplace_back();
   status.experiment = run_->experiment.name;
@@ -147,7 +144,7 @@ void Control::fill_status(Reply& reply) {
   status.step_ns = run_->experiment.world.step.count();
   status.duration_ns = run_->book.duration().count();
   status.speed = run_->book.speed();
-  status.state_hash = state_hash();
+  status.state_hash = run_->simulation.state_hash();
   status.robots = run_->simulation.robot_count();
   const auto now = Clock::now();
   note_progress(now);
@@ -187,6 +184,28 @@ void Control::fill_recording(Reply& reply, const Request& request) {
 void Control::stop_recording(Reply& reply, const Request& request) {
   recordings_.stop(request.client);
   reply.error_message = "recorded up to tick " + std::to_string(run_->simulation.tick());
+}
+
+void Control::fill_history(Reply& reply, const Request& request) const {
+  constexpr std::size_t most_events = 250;
+  scene::RunHistory history;
+  const RunBook& book = run_->book;
+  if (book.options().from) history.begin_tick = book.options().from->tick;
+  history.keep_interval = kept_.interval();
+  if (kept_.size() > 0) {
+    history.first_kept_tick = kept_.first_tick();
+    history.last_kept_tick = kept_.last_tick();
+  }
+  std::uint64_t revision = request.offset;
+  const std::vector<Event> events = book.events().changed_since(revision, most_events);
+  history.events.reserve(events.size());
+  for (const Event& event : events)
+    history.events.push_back({event.tick, event.last_tick, event.count, event.kind, event.text});
+  const recording::Bytes bytes = recording::encode(history);
+  const auto* const begin = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  reply.data.assign(begin, begin + bytes.size());
+  reply.offset = revision;
+  reply.size = book.events().revision();
 }
 
 void Control::take_data(Reply& reply, const Request& request) {

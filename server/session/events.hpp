@@ -14,6 +14,7 @@ struct Event {
   std::string kind;
   std::string text;
   std::uint64_t count = 1;
+  std::uint64_t last_tick = 0;  ///< in an EventLog: of the last time
 };
 
 /// The events of a run. The same again only counts, and so does what exceeds a thousand of its kind: no stranger can
@@ -24,9 +25,17 @@ class EventLog {
   bool add(std::uint64_t tick, const std::string& kind, const std::string& text, std::uint64_t count = 1);
   std::span<const Event> events() const { return events_; }
 
+  /// How often anything was added. The state of the log, for `changed_since`.
+  std::uint64_t revision() const { return revision_; }
+  /// What has happened, or happened again, since that revision; at most `most`, those whose last change is oldest, in
+  /// its order. `revision` becomes that of the last one of them.
+  std::vector<Event> changed_since(std::uint64_t& revision, std::size_t most) const;
+
  private:
   static constexpr std::size_t most_of_kind = 1000;
   std::vector<Event> events_;
+  std::vector<std::uint64_t> changed_at_;  // revision of each event
+  std::uint64_t revision_ = 0;
 };
 
 }  // namespace cohort::session

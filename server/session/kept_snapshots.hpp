@@ -24,6 +24,8 @@ class KeptSnapshots {
   /// Forgets those after `tick`: what came then is not what will.
   void forget_after(std::uint64_t tick);
 
+  /// Ticks from one to the next, as it is now.
+  std::uint64_t interval() const { return interval_; }
   std::size_t size() const { return snapshots_.size(); }
   /// Of the first and the last one; there has to be one.
   std::uint64_t first_tick() const { return snapshots_.begin()->first; }

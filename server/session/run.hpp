@@ -156,6 +156,7 @@ class RunBook {
     add_event("control", event.operation + ": " + event.text);
     if (listener_.control) listener_.control(event);
   }
+  const EventLog& events() const { return log_; }
   void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
   void add_barrier(std::chrono::nanoseconds latency) {
     result_.barrier.add(latency);

@@ -140,6 +140,7 @@ bool Simulation::set_command(std::uint32_t robot, std::span<const double> values
   // As they are hashed: 0.0 and -0.0 differ.
   const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
   if (std::ranges::equal(command, values, {}, bits, bits)) return false;
+  note_change();
   std::ranges::copy(values, command.begin());
   return true;
 }
@@ -149,6 +150,7 @@ bool Simulation::set_neutral_command(std::uint32_t robot) {
 }
 
 void Simulation::step() {
+  note_change();
   for (Robot& robot : robots_) {
     const bool is_exhausted = std::any_of(robot.sensors.begin(), robot.sensors.end(),
                                           [](const SensorOfRobot& each) { return each.sensor->is_exhausted(); });
@@ -199,6 +201,7 @@ void Simulation::begin_tick() {
 }
 
 std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM) {
+  note_change();
   const std::uint32_t object = objects_.add(name, model, X_WM);
   emitters_.add_body(object, model);
   grippers_.note_model(model);
@@ -261,6 +264,7 @@ void Simulation::look_at_lamps() {
 }
 
 void Simulation::sense() {
+  note_change();
   emitters_.update(workers_);
   look_at_lamps();
   workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {

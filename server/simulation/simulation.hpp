@@ -135,13 +135,23 @@ class Simulation {
   /// of one of the description's models, not a robot's; throws std::invalid_argument if the name is taken or the model
   /// cannot be simulated.
   std::uint32_t add_object(const std::string& name, std::size_t model, const Pose& X_WM);
-  void remove_object(std::uint32_t object) { objects_.set_present(object, false); }
+  void remove_object(std::uint32_t object) {
+    note_change();
+    objects_.set_present(object, false);
+  }
   /// One that was removed comes back as it was.
-  void put_back_object(std::uint32_t object) { objects_.set_present(object, true); }
+  void put_back_object(std::uint32_t object) {
+    note_change();
+    objects_.set_present(object, true);
+  }
   /// At rest. Throws std::invalid_argument where a planar body has no ground.
-  void place_object(std::uint32_t object, const Pose& X_WM) { world_.place_body(object, X_WM); }
+  void place_object(std::uint32_t object, const Pose& X_WM) {
+    note_change();
+    world_.place_body(object, X_WM);
+  }
   /// `emitter`: index among those of its model. Throws std::invalid_argument if there is none.
   void change_emitter(std::uint32_t object, std::size_t emitter, const description::EmitterChange& change) {
+    note_change();
     emitters_.change(object, emitter, change);
   }
   Pose object_pose(std::uint32_t object) const { return world_.link_pose(object, 0); }  ///< of its root link, X_WL
@@ -155,7 +165,8 @@ class Simulation {
   /// snapshot is of something else, cut short, or of another version; this is then not to be used.
   void restore(std::span<const std::byte> snapshot);
 
-  /// Of this boundary: everything that decides how the run goes on, and the observations.
+  /// Of this boundary: everything that decides how the run goes on, and the observations. Costs nothing if nothing has
+  /// changed since it was asked for last.
   std::uint64_t state_hash() const;
 
   Pose robot_pose(std::uint32_t robot) const;  ///< of its root link, X_WL
@@ -182,6 +193,9 @@ class Simulation {
     std::vector<double> command;  // that acts now
   };
 
+  // Whatever is part of the state hash is about to change, or has just done so.
+  void note_change() { state_hash_.reset(); }
+  std::uint64_t computed_state_hash() const;
   void build_robot(std::uint32_t id);
   std::string act_unsensed(const Action& action);
   std::string spawn_object(const SpawnObject& spawn);
@@ -231,6 +245,7 @@ class Simulation {
   std::vector<std::string> happened_;
   std::deque<std::pair<std::string, ActionHandler>> handlers_;  // a handler may add one
   mutable std::vector<std::uint64_t> body_hashes_;
+  mutable std::optional<std::uint64_t> state_hash_;
 };
 
 }  // namespace cohort

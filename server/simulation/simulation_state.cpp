@@ -45,6 +45,7 @@ std::vector<std::byte> Simulation::save() const {
 }
 
 void Simulation::restore(std::span<const std::byte> snapshot) {
+  note_change();
   SnapshotReader reader(snapshot);
   std::uint64_t mark = 0;
   reader.read(mark);
@@ -84,6 +85,11 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
 }
 
 std::uint64_t Simulation::state_hash() const {
+  if (!state_hash_) state_hash_ = computed_state_hash();
+  return *state_hash_;
+}
+
+std::uint64_t Simulation::computed_state_hash() const {
   workers_.for_each_chunk(body_hashes_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t body = begin; body < end; ++body) {
       StateHash hash;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "server/simulation/simulation.hpp"
@@ -123,6 +124,53 @@ INSTANTIATE_TEST_SUITE_P(Fidelities, Actions,
                          [](const auto& tested) {
                            return tested.param == description::Fidelity::planar ? "planar" : "treel";
                          });
+
+// The hash is kept until something changes: whatever changes must be seen to change it.
+TEST_P(Actions, ChangeAStateHashThatSomebodyHasAskedFor) {
+  const std::vector<std::function<void(Simulation&)>> changes = {
+      [](Simulation& simulation) {
+        std::vector<double> command(simulation.kinds()[0].command_size, 0.0);
+        command[0] = 0.07;
+        simulation.set_command(0, command);
+      },
+      [](Simulation& simulation) { simulation.set_neutral_command(0); },
+      [](Simulation& simulation) { simulation.step(); },
+      [](Simulation& simulation) {
+        simulation.act(SetPose{"things/box", at(0.2, 0, 0.1)});
+      },
+      [](Simulation& simulation) {
+        simulation.act(SetLight{"post/top", false});
+      },
+      [&](Simulation& simulation) { simulation.place_object(box_, at(-0.5, 0, 0.1)); },
+      [&](Simulation& simulation) { simulation.remove_object(box_); },
+      [&](Simulation& simulation) { simulation.put_back_object(box_); },
+      [&](Simulation& simulation) {
+        simulation.change_emitter(post_, 1, {false, {}, {}, {}, {}, {}});
+      },
+      [](Simulation& simulation) {
+        simulation.act(SpawnObject{"more", crate_sdf, at(4, 4, 0.2)});
+      },
+      [&](Simulation& simulation) {
+        simulation.add_object("second_box", experiment_.world.instances[box_].model, at(5, 5, 0.1));
+      },
+  };
+  Simulation asked(experiment_, 1);
+  run(asked, 10);
+  std::uint64_t before = asked.state_hash();
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    changes[i](asked);
+    EXPECT_NE(asked.state_hash(), before) << "change " << i;
+    before = asked.state_hash();
+    Simulation twin(experiment_, 1);
+    run(twin, 10);
+    for (std::size_t j = 0; j <= i; ++j) changes[j](twin);
+    EXPECT_EQ(before, twin.state_hash()) << "change " << i;
+  }
+  Simulation restored(experiment_, 1);
+  EXPECT_NE(restored.state_hash(), before);
+  restored.restore(asked.save());
+  EXPECT_EQ(restored.state_hash(), before);
+}
 
 TEST_P(Actions, DoWhatAnEventOfTheSameBoundaryWouldAndAreSensedAtIt) {
   const std::vector<std::pair<Action, description::Event>> both = {

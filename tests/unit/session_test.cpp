@@ -155,6 +155,28 @@ TEST(EventLog, CountsWhatIsTheSameAndIsBounded) {
   EXPECT_TRUE(log.add(11, "joined", "somebody")) << "others have their own room";
 }
 
+TEST(EventLog, TellsWhatHasChangedSince) {
+  EventLog log;
+  log.add(1, "joined", "a");
+  log.add(2, "missed", "b");
+  std::uint64_t revision = 0;
+  EXPECT_EQ(log.changed_since(revision, 10).size(), 2u);
+  EXPECT_EQ(revision, log.revision());
+  EXPECT_TRUE(log.changed_since(revision, 10).empty());
+  log.add(7, "joined", "c");
+  log.add(8, "joined", "a");
+  const std::vector<Event> first = log.changed_since(revision, 1);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].text, "c");
+  const std::vector<Event> second = log.changed_since(revision, 1);
+  ASSERT_EQ(second.size(), 1u);
+  EXPECT_EQ(second[0].text, "a");
+  EXPECT_EQ(second[0].tick, 1u);
+  EXPECT_EQ(second[0].last_tick, 8u);
+  EXPECT_EQ(second[0].count, 2u);
+  EXPECT_EQ(revision, log.revision());
+}
+
 class Straight final : public Controller {
  public:
   void start(const Start& start) override {

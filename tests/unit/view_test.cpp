@@ -5,6 +5,7 @@
 #include "tools/view/admission.hpp"
 #include "tools/view/client_session.hpp"
 #include "tools/view/control_requests.hpp"
+#include "tools/view/live_history.hpp"
 
 namespace cohort::view {
 namespace {
@@ -135,6 +136,70 @@ TEST(ViewWishes, BecomeRequestsOrAreExplained) {
   EXPECT_THROW(request_of({.operation = "move", .numbers = {1.0, 2.0}}), std::invalid_argument);
   EXPECT_THROW(request_of({.operation = "step", .number = 0.0 / 0.0}), std::invalid_argument);
   EXPECT_THROW(request_of({.operation = "shutdown"}), std::invalid_argument);
+}
+
+// What a server answers that has run so far.
+wire::Reply told(std::uint32_t run, std::uint64_t revision, const scene::RunHistory& history) {
+  wire::Reply reply;
+  reply.run = run;
+  reply.offset = revision;
+  const recording::Bytes bytes = recording::encode(history);
+  for (const std::byte each : bytes) reply.data.push_back(static_cast<std::uint8_t>(each));
+  return reply;
+}
+
+std::vector<std::string> texts(const ViewEvents& events) {
+  std::vector<std::string> texts;
+  for (const ViewEvent& event : events.events) texts.push_back(event.text);
+  return texts;
+}
+
+using Texts = std::vector<std::string>;
+constexpr std::chrono::milliseconds step{10};
+
+TEST(ViewHistory, WhatHappensAgainIsCountedAndTheLastStandsAtTheEnd) {
+  LiveHistory history;
+  EXPECT_TRUE(history.take(told(1, 2, {0, 0, 0, 0, {{3, 3, 1, "missed", "a"}, {5, 5, 1, "joined", "b"}}}), step));
+  EXPECT_EQ(history.question().offset, 2U);
+  EXPECT_FALSE(history.take(told(1, 2, {}), step));
+  EXPECT_TRUE(history.take(told(1, 3, {0, 0, 0, 0, {{3, 9, 2, "missed", "a"}}}), step));
+  EXPECT_EQ(texts(history.events()), (Texts{"b", "a"}));
+  const ViewEvent& again = history.events().events.back();
+  EXPECT_EQ(again.count, 2U);
+  EXPECT_EQ(again.time_ns, 30'000'000);
+  EXPECT_EQ(again.last_ns, 90'000'000);
+  EXPECT_FALSE(history.can_go_back());
+}
+
+TEST(ViewHistory, WhatARunGoesBackBehindHasNotHappened) {
+  LiveHistory history;
+  history.take(told(1, 2, {0, 50, 0, 100, {{30, 30, 1, "event", "early"}, {120, 120, 1, "event", "late"}}}), step);
+  EXPECT_TRUE(history.can_go_back());
+  // The question was still about the first run: what it brought is asked for again.
+  EXPECT_TRUE(history.take(told(2, 9, {100, 50, 0, 100, {{101, 101, 1, "event", "partly"}}}), step));
+  EXPECT_EQ(texts(history.events()), (Texts{"early"}));
+  EXPECT_EQ(history.question().offset, 0U);
+  EXPECT_TRUE(history.take(told(2, 1, {100, 50, 50, 100, {{101, 101, 1, "event", "anew"}}}), step));
+  EXPECT_EQ(texts(history.events()), (Texts{"early", "anew"}));
+  EXPECT_EQ(history.first_kept(), std::chrono::milliseconds(500));
+  EXPECT_TRUE(history.take(told(3, 0, {}), step));
+  EXPECT_TRUE(history.events().events.empty()) << "a reset";
+}
+
+TEST(ViewHistory, KeepsTheNewestEventsOnly) {
+  LiveHistory history;
+  scene::RunHistory all;
+  for (std::uint64_t i = 0; i < ViewEvents::most + 10; ++i) all.events.push_back({i, i, 1, "event", std::to_string(i)});
+  history.take(told(1, all.events.size(), all), step);
+  EXPECT_EQ(history.events().events.size(), ViewEvents::most);
+  EXPECT_EQ(history.events().events.front().text, "10");
+}
+
+TEST(ViewHistory, WhatIsNoHistoryIsRefused) {
+  LiveHistory history;
+  wire::Reply reply;
+  reply.data = {0, 1, 0, 0, 7};
+  EXPECT_THROW(history.take(reply, step), recording::CdrError);
 }
 
 }  // namespace

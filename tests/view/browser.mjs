@@ -245,6 +245,49 @@ async function steersServer(page) {
   await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 10);
 }
 
+// A server that keeps a snapshot every half second.
+async function goesBack(page) {
+  const events = () => page.evaluate(() => document.getElementById("events").textContent);
+  const eventsShow = (text) => until(page, (each) => document.getElementById("events").textContent.includes(each), text);
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 160);
+  await eventsShow("joined");
+  await run(page, "pause; events");
+  await eventsShow("SetSimulationState");
+  await run(page, "speed 0.5; speed 0.5");
+  await eventsShow("(2 times, last at");
+  await page.waitForTimeout(500);
+  const before = await tick(page);
+  await run(page, "seek 1.23");
+  await atTick(page, 123);
+  await eventsShow("joined");
+  assert.ok(!(await events()).includes("SetSpeed"), "what has not happened any more is told");
+  await run(page, "step 2");
+  await atTick(page, 125);
+  const hash = await page.evaluate(() => document.getElementById("hash").textContent);
+  await run(page, "step -25");
+  await atTick(page, 100);
+  await run(page, "step 25");
+  await atTick(page, 125);
+  assert.equal(await page.evaluate(() => document.getElementById("hash").textContent), hash);
+  await assert.rejects(run(page, `seek ${before / 100 + 1}`), /not come to that time/);
+  // By the time bar: only when the mouse lets it go, and no further than the run has come.
+  await run(page, "step 75");
+  await atTick(page, 200);
+  const bar = await page.locator("#track").boundingBox();
+  const { begin, end } = await page.evaluate(() => ({ begin: Number(document.getElementById("scrub").min), end: Number(document.getElementById("scrub").max) }));
+  const atTime = (time) => bar.x + ((time - begin) / (end - begin)) * bar.width;
+  await page.waitForTimeout(500);
+  await page.mouse.move(atTime(2), bar.y + 0.5 * bar.height);
+  await page.mouse.down();
+  await page.mouse.move(atTime(0.75), bar.y + 0.5 * bar.height, { steps: 4 });
+  await page.waitForTimeout(500);
+  assert.equal(await tick(page), 200);
+  await page.mouse.up();
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) < 120);
+  await run(page, "play; speed 1");
+  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 120);
+}
+
 async function onlyLooks(page) {
   await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 20);
   for (const line of ["pause", "step", "reset", "move sbot_3 0 0", "speed 0.1"]) await assert.rejects(run(page, line), /only look/);
@@ -272,7 +315,7 @@ async function isSuspended(page) {
 
 const scenarios = {
   draws, draws_many: drawsMany, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
-  steers_server: steersServer, only_looks: onlyLooks, looks, is_suspended: isSuspended,
+  steers_server: steersServer, goes_back: goesBack, only_looks: onlyLooks, looks, is_suspended: isSuspended,
 };
 
 const [, , scenario, address, file] = process.argv;

@@ -102,6 +102,14 @@ TEST_F(InTheBrowser, ARunningServerIsSeenAndSteered) {
   run_script("browser.mjs", {"steers_server", view.address()});
 }
 
+TEST_F(InTheBrowser, ARunningServerGoesBackInTimeAndTellsWhatHappens) {
+  const testing::ReservedDomain domain;
+  Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",
+               "--duration", "6", "--keep-snapshots", "0.5"});
+  const View view({"--domain", domain.text(), "--control"});
+  run_script("browser.mjs", {"goes_back", view.address()});
+}
+
 TEST_F(InTheBrowser, WhoMayOnlyLookSteersNothing) {
   const testing::ReservedDomain domain;
   Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",

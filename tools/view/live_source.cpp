@@ -1,6 +1,8 @@
 #include "tools/view/live_source.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "server/scene/check_scene.hpp"
@@ -27,6 +29,14 @@ recording::Bytes copied(std::span<const std::uint8_t> bytes) {
 std::optional<wire::Identity> identity_in(const std::string& folder) {
   return folder.empty() ? std::nullopt : std::optional(wire::read_identity(folder));
 }
+
+std::chrono::nanoseconds time_of(double seconds) {
+  constexpr double longest_run = 9e9;  // [s]; beyond, nanoseconds are no 64 bits
+  if (!(std::abs(seconds) <= longest_run)) throw std::invalid_argument("a time is in seconds, from 0 on");
+  return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
+
+const Answer no_answer{false, "the server has not answered within 5 s; it may still be done"};
 
 }  // namespace
 
@@ -140,16 +150,13 @@ void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
 
 void LiveSource::ask(const Wish& wish, std::function<void(const Answer&)> answer) {
   if (!options_.may_control) return answer({false, "this view may only look: 'cohort view --control' may do more"});
-  try {
-    wire::Request request = request_of(wish);
+  {
     const std::lock_guard lock(wishes_mutex_);
     if (wishes_.size() < most_wishes) {
-      wishes_.push_back({std::move(request), std::move(answer)});
+      wishes_.push_back({wish, std::move(answer)});
       wishes_changed_.notify_all();
       return;
     }
-  } catch (const std::invalid_argument& error) {
-    return answer({false, error.what()});
   }
   answer({false, "the server has not yet done what was asked for before"});
 }
@@ -160,8 +167,9 @@ void LiveSource::serve_wishes() {
     try {
       ControlClient client({.server = options_.server,
                             .domain = options_.domain,
-                            .secure = options_.secure_control,
+                            .secure = options_.secure_control.empty() ? options_.secure : options_.secure_control,
                             .label = "cohort view"});
+      history_ = LiveHistory();
       while (!is_stopping_ && !client.server_is_gone()) {
         if (!client.wait_for_server(for_a_server, is_stopping_)) {
           answer_all("there is no server that can be controlled");
@@ -177,8 +185,9 @@ void LiveSource::serve_wishes() {
             wishes_.pop_front();
           }
         }
-        if (asked) do_asked(client, *asked);
+        if (asked) asked->answer(done(client, asked->wish));
         if (!is_stopping_) ask_status(client);
+        if (!is_stopping_) ask_history(client);
       }
     } catch (const std::exception& error) {
       ViewStatus status = blank_status();
@@ -191,13 +200,45 @@ void LiveSource::serve_wishes() {
   answer_all("the view is closing");
 }
 
-void LiveSource::do_asked(ControlClient& client, Asked& asked) {
-  const bool is_state = asked.request.operation == wire::Operation::set_simulation_state;
-  const auto reply = client.ask(std::move(asked.request), for_a_reply, is_stopping_);
-  if (!reply) return asked.answer({false, "the server has not answered within 5 s; it may still be done"});
-  const bool is_done =
-      reply->result == ResultCode::ok || (is_state && reply->result == ResultCode::already_in_target_state);
-  asked.answer({is_done, reply->error_message});
+Answer LiveSource::done(ControlClient& client, const Wish& wish) {
+  try {
+    if (wish.operation == "seek") return gone_back(client, time_of(wish.number));
+    if (wish.operation == "step" && wish.number < 0.0 && history_.can_go_back())
+      return gone_back(client, run_time_ + time_of(std::trunc(wish.number) * 1e-9 * static_cast<double>(run_.step_ns)));
+    wire::Request request = request_of(wish);
+    const bool is_state = request.operation == wire::Operation::set_simulation_state;
+    const auto reply = client.ask(std::move(request), for_a_reply, is_stopping_);
+    if (!reply) return no_answer;
+    const bool is_done =
+        reply->result == ResultCode::ok || (is_state && reply->result == ResultCode::already_in_target_state);
+    return {is_done, reply->error_message};
+  } catch (const std::invalid_argument& error) {
+    return {false, error.what()};
+  }
+}
+
+Answer LiveSource::gone_back(ControlClient& client, std::chrono::nanoseconds time) {
+  if (time > run_time_) throw std::invalid_argument("the run has not come to that time yet");
+  wire::Request back;
+  back.operation = wire::Operation::go_back;
+  back.duration_ns = time.count();
+  const auto reply = client.ask(std::move(back), for_a_reply, is_stopping_);
+  if (!reply) return no_answer;
+  if (reply->result != ResultCode::ok || reply->state != SimulationState::paused || run_.step_ns <= 0)
+    return {reply->result == ResultCode::ok, reply->error_message};
+  wire::Request on;
+  on.operation = wire::Operation::step_simulation;
+  on.steps = static_cast<std::uint64_t>(std::max<std::int64_t>(0, time.count() - reply->time_ns) / run_.step_ns);
+  if (on.steps == 0) return {true, reply->error_message};
+  const auto arrived = client.ask(std::move(on), for_a_reply, is_stopping_);
+  return arrived ? Answer{arrived->result == ResultCode::ok, arrived->error_message} : no_answer;
+}
+
+void LiveSource::ask_history(ControlClient& client) {
+  const auto reply = client.ask(history_.question(), for_a_reply, is_stopping_);
+  if (!reply || reply->result != ResultCode::ok) return;  // a server of before has none
+  if (history_.take(*reply, std::chrono::nanoseconds(run_.step_ns)))
+    topics_.publish(Topic::events, std::chrono::nanoseconds(reply->time_ns), recording::encode(history_.events()));
 }
 
 void LiveSource::answer_all(const std::string& text) {
@@ -231,9 +272,15 @@ void LiveSource::ask_status(ControlClient& client) {
     status.real_time_factor = run.real_time_factor;
     status.time_ns = reply->time_ns;
     status.end_ns = run.duration_ns;
+    status.can_seek = options_.may_control && history_.can_go_back();
+    status.loses_what_follows = true;
+    status.seekable_from_ns = history_.first_kept().count();
+    status.seekable_to_ns = reply->time_ns;
     status.note = run.started ? "" : "controllers are missing";
     constexpr auto noticeable = 500ms;
     if (!run.started || std::chrono::nanoseconds(run.waiting_ns) > noticeable) status.awaited = run.awaited;
+    run_ = run;
+    run_time_ = std::chrono::nanoseconds(reply->time_ns);
   } else {
     status.note = reply ? "there is no run" : "the server does not answer";
   }

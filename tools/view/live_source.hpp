@@ -11,6 +11,7 @@
 
 #include "client_sdk/src/control_client.hpp"
 #include "idl/wire.hpp"
+#include "tools/view/live_history.hpp"
 #include "tools/view/scene_publisher.hpp"
 #include "tools/view/source.hpp"
 
@@ -25,7 +26,8 @@ struct LiveOptions {
 };
 
 /// Shows a running server, as any observer may. Wishes, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
-/// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done.
+/// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done. Where it keeps snapshots also
+/// `seek` and steps back: to the last snapshot before, and if the run is paused on from there to the very tick.
 class LiveSource final : public Source {
  public:
   /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if its address or the identity
@@ -40,7 +42,7 @@ class LiveSource final : public Source {
   using Bytes = recording::Bytes;
 
   struct Asked {
-    wire::Request request;
+    Wish wish;
     std::function<void(const Answer&)> answer;
   };
   // What came from the server since it was looked at last. Under the lock.
@@ -58,8 +60,10 @@ class LiveSource final : public Source {
   void show_extras();
   void show_robots();
   void serve_wishes();
-  void do_asked(ControlClient& client, Asked& asked);
+  Answer done(ControlClient& client, const Wish& wish);
+  Answer gone_back(ControlClient& client, std::chrono::nanoseconds time);
   void ask_status(ControlClient& client);
+  void ask_history(ControlClient& client);
   void answer_all(const std::string& text);
   void show_status(const ViewStatus& status);
   ViewStatus blank_status() const;
@@ -88,6 +92,10 @@ class LiveSource final : public Source {
   std::uint64_t arrivals_ = 0;
   std::uint32_t revision_ = 0;  // of the scene that is shown, and how many links it has
   std::size_t links_ = 0;
+  // Of the thread that serves wishes: what the server said last.
+  LiveHistory history_;
+  wire::SimulationStatus run_;
+  std::chrono::nanoseconds run_time_{0};
   std::thread shower_;
   std::thread steward_;
 };

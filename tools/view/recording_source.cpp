@@ -249,6 +249,8 @@ void RecordingSource::show_status(const Wanted& wanted) {
   status.time_ns = log_time_.count();
   status.begin_ns = recording_.worlds().front().log_time.count();
   status.end_ns = end_.count();
+  status.seekable_from_ns = status.begin_ns;
+  status.seekable_to_ns = status.end_ns;
   status.note = problem_.empty() ? recording_.damage() : problem_;
   publisher_.publish(Topic::status, status, log_time_);
 }
@@ -262,8 +264,8 @@ void RecordingSource::show_events() {
       while (const auto message = messages.next()) {
         if (events.events.size() == ViewEvents::most) break;
         const auto event = recording::decode<recording::RecordedEvent>(message->data);
-        events.events.push_back(
-            {static_cast<std::int64_t>(message->log_time.count()), event.tick, event.kind, event.text});
+        const auto time = static_cast<std::int64_t>(message->log_time.count());
+        events.events.push_back({time, event.tick, event.kind, event.text, event.count, time});
       }
     } catch (const std::exception& error) {
       problem_ = error.what();

@@ -12,33 +12,42 @@ struct ViewStatus {
   std::string source;  ///< `recording` or `server`
   std::string name;    ///< of the recording's file, or the experiment
   bool may_control = false;
-  bool can_seek = false;
+  bool can_seek = false;            ///< to times from `seekable_from_ns` to `seekable_to_ns`
+  bool loses_what_follows = false;  ///< going back: what comes then is new
   bool is_playing = false;
   double speed = 1.0;             ///< simulated seconds per second that are asked for; 0: as fast as it goes
   double real_time_factor = 0.0;  ///< and that there are
   std::int64_t time_ns = 0;
   std::int64_t begin_ns = 0;
-  std::int64_t end_ns = 0;             ///< at the latest
+  std::int64_t end_ns = 0;  ///< at the latest
+  std::int64_t seekable_from_ns = 0;
+  std::int64_t seekable_to_ns = 0;
   std::string note{};                  ///< what keeps it from going on; empty if nothing does
   std::vector<std::string> awaited{};  ///< robots
   static constexpr const char* type = "cohort_msgs/msg/ViewStatus";
-  static constexpr auto fields =
-      std::tuple(field("source", &ViewStatus::source), field("name", &ViewStatus::name),
-                 field("may_control", &ViewStatus::may_control), field("can_seek", &ViewStatus::can_seek),
-                 field("is_playing", &ViewStatus::is_playing), field("speed", &ViewStatus::speed),
-                 field("real_time_factor", &ViewStatus::real_time_factor), field("time_ns", &ViewStatus::time_ns),
-                 field("begin_ns", &ViewStatus::begin_ns), field("end_ns", &ViewStatus::end_ns),
-                 field("note", &ViewStatus::note), field("awaited", &ViewStatus::awaited));
+  static constexpr auto fields = std::tuple(
+      field("source", &ViewStatus::source), field("name", &ViewStatus::name),
+      field("may_control", &ViewStatus::may_control), field("can_seek", &ViewStatus::can_seek),
+      field("loses_what_follows", &ViewStatus::loses_what_follows), field("is_playing", &ViewStatus::is_playing),
+      field("speed", &ViewStatus::speed), field("real_time_factor", &ViewStatus::real_time_factor),
+      field("time_ns", &ViewStatus::time_ns), field("begin_ns", &ViewStatus::begin_ns),
+      field("end_ns", &ViewStatus::end_ns), field("seekable_from_ns", &ViewStatus::seekable_from_ns),
+      field("seekable_to_ns", &ViewStatus::seekable_to_ns), field("note", &ViewStatus::note),
+      field("awaited", &ViewStatus::awaited));
 };
 
+/// Something that happened, perhaps more than once.
 struct ViewEvent {
-  std::int64_t time_ns = 0;
+  std::int64_t time_ns = 0;  ///< of the first time
   std::uint64_t tick = 0;
   std::string kind;  ///< a word
   std::string text;
+  std::uint64_t count = 1;
+  std::int64_t last_ns = 0;  ///< of the last time
   static constexpr const char* type = "cohort_msgs/msg/ViewEvent";
   static constexpr auto fields = std::tuple(field("time_ns", &ViewEvent::time_ns), field("tick", &ViewEvent::tick),
-                                            field("kind", &ViewEvent::kind), field("text", &ViewEvent::text));
+                                            field("kind", &ViewEvent::kind), field("text", &ViewEvent::text),
+                                            field("count", &ViewEvent::count), field("last_ns", &ViewEvent::last_ns));
 };
 
 /// The newest ones, oldest first; of a recording all that are shown.

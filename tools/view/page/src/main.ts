@@ -24,7 +24,9 @@ const timeBar = new TimeBar({
   play: () => void consolePanel.run("play"),
   pause: () => void consolePanel.run("pause"),
   step: (ticks) => void consolePanel.run(`step ${ticks}`),
-  seek: (time) => void connection.ask({ operation: "seek", number: time }),
+  seek: (time) => void (timeBar.status?.loses_what_follows
+    ? consolePanel.run(`seek ${time}`)
+    : connection.ask({ operation: "seek", number: time })),
   speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
 });
 
@@ -69,11 +71,12 @@ function showStatus(status: ViewStatus): void {
 
 function showEvents(events: readonly ViewEvent[]): void {
   timeBar.mark(events);
-  element("events").replaceChildren(...events.slice(-200).map(({ time_ns, kind, text }) => {
+  element("events").replaceChildren(...events.slice(-200).map(({ time_ns, kind, text, count, last_ns }) => {
     const line = document.createElement("p");
     const time = document.createElement("b");
     time.textContent = `${clockText(seconds(time_ns))} ${kind} `;
-    line.append(time, text);
+    const again = count > 1n ? ` (${count} times, last at ${clockText(seconds(last_ns))})` : "";
+    line.append(time, text + again);
     return line;
   }));
   element("events").scrollTop = element("events").scrollHeight;

@@ -85,16 +85,19 @@ export interface ViewStatus {
   name: string;
   may_control: boolean;
   can_seek: boolean;
+  loses_what_follows: boolean;
   is_playing: boolean;
   speed: number;
   real_time_factor: number;
   time_ns: bigint;
   begin_ns: bigint;
   end_ns: bigint;
+  seekable_from_ns: bigint;
+  seekable_to_ns: bigint;
   note: string;
   awaited: string[];
 }
-export interface ViewEvent { time_ns: bigint; tick: bigint; kind: string; text: string }
+export interface ViewEvent { time_ns: bigint; tick: bigint; kind: string; text: string; count: bigint; last_ns: bigint }
 
 export interface Messages {
   "/cohort/scene": Scene;

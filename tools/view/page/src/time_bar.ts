@@ -29,9 +29,17 @@ export class TimeBar {
     this.speed.addEventListener("change", () => playback.speed(Number(this.speed.value)));
     this.bar.addEventListener("input", () => {
       this.isScrubbing = true;
-      playback.seek(Number(this.bar.value));
+      if (!this.status?.loses_what_follows) playback.seek(this.chosen());
     });
-    this.bar.addEventListener("change", () => { this.isScrubbing = false; });
+    this.bar.addEventListener("change", () => {
+      this.isScrubbing = false;
+      if (this.status?.loses_what_follows) playback.seek(this.chosen());
+    });
+  }
+
+  private chosen(): number {
+    const [from, to] = [this.status!.seekable_from_ns, this.status!.seekable_to_ns].map(seconds);
+    return Math.min(to, Math.max(from, Number(this.bar.value)));
   }
 
   toggle(): void {
@@ -49,7 +57,10 @@ export class TimeBar {
     this.bar.min = String(begin);
     this.bar.max = String(end);
     if (!this.isScrubbing) this.bar.value = String(now);
-    this.bar.style.setProperty("--done", `${(100 * (now - begin)) / Math.max(1e-9, end - begin)}%`);
+    const share = (time: number): string => `${(100 * (time - begin)) / Math.max(1e-9, end - begin)}%`;
+    this.bar.style.setProperty("--done", share(now));
+    this.bar.style.setProperty("--from", share(status.can_seek ? seconds(status.seekable_from_ns) : begin));
+    this.bar.title = status.can_seek && status.loses_what_follows ? "Going back forgets what came later" : "";
     document.getElementById("now")!.textContent = clockText(now);
     document.getElementById("whole")!.textContent = end > 0 ? clockText(end) : "";
     const speed = String(status.speed);

@@ -50,9 +50,9 @@ function playbackWords({ connection, timeBar }: Parts): Command[] {
   return [
     plain("play", "goes on"),
     plain("pause", "stands still"),
-    { name: "step", usage: "[TICKS]", help: "goes on by ticks, one if none is said; of a recording also back",
+    { name: "step", usage: "[TICKS]", help: "goes on by ticks, one if none is said; back where seek can",
       run: ([ticks]) => ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }) },
-    { name: "seek", usage: "SECONDS", help: "goes to a time of a recording", run: ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }) },
+    { name: "seek", usage: "SECONDS", help: "goes to a time of a recording, or back to one of a server that keeps snapshots", run: ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }) },
     { name: "speed", usage: "FACTOR", help: "simulated seconds a second; max: as fast as it goes",
       complete: () => ["max", ...speeds.map(String)], run: ([factor]) => speed(factor === "max" ? 0 : numberOf(factor, "a factor, or max")) },
     { name: "faster", usage: "", help: "the next speed up", run: () => speed(next(true)) },

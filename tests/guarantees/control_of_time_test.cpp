@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
 #include "tests/support/controlled_run.hpp"
 
 // Back to the beginning, to a snapshot, and to what is kept.
@@ -97,6 +100,39 @@ TEST(ControlAtTickBoundariesOnly, GoesBackToWhatIsKept) {
   EXPECT_EQ(run.done({"back", "1"}), "run 7 stands at tick 0, with seed 1\n") << "another run, with a past of its own";
   run.done({"resume"});
   EXPECT_EQ(run.finish()["state_hash"], reference(field));
+}
+
+TEST(ControlAtTickBoundariesOnly, TellsWhatHasHappenedAndHowFarBackItCanGo) {
+  const FieldOfRobots field(4, 5.0);
+  ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
+  ControlClient client = client_of(run);
+  wire::Request faster;
+  faster.operation = Operation::set_speed;
+  faster.speed = 2.0;
+  run.done({"step", "120"});
+  ASSERT_TRUE(client.ask(faster, patience, never));
+  run.done({"step", "10"});
+  ASSERT_TRUE(client.ask(faster, patience, never));
+  const auto history = [&] { return nlohmann::json::parse(run.done({"history", "--json"})); };
+  const auto told = history();
+  EXPECT_EQ(told["begin_tick"], 0);
+  EXPECT_EQ(told["kept"]["first_tick"], 0);
+  EXPECT_EQ(told["kept"]["last_tick"], 100);
+  EXPECT_EQ(told["kept"]["interval"], 50);
+  const auto& events = told["events"];
+  EXPECT_TRUE(std::ranges::is_sorted(events, {}, [](const auto& event) { return event["tick"].template get<int>(); }));
+  const auto speed = std::ranges::find_if(
+      events, [](const auto& event) { return event["text"].template get<std::string>().starts_with("SetSpeed: "); });
+  ASSERT_NE(speed, events.end()) << told.dump(2);
+  EXPECT_EQ((*speed)["kind"], "control");
+  EXPECT_EQ((*speed)["count"], 2);
+  EXPECT_EQ((*speed)["tick"], 120);
+  EXPECT_EQ((*speed)["last_tick"], 130);
+  EXPECT_NE(run.done({"history"}).find("it can go back to 0.000 s, 1.000 s at the latest"), std::string::npos);
+  run.done({"back", "0.7"});
+  EXPECT_EQ(history()["begin_tick"], 50);
+  run.done({"shutdown"});
+  run.finish();
 }
 
 TEST(ControlAtTickBoundariesOnly, GoesBackToNothingThatIsNotKept) {

@@ -158,6 +158,7 @@ struct CtlCommand {
   enum class What {
     request,  ///< one, and its reply
     status,
+    history,
     entities,
     save,
     load,

@@ -9,6 +9,7 @@
 
 #include "client_sdk/src/control_client.hpp"
 #include "tools/cohort/commands.hpp"
+#include "tools/cohort/ctl_history.hpp"
 #include "tools/cohort/ctl_status.hpp"
 #include "tools/cohort/output_file.hpp"
 
@@ -63,6 +64,7 @@ class Ctl {
     switch (command_.what) {
       case CtlCommand::What::request: return request();
       case CtlCommand::What::status: return command_.watch ? watch() : status();
+      case CtlCommand::What::history: return history();
       case CtlCommand::What::entities: return entities();
       case CtlCommand::What::save: return save();
       case CtlCommand::What::load: return load();
@@ -170,6 +172,28 @@ class Ctl {
       while (!stop_ && std::chrono::steady_clock::now() < next) std::this_thread::sleep_for(milliseconds(20));
     }
     return exit_interrupted;
+  }
+
+  int history() {
+    const auto status = ask_status();
+    if (!status || status->status.empty()) return no_reply();
+    scene::RunHistory all;
+    Request request;
+    request.operation = Operation::get_history;
+    for (bool is_complete = false; !is_complete;) {
+      const auto reply = client_.ask(request, patience_, stop_);
+      if (!reply) return no_reply();
+      if (reply->result != ResultCode::ok) {
+        log_.error(reply->error_message);
+        return exit_failed;
+      }
+      add(all, recording::decode<scene::RunHistory>(std::as_bytes(std::span(reply->data))));
+      is_complete = reply->offset == request.offset || reply->offset >= reply->size;
+      request.offset = reply->offset;
+    }
+    const std::chrono::nanoseconds step(status->status.front().step_ns);
+    std::fputs((command_.json ? history_json(all, step).dump(2) + "\n" : history_text(all, step)).c_str(), stdout);
+    return exit_ok;
   }
 
   int entities() {

@@ -215,6 +215,9 @@ void add_ctl_commands(CLI::App& app, CtlCommand& command) {
   status->add_flag("--watch", command.watch, "Again and again, twice a second");
   status->add_flag("--json", command.json, "As JSON; with --watch an object on each line");
   status->callback([&] { command.what = CtlCommand::What::status; });
+  CLI::App* history = app.add_subcommand("history", "Say what has happened, and how far back the run can go");
+  history->add_flag("--json", command.json, "As JSON");
+  history->callback([&] { command.what = CtlCommand::What::history; });
   CLI::App* entities = app.add_subcommand("entities", "List what is in the world");
   entities->add_option("FILTER", command.request.filter, "POSIX extended regular expression")->type_name("");
   entities->callback([&] { command.what = CtlCommand::What::entities; });

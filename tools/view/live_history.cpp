@@ -1,6 +1,7 @@
 #include "tools/view/live_history.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace cohort::view {
 
@@ -12,8 +13,7 @@ wire::Request LiveHistory::question() const {
 }
 
 bool LiveHistory::take(const wire::Reply& reply, std::chrono::nanoseconds step) {
-  const auto* const begin = reinterpret_cast<const std::byte*>(reply.data.data());
-  const auto history = recording::decode<scene::RunHistory>({begin, begin + reply.data.size()});
+  const auto history = recording::decode<scene::RunHistory>(std::as_bytes(std::span(reply.data)));
   keep_interval_ = history.keep_interval;
   first_kept_ = step * static_cast<std::int64_t>(history.first_kept_tick);
   const bool is_another_run = reply.run != run_;

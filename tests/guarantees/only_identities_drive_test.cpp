@@ -207,7 +207,7 @@ TEST(OnlyIdentitiesDrive, AndObserversLookOnAndRecord) {
   Process recording(as("observer", {"record", "-o", file}));
   EXPECT_TRUE(recording.wait_for_output("recorded from tick 0 on")) << recording.output();
   EXPECT_EQ(run_to_end(as("observer", {"ctl", "status"})).exit_code, 0);
-    EXPECT_EQ(run_to_end(as("observer", {"ctl", "history"})).exit_code, 0);
+  EXPECT_EQ(run_to_end(as("observer", {"ctl", "history"})).exit_code, 0);
   EXPECT_EQ(run_to_end(as("observer", {"ctl", "save", (folder / "snapshot").string()})).exit_code, 0);
   for (const std::vector<std::string>& change : {std::vector<std::string>{"ctl", "resume"},
                                                  {"ctl", "shutdown"},

@@ -75,6 +75,11 @@ std::size_t size_of(const XmlNode& node) {
   return size;
 }
 
+void add_names(const XmlNode& node, std::set<std::string>& names) {
+  names.insert(node.name);
+  for (const XmlNode& child : node.children) add_names(child, names);
+}
+
 // An <include> of an older version is put aside, since libsdformat would follow it. A <frame> keeps its place.
 constexpr std::string_view aside = "cohort:include:";
 
@@ -299,7 +304,9 @@ std::vector<Problem> SdfFiles::try_to_load(SdfFile& file) {
   file.nodes = std::move(written.nodes);
   sdf::Errors errors;
   try {
-    const sdf::SDFPtr sdf = empty_sdf();
+    std::set<std::string> names;
+    add_names(file.tree, names);
+    const sdf::SDFPtr sdf = empty_sdf_for(names);
     sdf->SetFilePath(file.path.string());
     sdf->Root()->SetOriginalVersion(file.version);  // what an old version allowed stays allowed
     // Into an element: what reads into an SDFPtr tries anything that is not SDF as URDF, whose parser prints on its

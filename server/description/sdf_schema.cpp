@@ -18,6 +18,55 @@ bool is_vector_type(std::string_view type) {
   return std::find(std::begin(types), std::end(types), type) != std::end(types);
 }
 
+// With attributes and value, but no definitions of children.
+sdf::ElementPtr bare_copy(const sdf::ElementPtr& definition) {
+  const sdf::ElementPtr copy = std::make_shared<sdf::Element>();
+  copy->SetName(definition->GetName());
+  copy->SetRequired(definition->GetRequired());
+  copy->SetCopyChildren(definition->GetCopyChildren());
+  copy->SetReferenceSDF(definition->ReferenceSDF());
+  for (const sdf::ParamPtr& attribute : definition->GetAttributes())
+    copy->AddAttribute(attribute->GetKey(), attribute->GetTypeName(), attribute->GetDefaultAsString(),
+                       attribute->GetRequired(), attribute->GetDescription());
+  if (const sdf::ParamPtr value = definition->GetValue())
+    copy->AddValue(value->GetTypeName(), value->GetDefaultAsString(), value->GetRequired(),
+                   value->GetMinValueAsString().value_or(""), value->GetMaxValueAsString().value_or(""),
+                   value->GetDescription());
+  return copy;
+}
+
+// `child_definition` says what becomes of that of a child. What has no children stays what it is.
+template <class ChildDefinition>
+sdf::ElementPtr copy_with(const sdf::ElementPtr& definition, ChildDefinition child_definition) {
+  if (definition->GetElementDescriptionCount() == 0) return definition;
+  const sdf::ElementPtr copy = bare_copy(definition);
+  for (unsigned i = 0; i < definition->GetElementDescriptionCount(); ++i)
+    copy->AddElementDescription(child_definition(definition->GetElementDescription(i)));
+  return copy;
+}
+
+sdf::ElementPtr childless(const sdf::ElementPtr& definition) {
+  return definition->GetElementDescriptionCount() == 0 ? definition : bare_copy(definition);
+}
+
+// Of these libsdformat reads also what they do not hold, as if it were there.
+bool is_read_whole(const std::string& name) { return name == "sensor" || name == "light" || name == "actor"; }
+
+sdf::ElementPtr definition_for(const sdf::ElementPtr& definition, const std::set<std::string>& names) {
+  const std::string& name = definition->GetName();
+  const bool comes = names.contains(name);
+  if (comes && is_read_whole(name)) return definition;
+  const bool may_come = comes || definition->GetRequired() == "1" || definition->GetRequired() == "+";
+  if (!may_come) return copy_with(definition, childless);
+  return copy_with(definition, [&](const sdf::ElementPtr& child) { return definition_for(child, names); });
+}
+
+sdf::SDFPtr sdf_with(const sdf::ElementPtr& root) {
+  sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+  sdf->Root(root);
+  return sdf;
+}
+
 const ExtensionKey* find_key(const Extension& extension, std::string_view name) {
   for (const ExtensionKey& key : extension.keys)
     if (key.name == name) return &key;
@@ -37,18 +86,11 @@ const sdf::ElementPtr& sdf_definition() {
 
 sdf::SDFPtr empty_sdf() {
   // Not a clone, which would copy the definition of every element there is: those are only read.
-  const sdf::ElementPtr& definition = sdf_definition();
-  const sdf::ElementPtr root = std::make_shared<sdf::Element>();
-  root->SetName(definition->GetName());
-  root->SetRequired(definition->GetRequired());
-  for (const sdf::ParamPtr& attribute : definition->GetAttributes())
-    root->AddAttribute(attribute->GetKey(), attribute->GetTypeName(), attribute->GetDefaultAsString(),
-                       attribute->GetRequired(), attribute->GetDescription());
-  for (unsigned i = 0; i < definition->GetElementDescriptionCount(); ++i)
-    root->AddElementDescription(definition->GetElementDescription(i));
-  sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
-  sdf->Root(root);
-  return sdf;
+  return sdf_with(copy_with(sdf_definition(), [](const sdf::ElementPtr& child) { return child; }));
+}
+
+sdf::SDFPtr empty_sdf_for(const std::set<std::string>& names) {
+  return sdf_with(definition_for(sdf_definition(), names));
 }
 
 ElementSchema ElementSchema::root() {

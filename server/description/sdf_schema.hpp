@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <sdf/Element.hh>
 #include <sdf/SDFImpl.hh>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,5 +55,10 @@ const sdf::ElementPtr& sdf_definition();
 
 /// An empty <sdf> to read into, as sdf::init makes it, which shares the definitions of its elements with all others.
 sdf::SDFPtr empty_sdf();
+
+/// The same for a document of SDFormat's newest version, with elements of these names only. libsdformat gives each
+/// element that it reads a copy of all that it could hold; here, what an element does not hold is defined no deeper
+/// than its children, for their default values.
+sdf::SDFPtr empty_sdf_for(const std::set<std::string>& names);
 
 }  // namespace cohort::description

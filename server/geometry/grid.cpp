@@ -1,7 +1,6 @@
 #include "server/geometry/grid.hpp"
 
 #include <cmath>
-#include <ranges>
 
 namespace cohort::geometry {
 
@@ -29,8 +28,8 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
   for (const std::uint32_t item : items) for_each_cell(item, [&](std::size_t bucket) { ++begin_[bucket]; });
   for (std::size_t i = 0; i < buckets; ++i) begin_[i + 1] += begin_[i];
   entries_.resize(begin_[buckets]);
-  for (const std::uint32_t item : std::views::reverse(items))
-    for_each_cell(item, [&](std::size_t bucket) { entries_[--begin_[bucket]] = item; });
+  for (std::size_t i = items.size(); i-- > 0;)
+    for_each_cell(items[i], [&](std::size_t bucket) { entries_[--begin_[bucket]] = items[i]; });
 }
 
 }  // namespace cohort::geometry

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <ranges>
 
 namespace cohort::physics {
 namespace {
@@ -195,7 +194,7 @@ void PlanarSolver::solve(std::uint32_t iterations) {
     if (i % 2 == 0) {
       for (ConnectionRows& rows : connections_) change = std::max(change, solve(rows));
     } else {
-      for (ConnectionRows& rows : std::views::reverse(connections_)) change = std::max(change, solve(rows));
+      for (std::size_t j = connections_.size(); j-- > 0;) change = std::max(change, solve(connections_[j]));
     }
     for (ContactRows& rows : contacts_) change = std::max(change, solve(rows));
     if (change < tolerance) break;

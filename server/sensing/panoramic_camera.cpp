@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <ranges>
 
 #include "server/core/floor.hpp"
 #include "server/sensing/markers_in_sight.hpp"
@@ -68,7 +67,8 @@ void PanoramicCamera::draw_markers(const Pose& X_WS, std::span<double> image) co
   const auto height = static_cast<std::int64_t>(camera_.height);
   const double columns_a_radian = static_cast<double>(width) / (2.0 * pi);
   const double rows_a_radian = static_cast<double>(height) / (camera_.max_elevation - camera_.min_elevation);
-  for (const Spot& spot : std::views::reverse(spots)) {
+  for (std::size_t i = spots.size(); i-- > 0;) {
+    const Spot& spot = spots[i];
     const Eigen::Vector3d direction_S(std::cos(spot.elevation) * std::cos(spot.bearing),
                                       std::cos(spot.elevation) * std::sin(spot.bearing), std::sin(spot.elevation));
     const std::int64_t column = integer_below(spot.bearing * columns_a_radian + 0.5);

@@ -9,6 +9,7 @@ const metresPerNewton = 0.02;
 const trailLength = 1500; // points
 const trailSpacing = 0.01; // [m]
 const mostLabels = 400;
+const leastHit = 0.05; // share of the range; less may be a sensor's noise
 
 function segments(color: number, opacity = 1): LineSegments<BufferGeometry, LineBasicMaterial> {
   const lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color, transparent: opacity < 1, opacity }));
@@ -96,7 +97,7 @@ function addRays(poses: Poses, place: number, sensor: SceneSensor, readings: Arr
     const from = new Vector3().fromArray(sensor.origins, 3 * i).applyQuaternion(turn).add(origin);
     const direction = new Vector3().fromArray(sensor.directions, 3 * i).applyQuaternion(turn);
     const length = rayLength(sensor, readings[i]);
-    const isHit = length < 0.98 * sensor.range;
+    const isHit = length < (1 - leastHit) * sensor.range;
     const to = from.clone().addScaledVector(direction, length);
     (isHit ? hit : free).push(...from.toArray(), ...to.toArray());
   }

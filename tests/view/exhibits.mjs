@@ -199,6 +199,9 @@ async function drawsOverlays(page) {
   assert.equal(grips.length, 1);
   near(grips[0][0], -1.942, 0.012, "x of the jaw");
   near(grips[0][1], 2, 0.01, "y of the jaw");
+  await look(page, [-1.8, 1.6, 0.35], [-1.94, 2, 0.05]);
+  const [grip] = await pixelsAt(page, [grips[0]]);
+  assert.ok(grip[1] > 120 && grip[1] > 1.5 * grip[0], `where it holds on, the picture is ${grip}`);
 
   await run(page, "select lookout; toggle labels");
   await until(page, () => document.querySelectorAll("#dial line").length >= 15);

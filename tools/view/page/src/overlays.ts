@@ -30,11 +30,17 @@ function setPoints(geometry: BufferGeometry, points: ArrayLike<number>): void {
   geometry.setDrawRange(0, points.length / 3);
 }
 
+// In front of everything: what touches hides where it touches.
+function dots(color: number, size: number): Points<BufferGeometry, PointsMaterial> {
+  const material = new PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false, transparent: true });
+  return new Points(new BufferGeometry(), material);
+}
+
 /** Contact points, the forces there, and what is gripped. */
 export class Contacts {
   readonly group = new Group();
-  private readonly points = new Points(new BufferGeometry(), new PointsMaterial({ color: 0xe5484d, size: 5, sizeAttenuation: false }));
-  private readonly grips = new Points(new BufferGeometry(), new PointsMaterial({ color: 0x30a46c, size: 9, sizeAttenuation: false }));
+  private readonly points = dots(0xe5484d, 5);
+  private readonly grips = dots(0x30a46c, 9);
   private readonly forces = segments(0xe5484d);
 
   constructor() {

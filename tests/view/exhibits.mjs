@@ -164,6 +164,13 @@ async function drawsOverlays(page) {
   assert.deepEqual(names.map(({ name }) => name).sort(), ["held", "holder", "lookout", "runner"]);
   for (const { name, beside } of names) assert.ok(beside < 3, `the name of ${name} is ${beside} pixels beside it`);
 
+  // A picture that began before its frame came.
+  assert.equal(await page.evaluate(() => {
+    const { poses } = window.cohort.viewer;
+    poses.advance(performance.now() - 1e6);
+    return poses.blend;
+  }), 0);
+
   // The runner goes along y = -2.
   await run(page, "play");
   await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 250);

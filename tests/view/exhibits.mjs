@@ -241,7 +241,9 @@ async function drawsShapes(page) {
   assert.ok(brightness(without) > 0.95 * brightness(bright), `without shadows it is ${without}`);
 
   await look(page, [1, -0.2, 0.4], [1, 1, 0.1]);
-  const green = await pixelsAt(page, [[0.9, 1, 0.35], [1.1, 1, 0.35]]);
+  const [red, blue, ...green] = await pixelsAt(page, [[0.9, 1, 0.1], [1.1, 1, 0.1], [0.9, 1, 0.35], [1.1, 1, 0.35]]);
+  assert.ok(red[0] > 2 * red[1] && red[0] > 2 * red[2], `the red square is ${red}`);
+  assert.ok(blue[2] > 2 * blue[0] && blue[2] > 2 * blue[1], `the blue square is ${blue}`);
   for (const each of green) assert.ok(each[1] > 2 * each[0] && each[1] > 2 * each[2], `a green square is ${each}`);
 }
 

@@ -32,7 +32,7 @@ TEST_F(WhatThePageShows, IsHeardWithItsFrequencyAndFromWhereItIs) { show_exhibit
 TEST_F(WhatThePageShows, IsSeenFromWhereverPeopleFly) { show_exhibits("moves_camera"); }
 TEST_F(WhatThePageShows, LooksAgainAsItWasLeft) { show_exhibits("keeps_looks"); }
 TEST_F(WhatThePageShows, HasNamesTrailsContactsGripsAndRaysWhereTheyAre) { show_exhibits("draws_overlays"); }
-TEST_F(WhatThePageShows, CastsShadowsAndHasMeshes) { show_exhibits("draws_shapes"); }
+TEST_F(WhatThePageShows, CastsShadowsAndHasTheColoursOfMeshes) { show_exhibits("draws_shapes"); }
 
 TEST_F(WhatThePageShows, HasHillsAsHighAsTheirGround) {
   const std::string hills = COHORT_SOURCE_DIR "/worlds/experiments/rough_terrain.yaml";

@@ -101,9 +101,10 @@ std::string free_port() {
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof address;
-  bind(socket, reinterpret_cast<const sockaddr*>(&address), size);
-  getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
+  const bool is_bound = bind(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
+                        getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) == 0;
   close(socket);
+  EXPECT_TRUE(is_bound);
   return std::to_string(ntohs(address.sin_port));
 }
 

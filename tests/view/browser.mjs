@@ -201,10 +201,10 @@ async function steersServer(page) {
   await run(page, "select sbot_3");
   await until(page, () => document.querySelectorAll("#dial line").length >= 15);
   await run(page, "reset");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.run) === 2);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.run) === 2);
   assert.equal(await page.evaluate(() => document.getElementById("inspected").textContent), "explorers/sbot_3");
   await run(page, "play");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 10);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 10);
 }
 
 async function onlyLooks(page) {

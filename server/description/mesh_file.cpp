@@ -1,6 +1,7 @@
 #include "server/description/mesh_file.hpp"
 
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -10,8 +11,10 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -82,10 +85,30 @@ class AssimpFiles : public Assimp::IOSystem {
   InputFiles& input_;
 };
 
+using Color = std::array<std::uint8_t, 3>;
+
+std::uint8_t byte_of(float part) {
+  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(static_cast<double>(part), 0.0, 1.0)));
+}
+
+// The colour of a part by its material; nothing if the file gives it none. (assimp gives such a part a material of its
+// own.)
+std::optional<Color> color_of(const aiScene& scene, const aiMesh& part) {
+  if (part.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
+  const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];
+  aiString name;
+  if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name == aiString(AI_DEFAULT_MATERIAL_NAME))
+    return std::nullopt;
+  aiColor3D color;
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return std::nullopt;
+  return Color{byte_of(color.r), byte_of(color.g), byte_of(color.b)};
+}
+
 // Adds triangles to a mesh. Formats such as STL repeat a vertex for each triangle that has it.
 class MeshBuilder {
  public:
-  void add(const aiMesh& part, const Eigen::Matrix4d& transform) {
+  void add(const aiMesh& part, const Eigen::Matrix4d& transform, const std::optional<Color>& color) {
+    has_colors_ = has_colors_ || color;
     std::vector<std::uint32_t> places(part.mNumVertices);
     for (unsigned i = 0; i < part.mNumVertices; ++i) {
       const aiVector3D& v = part.mVertices[i];
@@ -101,12 +124,16 @@ class MeshBuilder {
         triangle[corner] = places[face.mIndices[corner]];
       }
       if (mirrors) std::swap(triangle[1], triangle[2]);
-      if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
-        mesh_.triangles.push_back(triangle);
+      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+      mesh_.triangles.push_back(triangle);
+      mesh_.colors.push_back(color.value_or(plain));
     }
   }
 
-  TriangleMesh take() { return std::move(mesh_); }
+  TriangleMesh take() {
+    if (!has_colors_) mesh_.colors.clear();
+    return std::move(mesh_);
+  }
 
  private:
   std::uint32_t place_of(const Eigen::Vector3d& vertex) {
@@ -117,7 +144,10 @@ class MeshBuilder {
     return entry->second;
   }
 
+  static constexpr Color plain{128, 128, 128};
+
   TriangleMesh mesh_;
+  bool has_colors_ = false;
   std::map<std::array<double, 3>, std::uint32_t> places_;
 };
 
@@ -146,7 +176,10 @@ TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, con
       const auto [node, parent] = waiting.back();
       waiting.pop_back();
       const Eigen::Matrix4d transform = parent * to_eigen(node->mTransformation);
-      for (unsigned i = 0; i < node->mNumMeshes; ++i) builder.add(*scene->mMeshes[node->mMeshes[i]], transform);
+      for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+        const aiMesh& part = *scene->mMeshes[node->mMeshes[i]];
+        builder.add(part, transform, color_of(*scene, part));
+      }
       for (unsigned i = node->mNumChildren; i-- > 0;) waiting.push_back({node->mChildren[i], transform});
     }
   } catch (const std::runtime_error& error) {

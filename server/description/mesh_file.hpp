@@ -8,8 +8,9 @@
 namespace cohort::description {
 
 /// Reads all triangles of an STL, OBJ or COLLADA file. Coordinates are as in the file, in metres, multiplied by
-/// `scale`; a unit that a COLLADA file gives is heeded, its up-axis is not. Vertices at the same place are one. Throws
-/// std::runtime_error that says what is wrong with the file.
+/// `scale`; a unit that a COLLADA file gives is heeded, its up-axis is not. Vertices at the same place are one. Colours
+/// are those of materials (of an OBJ in its .mtl), where there are any. Throws std::runtime_error that says what is
+/// wrong with the file.
 TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale);
 
 }  // namespace cohort::description

@@ -37,7 +37,8 @@ struct Visual {
   std::string name;
   Pose X_LV;
   Shape shape;
-  Eigen::Vector4d color;  ///< red, green, blue and opacity, from 0 to 1
+  Eigen::Vector4d color;   ///< red, green, blue and opacity, from 0 to 1
+  bool has_color = false;  ///< it was written: otherwise a mesh has the colours of its file, if there are any
 };
 
 struct Inertial {

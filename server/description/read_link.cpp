@@ -136,8 +136,10 @@ double read_part(float part) {
   return std::clamp(std::round(static_cast<double>(part) * digits) / digits, 0.0, 1.0);
 }
 
+bool has_color(const sdf::Visual& visual) { return find(visual.Element(), {"material", "diffuse"}) != nullptr; }
+
 Eigen::Vector3d read_color(const sdf::Visual& visual) {
-  if (!find(visual.Element(), {"material", "diffuse"})) return default_color();
+  if (!has_color(visual)) return default_color();
   const ignition::math::Color color = visual.Material()->Diffuse();
   const Eigen::Vector3d rounded(read_part(color.R()), read_part(color.G()), read_part(color.B()));
   return rounded.allFinite() ? rounded : default_color();
@@ -157,7 +159,8 @@ void read_visuals(const sdf::Link& sdf_link, const ModelReading& reading, Link& 
     if (!shape) continue;
     Eigen::Vector4d color;
     color << read_color(visual), read_opacity(visual);
-    link.visuals.push_back({visual.Name(), resolved_pose(visual, reading), *std::move(shape), color});
+    link.visuals.push_back(
+        {visual.Name(), resolved_pose(visual, reading), *std::move(shape), color, has_color(visual)});
   }
 }
 

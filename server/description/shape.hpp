@@ -45,6 +45,8 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of vertices, counter-clockwise seen from outside
   std::filesystem::path file{};                         ///< where they came from, if anywhere
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();      ///< that the coordinates of the file were multiplied by
+  /// Red, green and blue of each triangle, for the eye alone; none if the file has no materials.
+  std::vector<std::array<std::uint8_t, 3>> colors{};
 };
 /// If `convex`, the convex hull of the vertices is solid: so in all models that move. Otherwise the triangles
 /// themselves: where they close a surface, what it encloses is solid, and where they do not, they are a skin with two

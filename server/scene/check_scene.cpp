@@ -13,6 +13,14 @@ void check_mesh(const SceneMesh& mesh) {
   const std::size_t vertices = mesh.vertices.size() / 3;
   expect(std::ranges::all_of(mesh.triangles, [&](std::uint32_t vertex) { return vertex < vertices; }),
          "a mesh has a triangle of a vertex that is not there");
+  expect(mesh.colors.empty() || mesh.colors.size() == mesh.triangles.size(), "a mesh has other colours than triangles");
+}
+
+void check_shape(const Scene& scene, const SceneShape& shape) {
+  const bool is_mesh = shape.kind == static_cast<std::uint8_t>(ShapeKind::mesh);
+  expect(!is_mesh || shape.mesh < scene.meshes.size(), "a shape is of a mesh that is not there");
+  expect(!shape.has_mesh_colors || (is_mesh && !scene.meshes[shape.mesh].colors.empty()),
+         "a shape has the colours of a mesh that has none");
 }
 
 }  // namespace
@@ -21,9 +29,7 @@ std::size_t check_scene(const Scene& scene) {
   std::ranges::for_each(scene.meshes, check_mesh);
   for (const SceneModel& model : scene.models)
     for (const SceneLink& link : model.links)
-      for (const SceneShape& shape : link.shapes)
-        expect(shape.kind != static_cast<std::uint8_t>(ShapeKind::mesh) || shape.mesh < scene.meshes.size(),
-               "a shape is of a mesh that is not there");
+      for (const SceneShape& shape : link.shapes) check_shape(scene, shape);
   std::size_t links = 0;
   for (const SceneEntity& entity : scene.entities) {
     expect(entity.model < scene.models.size(), "an object is of a model that is not there");

@@ -43,18 +43,22 @@ struct SceneShape {
   Vector size{};
   PoseNumbers pose{};  ///< in its link
   Color color{};
+  bool has_mesh_colors = false;  ///< of `color` only the opacity counts: the mesh has the colours
   static constexpr const char* type = "cohort_msgs/msg/SceneShape";
-  static constexpr auto fields = std::tuple(field("kind", &SceneShape::kind), field("role", &SceneShape::role),
-                                            field("mesh", &SceneShape::mesh), field("size", &SceneShape::size),
-                                            field("pose", &SceneShape::pose), field("color", &SceneShape::color));
+  static constexpr auto fields =
+      std::tuple(field("kind", &SceneShape::kind), field("role", &SceneShape::role), field("mesh", &SceneShape::mesh),
+                 field("size", &SceneShape::size), field("pose", &SceneShape::pose), field("color", &SceneShape::color),
+                 field("has_mesh_colors", &SceneShape::has_mesh_colors));
 };
 
 struct SceneMesh {
   std::vector<float> vertices;           ///< x y z of each
   std::vector<std::uint32_t> triangles;  ///< three vertices each, counter-clockwise seen from outside
+  std::vector<std::uint8_t> colors{};    ///< red, green, blue of each triangle; empty if it has none
   static constexpr const char* type = "cohort_msgs/msg/SceneMesh";
   static constexpr auto fields =
-      std::tuple(field("vertices", &SceneMesh::vertices), field("triangles", &SceneMesh::triangles));
+      std::tuple(field("vertices", &SceneMesh::vertices), field("triangles", &SceneMesh::triangles),
+                 field("colors", &SceneMesh::colors));
 };
 
 struct SceneLink {

@@ -28,6 +28,8 @@ SceneMesh mesh_of(const description::TriangleMesh& triangles) {
   mesh.triangles.reserve(3 * triangles.triangles.size());
   for (const auto& triangle : triangles.triangles)
     mesh.triangles.insert(mesh.triangles.end(), triangle.begin(), triangle.end());
+  mesh.colors.reserve(3 * triangles.colors.size());
+  for (const auto& color : triangles.colors) mesh.colors.insert(mesh.colors.end(), color.begin(), color.end());
   return mesh;
 }
 
@@ -115,8 +117,11 @@ SceneLink link_of(const description::Link& from, ShapeWriter& writer) {
     added.pose = numbers_of(pose);
     for (int part = 0; part < 4; ++part) added.color.at(static_cast<std::size_t>(part)) = number(color[part]);
   };
-  for (const description::Visual& visual : from.visuals)
+  for (const description::Visual& visual : from.visuals) {
     add(visual.shape, visual.X_LV, ShapeRole::visual, visual.color);
+    const auto* const mesh = std::get_if<description::Mesh>(&visual.shape);
+    link.shapes.back().has_mesh_colors = mesh != nullptr && !visual.has_color && !mesh->triangles->colors.empty();
+  }
   const ShapeRole role = from.visuals.empty() ? ShapeRole::collision_as_visual : ShapeRole::collision;
   for (const description::Collision& collision : from.collisions)
     add(collision.shape, collision.X_LC, role, {from.color.x(), from.color.y(), from.color.z(), 1.0});

@@ -3,6 +3,7 @@
 
 #include "tests/container/podman.hpp"
 #include "tests/support/file_lock.hpp"
+#include "tests/support/http.hpp"
 
 namespace cohort::testing {
 namespace {
@@ -129,6 +130,24 @@ TEST_F(Container, IsHealthyWhileItServesAndClosesItsRecordingWhenItIsStopped) {
   EXPECT_EQ(replayed.out.find("warning"), std::string::npos) << "the recording was not closed: " << replayed.out;
 }
 
+TEST_F(Container, ShowsThePageOfAServerInAnotherOneThroughItsPublishedPort) {
+  Containers containers(*podman);
+  start_server(containers, {"--speed", "1"});
+  start_controller(containers, "all", "all");
+  containers.start(
+      "view", {"--env", "COHORT_SERVER=server", "--add-host", containers.server_host(), "--publish", "127.0.0.1::8080"},
+      {"view", "--network", "0.0.0.0"});
+  const std::string port = containers.published("view", "8080");
+  expect_page(port);
+  const std::string log = containers.logs("view");
+  const std::size_t begin = log.find("#token=");
+  ASSERT_NE(begin, std::string::npos) << log;
+  const std::string token = log.substr(begin + 1, log.find('\n', begin) - begin - 1);
+  EXPECT_TRUE(http_get_socket(port, "/").starts_with("HTTP/1.1 403 ")) << "without the token";
+  EXPECT_TRUE(http_get_socket(port, "/?" + token).starts_with("HTTP/1.1 101 ")) << "with it";
+  ASSERT_TRUE(reaches(containers, 50)) << containers.logs("server");
+}
+
 TEST_F(Container, OfTheSdkBuildsAControllerThatTheServersRuns) {
   const ScratchFolder folder;
   fs::copy(COHORT_SOURCE_DIR "/tests/install/outside", folder / "robots", fs::copy_options::recursive);
@@ -167,6 +186,22 @@ TEST_P(ComposeFiles, RunServerControllersAndRecorderToTheBitsOfOneProcess) {
 
 INSTANTIATE_TEST_SUITE_P(Variants, ComposeFiles, ::testing::Values("", COHORT_SOURCE_DIR "/docker/compose.secure.yaml"),
                          [](const auto& variant) { return *variant.param == '\0' ? "Open" : "Secure"; });
+
+TEST_F(Container, OfAViewShowsTheRunOfTheComposeFilesInTheHostsBrowser) {
+  if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose";
+  const std::string project = fmt::format("cohort-test-view-{}", getpid());
+  const std::string port = free_port();
+  const Ended started =
+      podman->compose({"--project-name", project, "--file", COHORT_SOURCE_DIR "/docker/compose.yaml", "--file",
+                       COHORT_SOURCE_DIR "/docker/compose.view.yaml", "up", "--detach", "--no-build"},
+                      {{"COHORT_VIEW_PORT", port}, {"COHORT_SPEED", "1"}});
+  const std::string page = http_get(port, "/");
+  const std::string log = (*podman)({"logs", project + "_view_1"}).out;
+  podman->remove(project);
+  EXPECT_EQ(started.exit_code, 0) << started.out;
+  EXPECT_NE(page.find("<title>Cohort</title>"), std::string::npos) << page << started.out;
+  EXPECT_NE(log.find("http://127.0.0.1:" + port + "/#token="), std::string::npos) << log;
+}
 
 }  // namespace
 }  // namespace cohort::testing

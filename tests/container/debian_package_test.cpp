@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/container/base.hpp"
+#include "tests/support/http.hpp"
 
 namespace cohort::testing {
 namespace {
@@ -18,15 +19,30 @@ class CleanDebian {
 
   fs::path operator/(const std::string& name) const { return root_ / name; }
 
-  Ended run(const std::string& script) const {
-    return run_for_long({"unshare", "--mount", "/bin/sh", "-ec",
-                         R"(mount -t proc proc "$0/proc"; exec chroot "$0" /bin/sh -ec "$1")", root_.path(), script},
-                        {{"DEBIAN_FRONTEND", "noninteractive"}, {"LC_ALL", "C"}, {"COHORT_PLUGIN_PATH", ""}});
+  Ended run(const std::string& script) const { return run_for_long(command(script), environment); }
+  /// What runs the script in there, with these variables.
+  std::vector<std::string> command(const std::string& script) const {
+    return {
+        "unshare",    "--mount", "/bin/sh", "-ec", R"(mount -t proc proc "$0/proc"; exec chroot "$0" /bin/sh -ec "$1")",
+        root_.path(), script};
   }
+  static inline const Process::Environment environment = {
+      {"DEBIAN_FRONTEND", "noninteractive"}, {"LC_ALL", "C"}, {"COHORT_PLUGIN_PATH", ""}};
 
  private:
   ScratchFolder root_;
 };
+
+// Without node or a way to npm's registry, the page was not built.
+void expect_view(const CleanDebian& debian, const std::string& recording) {
+  for (const char* file : {"index.html", "page.js", "page.css"})
+    EXPECT_TRUE(fs::exists(debian / (std::string("usr/share/cohort/view/") + file))) << file;
+  std::vector<std::string> command = debian.command("exec cohort view " + recording + " --port 0");
+  command.insert(command.begin(), "/usr/bin/env");
+  Process view(command, CleanDebian::environment);
+  ASSERT_TRUE(view.wait_for_output("http://127.0.0.1:")) << view.output();
+  expect_page(port_in(view.output()));
+}
 
 TEST(DebianPackage, InstallsOnACleanDebianAndRunsTheDemoToTheSameBits) {
   const fs::path folder = COHORT_CONTAINER_DIR;
@@ -48,7 +64,7 @@ TEST(DebianPackage, InstallsOnACleanDebianAndRunsTheDemoToTheSameBits) {
 
   const std::string worlds = "/usr/share/cohort/worlds";
   const Ended run = debian.run("su nobody -s /bin/sh -c 'cohort run " + worlds +
-                               "/experiments/obstacle_avoidance.yaml --duration 5'");
+                               "/experiments/obstacle_avoidance.yaml --duration 5 --record /tmp/run.mcap'");
   EXPECT_EQ(run.exit_code, 0) << run.out;
   EXPECT_NE(run.out.find(reference_hash(5)), std::string::npos) << run.out;
 
@@ -58,6 +74,7 @@ TEST(DebianPackage, InstallsOnACleanDebianAndRunsTheDemoToTheSameBits) {
   for (const char* file : {"usr/share/man/man1/cohort.1", "usr/share/bash-completion/completions/cohort",
                            "usr/lib/systemd/system/cohort@.service", "usr/share/doc/cohort/docs/install.md"})
     EXPECT_TRUE(fs::exists(debian / file)) << file;
+  if (fs::exists(COHORT_BUILD_DIR "/share/cohort/view/page.js")) expect_view(debian, "/tmp/run.mcap");
   EXPECT_NE(read_file(debian / "usr/lib/systemd/system/cohort@.service").find("ExecStart=/usr/bin/cohort serve"),
             std::string::npos);
   EXPECT_FALSE(fs::exists(debian / "usr/include/cohort")) << "that is for cohort-dev";

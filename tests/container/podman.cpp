@@ -20,9 +20,26 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& more) 
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+std::string npm_setting(const std::string& name) {
+  return first_line(run_to_end({"/bin/sh", "-c", "npm config get " + name}).out);
+}
+
+// What gives a build this machine's way to npm's registry, and leaves nothing of it in the image.
+std::vector<std::string> with_settings_of_npm(const fs::path& folder) {
+  if (!is_installed("npm")) return {};
+  std::string settings = "registry=" + npm_setting("registry") + "\n";
+  std::vector<std::string> options = {"--volume", (folder / "npmrc").string() + ":/root/.npmrc:ro"};
+  if (const std::string authorities = npm_setting("cafile"); fs::is_regular_file(authorities)) {
+    settings += "cafile=/root/.npm-authorities\n";
+    append(options, {"--volume", authorities + ":/root/.npm-authorities:ro"});
+  }
+  write_file(folder / "npmrc", settings);
+  return options;
+}
+
 }  // namespace
 
-Podman::Podman(const fs::path& folder) {
+Podman::Podman(const fs::path& folder) : folder_(folder) {
   // podman wants a short path for what is gone when the machine starts again, and the same one each time.
   const std::string run_root = fmt::format("/run/cohort-test-{:x}", std::hash<std::string>{}(folder.string()));
   fs::create_directories(folder);
@@ -43,9 +60,10 @@ Ended Podman::operator()(std::vector<std::string> arguments) const {
   return run_for_long(arguments, environment_);
 }
 
-Ended Podman::compose(std::vector<std::string> arguments) const {
+Ended Podman::compose(std::vector<std::string> arguments, Process::Environment variables) const {
   arguments.insert(arguments.begin(), "podman-compose");
-  return run_for_long(arguments, environment_);
+  variables.insert(environment_.begin(), environment_.end());
+  return run_for_long(arguments, variables);
 }
 
 void Podman::remove(const std::string& project) const {
@@ -77,6 +95,7 @@ Ended Podman::build(const std::string& target, const std::string& tag) const {
   if (fs::is_directory(cache)) append(arguments, {"--volume", cache + ":/root/.cache/ccache"});
   if (const char* language = std::getenv("LANG"); language != nullptr)
     append(arguments, {"--build-arg", fmt::format("LANG={}", language)});
+  append(arguments, with_settings_of_npm(folder_));
   append(arguments, {"--build-arg", "COHORT_COMMIT=of-the-test", "--target", target, "--tag", tag, COHORT_SOURCE_DIR});
   return (*this)(arguments);
 }
@@ -123,6 +142,12 @@ std::string Containers::server_host() const {
   const Ended found =
       podman_({"inspect", "--format", "{{range .NetworkSettings.Networks}}{{.IPAddress}}{{end}}", full("server")});
   return "server:" + first_line(found.out);
+}
+
+std::string Containers::published(const std::string& name, const std::string& port) const {
+  const std::string address = first_line(podman_({"port", full(name), port}).out);
+  if (!address.starts_with("127.0.0.1:")) throw std::runtime_error(name + " has published no port: " + address);
+  return address.substr(address.find(':') + 1);
 }
 
 Ended Containers::run(const std::vector<std::string>& command) const {

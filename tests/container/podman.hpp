@@ -14,18 +14,19 @@ class Podman {
   explicit Podman(const std::filesystem::path& folder);
 
   Ended operator()(std::vector<std::string> arguments) const;
-  /// podman-compose, on the same images.
-  Ended compose(std::vector<std::string> arguments) const;
+  /// podman-compose, on the same images, with variables of the compose files.
+  Ended compose(std::vector<std::string> arguments, Process::Environment variables = {}) const;
 
   /// Takes away what `compose` has left of a project.
   void remove(const std::string& project) const;
 
   /// Why there are no containers here, or nothing. Imports the base of all images.
   std::optional<std::string> prepare(const std::filesystem::path& base) const;
-  /// Of docker/Dockerfile. The compiler's cache of this machine is used.
+  /// Of docker/Dockerfile. The compiler's cache of this machine is used, and its way to npm's registry.
   Ended build(const std::string& target, const std::string& tag) const;
 
  private:
+  std::filesystem::path folder_;
   Process::Environment environment_;
 };
 
@@ -42,6 +43,8 @@ class Containers {
   void start(const std::string& name, const std::vector<std::string>& options, const std::vector<std::string>& command);
   /// A host name `server` for the address of the container that was started as that.
   std::string server_host() const;
+  /// Where this machine finds a port that was published, on the loopback.
+  std::string published(const std::string& name, const std::string& port) const;
   /// Runs to its end in a container of its own.
   Ended run(const std::vector<std::string>& command) const;
   Ended execute(const std::string& name, const std::vector<std::string>& command) const;

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/http.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::testing {
@@ -150,6 +151,18 @@ TEST_F(Installation, HasTheShippedExperimentAndItsController) {
   const fs::path experiment = prefix / "share/cohort/worlds/experiments/obstacle_avoidance.yaml";
   const Ended ended = run({cohort(), "run", experiment, "--duration", "0.1"});
   EXPECT_EQ(ended.exit_code, 0) << ended.output;
+}
+
+TEST_F(Installation, HasThePageOfTheView) {
+  if (!fs::exists(COHORT_BUILD_DIR "/share/cohort/view/page.js"))
+    GTEST_SKIP() << "the page was not built: it needs node 18 and npm, and a way to npm's registry";
+  const fs::path recording = *scratch / "page.mcap";
+  const fs::path experiment = prefix / "share/cohort/worlds/experiments/obstacle_avoidance.yaml";
+  const Ended recorded = run({cohort(), "run", experiment, "--duration", "0.1", "--record", recording});
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.output;
+  Process view({cohort(), "view", recording, "--port", "0"}, environment);
+  ASSERT_TRUE(view.wait_for_output("http://127.0.0.1:")) << view.output();
+  expect_page(port_in(view.output()));
 }
 
 TEST_F(Installation, MayBeMoved) {

@@ -42,5 +42,15 @@ TEST(CheckScene, RefusesIndicesOfNothing) {
   EXPECT_THROW(check_scene(of_vertex), recording::CdrError);
 }
 
+TEST(CheckScene, RefusesColoursOfNothing) {
+  Scene scene = scene_of_two();
+  scene.models[0].links[0].shapes[0].has_mesh_colors = true;
+  EXPECT_THROW(check_scene(scene), recording::CdrError);
+  scene.meshes[0].colors = {10, 20, 30};
+  EXPECT_EQ(check_scene(scene), 4U);
+  scene.meshes[0].colors.push_back(40);
+  EXPECT_THROW(check_scene(scene), recording::CdrError);
+}
+
 }  // namespace
 }  // namespace cohort::scene

@@ -48,6 +48,15 @@ const std::string dae = R"(<?xml version="1.0"?>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
 )";
 
+// What makes its triangle orange.
+const std::string dae_materials = R"(<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert>
+<diffuse><color>1 0.2 0 1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="paint" name="paint"><instance_effect url="#e"/></material></library_materials>
+)";
+const std::string dae_instance =
+    "<instance_geometry url=\"#g\"><bind_material><technique_common><instance_material symbol=\"m\" target=\"#paint\"/>"
+    "</technique_common></bind_material></instance_geometry>";
+
 std::string mesh(const std::string& uri, const std::string& rest = "") {
   return "<mesh>\n<uri>" + uri + "</uri>" + rest + "</mesh>";
 }
@@ -143,6 +152,26 @@ TEST_F(Shapes, AColladaMeshHasItsUnitAndItsNodesButKeepsItsAxes) {
   ASSERT_EQ(mesh_of(world).triangles.size(), 1u);
   const Vector3d& last = mesh_of(world).vertices[mesh_of(world).triangles[0][2]];
   EXPECT_TRUE(last.isApprox(Vector3d(0, 2, 3), 1e-6)) << last.transpose();
+}
+
+TEST_F(Shapes, TrianglesHaveTheColoursOfMaterialsWhereTheFileHasAny) {
+  write("triangle.dae", dae);
+  const std::string plain_instance = "<instance_geometry url=\"#g\"/>";
+  std::string painted = dae;
+  painted.replace(painted.find("<library_geometries>"), 0, dae_materials);
+  painted.replace(painted.find("<triangles count"), std::string("<triangles").size(), "<triangles material=\"m\"");
+  painted.replace(painted.find(plain_instance), plain_instance.size(), dae_instance);
+  write("painted.dae", painted);
+  write("paint.mtl", "newmtl green\nKd 0 1 0.2\nnewmtl red\nKd 0.6 0 0\n");
+  write("painted.obj",
+        "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nusemtl green\nf 1 2 4\n");
+  const auto colors = [&](const std::string& file) {
+    return mesh_of(read(static_model(collision(mesh(file))))).colors;
+  };
+  for (const char* file : {"box.obj", "corner.stl", "triangle.dae"}) EXPECT_TRUE(colors(file).empty()) << file;
+  using Colors = std::vector<std::array<std::uint8_t, 3>>;
+  EXPECT_EQ(colors("painted.dae"), (Colors{{255, 51, 0}}));
+  EXPECT_EQ(colors("painted.obj"), (Colors{{153, 0, 0}, {0, 255, 51}}));
 }
 
 TEST_F(Shapes, MeshesOfOneFileAndScaleShareTheirTriangles) {

@@ -73,6 +73,26 @@ TEST(SceneOfAWorld, AHeightMapIsAMeshAsHighAsItsGround) {
   EXPECT_GT(compared, 10);
 }
 
+TEST(SceneOfAWorld, AMeshHasTheColoursOfItsFileUnlessItsVisualHasOne) {
+  const std::filesystem::path exhibits = COHORT_SOURCE_DIR "/tests/view/exhibits";
+  setenv("COHORT_MODEL_PATH", COHORT_SOURCE_DIR "/worlds/robots", 1);
+  const Simulation simulation(description::read_experiment(exhibits / "experiment.yaml"), 1);
+  unsetenv("COHORT_MODEL_PATH");
+  const Scene scene = SceneMaker(simulation, 1).scene();
+  const auto badge = std::ranges::find(scene.models, "badge", &SceneModel::name);
+  ASSERT_NE(badge, scene.models.end());
+  ASSERT_EQ(badge->links[0].shapes.size(), 2U);
+  const auto& [own, green] = std::tie(badge->links[0].shapes[0], badge->links[0].shapes[1]);
+  EXPECT_TRUE(own.has_mesh_colors);
+  EXPECT_FALSE(green.has_mesh_colors);
+  EXPECT_EQ(own.mesh, green.mesh) << "the mesh is there once";
+  const std::vector<std::uint8_t> red{204, 13, 13};
+  const std::vector<std::uint8_t> blue{13, 26, 204};
+  std::vector<std::uint8_t> expected;
+  for (const auto* color : {&red, &red, &blue, &blue}) expected.insert(expected.end(), color->begin(), color->end());
+  EXPECT_EQ(scene.meshes[own.mesh].colors, expected);
+}
+
 TEST(SceneOfAWorld, FramesHaveThePosesAndChangeNothing) {
   const description::Experiment experiment = shipped("obstacle_avoidance");
   Simulation simulation(experiment, 1);

@@ -1,34 +1,7 @@
 // Drives the page in a browser without a window: node browser.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { chromium } from "playwright-core";
-
-const patience = 60_000; // [ms]; a browser that draws in software is slow
-
-// Runs `look` in the page until it gives something that is true, and gives that back.
-async function until(page, look, argument) {
-  const handle = await page.waitForFunction(look, argument, { timeout: patience });
-  return handle.jsonValue();
-}
-const run = (page, line) => page.evaluate((text) => window.cohort.run(text), line);
-const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.poses.frame.tick));
-const atTick = (page, wanted) => until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
-
-// Pixels of the picture at places of the world: red, green, blue of each.
-const pixelsAt = (page, places) => page.evaluate((points) => {
-  const { viewer } = window.cohort;
-  const { camera, renderer } = viewer.stage;
-  viewer.draw(performance.now());
-  const gl = renderer.getContext();
-  return points.map(([x, y, z]) => {
-    const at = viewer.cameras.target.clone().set(x, y, z).project(camera);
-    const pixel = new Uint8Array(4);
-    const column = Math.round(0.5 * (at.x + 1) * gl.drawingBufferWidth);
-    const row = Math.round(0.5 * (at.y + 1) * gl.drawingBufferHeight);
-    gl.readPixels(column, row, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-    return [...pixel.slice(0, 3)];
-  });
-}, places);
+import { atTick, coloursIn, drive, patience, pixelsAt, run, tick, until } from "./in_page.mjs";
 
 const isOrange = ([red, green, blue]) => red > 120 && red > 1.5 * green && green > blue;
 
@@ -154,18 +127,7 @@ async function steersRecording(page) {
   const [download] = await Promise.all([page.waitForEvent("download", { timeout: patience }), run(page, "screenshot")]);
   const picture = readFileSync(await download.path());
   assert.equal(picture.subarray(1, 4).toString(), "PNG");
-  const colours = await page.evaluate(async (base64) => {
-    const image = new Image();
-    image.src = `data:image/png;base64,${base64}`;
-    await image.decode();
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const context = canvas.getContext("2d");
-    context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    const found = new Set();
-    for (let i = 0; i < data.length; i += 4 * 37) found.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-    return found.size;
-  }, picture.toString("base64"));
+  const { colours } = await coloursIn(page, picture, "image/png");
   assert.ok(colours > 50, `the picture has ${colours} colours`);
 }
 
@@ -239,17 +201,17 @@ async function steersServer(page) {
   await run(page, "select sbot_3");
   await until(page, () => document.querySelectorAll("#dial line").length >= 15);
   await run(page, "reset");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.run) === 2);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.run) === 2);
   assert.equal(await page.evaluate(() => document.getElementById("inspected").textContent), "explorers/sbot_3");
   await run(page, "play");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 10);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 10);
 }
 
 // A server that keeps a snapshot every half second.
 async function goesBack(page) {
   const events = () => page.evaluate(() => document.getElementById("events").textContent);
   const eventsShow = (text) => until(page, (each) => document.getElementById("events").textContent.includes(each), text);
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 160);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 160);
   await eventsShow("joined");
   await run(page, "pause; events");
   await eventsShow("SetSimulationState");
@@ -283,9 +245,9 @@ async function goesBack(page) {
   await page.waitForTimeout(500);
   assert.equal(await tick(page), 200);
   await page.mouse.up();
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) < 120);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) < 120);
   await run(page, "play; speed 1");
-  await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 120);
+  await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 120);
 }
 
 async function onlyLooks(page) {
@@ -313,25 +275,7 @@ async function isSuspended(page) {
   await new Promise(() => setInterval(() => undefined, 1000));
 }
 
-const scenarios = {
+await drive({
   draws, draws_many: drawsMany, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
   steers_server: steersServer, goes_back: goesBack, only_looks: onlyLooks, looks, is_suspended: isSuspended,
-};
-
-const [, , scenario, address, file] = process.argv;
-const browser = await chromium.launch({
-  executablePath: process.env.COHORT_CHROMIUM,
-  args: ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
-    "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
-try {
-  const page = await browser.newPage({ viewport: { width: 960, height: 640 } });
-  const errors = [];
-  page.on("pageerror", (error) => errors.push(error.message));
-  await page.goto(address);
-  await until(page, () => window.cohort?.viewer.poses?.frame);
-  await scenarios[scenario](page, file);
-  assert.deepEqual(errors, []);
-} finally {
-  await browser.close();
-}

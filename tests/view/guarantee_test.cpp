@@ -8,14 +8,8 @@ namespace {
 
 using testing::Process;
 
-class ObserversNeverCount : public Viewing {
+class ObserversNeverCount : public InABrowser {
  protected:
-  void SetUp() override {
-    Viewing::SetUp();
-    if (!has_browser() && !IsSkipped())
-      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
-  }
-
   // Runs the demo while a browser looks at it in such a way; its hash is that of a run that nobody looks at.
   static void expect_same_hash_while(const std::string& scenario, bool is_killed) {
     const testing::ReservedDomain domain;

@@ -38,13 +38,8 @@ json robots_at(const std::filesystem::path& file, double seconds) {
   return {{"time", seconds}, {"tick", simulation.tick()}, {"hash", hash.data()}, {"robots", robots}};
 }
 
-class InTheBrowser : public Viewing {
+class InTheBrowser : public InABrowser {
  protected:
-  void SetUp() override {
-    Viewing::SetUp();
-    if (!has_browser() && !IsSkipped())
-      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
-  }
   ScratchFolder scratch;
 };
 

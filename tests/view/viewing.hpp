@@ -10,11 +10,12 @@
 
 namespace cohort::view {
 
-/// A test that drives `cohort view` by a script: browser.mjs in a browser without a window, client.mjs without one.
+/// A test that drives `cohort view` by a script: browser.mjs and exhibits.mjs in a browser without a window, client.mjs
+/// without one.
 class Viewing : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* script : {"browser.mjs", "client.mjs"})
+    for (const char* script : {"in_page.mjs", "browser.mjs", "exhibits.mjs", "client.mjs"})
       if (const auto why_not = scripts.prepare(script)) GTEST_SKIP() << *why_not;
   }
 
@@ -62,6 +63,16 @@ class Viewing : public ::testing::Test {
 
   inline static const testing::NodeFolder scripts{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/view",
                                                   COHORT_NODE_FOLDER};
+};
+
+/// A test that needs a browser.
+class InABrowser : public Viewing {
+ protected:
+  void SetUp() override {
+    Viewing::SetUp();
+    if (!has_browser() && !IsSkipped())
+      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
+  }
 };
 
 }  // namespace cohort::view

@@ -15,6 +15,15 @@ std::string frame_name(const scene::Scene& scene, std::uint32_t entity, std::siz
   return named.name + "/" + scene.models[named.model].links[link].name;
 }
 
+void fill_colors(const scene::SceneMesh& mesh, float opacity, Marker& marker) {
+  constexpr float full = 255.0f;
+  marker.colors.reserve(mesh.colors.size());
+  for (std::size_t i = 0; i + 2 < mesh.colors.size(); i += 3) {
+    const auto part = [&](std::size_t which) { return static_cast<float>(mesh.colors[i + which]) / full; };
+    marker.colors.insert(marker.colors.end(), 3, {part(0), part(1), part(2), opacity});  // of its corners
+  }
+}
+
 void fill_mesh(const scene::SceneMesh& mesh, Marker& marker) {
   marker.kind = Marker::triangle_list;
   marker.scale = {1.0, 1.0, 1.0};
@@ -43,7 +52,10 @@ void fill_shape(const scene::Scene& scene, const scene::SceneShape& shape, Marke
       marker.scale = {2.0 * a, 2.0 * b, 2.0 * c};
       break;
     case ShapeKind::plane: marker.scale = {plane_size, plane_size, plane_thickness}; break;
-    case ShapeKind::mesh: fill_mesh(scene.meshes[shape.mesh], marker); break;
+    case ShapeKind::mesh:
+      fill_mesh(scene.meshes[shape.mesh], marker);
+      if (shape.has_mesh_colors) fill_colors(scene.meshes[shape.mesh], shape.color[3], marker);
+      break;
   }
 }
 

@@ -1,9 +1,13 @@
 # Builds the page of SOURCE in FOLDER and puts it into PAGE, with NODE and NPM. A page that cannot be built, such as
-# without a way to npm's registry, fails no build: all else works without it.
+# without a way to npm's registry, fails no build unless it is REQUIRED: all else works without it.
 function(try_to message)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT result EQUAL 0)
-    message(WARNING "the page of cohort view was not built: ${message}\n${text}")
+    set(kind WARNING)
+    if(REQUIRED)
+      set(kind FATAL_ERROR)
+    endif()
+    message(${kind} "the page of cohort view was not built: ${message}\n${text}")
     set(failed TRUE PARENT_SCOPE)
   endif()
 endfunction()

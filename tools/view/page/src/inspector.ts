@@ -7,6 +7,12 @@ const plotSeconds = 20;
 const palette = ["#1f8fff", "#e5484d", "#30a46c", "#d9a11f", "#8e4ec6", "#0f9ba8"];
 const dialRadius = 54;
 
+// A little more than the values; around one that never changes, 1 to each side.
+function rangeAround(low: number | null, high: number | null): uPlot.Range.MinMax {
+  if (low === null || high === null) return [-1, 1];
+  return low === high ? [low - 1, high + 1] : uPlot.rangeNum(low, high, 0.1, true);
+}
+
 interface Plot { plot: uPlot; values: number[]; data: number[][] }
 
 /** What the selected entity is, where it is, what it senses and does. */
@@ -57,7 +63,7 @@ export class Inspector {
     const axis = { stroke: getComputedStyle(document.body).color, grid, ticks: grid, font: "10px system-ui", size: 38 };
     const plot = new uPlot({
       width: 272, height: 96, title: name, legend: { show: false }, cursor: { show: false },
-      scales: { x: { time: false } }, axes: [{ ...axis, size: 22 }, axis],
+      scales: { x: { time: false }, y: { range: (_, low, high) => rangeAround(low, high) } }, axes: [{ ...axis, size: 22 }, axis],
       series: [{}, { stroke: color, width: 1.5 }],
     }, [[], []], this.plotted);
     plot.root.title = "click to remove";

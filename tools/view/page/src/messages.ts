@@ -12,8 +12,9 @@ export interface SceneShape {
   size: Float32Array;
   pose: Float32Array;
   color: Float32Array;
+  has_mesh_colors: boolean;
 }
-export interface SceneMesh { vertices: Float32Array; triangles: Uint32Array }
+export interface SceneMesh { vertices: Float32Array; triangles: Uint32Array; colors: Uint8Array }
 export interface SceneLink { name: string; shapes: SceneShape[] }
 export interface SceneSensor {
   name: string;

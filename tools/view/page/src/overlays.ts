@@ -9,6 +9,7 @@ const metresPerNewton = 0.02;
 const trailLength = 1500; // points
 const trailSpacing = 0.01; // [m]
 const mostLabels = 400;
+const leastHit = 0.05; // share of the range; less may be a sensor's noise
 
 function segments(color: number, opacity = 1): LineSegments<BufferGeometry, LineBasicMaterial> {
   const lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color, transparent: opacity < 1, opacity }));
@@ -29,11 +30,17 @@ function setPoints(geometry: BufferGeometry, points: ArrayLike<number>): void {
   geometry.setDrawRange(0, points.length / 3);
 }
 
+// In front of everything: what touches hides where it touches.
+function dots(color: number, size: number): Points<BufferGeometry, PointsMaterial> {
+  const material = new PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false, transparent: true });
+  return new Points(new BufferGeometry(), material);
+}
+
 /** Contact points, the forces there, and what is gripped. */
 export class Contacts {
   readonly group = new Group();
-  private readonly points = new Points(new BufferGeometry(), new PointsMaterial({ color: 0xe5484d, size: 5, sizeAttenuation: false }));
-  private readonly grips = new Points(new BufferGeometry(), new PointsMaterial({ color: 0x30a46c, size: 9, sizeAttenuation: false }));
+  private readonly points = dots(0xe5484d, 5);
+  private readonly grips = dots(0x30a46c, 9);
   private readonly forces = segments(0xe5484d);
 
   constructor() {
@@ -96,7 +103,7 @@ function addRays(poses: Poses, place: number, sensor: SceneSensor, readings: Arr
     const from = new Vector3().fromArray(sensor.origins, 3 * i).applyQuaternion(turn).add(origin);
     const direction = new Vector3().fromArray(sensor.directions, 3 * i).applyQuaternion(turn);
     const length = rayLength(sensor, readings[i]);
-    const isHit = length < 0.98 * sensor.range;
+    const isHit = length < (1 - leastHit) * sensor.range;
     const to = from.clone().addScaledVector(direction, length);
     (isHit ? hit : free).push(...from.toArray(), ...to.toArray());
   }

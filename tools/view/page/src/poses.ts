@@ -60,11 +60,13 @@ export class Poses {
     this.positions = frame.positions;
     this.orientations = frame.orientations;
     this.frame = frame;
+    this.blend = 1;
     return true;
   }
 
   advance(now: number): void {
-    this.blend = Math.min(1, (now - this.arrival) / Math.max(1, this.interval));
+    // A picture may have begun before the frame came.
+    this.blend = Math.min(1, Math.max(0, now - this.arrival) / Math.max(1, this.interval));
   }
 
   /** Of a link by its place. */

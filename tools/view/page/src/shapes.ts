@@ -34,11 +34,16 @@ export function matrixOf(pose: ArrayLike<number>): Matrix4 {
     new Vector3(pose[0], pose[1], pose[2]), new Quaternion(pose[3], pose[4], pose[5], pose[6]), new Vector3(1, 1, 1));
 }
 
-function coloured(geometry: BufferGeometry, color: ArrayLike<number>): BufferGeometry {
-  const linear = new Color().setRGB(color[0], color[1], color[2], "srgb");
+/** `geometry` has three vertices for each triangle, in their order. */
+function coloured(geometry: BufferGeometry, scene: Scene, shape: SceneShape): BufferGeometry {
   const count = geometry.getAttribute("position").count;
   const colors = new Float32Array(3 * count);
-  for (let i = 0; i < count; ++i) linear.toArray(colors, 3 * i);
+  const linear = new Color().setRGB(shape.color[0], shape.color[1], shape.color[2], "srgb");
+  const ofMesh = shape.has_mesh_colors ? scene.meshes[shape.mesh].colors : undefined;
+  for (let i = 0; i < count; ++i) {
+    if (ofMesh && i % 3 === 0) linear.setRGB(ofMesh[i] / 255, ofMesh[i + 1] / 255, ofMesh[i + 2] / 255, "srgb");
+    linear.toArray(colors, 3 * i);
+  }
   return geometry.setAttribute("color", new BufferAttribute(colors, 3));
 }
 
@@ -48,7 +53,7 @@ export function linkGeometry(scene: Scene, shapes: readonly SceneShape[], instan
     const geometry = plainGeometry(scene, shape, segmentsOf(instances));
     const plain = geometry.index ? geometry.toNonIndexed() : geometry;
     plain.deleteAttribute("uv");
-    return coloured(plain.applyMatrix4(matrixOf(shape.pose)), shape.color);
+    return coloured(plain.applyMatrix4(matrixOf(shape.pose)), scene, shape);
   });
   if (parts.length === 0) return undefined;
   const merged = mergeGeometries(parts);

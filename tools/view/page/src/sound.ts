@@ -21,12 +21,15 @@ export class Sound {
       this.context = new AudioContext();
       return;
     }
-    for (const tone of [...this.voices.keys()]) this.silence(tone);
+    this.silenceAll();
     void this.context?.close();
     this.context = undefined;
   }
 
-  take(signals: SceneSignals): void { this.signals = signals; }
+  take(signals: SceneSignals): void {
+    if (signals.revision !== this.signals?.revision) this.silenceAll(); // its loudspeakers are others
+    this.signals = signals;
+  }
 
   draw(poses: Poses, camera: Camera): void {
     const { context, signals } = this;
@@ -40,9 +43,10 @@ export class Sound {
         this.silence(i);
         return;
       }
-      const voice = this.voices.get(i) ?? (this.voices.size < mostVoices ? this.begin(i, context) : undefined);
-      if (!voice) return;
       poses.read(tone.link, at, turn);
+      at.add(new Vector3().fromArray(tone.position).applyQuaternion(turn));
+      const voice = this.voices.get(i) ?? (this.voices.size < mostVoices ? this.begin(i, context, frequency, at) : undefined);
+      if (!voice) return;
       const now = context.currentTime + 0.03;
       voice.oscillator.frequency.linearRampToValueAtTime(frequency, now);
       voice.gain.gain.linearRampToValueAtTime(0.15 * Math.min(1, intensity), now);
@@ -52,15 +56,21 @@ export class Sound {
     });
   }
 
-  private begin(tone: number, context: AudioContext): Voice {
-    const oscillator = new OscillatorNode(context, { type: "triangle" });
+  private begin(tone: number, context: AudioContext, frequency: number, { x, y, z }: Vector3): Voice {
+    const oscillator = new OscillatorNode(context, { type: "triangle", frequency });
     const gain = new GainNode(context, { gain: 0 });
-    const panner = new PannerNode(context, { panningModel: "equalpower", distanceModel: "inverse", refDistance: 0.5 });
+    const panner = new PannerNode(context, {
+      panningModel: "equalpower", distanceModel: "inverse", refDistance: 0.5, positionX: x, positionY: y, positionZ: z,
+    });
     oscillator.connect(gain).connect(panner).connect(context.destination);
     oscillator.start();
     const voice = { oscillator, gain, panner };
     this.voices.set(tone, voice);
     return voice;
+  }
+
+  private silenceAll(): void {
+    for (const tone of [...this.voices.keys()]) this.silence(tone);
   }
 
   private silence(tone: number): void {

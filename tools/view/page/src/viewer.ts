@@ -69,8 +69,10 @@ export class Viewer {
   }
 
   take(frame: SceneFrame): void {
-    const isFirst = this.poses !== undefined && this.poses.frame === undefined;
+    const before = this.poses?.frame;
+    const isFirst = this.poses !== undefined && before === undefined;
     if (!this.poses?.take(frame, performance.now())) return;
+    if (before && (frame.run !== before.run || frame.tick < before.tick)) this.trails.clear();
     this.instances?.update();
     if (isFirst && this.signals) this.glow?.take(this.signals);
     if (isFirst && this.poses.scene.world !== this.world) {
@@ -86,7 +88,9 @@ export class Viewer {
     this.sound.take(signals);
   }
 
-  takeContacts(contacts: SceneContacts): void { this.contacts.take(contacts); }
+  takeContacts(contacts: SceneContacts): void {
+    if (contacts.revision === this.poses?.scene.revision) this.contacts.take(contacts);
+  }
 
   takeRobots(robots: readonly SceneRobot[]): void {
     const id = this.selected === undefined ? none : this.poses!.scene.entities[this.selected].robot;
@@ -173,7 +177,7 @@ export class Viewer {
   }
 
   draw(now: number): void {
-    const elapsed = Math.min(0.1, (now - this.lastDrawn) / 1000);
+    const elapsed = Math.min(0.1, Math.max(0, now - this.lastDrawn) / 1000);
     this.lastDrawn = now;
     const { poses, stage } = this;
     if (poses?.frame) {

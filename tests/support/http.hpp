@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+namespace cohort::testing {
+
+/// What a server at this port of the loopback answers to GET of `target`, status line and headers included, to the end
+/// of the connection or, of a connection that becomes another (101), of the headers. Waits until somebody listens;
+/// empty if nobody does. `headers`: more of them, each with its "\r\n".
+std::string http_get(const std::string& port, const std::string& target, const std::string& headers = "");
+
+/// The same, asking for a WebSocket of the view, which needs its token.
+std::string http_get_socket(const std::string& port, const std::string& target);
+
+/// The port in the address that a view has printed.
+std::string port_in(const std::string& output);
+
+/// A view serves the page there, all of it.
+void expect_page(const std::string& port);
+
+/// A port of the loopback that nobody listens at.
+std::string free_port();
+
+}  // namespace cohort::testing

@@ -2,16 +2,9 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { chromium } from "playwright-core";
+import { handScenarios } from "./hands.mjs";
+import { patience, run, tick, until } from "./shared.mjs";
 
-const patience = 60_000; // [ms]; a browser that draws in software is slow
-
-// Runs `look` in the page until it gives something that is true, and gives that back.
-async function until(page, look, argument) {
-  const handle = await page.waitForFunction(look, argument, { timeout: patience });
-  return handle.jsonValue();
-}
-const run = (page, line) => page.evaluate((text) => window.cohort.run(text), line);
-const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.poses.frame.tick));
 const atTick = (page, wanted) => until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
 
 // Pixels of the picture at places of the world: red, green, blue of each.
@@ -273,6 +266,7 @@ async function isSuspended(page) {
 const scenarios = {
   draws, draws_many: drawsMany, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
   steers_server: steersServer, only_looks: onlyLooks, looks, is_suspended: isSuspended,
+  ...handScenarios,
 };
 
 const [, , scenario, address, file] = process.argv;

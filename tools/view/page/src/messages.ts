@@ -14,7 +14,7 @@ export interface SceneShape {
   color: Float32Array;
 }
 export interface SceneMesh { vertices: Float32Array; triangles: Uint32Array }
-export interface SceneLink { name: string; shapes: SceneShape[] }
+export interface SceneLink { name: string; pose: Float32Array; shapes: SceneShape[] }
 export interface SceneSensor {
   name: string;
   kind: string;
@@ -25,7 +25,7 @@ export interface SceneSensor {
   cone: number;
   channel: string;
 }
-export interface SceneChannel { name: string; unit: string; size: number; lower: number; upper: number }
+export interface SceneChannel { name: string; unit: string; size: number; lower: number; upper: number; neutral: number }
 export interface SceneModel {
   name: string;
   is_static: boolean;

@@ -216,7 +216,7 @@ async function drivesFirst(page) {
 
 async function handlesObjects(page) {
   await run(page, "toggle shadows; home; top; add bar");
-  assert.deepEqual(await page.locator("#adding-model option").allTextContents(), ["bar", "lamp_post"]);
+  assert.deepEqual(await page.locator("#adding-model option").allTextContents(), ["lamp_post", "bar"]);
   assert.equal(await page.locator("#adding-name").inputValue(), "bar_1");
   const ghost = () => page.evaluate(() => {
     const { group } = window.cohort.objects.ghost;

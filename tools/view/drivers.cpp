@@ -48,7 +48,8 @@ Answer Drivers::tell(const Wish& wish, Driven& driven) {
   Driver& driver = *driven.driver;
   if (driver.has_ended()) return {false, driver.why()};
   if (driven.visitor != wish.visitor) {
-    if (!wish.numbers.empty() || driver.command().silence(now) < longest_silence)
+    const bool may_take = wish.numbers.empty() && driver.is_driving();
+    if (!may_take || driver.command().silence(now) < longest_silence)
       return {false, "another page drives " + wish.name};
     driven.visitor = wish.visitor;
   }
@@ -71,7 +72,9 @@ void Drivers::claim(const Wish& wish, std::function<void(const Answer&)> answer)
   std::shared_future<void> after;
   for (const Leaving& before : leaving_)
     if (before.robot == wish.name) after = before.driver->end();
-  driven_[wish.name] = {wish.visitor, std::make_unique<Driver>(std::move(client), std::move(answer), std::move(after))};
+  auto driver = std::make_unique<Driver>(std::move(client), std::move(answer), std::move(after));
+  driver->command().give({}, HeldCommand::Clock::now());
+  driven_[wish.name] = {wish.visitor, std::move(driver)};
 }
 
 Answer Drivers::release(const Wish& wish) {

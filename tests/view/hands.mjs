@@ -1,6 +1,7 @@
 // Scenarios of browser.mjs in which a person drives robots, and adds, drags and removes objects.
 import assert from "node:assert/strict";
-import { patience, run, seenAt, tick, until } from "./shared.mjs";
+import { Guest } from "./guest.mjs";
+import { run, seenAt, tick, until } from "./shared.mjs";
 
 const poseOf = (page, name) => page.evaluate((text) => {
   const { viewer } = window.cohort;
@@ -35,13 +36,6 @@ const drawCoarsely = (page) => page.evaluate(() => {
 });
 const driven = (page) => page.evaluate(() => window.cohort.driving.name);
 const drives = (page, name) => until(page, (wanted) => window.cohort.driving.name === wanted, name);
-const newPage = async (page) => {
-  const other = await page.context().browser().newPage();
-  await other.goto(page.url());
-  await until(other, () => window.cohort?.viewer.poses?.frame);
-  await drawCoarsely(other);
-  return other;
-};
 
 async function goesAhead(page, name, press, release) {
   const from = await untilAtRest(page, name);
@@ -158,32 +152,42 @@ async function drivesByPad(page) {
   await run(page, "release");
 }
 
-// One page drives, a second one sees it, and wants to.
-async function drivesFromOnePage(page) {
+// A page drives, and somebody else wants to.
+async function drivesAlone(page) {
   const robot = "people/keys";
   await drawCoarsely(page);
+  const guest = await Guest.at(page.url());
+  const claim = () => guest.ask({ operation: "drive", name: robot, numbers: [] });
+  const from = await poseOf(page, robot);
   await run(page, "drive people/keys");
-  const other = await newPage(page);
-  await assert.rejects(run(other, "drive people/keys"), /another page drives people\/keys/);
-
-  // A page that hangs says nothing: the robot stands, and is the next one's.
-  let from = await untilAtRest(other, robot);
-  await page.bringToFront();
+  assert.deepEqual(await claim(), { done: false, text: "another page drives people/keys" });
+  assert.equal((await guest.ask({ operation: "release", name: robot })).done, false);
   await page.keyboard.down("ArrowUp");
   await untilMoved(page, robot, from, 0.05, 0);
+
+  // A page that hangs says nothing: the robot stands, and is the next one's.
+  const { id, left, neutral } = await guest.sees("/cohort/scene", ({ entities, models }) => {
+    const { model, robot: number } = entities.find(({ name }) => name === robot);
+    const { command } = models[model];
+    return { id: number, left: command.findIndex(({ name }) => name.endsWith("/left/velocity")), neutral: command.map((channel) => channel.neutral) };
+  });
+  await guest.ask({ operation: "watch", numbers: [id] });
+  const isTold = (speed) => guest.sees("/cohort/robots", ({ robots }) => robots[0]?.command[left] === speed && robots[0].command[left + 1] === speed);
   const session = await page.context().newCDPSession(page);
   await session.send("Debugger.enable");
   await session.send("Debugger.pause");
-  await other.bringToFront();
-  await untilAtRest(other, robot);
-  await other.waitForFunction(() => window.cohort.run("drive people/keys").then(() => true, () => false), undefined, { timeout: patience, polling: 500 });
-  await goesAhead(other, robot, ...key(other, "ArrowUp"));
-
-  // A page that is closed lets go.
-  const third = await newPage(other);
-  await assert.rejects(run(third, "drive people/keys"), /another page/);
-  await other.close();
-  await third.waitForFunction(() => window.cohort.run("drive people/keys").then(() => true, () => false), undefined, { timeout: patience, polling: 500 });
+  await isTold(0);
+  for (let answer = await claim(); !answer.done; answer = await claim()) {
+    assert.equal(answer.text, "another page drives people/keys");
+    await new Promise((resolve) => setTimeout(resolve, 200));
+  }
+  const beating = setInterval(() => {
+    void guest.ask({ operation: "drive", name: robot, numbers: neutral.map((value, i) => (i === left || i === left + 1 ? 0.05 : value)) });
+  }, 100);
+  await isTold(0.05);
+  clearInterval(beating);
+  assert.deepEqual(await guest.ask({ operation: "release", name: robot }), { done: true, text: "lets people/keys go" });
+  guest.close();
   await session.send("Debugger.resume").catch(() => undefined);
 }
 
@@ -282,7 +286,7 @@ async function handlesObjects(page) {
 
   await run(page, "select bar_1");
   assert.equal(await page.locator("#light").isVisible(), false);
-  assert.equal(await page.locator("#driving").isVisible(), false);
+  assert.equal(await page.locator("#drive").isVisible(), false);
   await page.locator("#remove").click();
   await until(page, () => window.cohort.viewer.poses.absent.has(window.cohort.viewer.find("bar_1")));
   await until(page, () => document.getElementById("inspector").hidden);
@@ -297,6 +301,6 @@ async function offersNoHands(page) {
 }
 
 export const handScenarios = {
-  drives_by_keys: drivesByKeys, drives_by_pad: drivesByPad, drives_from_one_page: drivesFromOnePage, drives_on: drivesOn,
+  drives_by_keys: drivesByKeys, drives_by_pad: drivesByPad, drives_alone: drivesAlone, drives_on: drivesOn,
   drives_first: drivesFirst, handles_objects: handlesObjects, offers_no_hands: offersNoHands,
 };

@@ -47,6 +47,24 @@ teams:
   std::vector<std::string> ctl(const std::string& command) const {
     return {testing::cohort_program(), "ctl", "--domain", domain.text(), command};
   }
+  nlohmann::json status() const {
+    auto command = ctl("status");
+    command.emplace_back("--json");
+    return nlohmann::json::parse(testing::run_to_end(std::move(command)).out, nullptr, false);
+  }
+  static bool has_view(const nlohmann::json& now) {
+    return std::ranges::any_of(now["controllers"], [](const nlohmann::json& each) {
+      return each["label"].get<std::string>().starts_with("view ") && each["alive"].get<bool>();
+    });
+  }
+  // The view has left its robot, and the run went on since it was as `before`.
+  void expect_let_go(const nlohmann::json& before) const {
+    const auto until = std::chrono::steady_clock::now() + testing::patience;
+    auto now = status();
+    while (has_view(now) && std::chrono::steady_clock::now() < until) now = status();
+    EXPECT_FALSE(has_view(now)) << now;
+    EXPECT_GT(now["tick"].get<std::uint64_t>(), before["tick"].get<std::uint64_t>());
+  }
   void drives(const std::string& scenario) {
     Process run(playground());
     const View view({"--domain", domain.text(), "--control"});
@@ -60,7 +78,7 @@ teams:
 
 TEST_F(Hands, DriveARobotByKeysAndSliders) { drives("drives_by_keys"); }
 TEST_F(Hands, DriveARobotByAGamePad) { drives("drives_by_pad"); }
-TEST_F(Hands, OfAPageThatHangsOrClosesLetTheRobotGo) { drives("drives_from_one_page"); }
+TEST_F(Hands, OfAPageThatHangsLetTheRobotStandAndSomebodyElseTakesIt) { drives("drives_alone"); }
 TEST_F(Hands, AddDragSwitchAndRemoveObjects) { drives("handles_objects"); }
 
 TEST_F(Hands, AreIdleWhereThereIsARecording) {
@@ -74,28 +92,23 @@ TEST_F(Hands, OfAViewThatIsKilledLeaveAFreeRobotAndTheRunGoesOn) {
   View view({"--domain", domain.text(), "--control"});
   Process script = start_script("browser.mjs", {"drives_on", view.address()});
   ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
-  const auto status = [&] {
-    auto command = ctl("status");
-    command.emplace_back("--json");
-    const testing::Ended ended = testing::run_to_end(std::move(command));
-    return nlohmann::json::parse(ended.out, nullptr, false);
-  };
-  const auto has_view = [](const nlohmann::json& now) {
-    return std::ranges::any_of(now["controllers"], [](const nlohmann::json& each) {
-      return each["label"].get<std::string>().starts_with("view ") && each["alive"].get<bool>();
-    });
-  };
   const auto before = status();
   ASSERT_TRUE(has_view(before)) << before;
   view.process().signal(SIGKILL);
-  const auto until = std::chrono::steady_clock::now() + testing::patience;
-  auto now = status();
-  while (has_view(now) && std::chrono::steady_clock::now() < until) now = status();
-  EXPECT_FALSE(has_view(now)) << now;
-  EXPECT_GT(now["tick"].get<std::uint64_t>(), before["tick"].get<std::uint64_t>());
-
+  expect_let_go(before);
   const View another({"--domain", domain.text(), "--control"});
   run_script("browser.mjs", {"drives_by_pad", another.address()});
+}
+
+TEST_F(Hands, OfABrowserThatIsKilledLetTheRobotGo) {
+  Process run(playground());
+  const View view({"--domain", domain.text(), "--control"});
+  Process script = start_script("browser.mjs", {"drives_on", view.address()});
+  ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
+  const auto before = status();
+  ASSERT_TRUE(has_view(before)) << before;
+  script.signal(SIGKILL);
+  expect_let_go(before);
 }
 
 TEST_F(Hands, AreToldWhenTheServerQuitsAndTheViewStays) {

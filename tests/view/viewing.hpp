@@ -14,7 +14,7 @@ namespace cohort::view {
 class Viewing : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* script : {"browser.mjs", "client.mjs", "hands.mjs", "shared.mjs"})
+    for (const char* script : {"browser.mjs", "client.mjs", "guest.mjs", "hands.mjs", "shared.mjs"})
       if (const auto why_not = scripts.prepare(script)) GTEST_SKIP() << *why_not;
   }
 

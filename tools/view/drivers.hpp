@@ -19,7 +19,7 @@ class Drivers {
  public:
   static constexpr std::size_t most = 8;
   /// After such a silence of a page another one may take its robot.
-  static constexpr std::chrono::seconds longest_silence{2};
+  static constexpr std::chrono::seconds longest_silence{5};
 
   struct Options {
     std::string server = "127.0.0.1";

@@ -93,7 +93,7 @@ export class Driving {
   show(): void {
     const robot = this.selectedRobot();
     const isDriven = robot !== undefined && robot === this.driven?.name;
-    element("driving").hidden = robot === undefined;
+    this.button.hidden = robot === undefined;
     this.button.textContent = this.isClaiming ? "asks for it …" : isDriven ? "let go" : "drive";
     this.button.disabled = this.isClaiming;
     this.button.classList.toggle("on", isDriven);

@@ -78,7 +78,7 @@ teams:
 
 TEST_F(Hands, DriveARobotByKeysAndSliders) { drives("drives_by_keys"); }
 TEST_F(Hands, DriveARobotByAGamePad) { drives("drives_by_pad"); }
-TEST_F(Hands, OfAPageThatHangsLetTheRobotStandAndSomebodyElseTakesIt) { drives("drives_alone"); }
+TEST_F(Hands, OfAPageThatFallsSilentLetTheRobotStandAndSomebodyElseTakesIt) { drives("drives_alone"); }
 TEST_F(Hands, AddDragSwitchAndRemoveObjects) { drives("handles_objects"); }
 
 TEST_F(Hands, AreIdleWhereThereIsARecording) {

@@ -169,7 +169,7 @@ async function drivesAlone(page) {
   const { id, left, neutral } = await guest.sees("/cohort/scene", ({ entities, models }) => {
     const { model, robot: number } = entities.find(({ name }) => name === robot);
     const { command } = models[model];
-    return { id: number, left: command.findIndex(({ name }) => name.endsWith("/left/velocity")), neutral: command.map((channel) => channel.neutral) };
+    return { id: number, left: command.findIndex(({ name }) => name.endsWith("/left/velocity")), neutral: command.flatMap((channel) => Array(channel.size).fill(channel.neutral)) };
   });
   await guest.ask({ operation: "watch", numbers: [id] });
   const isTold = (speed) => guest.sees("/cohort/robots", ({ robots }) => robots[0]?.command[left] === speed && robots[0].command[left + 1] === speed);
@@ -179,9 +179,10 @@ async function drivesAlone(page) {
     assert.equal(answer.text, "another page drives people/keys");
     await new Promise((resolve) => setTimeout(resolve, 200));
   }
-  const beating = setInterval(() => {
-    void guest.ask({ operation: "drive", name: robot, numbers: neutral.map((value, i) => (i === left || i === left + 1 ? 0.05 : value)) });
-  }, 100);
+  const slowly = neutral.map((value, i) => (i === left || i === left + 1 ? 0.05 : value));
+  assert.deepEqual(await guest.ask({ operation: "drive", name: robot, numbers: slowly.slice(1) }),
+    { done: false, text: `its command has ${slowly.length} values, not ${slowly.length - 1}` });
+  const beating = setInterval(() => void guest.ask({ operation: "drive", name: robot, numbers: slowly }), 100);
   await isTold(0.05);
   clearInterval(beating);
   assert.deepEqual(await guest.ask({ operation: "release", name: robot }), { done: true, text: "lets people/keys go" });

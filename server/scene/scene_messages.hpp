@@ -63,9 +63,11 @@ struct SceneMesh {
 
 struct SceneLink {
   std::string name;
+  PoseNumbers pose{};  ///< in its model, with all joints at rest
   std::vector<SceneShape> shapes;
   static constexpr const char* type = "cohort_msgs/msg/SceneLink";
-  static constexpr auto fields = std::tuple(field("name", &SceneLink::name), field("shapes", &SceneLink::shapes));
+  static constexpr auto fields =
+      std::tuple(field("name", &SceneLink::name), field("pose", &SceneLink::pose), field("shapes", &SceneLink::shapes));
 };
 
 /// What a sensor looks along: as many rays as `directions` has vectors.
@@ -91,10 +93,12 @@ struct SceneChannel {
   std::uint32_t size = 1;
   double lower = 0.0;
   double upper = 0.0;
+  double neutral = 0.0;  ///< of a command: what it is until it is set
   static constexpr const char* type = "cohort_msgs/msg/SceneChannel";
-  static constexpr auto fields = std::tuple(field("name", &SceneChannel::name), field("unit", &SceneChannel::unit),
-                                            field("size", &SceneChannel::size), field("lower", &SceneChannel::lower),
-                                            field("upper", &SceneChannel::upper));
+  static constexpr auto fields =
+      std::tuple(field("name", &SceneChannel::name), field("unit", &SceneChannel::unit),
+                 field("size", &SceneChannel::size), field("lower", &SceneChannel::lower),
+                 field("upper", &SceneChannel::upper), field("neutral", &SceneChannel::neutral));
 };
 
 struct SceneModel {

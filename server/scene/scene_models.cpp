@@ -109,6 +109,7 @@ class ShapeWriter {
 SceneLink link_of(const description::Link& from, ShapeWriter& writer) {
   SceneLink link;
   link.name = from.name;
+  link.pose = numbers_of(from.X_ML);
   link.shapes.reserve(from.visuals.size() + from.collisions.size());
   const auto add = [&](const description::Shape& shape, const Pose& pose, ShapeRole role,
                        const Eigen::Vector4d& color) {
@@ -215,7 +216,7 @@ std::vector<SceneChannel> channels_of(const std::vector<Channel>& from) {
   std::vector<SceneChannel> channels;
   channels.reserve(from.size());
   for (const Channel& channel : from)
-    channels.push_back({channel.name, channel.unit, channel.size, channel.lower, channel.upper});
+    channels.push_back({channel.name, channel.unit, channel.size, channel.lower, channel.upper, channel.neutral});
   return channels;
 }
 

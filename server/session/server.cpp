@@ -111,9 +111,11 @@ bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
     return run_->leases.holder(robot).has_value() || !run_->simulation.policy(robot).required ||
            run_->exchange.barrier().is_detached(robot);
   };
-  for (;;) {
+  for (bool is_new = true;; is_new = false) {
     handle_inbox();
+    const bool had_work = control_.has_work();
     if (!control_.perform(Control::Moment::boundary)) return false;
+    publish_scene(is_new || had_work ? SceneBroadcast::When::at_once : SceneBroadcast::When::for_newcomers);
     decide_claims();
     report_progress(false);
     std::unique_lock lock(mutex_);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tools/view/admission.hpp"
@@ -132,6 +133,9 @@ TEST(ViewWishes, BecomeRequestsOrAreExplained) {
   const wire::Request move = request_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0}});
   EXPECT_EQ(move.entity, "bar");
   EXPECT_EQ(move.pose.position, (wire::Vector3{1.0, 2.0, 0.0}));
+  EXPECT_EQ(move.pose.orientation, (wire::Quaternion{0.0, 0.0, 0.0, 1.0}));
+  const wire::Request turned = request_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0, 0.5, 3.0}});
+  EXPECT_DOUBLE_EQ(2.0 * std::atan2(turned.pose.orientation.z, turned.pose.orientation.w), 3.0);
   EXPECT_THROW(request_of({.operation = "move", .name = "bar", .numbers = {1.0}}), std::invalid_argument);
   EXPECT_THROW(request_of({.operation = "move", .numbers = {1.0, 2.0}}), std::invalid_argument);
   EXPECT_THROW(request_of({.operation = "step", .number = 0.0 / 0.0}), std::invalid_argument);

@@ -1,7 +1,7 @@
 // Drives the page in a browser without a window: node browser.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { atTick, coloursIn, drive, patience, pixelsAt, run, tick, until } from "./in_page.mjs";
+import { atTick, coloursIn, patience, pixelsAt, run, runScenario, tick, until } from "./in_page.mjs";
 
 const isOrange = ([red, green, blue]) => red > 120 && red > 1.5 * green && green > blue;
 
@@ -275,7 +275,7 @@ async function isSuspended(page) {
   await new Promise(() => setInterval(() => undefined, 1000));
 }
 
-await drive({
+await runScenario({
   draws, draws_many: drawsMany, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
   steers_server: steersServer, goes_back: goesBack, only_looks: onlyLooks, looks, is_suspended: isSuspended,
 });

@@ -1,7 +1,7 @@
 // Tries what the page shows of tests/view/exhibits: node exhibits.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { atTick, coloursIn, drive, look, patience, pixelsAt, run, until } from "./in_page.mjs";
+import { atTick, coloursIn, look, patience, pixelsAt, run, runScenario, until } from "./in_page.mjs";
 
 const near = (found, wanted, by, what) => assert.ok(Math.abs(found - wanted) <= by, `${what} is ${found}, not ${wanted}`);
 const camera = (page) => page.evaluate(() => {
@@ -275,7 +275,7 @@ async function drawsHills(page, file) {
   assert.ok(Math.abs(brightness(hill) - brightness(sky)) > 60, `the hill is ${hill}, the sky ${sky}`);
 }
 
-await drive({
+await runScenario({
   films, sounds, moves_camera: movesCamera, keeps_looks: keepsLooks, draws_overlays: drawsOverlays, draws_shapes: drawsShapes,
   draws_hills: drawsHills,
 });

@@ -6,12 +6,21 @@ export const patience = 60_000; // [ms]; a browser that draws in software is slo
 
 /** Runs `look` in the page until it gives something that is true, and gives that back. */
 export async function until(page, look, argument) {
-  const handle = await page.waitForFunction(look, argument, { timeout: patience });
+  const handle = await page.waitForFunction(look, argument, { timeout: patience, polling: 50 });
   return handle.jsonValue();
 }
 export const run = (page, line) => page.evaluate((text) => window.cohort.run(text), line);
 export const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.poses.frame.tick));
 export const atTick = (page, wanted) => until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
+
+/** Where in the picture a place of the world is. */
+export const seenAt = (page, place) => page.evaluate(([x, y, z]) => {
+  const { viewer } = window.cohort;
+  viewer.draw(performance.now() + 1000); // past the blend of the last two frames
+  const at = viewer.cameras.target.clone().set(x, y, z).project(viewer.stage.camera);
+  const { width, height } = document.getElementById("canvas").getBoundingClientRect();
+  return { x: 0.5 * (at.x + 1) * width, y: 0.5 * (1 - at.y) * height };
+}, place);
 
 /** Pixels of the picture at places of the world: red, green, blue of each. */
 export const pixelsAt = (page, places) => page.evaluate((points) => {
@@ -59,7 +68,7 @@ export const coloursIn = (page, bytes, type) => page.evaluate(async ([base64, ki
 }, [bytes.toString("base64"), type]);
 
 /** Opens the page for the scenario that the command line names: SCENARIO ADDRESS [FILE]. */
-export async function drive(scenarios) {
+export async function runScenario(scenarios) {
   const [, , scenario, address, file] = process.argv;
   const browser = await chromium.launch({
     executablePath: process.env.COHORT_CHROMIUM,

@@ -219,6 +219,7 @@ struct ViewCommand {
   std::vector<std::uint32_t> domains{};    ///< of the server; the first of them is used. Empty: 0
   std::filesystem::path secure{};          ///< folder of an identity; empty: without security
   std::filesystem::path secure_control{};  ///< the same, of one that may control
+  std::filesystem::path secure_drive{};    ///< and of one that may drive; empty: the one above
   bool may_control = false;
   std::string network = "127.0.0.1";  ///< address of the interface to serve on
   std::optional<std::uint16_t> port{};  ///< 0: any free one; none: 8080, or any free one where that is taken

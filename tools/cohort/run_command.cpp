@@ -275,7 +275,7 @@ int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
     warn_if_not_portable(log);
 
     if (!in_process) runs.serving.emplace(command, first, log);
-    if (runs.serving && command.view) runs.serving->start_view();
+    if (runs.serving && command.view) runs.serving->start_view(first);
     if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
     return run_each(runs, log, stop);
   } catch (const description::InputError& error) {

@@ -92,6 +92,21 @@ std::string domains_text(const std::vector<std::uint32_t>& domains) {
   return fmt::format("domains {}", fmt::join(domains, ", "));
 }
 
+// Of the view: one that looks, and if it may do more, one that controls, and one that drives what people are to drive.
+void add_identities_of_view(const RunCommand& command, const description::Experiment& experiment,
+                            std::vector<std::string>& arguments) {
+  const auto add = [&](const char* option, const std::filesystem::path& identity) {
+    arguments.insert(arguments.end(), {option, identity.string()});
+  };
+  add("--secure", command.secure / "clients" / "observer");
+  if (!command.view_controls) return;
+  const std::vector<wire::Identity> doors = wire::read_doors(command.secure);
+  const auto controls = std::ranges::find_if(doors, &wire::Identity::may_control);
+  if (controls != doors.end()) add("--secure-control", command.secure / "clients" / controls->name);
+  const auto driven = std::ranges::find(experiment.teams, keyboard_controller, &description::Team::controller);
+  if (driven != experiment.teams.end()) add("--secure-drive", identity_for(experiment, *driven, command.secure));
+}
+
 }  // namespace
 
 Serving::Serving(const RunCommand& command, const description::Experiment& experiment, Log& log)
@@ -124,7 +139,9 @@ void Serving::start_controllers(const description::Experiment& experiment,
   for (const description::Team& team : experiment.teams)
     if (team.controller == keyboard_controller)
       log_.notice(fmt::format(
-          "to drive team '{}', in another terminal: cohort teleop --robots {} --domain {}{}", team.name,
+          "to drive team '{}', {}in another terminal: cohort teleop --robots {} --domain {}{}", team.name,
+          command_.view && command_.view_controls ? "choose one of its robots in the browser and press 'drive'; or "
+                                                  : "",
           selectors_of(team.robots), domains_.front(),
           command_.secure.empty() ? "" : " --secure " + identity_for(experiment, team, command_.secure).string()));
   const bool per_robot = command_.controllers == Controllers::per_robot;
@@ -133,7 +150,7 @@ void Serving::start_controllers(const description::Experiment& experiment,
       listener_of_controllers(*server_, log_));
 }
 
-void Serving::start_view() {
+void Serving::start_view(const description::Experiment& experiment) {
   Children::Command view;
   view.arguments = {std::filesystem::read_symlink("/proc/self/exe"),
                     "view",
@@ -142,8 +159,7 @@ void Serving::start_view() {
                     "--domain",
                     std::to_string(domains_.front())};
   if (command_.view_controls) view.arguments.push_back("--control");
-  if (!command_.secure.empty())
-    view.arguments.insert(view.arguments.end(), {"--secure", (command_.secure / "clients" / "observer").string()});
+  if (!command_.secure.empty()) add_identities_of_view(command_, experiment, view.arguments);
   view.name = "the view";
   view.restarts = false;
   Children::Listener listener;

@@ -24,7 +24,7 @@ class Serving {
   void start_controllers(const description::Experiment& experiment, const std::vector<TeamController>& controllers);
 
   /// Starts a process that shows the runs in a browser (`cohort view`); that it cannot is a warning.
-  void start_view();
+  void start_view(const description::Experiment& experiment);
 
   /// `is_last`: controllers may leave afterwards.
   session::RunResult run(const description::Experiment& experiment, Simulation& simulation,

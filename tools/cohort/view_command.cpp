@@ -90,8 +90,13 @@ int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>
 }
 
 int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
-  const view::LiveOptions live{command.server, command.domains.empty() ? 0 : command.domains.front(),
-                               command.secure.string(), command.secure_control.string(), command.may_control};
+  const auto& secure_drive = command.secure_drive.empty() ? command.secure_control : command.secure_drive;
+  const view::LiveOptions live{.server = command.server,
+                               .domain = command.domains.empty() ? 0 : command.domains.front(),
+                               .secure = command.secure.string(),
+                               .secure_control = command.secure_control.string(),
+                               .secure_drive = secure_drive.string(),
+                               .may_control = command.may_control};
   return serve(command, "Cohort at " + command.server, log, stop,
                [&](view::Topics& topics) { return std::make_unique<view::LiveSource>(live, topics); });
 }

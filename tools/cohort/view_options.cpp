@@ -15,6 +15,9 @@ void add_view_options(CLI::App& app, ViewCommand& command) {
   app.add_flag("--control", command.may_control, "Let whoever looks control the server")->excludes(recording);
   app.add_option("--secure-control", command.secure_control, "Folder of an identity that may control, for --control")
       ->type_name("DIR");
+  app.add_option("--secure-drive", command.secure_drive,
+                 "Folder of the identity that drives robots from the page (default: that of --secure-control)")
+      ->type_name("DIR");
   app.add_option("--port", command.port, "Where browsers find it (default: 8080, or any free one if that is taken)")
       ->check(whole_number(0, std::numeric_limits<std::uint16_t>::max()))
       ->type_name("N");

@@ -24,12 +24,22 @@ Request to_state(SimulationState state) {
   return request;
 }
 
-wire::Vector3 vector_in(const Wish& wish, std::size_t at_least) {
-  if (wish.numbers.size() < at_least || wish.numbers.size() > 3)
+wire::Vector3 vector_in(const Wish& wish) {
+  if (wish.numbers.size() < 2 || wish.numbers.size() > 3)
     throw std::invalid_argument("'" + wish.operation + "' needs x, y and perhaps z");
-  std::array<double, 3> numbers{};
+  return {wish.numbers[0], wish.numbers[1], wish.numbers.size() > 2 ? wish.numbers[2] : 0.0};
+}
+
+// Upright, with its heading about the vertical.
+wire::Pose pose_in(const Wish& wish) {
+  if (wish.numbers.size() < 2 || wish.numbers.size() > 4)
+    throw std::invalid_argument("'" + wish.operation + "' needs x, y, perhaps z, and perhaps a heading");
+  std::array<double, 4> numbers{};
   std::ranges::copy(wish.numbers, numbers.begin());
-  return {numbers[0], numbers[1], numbers[2]};
+  wire::Pose pose;
+  pose.position = {numbers[0], numbers[1], numbers[2]};
+  pose.orientation = {0.0, 0.0, std::sin(0.5 * numbers[3]), std::cos(0.5 * numbers[3])};
+  return pose;
 }
 
 Request of_object(Operation operation, const Wish& wish) {
@@ -60,14 +70,14 @@ Request spawn(const Wish& wish) {
   Request request = of_object(Operation::spawn_entity, wish);
   request.uri = wish.text;
   request.set_pose = true;
-  request.pose.position = vector_in(wish, 2);
+  request.pose = pose_in(wish);
   return request;
 }
 
 Request move(const Wish& wish) {
   Request request = of_object(Operation::set_entity_state, wish);
   request.set_pose = true;
-  request.pose.position = vector_in(wish, 2);
+  request.pose = pose_in(wish);
   return request;
 }
 
@@ -80,7 +90,7 @@ Request light(const Wish& wish) {
 Request push(const Wish& wish) {
   constexpr std::int64_t tenth_of_a_second = 100'000'000;
   Request request = of_object(Operation::apply_force, wish);
-  request.force = vector_in(wish, 2);
+  request.force = vector_in(wish);
   request.duration_ns = tenth_of_a_second;
   return request;
 }

@@ -20,6 +20,7 @@ constexpr auto for_a_reply = 5s;
 constexpr auto status_interval = 250ms;
 constexpr auto newcomer_interval = 100ms;
 constexpr std::size_t most_wishes = 64;
+constexpr const char* no_server = "there is no server that can be controlled";
 
 recording::Bytes copied(std::span<const std::uint8_t> bytes) {
   const auto view = std::as_bytes(bytes);
@@ -44,6 +45,7 @@ LiveSource::LiveSource(const LiveOptions& options, Topics& topics)
     : options_(options),
       topics_(topics),
       publisher_(topics),
+      drivers_({options.server, options.domain, options.secure_drive}),
       participant_(wire::Participant::client(options.domain, options.server, identity_in(options.secure))),
       descriptions_(participant_,
                     {[this](const wire::SceneDescription& each, const wire::Sender&) { on_scene(each); }, {}}, "view"),
@@ -150,6 +152,8 @@ void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
 
 void LiveSource::ask(const Wish& wish, std::function<void(const Answer&)> answer) {
   if (!options_.may_control) return answer({false, "this view may only look: 'cohort view --control' may do more"});
+  if (wish.operation == "drive") return drive(wish, std::move(answer));
+  if (wish.operation == "release") return answer(drivers_.release(wish));
   {
     const std::lock_guard lock(wishes_mutex_);
     if (wishes_.size() < most_wishes) {
@@ -161,6 +165,15 @@ void LiveSource::ask(const Wish& wish, std::function<void(const Answer&)> answer
   answer({false, "the server has not yet done what was asked for before"});
 }
 
+void LiveSource::drive(const Wish& wish, std::function<void(const Answer&)> answer) {
+  if (!options_.secure.empty() && options_.secure_drive.empty())
+    return answer({false, "this server knows who drives: 'cohort view --secure-drive DIR' names an identity that may"});
+  if (!has_server_) return answer({false, no_server});
+  drivers_.drive(wish, std::move(answer));
+}
+
+void LiveSource::leave(std::uint64_t visitor) { drivers_.leave(visitor); }
+
 // Asks for one thing after the other, and in between how the run is.
 void LiveSource::serve_wishes() {
   while (!is_stopping_) {
@@ -171,8 +184,9 @@ void LiveSource::serve_wishes() {
                             .label = "cohort view"});
       history_ = LiveHistory();
       while (!is_stopping_ && !client.server_is_gone()) {
-        if (!client.wait_for_server(for_a_server, is_stopping_)) {
-          answer_all("there is no server that can be controlled");
+        has_server_ = client.wait_for_server(for_a_server, is_stopping_);
+        if (!has_server_) {
+          answer_all(no_server);
           show_status(blank_status());
           continue;
         }
@@ -190,6 +204,7 @@ void LiveSource::serve_wishes() {
         if (!is_stopping_) ask_history(client);
       }
     } catch (const std::exception& error) {
+      has_server_ = false;
       ViewStatus status = blank_status();
       status.note = error.what();
       show_status(status);

@@ -11,6 +11,7 @@
 
 #include "client_sdk/src/control_client.hpp"
 #include "idl/wire.hpp"
+#include "tools/view/drivers.hpp"
 #include "tools/view/live_history.hpp"
 #include "tools/view/scene_publisher.hpp"
 #include "tools/view/source.hpp"
@@ -22,12 +23,14 @@ struct LiveOptions {
   std::uint32_t domain = 0;
   std::string secure{};          ///< folder of an observer's identity; empty: without security
   std::string secure_control{};  ///< folder of an identity that may control
+  std::string secure_drive{};    ///< and of one that may drive robots
   bool may_control = false;
 };
 
 /// Shows a running server, as any observer may. Wishes, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
 /// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done. Where it keeps snapshots also
-/// `seek` and steps back: to the last snapshot before, and if the run is paused on from there to the very tick.
+/// `seek` and steps back: to the last snapshot before, and if the run is paused on from there to the very tick. And
+/// `drive` and `release`, by which whoever looks is the controller of a robot (Drivers).
 class LiveSource final : public Source {
  public:
   /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if its address or the identity
@@ -37,6 +40,7 @@ class LiveSource final : public Source {
 
   void ask(const Wish& wish, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
+  void leave(std::uint64_t visitor) override;
 
  private:
   using Bytes = recording::Bytes;
@@ -65,6 +69,7 @@ class LiveSource final : public Source {
   void ask_status(ControlClient& client);
   void ask_history(ControlClient& client);
   void answer_all(const std::string& text);
+  void drive(const Wish& wish, std::function<void(const Answer&)> answer);
   void show_status(const ViewStatus& status);
   ViewStatus blank_status() const;
 
@@ -72,6 +77,8 @@ class LiveSource final : public Source {
   Topics& topics_;
   ScenePublisher publisher_;
   std::atomic<bool> is_stopping_{false};
+  std::atomic<bool> has_server_{false};  // that can be controlled
+  Drivers drivers_;
 
   std::mutex mutex_;
   std::condition_variable arrived_changed_;

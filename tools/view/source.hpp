@@ -14,6 +14,7 @@ struct Wish {
   std::string name{};  ///< of an object
   std::string text{};
   std::vector<double> numbers{};
+  std::uint64_t visitor = 0;  ///< who asks
 };
 
 struct Answer {
@@ -33,6 +34,8 @@ class Source {
   virtual void ask(const Wish& wish, std::function<void(const Answer&)> answer) = 0;
   /// Whose channels are to be published from now on: ids. Any thread.
   virtual void watch(const std::vector<std::uint32_t>& robots) = 0;
+  /// This visitor asks for nothing any more. Any thread.
+  virtual void leave(std::uint64_t /*visitor*/) {}
 };
 
 }  // namespace cohort::view

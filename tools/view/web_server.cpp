@@ -73,6 +73,7 @@ class WebServer::State {
   const std::string session = random_token();
   std::atomic<bool> is_pumping{false};
   std::set<WebSocket*> clients;
+  std::uint64_t visitors = 0;  // that there have been
   std::size_t connections = 0;
   Source* source = nullptr;
   asio::io_context context{1};  // with it go the connections, which need all that is above
@@ -95,6 +96,7 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
     --state_.connections;
     state_.clients.erase(this);
     if (!session_.watched().empty()) state_.watch();
+    if (state_.source != nullptr) state_.source->leave(visitor_);
   }
   WebSocket(const WebSocket&) = delete;
   WebSocket& operator=(const WebSocket&) = delete;
@@ -156,7 +158,9 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
   }
   // The answer may come from any thread, and when this has gone.
   void ask(const protocol::ServiceCall& call, const Wish& wish) {
-    state_.source->ask(wish, [&state = state_, weak = weak_from_this(), call](const Answer& answer) {
+    Wish theirs = wish;
+    theirs.visitor = visitor_;
+    state_.source->ask(theirs, [&state = state_, weak = weak_from_this(), call](const Answer& answer) {
       asio::post(state.context, [weak, call, answer] {
         const auto self = weak.lock();
         if (self == nullptr) return;
@@ -167,6 +171,7 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
   }
 
   State& state_;
+  const std::uint64_t visitor_ = ++state_.visitors;
   websocket::stream<beast::tcp_stream> stream_;
   beast::flat_buffer buffer_;
   ClientSession session_;

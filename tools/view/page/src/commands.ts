@@ -1,3 +1,5 @@
+import { defaultSteering, readSteer } from "./steering";
+
 /** One word of the console. */
 export interface Command {
   name: string;
@@ -11,6 +13,7 @@ interface Profile {
   aliases: Record<string, string>;
   keys: Record<string, string>;
   scripts: Record<string, string>;
+  steering: Record<string, string>;
 }
 
 const storage = "cohort.view.profile";
@@ -53,7 +56,7 @@ export function statements(text: string): string[] {
 /** The commands that there are, aliases, scripts and what keys do; all but the first are kept in the browser. */
 export class Commands {
   private readonly commands = new Map<string, Command>();
-  private profile: Profile = { aliases: {}, keys: { ...defaultKeys }, scripts: {} };
+  private profile: Profile = { aliases: {}, keys: { ...defaultKeys }, scripts: {}, steering: { ...defaultSteering } };
 
   constructor() {
     try {
@@ -69,6 +72,8 @@ export class Commands {
   names(): string[] { return [...this.commands.keys(), ...Object.keys(this.profile.aliases)].sort(); }
   commandOfKey(key: string): string | undefined { return this.profile.keys[key]; }
   keys(): Readonly<Record<string, string>> { return this.profile.keys; }
+  /** What a held key does to a robot that is driven. */
+  steeringOfKey(key: string): string | undefined { return this.profile.steering[key]; }
 
   /** Runs a line or a script. Throws Error with a sentence for what cannot be done. */
   async run(text: string, depth = 0): Promise<string> {
@@ -126,9 +131,10 @@ export class Commands {
     const need = (args: string[], count: number, usage: string): void => {
       if (args.length < count) throw new Error(`expected: ${usage}`);
     };
-    const change = (kind: keyof Profile, usage: string) => (args: string[]): string => {
+    const change = (kind: keyof Profile, usage: string, check: (text: string) => unknown = () => undefined) => (args: string[]): string => {
       if (args.length === 0) return list(this.profile[kind]);
       need(args, 2, usage);
+      check(args.slice(1).join(" "));
       this.profile[kind][keyName(args[0])] = args.slice(1).join(" ");
       this.keep();
       return "";
@@ -144,6 +150,10 @@ export class Commands {
       { name: "bind", usage: "[KEY COMMAND]", help: "a key or mouse button does a command; without arguments lists them",
         complete: (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()), run: change("keys", "bind KEY COMMAND") },
       { name: "unbind", usage: "KEY", help: "the key does nothing any more", complete: () => Object.keys(this.profile.keys), run: forget("keys", "unbind KEY") },
+      { name: "steer", usage: "[KEY DIRECTION | KEY CHANNEL VALUE]", help: "a key that drives while it is held: ahead, back, left, right, or a channel; without arguments lists them",
+        complete: (index) => (index === 0 ? Object.keys(this.profile.steering) : ["ahead", "back", "left", "right"]),
+        run: change("steering", "steer KEY ahead|back|left|right, or steer KEY CHANNEL VALUE", readSteer) },
+      { name: "unsteer", usage: "KEY", help: "the key drives no more", complete: () => Object.keys(this.profile.steering), run: forget("steering", "unsteer KEY") },
       { name: "alias", usage: "[NAME COMMAND]", help: "a word for a command; without arguments lists them", run: change("aliases", "alias NAME COMMAND") },
       { name: "unalias", usage: "NAME", help: "forgets it", complete: () => Object.keys(this.profile.aliases), run: forget("aliases", "unalias NAME") },
       { name: "script", usage: "[NAME COMMANDS]", help: "keeps a script, its commands parted by ';'", run: change("scripts", "script NAME COMMANDS") },
@@ -165,6 +175,11 @@ export class Commands {
 
 const keyName = (word: string): string => (word === "Space" ? " " : word);
 
+function checkedSteering(steering: Record<string, string>): Record<string, string> {
+  for (const line of Object.values(steering)) readSteer(line);
+  return steering;
+}
+
 function readProfile(text: string): Profile {
   const read = JSON.parse(text) as Partial<Record<keyof Profile, unknown>>;
   const strings = (value: unknown, name: string): Record<string, string> => {
@@ -176,5 +191,6 @@ function readProfile(text: string): Profile {
     aliases: strings(read.aliases ?? {}, "aliases"),
     keys: strings(read.keys ?? defaultKeys, "keys"),
     scripts: strings(read.scripts ?? {}, "scripts"),
+    steering: checkedSteering(strings(read.steering ?? defaultSteering, "steering keys")),
   };
 }

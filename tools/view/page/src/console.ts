@@ -2,6 +2,7 @@ import type { Commands } from "./commands";
 
 const historyKey = "cohort.view.history";
 const longestHistory = 200;
+const callTime = 6000; // [ms]
 
 /** Where commands are typed, with what they said, history and completion. */
 export class ConsolePanel {
@@ -10,6 +11,7 @@ export class ConsolePanel {
   private readonly input = document.getElementById("command") as HTMLInputElement;
   private history: string[] = [];
   private place = 0;
+  private calling: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly commands: Commands) {
     try {
@@ -31,6 +33,7 @@ export class ConsolePanel {
 
   say(text: string, kind: "said" | "typed" | "wrong" = "said"): void {
     if (text === "") return;
+    if (kind === "wrong" && !this.isOpen) this.call(text);
     const line = document.createElement("pre");
     line.className = kind;
     line.textContent = text;
@@ -45,6 +48,15 @@ export class ConsolePanel {
     } catch (error) {
       this.say(error instanceof Error ? error.message : String(error), "wrong");
     }
+  }
+
+  // What went wrong, for whoever did it without the console.
+  private call(text: string): void {
+    const told = document.getElementById("told")!;
+    told.textContent = text;
+    told.hidden = false;
+    clearTimeout(this.calling);
+    this.calling = setTimeout(() => { told.hidden = true; }, callTime);
   }
 
   private onKey(event: KeyboardEvent): void {

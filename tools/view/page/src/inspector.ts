@@ -63,7 +63,7 @@ export class Inspector {
     const axis = { stroke: getComputedStyle(document.body).color, grid, ticks: grid, font: "10px system-ui", size: 38 };
     const plot = new uPlot({
       width: 272, height: 96, title: name, legend: { show: false }, cursor: { show: false },
-      scales: { x: { time: false }, y: { range: (_, low, high) => rangeAround(low, high) } }, axes: [{ ...axis, size: 22 }, axis],
+      scales: { x: { time: false }, y: { range: (_, low, high) => rangeAround(low, high) } }, axes: [{ ...axis, size: 22, gap: 2, ticks: { ...grid, size: 4 } }, axis],
       series: [{}, { stroke: color, width: 1.5 }],
     }, [[], []], this.plotted);
     plot.root.title = "click to remove";

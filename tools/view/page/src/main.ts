@@ -3,7 +3,9 @@ import "./page.css";
 import { Commands } from "./commands";
 import { addressOfServer, Connection } from "./connection";
 import { ConsolePanel } from "./console";
+import { Driving } from "./driving";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
+import { Objects } from "./objects";
 import { TimeBar, clockText } from "./time_bar";
 import { Viewer } from "./viewer";
 import { addWords, preferredTheme, showPressed } from "./words";
@@ -17,6 +19,8 @@ let bytes = 0;
 const viewer = new Viewer(canvas, (robot) => {
   connection.want("/cohort/robots", robot !== undefined);
   void connection.ask({ operation: "watch", numbers: robot === undefined ? [] : [robot] });
+  driving.show();
+  objects.show();
 });
 const commands = new Commands();
 const consolePanel = new ConsolePanel(commands);
@@ -47,6 +51,7 @@ const connection: Connection = new Connection(addressOfServer(location), {
   "/cohort/signals": (signals, size) => {
     bytes += size;
     viewer.takeSignals(signals);
+    objects.showLight();
   },
   "/cohort/contacts": (contacts) => viewer.takeContacts(contacts),
   "/cohort/robots": ({ robots }) => viewer.takeRobots(robots),
@@ -58,9 +63,13 @@ const connection: Connection = new Connection(addressOfServer(location), {
 });
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const) connection.want(topic);
 addWords({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
+const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
+const objects = new Objects(viewer, connection, consolePanel, canvas);
+for (const word of [...driving.words(), ...objects.words()]) commands.add(word);
 
 function showStatus(status: ViewStatus): void {
   timeBar.take(status);
+  document.body.classList.toggle("is-server", status.source === "server");
   element("name").textContent = status.name;
   document.title = `${status.name} · Cohort`;
   element("factor").textContent = status.is_playing ? `${status.real_time_factor.toFixed(2)} ×` : "paused";
@@ -97,36 +106,35 @@ function runBound(key: string): boolean {
 addEventListener("keydown", (event) => {
   const isTyping = event.target instanceof HTMLInputElement && event.target.type !== "range";
   if (isTyping || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
-  if (viewer.cameras.mode === "fly" && event.key in flyKeys) viewer.cameras.held.add(flyKeys[event.key]);
+  if (driving.keyDown(event)) { /* drives */ }
+  else if (event.key === "Escape" && objects.isAdding) objects.close();
+  else if (viewer.cameras.mode === "fly" && event.key in flyKeys) viewer.cameras.held.add(flyKeys[event.key]);
   else if (!runBound(event.key)) return;
   event.preventDefault();
 });
-addEventListener("keyup", ({ key }) => viewer.cameras.held.delete(flyKeys[key] ?? ""));
+addEventListener("keyup", (event) => {
+  viewer.cameras.held.delete(flyKeys[event.key] ?? "");
+  driving.keyUp(event);
+});
 addEventListener("blur", () => viewer.cameras.held.clear());
 
 let pressed = { x: 0, y: 0 };
-let dragged: number | undefined; // entity that goes where the mouse lets it
 canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y, shiftKey }) => {
   pressed = { x, y };
-  dragged = shiftKey ? viewer.pickAt(x, y) : undefined;
-  viewer.cameras.controls.enabled = dragged === undefined && viewer.cameras.mode !== "eye";
+  viewer.cameras.controls.enabled = !(shiftKey && objects.grab(x, y)) && viewer.cameras.mode !== "eye";
 }, { capture: true });
+canvas.addEventListener("pointermove", ({ clientX: x, clientY: y }) => objects.hover(x, y));
 canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
-  if (dragged !== undefined) {
-    drop(dragged, x, y);
+  if (objects.isDragging) {
+    viewer.cameras.controls.enabled = viewer.cameras.mode !== "eye";
+    void objects.drop(x, y);
     return;
   }
   if (Math.hypot(x - pressed.x, y - pressed.y) > clickSlack) return;
+  if (button === 0 && objects.place(x, y)) return;
   if (button === 0) viewer.select(viewer.pickAt(x, y));
   else runBound(`mouse${button}`);
 });
-function drop(entity: number, x: number, y: number): void {
-  dragged = undefined;
-  viewer.cameras.controls.enabled = viewer.cameras.mode !== "eye";
-  const [, , height] = viewer.poseOf(entity).position;
-  const place = viewer.placeAt(x, y, height);
-  if (place) void consolePanel.run(`move "${viewer.poses!.scene.entities[entity].name}" ${place.join(" ")} ${height}`);
-}
 canvas.addEventListener("dblclick", ({ clientX: x, clientY: y }) => {
   const entity = viewer.pickAt(x, y);
   if (entity === undefined) return;
@@ -159,4 +167,4 @@ setInterval(() => {
 }, 1000);
 
 /** For tests and for whoever opens the browser's console. */
-Object.assign(window, { cohort: { viewer, commands, connection, run: (line: string) => commands.run(line) } });
+Object.assign(window, { cohort: { viewer, commands, connection, driving, objects, run: (line: string) => commands.run(line) } });

@@ -15,7 +15,7 @@ export interface SceneShape {
   has_mesh_colors: boolean;
 }
 export interface SceneMesh { vertices: Float32Array; triangles: Uint32Array; colors: Uint8Array }
-export interface SceneLink { name: string; shapes: SceneShape[] }
+export interface SceneLink { name: string; pose: Float32Array; shapes: SceneShape[] }
 export interface SceneSensor {
   name: string;
   kind: string;
@@ -26,7 +26,7 @@ export interface SceneSensor {
   cone: number;
   channel: string;
 }
-export interface SceneChannel { name: string; unit: string; size: number; lower: number; upper: number }
+export interface SceneChannel { name: string; unit: string; size: number; lower: number; upper: number; neutral: number }
 export interface SceneModel {
   name: string;
   is_static: boolean;

@@ -1,0 +1,140 @@
+#include <csignal>
+
+#include "tests/view/viewing.hpp"
+
+// A page that drives robots, and adds, drags and removes objects.
+namespace cohort::view {
+namespace {
+
+using testing::Process;
+
+// Robots for people, one that a controller drives, and things.
+class Hands : public Viewing {
+ protected:
+  void SetUp() override {
+    Viewing::SetUp();
+    if (!has_browser() && !IsSkipped())
+      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
+    testing::write_file(scratch / "world.yaml", R"(world:
+  name: playground
+  gravity: [0, 0, -9.81]
+  model:
+    - {name: ground, static: true, link: {name: body, collision: {name: floor, geometry: {plane: {normal: [0, 0, 1], size: [9, 9]}}}}}
+    - name: lamp_post
+      static: true
+      pose: [-0.5, 0.6, 0, 0, 0, 0]
+      link:
+        name: body
+        collision: {name: post, pose: [0, 0, 0.15, 0, 0, 0], geometry: {cylinder: {radius: 0.03, length: 0.3}}}
+        light: {name: lamp, type: point, pose: [0, 0, 0.3, 0, 0, 0], diffuse: [1, 1, 1, 1], intensity: 1}
+  include:
+    - {uri: model://sbot, name: people/keys, pose: [-0.6, 0, 0, 0, 0, 0.5]}
+    - {uri: model://sbot, name: people/pad, pose: [0.6, 0.8, 0, 0, 0, -1]}
+    - {uri: model://sbot, name: others/driven, pose: [-0.6, -0.8, 0, 0, 0, 0]}
+    - {uri: model://bar, name: bar, pose: [1, -0.8, 0.05, 0, 0, 0]}
+)");
+    testing::write_file(scratch / "experiment.yaml", R"(world: world.yaml
+duration: 600
+teams:
+  - {name: people, robots: people/*, controller: keyboard, mode: free}
+  - {name: others, robots: others/*, controller: obstacle_avoidance}
+)");
+  }
+
+  std::vector<std::string> playground() const {
+    return {testing::cohort_program(), "run", scratch / "experiment.yaml", "--domain", domain.text()};
+  }
+  std::vector<std::string> ctl(const std::string& command) const {
+    return {testing::cohort_program(), "ctl", "--domain", domain.text(), command};
+  }
+  nlohmann::json status() const {
+    auto command = ctl("status");
+    command.emplace_back("--json");
+    return nlohmann::json::parse(testing::run_to_end(std::move(command)).out, nullptr, false);
+  }
+  static bool has_view(const nlohmann::json& now) {
+    return std::ranges::any_of(now["controllers"], [](const nlohmann::json& each) {
+      return each["label"].get<std::string>().starts_with("view ") && each["alive"].get<bool>();
+    });
+  }
+  // The view has left its robot, and the run went on since it was as `before`.
+  void expect_let_go(const nlohmann::json& before) const {
+    const auto until = std::chrono::steady_clock::now() + testing::patience;
+    auto now = status();
+    while (has_view(now) && std::chrono::steady_clock::now() < until) now = status();
+    EXPECT_FALSE(has_view(now)) << now;
+    EXPECT_GT(now["tick"].get<std::uint64_t>(), before["tick"].get<std::uint64_t>());
+  }
+  void drives(const std::string& scenario) {
+    Process run(playground());
+    const View view({"--domain", domain.text(), "--control"});
+    run_script("hands.mjs", {scenario, view.address()});
+    EXPECT_TRUE(run.running()) << run.output();
+  }
+
+  testing::ScratchFolder scratch;
+  testing::ReservedDomain domain;
+};
+
+TEST_F(Hands, DriveARobotByKeysAndSliders) { drives("drives_by_keys"); }
+TEST_F(Hands, DriveARobotByAGamePad) { drives("drives_by_pad"); }
+TEST_F(Hands, OfAPageThatFallsSilentLetTheRobotStandAndSomebodyElseTakesIt) { drives("drives_alone"); }
+TEST_F(Hands, AddDragSwitchAndRemoveObjects) { drives("handles_objects"); }
+
+TEST_F(Hands, AreIdleWhereThereIsARecording) {
+  testing::run_demo({"--duration", "0.5", "--record", scratch / "run.mcap"});
+  const View view({scratch / "run.mcap"});
+  run_script("hands.mjs", {"offers_no_hands", view.address()});
+}
+
+TEST_F(Hands, OfAViewThatIsKilledLeaveAFreeRobotAndTheRunGoesOn) {
+  Process run(playground());
+  View view({"--domain", domain.text(), "--control"});
+  Process script = start_script("hands.mjs", {"drives_on", view.address()});
+  ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
+  const auto before = status();
+  ASSERT_TRUE(has_view(before)) << before;
+  view.process().signal(SIGKILL);
+  expect_let_go(before);
+  const View another({"--domain", domain.text(), "--control"});
+  run_script("hands.mjs", {"drives_by_pad", another.address()});
+}
+
+TEST_F(Hands, OfABrowserThatIsKilledLetTheRobotGo) {
+  Process run(playground());
+  const View view({"--domain", domain.text(), "--control"});
+  Process script = start_script("hands.mjs", {"drives_on", view.address()});
+  ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
+  const auto before = status();
+  ASSERT_TRUE(has_view(before)) << before;
+  script.signal(SIGKILL);
+  expect_let_go(before);
+}
+
+TEST_F(Hands, AreToldWhenTheServerQuitsAndTheViewStays) {
+  Process run(playground());
+  View view({"--domain", domain.text(), "--control"});
+  Process script = start_script("hands.mjs", {"drives_on", view.address()});
+  ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
+  EXPECT_EQ(testing::run_to_end(ctl("shutdown")).exit_code, 0);
+  EXPECT_EQ(script.wait_for_exit(), 0) << script.output();
+  EXPECT_NE(script.output().find("ended: the run is over"), std::string::npos) << script.output();
+  EXPECT_TRUE(view.process().running());
+  EXPECT_TRUE(run.wait_for_exit().has_value());
+}
+
+// What `cohort run teleop.yaml --view --control` says is enough to drive.
+TEST_F(Hands, DriveTheRobotThatARunWaitsFor) {
+  Process run({testing::cohort_program(), "run", COHORT_SOURCE_DIR "/worlds/experiments/teleop.yaml", "--view",
+               "--control", "--domain", domain.text()});
+  ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
+  ASSERT_TRUE(run.wait_for_output("choose one of its robots in the browser")) << run.output();
+  const std::string output = run.output();
+  const std::size_t begin = output.find("http://");
+  run_script("hands.mjs", {"drives_first", output.substr(begin, output.find('\n', begin) - begin)});
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait_for_exit(), 130) << run.output();
+}
+
+}  // namespace
+}  // namespace cohort::view

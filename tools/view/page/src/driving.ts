@@ -1,0 +1,176 @@
+import { valueNames } from "./channels";
+import type { Command, Commands } from "./commands";
+import type { Connection } from "./connection";
+import type { ConsolePanel } from "./console";
+import { none, type SceneChannel } from "./messages";
+import { commandOf, neutralOf, padOf, readSteer, steerOfPad, wheelsOf, type Steer } from "./steering";
+import type { Viewer } from "./viewer";
+
+const interval = 50; // [ms] from one wish to the next at the least
+const longestSilence = 200; // [ms]; the view lets a robot stand that it hears nothing of for half a second
+
+interface Driven { name: string; channels: SceneChannel[]; base: number[] }
+
+const element = (id: string): HTMLElement => document.getElementById(id)!;
+
+/** Drives one robot of a server by keys, a game pad and sliders. */
+export class Driving {
+  private driven: Driven | undefined;
+  private readonly held = new Map<string, string>(); // keys by where they are on the keyboard
+  private isAsking = false;
+  private isClaiming = false;
+  private sent: number[] = [];
+  private sentAt = -Infinity;
+  private readonly button = element("drive") as HTMLButtonElement;
+
+  constructor(private readonly viewer: Viewer, private readonly connection: Connection, private readonly commands: Commands,
+    private readonly console: ConsolePanel, canvas: HTMLCanvasElement) {
+    setInterval(() => void this.advance(), interval);
+    addEventListener("blur", () => this.held.clear());
+    this.button.addEventListener("click", () => {
+      canvas.focus();
+      void console.run(this.driven && this.driven.name === this.selectedRobot() ? "release" : "drive");
+    });
+  }
+
+  get name(): string | undefined { return this.driven?.name; }
+
+  words(): Command[] {
+    const robots = (): string[] => this.viewer.robotEntities().map((entity) => this.viewer.poses!.scene.entities[entity].name);
+    return [
+      { name: "drive", usage: "[NAME]", help: "takes a robot of a server and drives it by keys (steer) or a game pad", complete: robots,
+        run: ([name]) => this.drive(name) },
+      { name: "release", usage: "", help: "lets the robot go that is driven", run: () => this.release() },
+    ];
+  }
+
+  /** Throws Error with what the server says if it does not give the robot. */
+  async drive(name?: string): Promise<string> {
+    const { poses } = this.viewer;
+    const entity = name === undefined ? this.viewer.selected : this.viewer.find(name);
+    const robot = entity === undefined ? undefined : poses!.scene.entities[entity];
+    if (!robot || robot.robot === none) throw new Error(name === undefined ? "select a robot first" : `there is no robot '${name}'`);
+    if (this.driven?.name === robot.name) return `drives ${robot.name}`;
+    if (this.isClaiming) throw new Error("a robot is asked for already");
+    if (this.driven) await this.release();
+    this.isClaiming = true;
+    this.show();
+    const answer = await this.connection.ask({ operation: "drive", name: robot.name, numbers: [] });
+    this.isClaiming = false;
+    if (answer.done) {
+      const { command } = poses!.scene.models[robot.model];
+      this.driven = { name: robot.name, channels: command, base: neutralOf(command) };
+      this.sentAt = -Infinity;
+      this.viewer.select(this.viewer.find(robot.name));
+    }
+    this.show();
+    if (!answer.done) throw new Error(answer.text);
+    return answer.text;
+  }
+
+  async release(): Promise<string> {
+    const { driven } = this;
+    if (!driven) throw new Error("no robot is driven");
+    this.end();
+    const { text } = await this.connection.ask({ operation: "release", name: driven.name });
+    return text;
+  }
+
+  /** Whether it was one to drive with. */
+  keyDown({ key, code }: KeyboardEvent): boolean {
+    if (!this.driven) return false;
+    if (key === "Escape") {
+      void this.console.run("release");
+      return true;
+    }
+    if (this.steerOf(key) === undefined) return false;
+    this.held.set(code, key);
+    return true;
+  }
+  keyUp({ code }: KeyboardEvent): void { this.held.delete(code); }
+
+  /** The inspector shows something else, or the same of another scene. */
+  show(): void {
+    const robot = this.selectedRobot();
+    const isDriven = robot !== undefined && robot === this.driven?.name;
+    this.button.hidden = robot === undefined;
+    this.button.textContent = this.isClaiming ? "asks for it …" : isDriven ? "let go" : "drive";
+    this.button.disabled = this.isClaiming;
+    this.button.classList.toggle("on", isDriven);
+    element("sliders").replaceChildren(...(isDriven ? this.sliders(this.driven!) : []));
+    this.showDriven();
+  }
+
+  private selectedRobot(): string | undefined {
+    const { selected, poses } = this.viewer;
+    const entity = selected === undefined ? undefined : poses?.scene.entities[selected];
+    return entity && entity.robot !== none ? entity.name : undefined;
+  }
+
+  private steerOf(key: string): Steer | undefined {
+    const line = this.commands.steeringOfKey(key) ?? this.commands.steeringOfKey(key.toLowerCase());
+    return line === undefined ? undefined : readSteer(line);
+  }
+
+  private async advance(): Promise<void> {
+    const { driven } = this;
+    if (!driven || this.isAsking) return;
+    const pad = padOf(navigator.getGamepads());
+    const steers = [...this.held.values()].map((key) => this.steerOf(key)).concat(pad && steerOfPad(pad));
+    const values = commandOf(driven.channels, driven.base, steers.filter((each) => each !== undefined));
+    const now = performance.now();
+    const isNews = values.some((value, i) => value !== this.sent[i]);
+    if (!isNews && now - this.sentAt < longestSilence) return;
+    this.showDriven(pad);
+    this.sent = values;
+    this.sentAt = now;
+    this.isAsking = true;
+    const { done, text } = await this.connection.ask({ operation: "drive", name: driven.name, numbers: values });
+    this.isAsking = false;
+    if (done || this.driven !== driven) return;
+    this.end();
+    this.console.say(text, "wrong");
+  }
+
+  private end(): void {
+    this.driven = undefined;
+    this.held.clear();
+    this.sent = [];
+    this.show();
+  }
+
+  private showDriven(pad = padOf(navigator.getGamepads())): void {
+    const line = element("driven");
+    line.hidden = !this.driven;
+    if (!this.driven) return;
+    const by = wheelsOf(this.driven.channels) ? "arrows or w a s d" : "sliders";
+    const text = [`drives ${this.driven.name}`, pad ? `${by}, or the left stick of ${pad.id}` : by, "Escape lets go"].join(" · ");
+    if (line.textContent !== text) line.textContent = text;
+  }
+
+  // All values but those of the two tracks or wheels.
+  private sliders(driven: Driven): HTMLElement[] {
+    const wheels = wheelsOf(driven.channels);
+    const owners = driven.channels.flatMap((channel) => Array.from({ length: channel.size }, () => channel));
+    return valueNames(driven.channels).flatMap((name, at) =>
+      at === wheels?.left || at === wheels?.right ? [] : [this.slider(driven, name, at, owners[at])]);
+  }
+
+  private slider(driven: Driven, name: string, at: number, { unit, lower, upper }: SceneChannel): HTMLElement {
+    const label = document.createElement("label");
+    const input = document.createElement("input");
+    const output = document.createElement("output");
+    const isBounded = Number.isFinite(lower) && Number.isFinite(upper);
+    Object.assign(input, { type: isBounded ? "range" : "number", min: String(lower), max: String(upper), step: "any" });
+    const say = (): void => { output.textContent = `${Number(driven.base[at].toFixed(3))}${unit === "1" ? "" : ` ${unit}`}`; };
+    input.value = String(driven.base[at]);
+    input.dataset.channel = name;
+    input.addEventListener("input", () => {
+      if (Number.isFinite(input.valueAsNumber)) driven.base[at] = input.valueAsNumber;
+      say();
+    });
+    say();
+    label.append(name, output, input);
+    return label;
+  }
+}

@@ -1,0 +1,192 @@
+import { Quaternion, Vector3 } from "three";
+import type { Command } from "./commands";
+import type { Connection, Wish } from "./connection";
+import type { ConsolePanel } from "./console";
+import { Ghost, originOf, standingHeight } from "./ghost";
+import { none, ShapeKind, type Scene } from "./messages";
+import type { Viewer } from "./viewer";
+
+const element = (id: string): HTMLElement => document.getElementById(id)!;
+
+interface Dragged { name: string; model: number; origin: number[]; heading: number; height: number; grabbed: [number, number] }
+
+/** Objects of a server by hand: add, drag, remove, switch. */
+export class Objects {
+  private readonly ghost = new Ghost();
+  private readonly card = element("adding");
+  private readonly models = element("adding-model") as HTMLSelectElement;
+  private readonly name = element("adding-name") as HTMLInputElement;
+  private dragged: Dragged | undefined;
+
+  constructor(private readonly viewer: Viewer, private readonly connection: Connection, private readonly console: ConsolePanel,
+    private readonly canvas: HTMLCanvasElement) {
+    viewer.stage.add(this.ghost.group);
+    this.models.addEventListener("change", () => this.suggestName());
+    element("adding-close").addEventListener("click", () => this.close());
+    element("remove").addEventListener("click", () => void this.remove());
+    element("light").addEventListener("click", () => void this.switchLight());
+    canvas.addEventListener("pointerleave", () => this.ghost.hide());
+  }
+
+  words(): Command[] {
+    return [{ name: "add", usage: "[MODEL]", help: "opens or closes the card by which a click adds an object", complete: () => this.modelNames(),
+      run: ([model]) => {
+        if (this.isAdding && model === undefined) this.close();
+        else this.open(model);
+        return "";
+      } }];
+  }
+
+  get isAdding(): boolean { return !this.card.hidden; }
+  close(): void {
+    this.card.hidden = true;
+    this.ghost.hide();
+  }
+
+  /** The scene or what is selected is another one. */
+  show(): void {
+    if (this.isAdding) this.offer(this.models.value);
+    const lamps = this.lampsOfSelected();
+    element("light").hidden = lamps.length === 0;
+    this.showLight();
+  }
+  showLight(): void {
+    const isOn = this.lampsOfSelected().some((lamp) => this.shines(lamp));
+    element("light").textContent = isOn ? "light off" : "light on";
+  }
+
+  // With the mouse. Each is told where it is in the picture.
+
+  /** Whether there is something to drag. */
+  grab(x: number, y: number): boolean {
+    const { viewer } = this;
+    const entity = viewer.pickAt(x, y);
+    if (entity === undefined) return false;
+    const { scene } = viewer.poses!;
+    const { name, model } = scene.entities[entity];
+    const [position, turn] = [new Vector3(), new Quaternion()];
+    viewer.poses!.read(viewer.poses!.placeOf(entity), position, turn);
+    const grabbed = viewer.placeAt(x, y, position.z);
+    if (!grabbed) return false;
+    const { place, heading } = originOf(scene, model, position, turn);
+    this.dragged = { name, model, origin: place, heading, height: position.z, grabbed };
+    return true;
+  }
+  get isDragging(): boolean { return this.dragged !== undefined; }
+
+  hover(x: number, y: number): void {
+    const scene = this.viewer.poses?.scene;
+    if (!scene) return;
+    if (this.dragged) {
+      const place = this.dragTo(x, y);
+      if (place) this.ghost.show(scene, this.dragged.model, place, this.dragged.heading);
+    } else if (this.isAdding) {
+      const place = this.standingPlace(scene, x, y);
+      if (place) this.ghost.show(scene, this.modelIndex(scene), place, 0);
+      else this.ghost.hide();
+    }
+  }
+
+  async drop(x: number, y: number): Promise<void> {
+    const { dragged } = this;
+    const numbers = dragged && this.dragTo(x, y);
+    this.dragged = undefined;
+    this.ghost.hide();
+    if (dragged && numbers) await this.ask({ operation: "move", name: dragged.name, numbers: [...numbers, dragged.heading] });
+  }
+
+  /** A click; false if it is for nobody here. */
+  place(x: number, y: number): boolean {
+    const scene = this.viewer.poses?.scene;
+    if (!this.isAdding || !scene) return false;
+    const numbers = this.standingPlace(scene, x, y);
+    if (numbers) void this.ask({ operation: "spawn", name: this.name.value.trim(), text: this.models.value, numbers });
+    return true;
+  }
+
+  // The card.
+
+  private open(model = this.models.value): void {
+    const names = this.modelNames();
+    if (names.length === 0) throw new Error("this world has no model but those of its robots and its ground");
+    if (model !== "" && !names.includes(model)) throw new Error(`there is no model '${model}' to add: there are ${names.join(", ")}`);
+    this.viewer.select(undefined);
+    this.card.hidden = false;
+    this.offer(model);
+  }
+
+  private offer(chosen: string): void {
+    const names = this.modelNames();
+    const isNew = names.length !== this.models.options.length || names.some((name, i) => name !== this.models.options[i].value);
+    if (isNew) this.models.replaceChildren(...names.map((name) => new Option(name, name)));
+    if (names.includes(chosen)) this.models.value = chosen;
+    this.suggestName();
+  }
+
+  // The first that nobody has, nor had in this run.
+  private suggestName(): void {
+    const taken = new Set(this.viewer.poses?.scene.entities.map(({ name }) => name));
+    const kept = this.name.value.trim();
+    if (kept !== "" && !taken.has(kept) && this.name.dataset.model === this.models.value) return;
+    let number = 1;
+    while (taken.has(`${this.models.value}_${number}`)) ++number;
+    this.name.value = `${this.models.value}_${number}`;
+    this.name.dataset.model = this.models.value;
+  }
+
+  // Robots cannot come while it runs, and there is one ground.
+  private modelNames(): string[] {
+    const scene = this.viewer.poses?.scene;
+    if (!scene) return [];
+    const ofRobots = new Set(scene.entities.filter(({ robot }) => robot !== none).map(({ model }) => model));
+    const isSolid = (model: number): boolean =>
+      scene.models[model].links.some(({ shapes }) => shapes.some(({ kind }) => kind !== ShapeKind.plane));
+    const names = scene.models.flatMap(({ name }, model) => (ofRobots.has(model) || !isSolid(model) ? [] : [name]));
+    return [...new Set(names)];
+  }
+
+  private modelIndex(scene: Scene): number { return scene.models.findIndex(({ name }) => name === this.models.value); }
+
+  private standingPlace(scene: Scene, x: number, y: number): number[] | undefined {
+    const model = this.modelIndex(scene);
+    const place = this.viewer.placeAt(x, y, 0);
+    return place && model >= 0 ? [...place, standingHeight(scene, model)] : undefined;
+  }
+
+  private dragTo(x: number, y: number): number[] | undefined {
+    const { origin, grabbed, height } = this.dragged!;
+    const place = this.viewer.placeAt(x, y, height);
+    return place && [origin[0] + place[0] - grabbed[0], origin[1] + place[1] - grabbed[1], origin[2]];
+  }
+
+  // What is selected.
+
+  private async remove(): Promise<void> {
+    const { selected, poses } = this.viewer;
+    this.canvas.focus();
+    if (selected === undefined) return;
+    const { name } = poses!.scene.entities[selected];
+    const isDone = await this.ask({ operation: "remove", name });
+    if (isDone && this.viewer.find(name) === this.viewer.selected) this.viewer.select(undefined);
+  }
+
+  private async switchLight(): Promise<void> {
+    const { selected, poses } = this.viewer;
+    this.canvas.focus();
+    if (selected === undefined) return;
+    const isOn = this.lampsOfSelected().some((lamp) => this.shines(lamp));
+    await this.ask({ operation: "light", name: poses!.scene.entities[selected].name, number: isOn ? 0 : 1 });
+  }
+
+  private lampsOfSelected(): number[] {
+    const { selected, poses } = this.viewer;
+    return selected === undefined ? [] : poses!.scene.lamps.flatMap(({ entity }, lamp) => (entity === selected ? [lamp] : []));
+  }
+  private shines(lamp: number): boolean { return (this.viewer.signals?.lamps[4 * lamp + 3] ?? 0) > 0; }
+
+  private async ask(wish: Wish): Promise<boolean> {
+    const { done, text } = await this.connection.ask(wish);
+    this.console.say(text, done ? "said" : "wrong");
+    return done;
+  }
+}

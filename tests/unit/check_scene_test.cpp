@@ -13,7 +13,7 @@ Scene scene_of_two() {
   shape.kind = static_cast<std::uint8_t>(ShapeKind::mesh);
   shape.mesh = 0;
   SceneModel model;
-  model.links = {{"body", {shape}}, {"arm", {}}};
+  model.links = {{"body", {}, {shape}}, {"arm", {}, {}}};
   scene.models = {model};
   scene.entities = {{"one", 0}, {"two", 0}};
   return scene;

@@ -53,6 +53,21 @@ TEST(SceneOfAWorld, TellsWhereRaysBegin) {
   EXPECT_NE(channel, sbot.observation.end()) << ring->channel;
 }
 
+TEST(SceneOfAWorld, TellsWhereLinksRestAndWhatCommandsBeginWith) {
+  const description::Experiment experiment = shipped("obstacle_avoidance");
+  const Simulation simulation(experiment, 1);
+  const Scene scene = SceneMaker(simulation, 1).scene();
+  const std::size_t model = scene.entities[simulation.description().robots[0]].model;
+  const description::Model& described = simulation.description().models[model];
+  for (std::size_t link = 0; link < described.links.size(); ++link)
+    EXPECT_FLOAT_EQ(scene.models[model].links[link].pose[2],
+                    static_cast<float>(described.links[link].X_ML.position.z()));
+  const auto& channels = simulation.kinds()[simulation.kind_of(0)].command;
+  ASSERT_EQ(scene.models[model].command.size(), channels.size());
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    EXPECT_EQ(scene.models[model].command[i].neutral, channels[i].neutral) << channels[i].name;
+}
+
 TEST(SceneOfAWorld, AHeightMapIsAMeshAsHighAsItsGround) {
   const description::Experiment experiment = shipped("rough_terrain");
   const Simulation simulation(experiment, 1);

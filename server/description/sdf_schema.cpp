@@ -20,7 +20,7 @@ bool is_vector_type(std::string_view type) {
 
 // With attributes and value, but no definitions of children.
 sdf::ElementPtr bare_copy(const sdf::ElementPtr& definition) {
-  const sdf::ElementPtr copy = std::make_shared<sdf::Element>();
+  sdf::ElementPtr copy = std::make_shared<sdf::Element>();
   copy->SetName(definition->GetName());
   copy->SetRequired(definition->GetRequired());
   copy->SetCopyChildren(definition->GetCopyChildren());
@@ -39,7 +39,7 @@ sdf::ElementPtr bare_copy(const sdf::ElementPtr& definition) {
 template <class ChildDefinition>
 sdf::ElementPtr copy_with(const sdf::ElementPtr& definition, ChildDefinition child_definition) {
   if (definition->GetElementDescriptionCount() == 0) return definition;
-  const sdf::ElementPtr copy = bare_copy(definition);
+  sdf::ElementPtr copy = bare_copy(definition);
   for (unsigned i = 0; i < definition->GetElementDescriptionCount(); ++i)
     copy->AddElementDescription(child_definition(definition->GetElementDescription(i)));
   return copy;

@@ -10,7 +10,6 @@ namespace cohort::testing {
 namespace {
 
 using wire::Operation;
-using wire::ResultCode;
 
 TEST(ControlAtTickBoundariesOnly, AResetGivesTheBitsOfTheFirstRunAndAnotherSeedThoseOfAnother) {
   const FieldOfRobots field(4, 5.0);

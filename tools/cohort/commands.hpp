@@ -221,11 +221,11 @@ struct ViewCommand {
   std::filesystem::path secure_control{};  ///< the same, of one that may control
   std::filesystem::path secure_drive{};    ///< and of one that may drive; empty: the one above
   bool may_control = false;
-  std::string network = "127.0.0.1";  ///< address of the interface to serve on
+  std::string network = "127.0.0.1";    ///< address of the interface to serve on
   std::optional<std::uint16_t> port{};  ///< 0: any free one; none: 8080, or any free one where that is taken
-  std::string token{};                 ///< that browsers have to give; empty: one is made where strangers can connect
-  std::vector<std::string> origins{};  ///< of other pages that may connect
-  unsigned threads = 0;                ///< that replay a recording; 0: one for each core
+  std::string token{};                  ///< that browsers have to give; empty: one is made where strangers can connect
+  std::vector<std::string> origins{};   ///< of other pages that may connect
+  unsigned threads = 0;                 ///< that replay a recording; 0: one for each core
 };
 int view(const ViewCommand& command, Log& log, const std::atomic<bool>& stop);
 

@@ -63,7 +63,6 @@ std::string Driver::why() const {
 void Driver::run(const std::shared_future<void>& after) {
   if (after.valid()) after.wait();
   const std::string why = drive();
-  is_driving_ = false;
   {
     const std::lock_guard lock(mutex_);
     why_ = why;
@@ -76,7 +75,7 @@ void Driver::run(const std::shared_future<void>& after) {
 std::string Driver::drive() {
   const std::string robot = options_.robots.front();
   const auto begun = [this, robot] {
-    is_driving_ = true;
+    has_begun_ = true;
     answer({true, "drives " + robot});
   };
   try {
@@ -101,7 +100,7 @@ void Driver::tell(Severity severity, const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (leaves_) return;
   told_ = text;
-  if (is_driving_) return;
+  if (has_begun_) return;
   leaves_ = true;
   if (severity == Severity::warning)
     told_ = options_.robots.front() + " was not given (" + text +

@@ -28,7 +28,8 @@ class Driver {
   Driver& operator=(const Driver&) = delete;
 
   HeldCommand& command() { return command_; }
-  bool is_driving() const { return is_driving_; }
+  /// The robot was given to it. It may have ended since.
+  bool has_begun() const { return has_begun_; }
   /// Does not wait for it. Any thread.
   void leave() { leaves_ = true; }
   bool has_ended() const;
@@ -45,7 +46,7 @@ class Driver {
 
   ClientOptions options_;
   HeldCommand command_;
-  std::atomic<bool> is_driving_{false};
+  std::atomic<bool> has_begun_{false};
   std::atomic<bool> leaves_{false};
   std::promise<void> end_;
   std::shared_future<void> ended_{end_.get_future()};

@@ -35,9 +35,11 @@ void Drivers::drive(const Wish& wish, std::function<void(const Answer&)> answer)
         told = {false, "one view drives at most " + std::to_string(most) + " robots"};
       else
         return claim(wish, std::move(answer));
+    } else if (found->second.driver->has_ended()) {
+      told = {false, found->second.driver->why()};
+      driven_.erase(found);
     } else {
       told = tell(wish, found->second);
-      if (found->second.driver->has_ended()) driven_.erase(found);
     }
   }
   answer(told);
@@ -46,14 +48,13 @@ void Drivers::drive(const Wish& wish, std::function<void(const Answer&)> answer)
 Answer Drivers::tell(const Wish& wish, Driven& driven) {
   const auto now = HeldCommand::Clock::now();
   Driver& driver = *driven.driver;
-  if (driver.has_ended()) return {false, driver.why()};
   if (driven.visitor != wish.visitor) {
-    const bool may_take = wish.numbers.empty() && driver.is_driving();
+    const bool may_take = wish.numbers.empty() && driver.has_begun();
     if (!may_take || driver.command().silence(now) < longest_silence)
       return {false, "another page drives " + wish.name};
     driven.visitor = wish.visitor;
   }
-  if (!driver.is_driving()) return {false, "it is still asked for"};
+  if (!driver.has_begun()) return {false, "it is still asked for"};
   try {
     driver.command().give(wish.numbers, now);
   } catch (const std::invalid_argument& error) {

@@ -230,6 +230,7 @@ async function drivesFirst(page) {
 async function handlesObjects(page) {
   await drawCoarsely(page);
   await run(page, "home; top; add bar");
+  await run(page, "move others/driven -4 -4"); // or it comes and pushes what is put down
   assert.deepEqual(await page.locator("#adding-model option").allTextContents(), ["lamp_post", "bar"]);
   assert.equal(await page.locator("#adding-name").inputValue(), "bar_1");
   const ghost = () => page.evaluate(() => {

@@ -119,9 +119,11 @@ addEventListener("keyup", (event) => {
 addEventListener("blur", () => viewer.cameras.held.clear());
 
 let pressed = { x: 0, y: 0 };
-canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y, shiftKey }) => {
+canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y, shiftKey, pointerId }) => {
   pressed = { x, y };
-  viewer.cameras.controls.enabled = !(shiftKey && objects.grab(x, y)) && viewer.cameras.mode !== "eye";
+  const isGrabbed = shiftKey && objects.grab(x, y);
+  if (isGrabbed) canvas.setPointerCapture(pointerId); // it is let go also over a card
+  viewer.cameras.controls.enabled = !isGrabbed && viewer.cameras.mode !== "eye";
 }, { capture: true });
 canvas.addEventListener("pointermove", ({ clientX: x, clientY: y }) => objects.hover(x, y));
 canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {

@@ -17,7 +17,7 @@
 namespace cohort::description {
 namespace {
 
-// An element costs libsdformat up to some 100 kB, since each carries the schema of all that it may hold.
+// An element costs libsdformat some 60 kB, and up to 100, since each carries the schema of what it may hold.
 constexpr std::size_t most_elements = 50'000;
 
 // Of an element in an <include>: what is wrong with it, or nothing.

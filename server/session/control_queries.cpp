@@ -67,6 +67,11 @@ class Filter {
   std::unique_ptr<regex_t> compiled_;  // null: everything fits
 };
 
+void put(std::span<const std::byte> bytes, Reply& reply) {
+  const auto* const begin = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  reply.data.assign(begin, begin + bytes.size());
+}
+
 wire::Vector3 on_wire(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
@@ -163,8 +168,7 @@ void Control::fill_data(Reply& reply, const Request& request) const {
   }
   reply.size = part->size;
   reply.offset = request.offset;
-  const auto* const begin = reinterpret_cast<const std::uint8_t*>(part->bytes.data());
-  reply.data.assign(begin, begin + part->bytes.size());
+  put(part->bytes, reply);
 }
 
 void Control::fill_recording(Reply& reply, const Request& request) {
@@ -176,8 +180,7 @@ void Control::fill_recording(Reply& reply, const Request& request) {
   }
   reply.size = part->bytes.size.value_or(0);
   reply.offset = request.offset;
-  const auto* const begin = reinterpret_cast<const std::uint8_t*>(part->bytes.bytes.data());
-  reply.data.assign(begin, begin + part->bytes.bytes.size());
+  put(part->bytes.bytes, reply);
   reply.error_message = part->problem;
 }
 
@@ -201,9 +204,7 @@ void Control::fill_history(Reply& reply, const Request& request) const {
   history.events.reserve(events.size());
   for (const Event& event : events)
     history.events.push_back({event.tick, event.last_tick, event.count, event.kind, event.text});
-  const recording::Bytes bytes = recording::encode(history);
-  const auto* const begin = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  reply.data.assign(begin, begin + bytes.size());
+  put(recording::encode(history), reply);
   reply.offset = revision;
   reply.size = book.events().revision();
 }

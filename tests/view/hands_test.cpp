@@ -9,12 +9,10 @@ namespace {
 using testing::Process;
 
 // Robots for people, one that a controller drives, and things.
-class Hands : public Viewing {
+class Hands : public InABrowser {
  protected:
   void SetUp() override {
-    Viewing::SetUp();
-    if (!has_browser() && !IsSkipped())
-      GTEST_SKIP() << "there is no chromium: tools/install-packages tools/packages-browser.txt";
+    InABrowser::SetUp();
     testing::write_file(scratch / "world.yaml", R"(world:
   name: playground
   gravity: [0, 0, -9.81]

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "idl/lent.hpp"
+#include "idl/loans.hpp"
 
 namespace cohort::wire {
 namespace {
@@ -14,7 +14,7 @@ std::vector<cohort_v1_Channel> encode(const std::vector<Channel>& channels) {
   result.reserve(channels.size());
   for (const Channel& channel : channels) {
     result.push_back(
-        {lent(channel.name), lent(channel.unit), channel.size, channel.lower, channel.upper, channel.neutral});
+        {loaned(channel.name), loaned(channel.unit), channel.size, channel.lower, channel.upper, channel.neutral});
   }
   return result;
 }
@@ -53,13 +53,13 @@ const Topic Codec<Report>::topic = {
     .name = "cohort/v1/report", .type = &cohort_v1_Report_desc, .transient_local = true, .depth = 16};
 
 Codec<Join>::Outgoing::Outgoing(const Join& message) {
-  for (const std::string& robot : message.robots) robots.push_back(lent(robot));
+  for (const std::string& robot : message.robots) robots.push_back(loaned(robot));
   sample.client = message.client;
   sample.minor = message.minor;
-  sample.controller = lent(message.controller);
-  sample.host = lent(message.host);
+  sample.controller = loaned(message.controller);
+  sample.host = loaned(message.host);
   sample.process = message.process;
-  lend(robots, sample.robots);
+  loan(robots, sample.robots);
 }
 
 Join Codec<Join>::decode(const Sample& sample) {
@@ -80,27 +80,27 @@ Codec<Admit>::Outgoing::Outgoing(const Admit& message) {
     auto& team_values = values.emplace_back();
     for (const Parameter& parameter : team.parameters) {
       auto& texts = team_values.emplace_back();
-      for (const std::string& value : parameter.values) texts.push_back(lent(value));
-      team_parameters.push_back({lent(parameter.name), {}});
-      lend(texts, team_parameters.back().values);
+      for (const std::string& value : parameter.values) texts.push_back(loaned(value));
+      team_parameters.push_back({loaned(parameter.name), {}});
+      loan(texts, team_parameters.back().values);
     }
-    teams.push_back({lent(team.name), lent(team.controller), {}});
-    lend(team_parameters, teams.back().parameters);
+    teams.push_back({loaned(team.name), loaned(team.controller), {}});
+    loan(team_parameters, teams.back().parameters);
   }
   for (const AdmittedRobot& robot : message.robots) {
-    robots.push_back({robot.robot, lent(robot.name), robot.team, robot.description, robot.seed, robot.period,
+    robots.push_back({robot.robot, loaned(robot.name), robot.team, robot.description, robot.seed, robot.period,
                       robot.phase, robot.delay, static_cast<std::uint32_t>(robot.mode)});
   }
   sample.client = message.client;
   sample.status = static_cast<std::uint32_t>(message.status);
-  sample.reason = lent(message.reason);
+  sample.reason = loaned(message.reason);
   sample.run = message.run;
   sample.epoch = message.epoch;
   sample.start_reason = static_cast<std::uint32_t>(message.start_reason);
   sample.tick = message.tick;
   sample.step_ns = message.step_ns;
-  lend(teams, sample.teams);
-  lend(robots, sample.robots);
+  loan(teams, sample.teams);
+  loan(robots, sample.robots);
 }
 
 Admit Codec<Admit>::decode(const Sample& sample) {
@@ -128,9 +128,9 @@ Admit Codec<Admit>::decode(const Sample& sample) {
 Codec<RobotDescription>::Outgoing::Outgoing(const RobotDescription& message)
     : observation(encode(message.observation)), command(encode(message.command)) {
   sample.description = message.description;
-  sample.model = lent(message.model);
-  lend(observation, sample.observation);
-  lend(command, sample.command);
+  sample.model = loaned(message.model);
+  loan(observation, sample.observation);
+  loan(command, sample.command);
 }
 
 RobotDescription Codec<RobotDescription>::decode(const Sample& sample) {
@@ -145,8 +145,8 @@ Codec<Observation>::Outgoing::Outgoing(const Observation& message) {
   sample.epoch = message.epoch;
   sample.tick = message.tick;
   sample.time_ns = message.time_ns;
-  lend(message.robots, sample.robots);
-  lend(message.values, sample.values);
+  loan(message.robots, sample.robots);
+  loan(message.values, sample.values);
 }
 
 Observation Codec<Observation>::decode(const Sample& sample) {
@@ -160,8 +160,8 @@ Codec<Command>::Outgoing::Outgoing(const Command& message) {
   sample.resent = message.resent;
   sample.epoch = message.epoch;
   sample.tick = message.tick;
-  lend(message.robots, sample.robots);
-  lend(message.values, sample.values);
+  loan(message.robots, sample.robots);
+  loan(message.values, sample.values);
 }
 
 Command Codec<Command>::decode(const Sample& sample) {
@@ -174,8 +174,8 @@ Codec<WorldState>::Outgoing::Outgoing(const WorldState& message) {
   sample.tick = message.tick;
   sample.time_ns = message.time_ns;
   sample.state_hash = message.state_hash;
-  lend(message.robots, sample.robots);
-  lend(message.poses, sample.poses);
+  loan(message.robots, sample.robots);
+  loan(message.poses, sample.poses);
 }
 
 WorldState Codec<WorldState>::decode(const Sample& sample) {
@@ -185,7 +185,7 @@ WorldState Codec<WorldState>::decode(const Sample& sample) {
 Codec<SceneDescription>::Outgoing::Outgoing(const SceneDescription& message) {
   sample.run = message.run;
   sample.revision = message.revision;
-  lend(message.scene, sample.scene);
+  loan(message.scene, sample.scene);
 }
 
 SceneDescription Codec<SceneDescription>::decode(const Sample& sample) {
@@ -196,10 +196,10 @@ Codec<SceneUpdate>::Outgoing::Outgoing(const SceneUpdate& message) {
   sample.run = message.run;
   sample.revision = message.revision;
   sample.tick = message.tick;
-  lend(message.frame, sample.frame);
-  lend(message.signals, sample.signals);
-  lend(message.contacts, sample.contacts);
-  lend(message.robots, sample.robots);
+  loan(message.frame, sample.frame);
+  loan(message.signals, sample.signals);
+  loan(message.contacts, sample.contacts);
+  loan(message.robots, sample.robots);
 }
 
 SceneUpdate Codec<SceneUpdate>::decode(const Sample& sample) {
@@ -217,8 +217,8 @@ Codec<Report>::Outgoing::Outgoing(const Report& message) {
   sample.run = message.run;
   sample.kind = static_cast<std::uint32_t>(message.kind);
   sample.tick = message.tick;
-  sample.reason = lent(message.reason);
-  sample.text = lent(message.text);
+  sample.reason = loaned(message.reason);
+  sample.text = loaned(message.text);
 }
 
 Report Codec<Report>::decode(const Sample& sample) {

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <vector>
 
-#include "cohort.h"
-#include "idl/control.hpp"
+#include "idl/cohort.h"
+#include "idl/control_messages.hpp"
 #include "idl/dds.hpp"
 #include "idl/messages.hpp"
 

@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "idl/codec.hpp"
-#include "idl/lent.hpp"
+#include "idl/loans.hpp"
 
 namespace cohort::wire {
 namespace {
@@ -57,15 +57,15 @@ std::vector<Element> to_vector(const Sequence& sequence) {
 std::vector<char*> lent_all(const std::vector<std::string>& texts) {
   std::vector<char*> result;
   result.reserve(texts.size());
-  for (const std::string& text : texts) result.push_back(lent(text));
+  for (const std::string& text : texts) result.push_back(loaned(text));
   return result;
 }
 
 cohort_v1_ControllerStatus encode(const ControllerStatus& status) {
   cohort_v1_ControllerStatus sample{};
-  sample.label = lent(status.label);
+  sample.label = loaned(status.label);
   sample.client = status.client;
-  lend(status.robots, sample.robots);
+  loan(status.robots, sample.robots);
   sample.alive = status.alive;
   sample.awaited = status.awaited;
   sample.awaited_ns = status.awaited_ns;
@@ -98,7 +98,7 @@ ControllerStatus decode(const cohort_v1_ControllerStatus& sample) {
 // But for its sequences.
 cohort_v1_SimulationStatus encode(const SimulationStatus& status) {
   cohort_v1_SimulationStatus sample{};
-  sample.experiment = lent(status.experiment);
+  sample.experiment = loaned(status.experiment);
   sample.seed = status.seed;
   sample.started = status.started;
   sample.step_ns = status.step_ns;
@@ -168,18 +168,18 @@ Codec<Request>::Outgoing::Outgoing(const Request& message) {
   sample.minor = message.minor;
   sample.number = message.number;
   sample.operation = static_cast<std::uint32_t>(message.operation);
-  sample.label = lent(message.label);
+  sample.label = loaned(message.label);
   sample.state = static_cast<std::uint32_t>(message.state);
   sample.scope = message.scope;
   sample.set_seed = message.set_seed;
   sample.seed = message.seed;
   sample.steps = message.steps;
   sample.speed = message.speed;
-  sample.filter = lent(message.filter);
-  sample.entity = lent(message.entity);
+  sample.filter = loaned(message.filter);
+  sample.entity = loaned(message.entity);
   sample.allow_renaming = message.allow_renaming;
-  sample.uri = lent(message.uri);
-  sample.resource_string = lent(message.resource_string);
+  sample.uri = loaned(message.uri);
+  sample.resource_string = loaned(message.resource_string);
   sample.set_pose = message.set_pose;
   sample.pose = encode(message.pose);
   sample.set_twist = message.set_twist;
@@ -189,13 +189,13 @@ Codec<Request>::Outgoing::Outgoing(const Request& message) {
   sample.intensity = message.intensity;
   sample.set_color = message.set_color;
   sample.color = encode(message.color);
-  sample.link = lent(message.link);
+  sample.link = loaned(message.link);
   sample.force = encode(message.force);
   sample.torque = encode(message.torque);
   sample.duration_ns = message.duration_ns;
   sample.size = message.size;
   sample.offset = message.offset;
-  lend(message.data, sample.data);
+  loan(message.data, sample.data);
 }
 
 Request Codec<Request>::decode(const Sample& sample) {
@@ -239,34 +239,34 @@ Codec<Reply>::Outgoing::Outgoing(const Reply& message)
     : spawn_formats(lent_all(message.spawn_formats)), entities(lent_all(message.entities)) {
   states.reserve(message.states.size());
   for (const EntityState& state : message.states)
-    states.push_back({lent(state.entity), encode(state.pose), encode(state.twist)});
+    states.push_back({loaned(state.entity), encode(state.pose), encode(state.twist)});
   for (const SimulationStatus& each : message.status) {
     auto& names_of_awaited = awaited.emplace_back(lent_all(each.awaited));
     auto& its_controllers = controllers.emplace_back();
     its_controllers.reserve(each.controllers.size());
     for (const ControllerStatus& controller : each.controllers) its_controllers.push_back(encode(controller));
     cohort_v1_SimulationStatus& encoded = status.emplace_back(encode(each));
-    lend(names_of_awaited, encoded.awaited);
-    lend(its_controllers, encoded.controllers);
+    loan(names_of_awaited, encoded.awaited);
+    loan(its_controllers, encoded.controllers);
   }
   sample.client = message.client;
   sample.number = message.number;
   sample.operation = static_cast<std::uint32_t>(message.operation);
   sample.result = static_cast<std::uint32_t>(message.result);
-  sample.error_message = lent(message.error_message);
+  sample.error_message = loaned(message.error_message);
   sample.state = static_cast<std::uint32_t>(message.state);
   sample.run = message.run;
   sample.tick = message.tick;
   sample.time_ns = message.time_ns;
-  sample.entity = lent(message.entity);
-  lend(message.features, sample.features);
-  lend(spawn_formats, sample.spawn_formats);
-  lend(entities, sample.entities);
-  lend(states, sample.states);
-  lend(status, sample.status);
+  sample.entity = loaned(message.entity);
+  loan(message.features, sample.features);
+  loan(spawn_formats, sample.spawn_formats);
+  loan(entities, sample.entities);
+  loan(states, sample.states);
+  loan(status, sample.status);
   sample.size = message.size;
   sample.offset = message.offset;
-  lend(message.data, sample.data);
+  loan(message.data, sample.data);
 }
 
 Reply Codec<Reply>::decode(const Sample& sample) {

@@ -1,7 +1,7 @@
 #include "server/actuation/actuator.hpp"
 
 #include "server/actuation/effort_motor.hpp"
-#include "server/actuation/gripper.hpp"
+#include "server/actuation/gripper_motor.hpp"
 #include "server/actuation/led_ring.hpp"
 #include "server/actuation/loudspeaker.hpp"
 #include "server/actuation/message_sender.hpp"
@@ -42,7 +42,7 @@ struct Make {
     return std::make_unique<Loudspeaker>(d, device, mount);
   }
   std::unique_ptr<Actuator> operator()(const description::Gripper& d) const {
-    return std::make_unique<Gripper>(d, device, mount);
+    return std::make_unique<GripperMotor>(d, device, mount);
   }
   std::unique_ptr<Actuator> operator()(const description::RangeAndBearing& d) const {
     return std::make_unique<MessageSender>(d, device, mount);

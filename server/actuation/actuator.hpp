@@ -10,7 +10,7 @@
 #include "server/description/model.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/gripping/grippers.hpp"
-#include "server/physics/world.hpp"
+#include "server/physics/world/physics_world.hpp"
 
 namespace cohort::actuation {
 

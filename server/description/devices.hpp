@@ -10,7 +10,7 @@
 
 #include "server/core/pose.hpp"
 #include "server/description/readout.hpp"
-#include "server/description/sample_file.hpp"
+#include "server/description/samples.hpp"
 #include "server/description/sdf_sensors.hpp"
 
 /// What robots can do and measure, as plain data. Joints, links and devices are indices into those of the model.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/core/pose.hpp"
-#include "server/description/emitters.hpp"
+#include "server/description/emitter.hpp"
 
 /// What an experiment says of the course of a run, as plain data. Objects are indices into World::instances; times are
 /// simulated, and what is to happen at one happens at the first boundary that is not before it.

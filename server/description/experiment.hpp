@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "server/description/event.hpp"
-#include "server/description/input_file.hpp"
+#include "server/description/kept_files.hpp"
 #include "server/description/world.hpp"
 
 namespace cohort::description {
@@ -82,20 +82,5 @@ struct Experiment {
   Recorded recorded;
   std::shared_ptr<const KeptFiles> inputs{};  ///< what it was read from; null if it was made in a program
 };
-
-/// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's;
-/// `last_model_folders` are those of `read_world`. Throws InputError with every problem found.
-Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
-                           std::optional<std::chrono::nanoseconds> duration = {},
-                           const std::vector<std::filesystem::path>& last_model_folders = {});
-
-/// Reads an experiment again from what was kept when it was read first, on whatever machine and without looking at any
-/// file: the same experiment bit for bit, if `seed` and `duration` are those that it had.
-Experiment read_experiment(std::shared_ptr<const KeptFiles> kept, std::optional<std::uint64_t> seed,
-                           std::optional<std::chrono::nanoseconds> duration);
-
-/// What a recording of the experiment is to hold, in YAML, as the experiment itself would say it after its key `record`.
-/// What is not said is as the experiment has it. Throws InputError.
-Recorded read_recorded(const std::string& text, const Experiment& experiment);
 
 }  // namespace cohort::description

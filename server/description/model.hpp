@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/description/devices.hpp"
-#include "server/description/emitters.hpp"
+#include "server/description/emitter.hpp"
 #include "server/description/shape.hpp"
 
 /// A model as plain data, read once and never changed. SI units; radians; frames as in SDFormat: M the model, L a link,

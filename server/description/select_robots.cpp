@@ -6,7 +6,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "server/description/text.hpp"
+#include "server/core/text.hpp"
 
 namespace cohort::description {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "server/description/input_error.hpp"
-#include "server/description/input_file.hpp"
+#include "server/description/kept_files.hpp"
 #include "server/description/model.hpp"
 
 namespace cohort::description {
@@ -22,14 +22,6 @@ struct Instance {
   std::size_t model = 0;  ///< index into World::models
   Pose X_WM;
   bool is_present = true;  ///< from the beginning; otherwise an event of the experiment brings it
-};
-
-/// An object that an event of an experiment brings into the world.
-struct LaterObject {
-  std::string uri;  ///< of its model
-  std::string name;
-  Pose X_WM;
-  Problem where;  ///< of the event, without a message
 };
 
 /// What is simulated of a model (docs/fidelity.md).
@@ -103,29 +95,5 @@ struct World {
   const Instance& robot(std::uint32_t id) const { return instances[robots[id]]; }
   const Model& robot_model(std::uint32_t id) const { return models[robot(id).model]; }
 };
-
-/// Reads a world, in SDF or YAML, with libsdformat and expands its includes and, by `seed`, its `cohort:population`
-/// elements. The instances are the models and includes in document order, then the populations in theirs.
-/// `model://NAME` is looked for in the folders of the environment variable COHORT_MODEL_PATH, in `robots` and `objects`
-/// in the folder of the file and in its parents, four levels up, and in `last_model_folders`; other URIs are paths
-/// relative to the file. docs/worlds.md has the details. `later`: instances that are not present at first; they come
-/// last. Throws InputError with every problem found. Callable from any thread; calls wait for each other.
-World read_world(const std::filesystem::path& file, std::uint64_t seed,
-                 const std::vector<std::filesystem::path>& last_model_folders = {},
-                 const std::vector<LaterObject>& later = {});
-
-/// The same from `input`, which goes on keeping what was read.
-World read_world(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
-                 const std::vector<std::filesystem::path>& last_model_folders = {},
-                 const std::vector<LaterObject>& later = {});
-
-/// The same; a file with a model alone is a world with nothing but this model, at the origin.
-World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
-                          const std::vector<std::filesystem::path>& last_model_folders = {});
-
-/// Adds to `world` the model that a text in SDF, URDF or YAML describes, and the materials that it names. Returns its
-/// index. What the text includes or names, such as a mesh, has to be in `inputs`, from which `world` was read; null is
-/// nothing. Throws InputError with every problem found; `world` is then as it was.
-std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world);
 
 }  // namespace cohort::description

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "server/physics/state_visitors.hpp"
+#include "server/core/state_visitors.hpp"
 
 namespace cohort::emission {
 namespace {
@@ -226,7 +226,7 @@ std::size_t Emitters::emitter_count() const {
   return lamps_.size() + tones_.size() + markers_.size() + climate_sources_.size() + beacons_.size();
 }
 
-void Emitters::hash(StateHash& hash) const { visit_state(*this, physics::StateHasher{hash}); }
+void Emitters::hash(StateHash& hash) const { visit_state(*this, StateHasher{hash}); }
 
 void Emitters::save(SnapshotWriter& writer) const {
   writer.add_count(added_.size());
@@ -235,7 +235,7 @@ void Emitters::save(SnapshotWriter& writer) const {
     writer.add(model);
   }
   writer.add_count(emitter_count());
-  visit_state(*this, physics::StateSaver{writer});
+  visit_state(*this, StateSaver{writer});
 }
 
 void Emitters::restore(SnapshotReader& reader) {
@@ -249,7 +249,7 @@ void Emitters::restore(SnapshotReader& reader) {
     add_body(body, model);
   }
   reader.expect_count(emitter_count(), "emitters");
-  visit_state(*this, physics::StateRestorer{reader});
+  visit_state(*this, StateRestorer{reader});
 }
 
 }  // namespace cohort::emission

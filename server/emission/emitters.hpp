@@ -10,7 +10,7 @@
 #include "server/core/worker_pool.hpp"
 #include "server/description/world.hpp"
 #include "server/geometry/corner_grid.hpp"
-#include "server/physics/world.hpp"
+#include "server/physics/world/physics_world.hpp"
 
 namespace cohort::emission {
 

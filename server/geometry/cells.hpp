@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "server/core/floor.hpp"
+#include "server/core/integer_floor.hpp"
 #include "server/geometry/shapes.hpp"
 
 namespace cohort::geometry {
@@ -25,7 +25,7 @@ class Cells {
   double size() const { return edge_; }  ///< [m]
 
   /// Of the column or row that a coordinate is in.
-  std::int64_t index_of(double coordinate) const { return integer_below(coordinate * inverse_); }
+  std::int64_t index_of(double coordinate) const { return integer_floor(coordinate * inverse_); }
 
   /// Chooses the number of buckets for so many items, and returns it. Different cells may share a bucket.
   std::size_t choose_buckets(std::size_t items) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "server/core/floor.hpp"
+#include "server/core/integer_floor.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -75,7 +75,7 @@ class Walk {
                                  static_cast<std::int64_t>(grid_.rows) - 2};
     for (int axis = 0; axis < 2; ++axis)
       cell_[axis] =
-          std::clamp(integer_below((point[axis] + half_[axis]) / grid_.spacing[axis]), std::int64_t{0}, most[axis]);
+          std::clamp(integer_floor((point[axis] + half_[axis]) / grid_.spacing[axis]), std::int64_t{0}, most[axis]);
   }
 
   // Where the ray reaches the next line of the grid across this axis.

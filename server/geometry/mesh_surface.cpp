@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "server/description/convex_hull.hpp"
+#include "server/geometry/convex_hull.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -110,7 +110,7 @@ struct MeshSurface::Crossing {
 
 MeshSurface::MeshSurface(const description::Mesh& mesh) {
   if (mesh.convex)
-    make_half_spaces(description::convex_hull(mesh.triangles->vertices));
+    make_half_spaces(geometry::convex_hull(mesh.triangles->vertices));
   else
     make_tree(*mesh.triangles);
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "server/description/footprint.hpp"
+#include "server/geometry/footprint.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -13,7 +13,7 @@ using description::Box;
 using description::Capsule;
 using description::Cylinder;
 using description::Ellipsoid;
-using description::Footprint;
+using geometry::Footprint;
 using description::Heightmap;
 using description::Mesh;
 using description::Plane;
@@ -64,7 +64,7 @@ struct Circumscribe {
   double lean_of_axis() const { return (X_WC.orientation * Vector3d::UnitZ()).head<2>().norm(); }
 
   Outline of_footprint(const Shape& shape) const {
-    const Footprint footprint = *description::footprint_of(shape, X_WC);
+    const Footprint footprint = *geometry::footprint_of(shape, X_WC);
     if (footprint.half.maxCoeff() <= most_lean * footprint.radius)
       return circle(footprint.radius + footprint.half.norm());
     return rectangle(footprint.centre, footprint.axis, footprint.half.array() + footprint.radius);

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "server/core/floor.hpp"
+#include "server/core/integer_floor.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -189,8 +189,8 @@ std::optional<Panorama::Window> Panorama::window_of(const Scene& scene, std::uin
   const auto count = static_cast<std::int64_t>(columns());
   const double a_radian = static_cast<double>(count) / (2.0 * pi);
   // The least column that is not before the first bearing, and the greatest that is not beyond the last.
-  const std::int64_t first = -integer_below(-(extent.first_bearing - slack) * a_radian);
-  const std::int64_t last = integer_below((extent.last_bearing + slack) * a_radian);
+  const std::int64_t first = -integer_floor(-(extent.first_bearing - slack) * a_radian);
+  const std::int64_t last = integer_floor((extent.last_bearing + slack) * a_radian);
   if (last < first) return std::nullopt;
   window.first_column = static_cast<std::size_t>((first % count + count) % count);
   window.columns = static_cast<std::size_t>(std::min(last - first + 1, count));

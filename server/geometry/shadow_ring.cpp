@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "server/core/floor.hpp"
+#include "server/core/integer_floor.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -64,8 +64,8 @@ template <class Visit>
 void ShadowRing::for_each_between(double first_bearing, double last_bearing, Visit&& visit) const {
   const auto count = static_cast<std::int64_t>(size());
   const double a_radian = static_cast<double>(count) / (2.0 * std::numbers::pi);
-  const std::int64_t first = integer_below(first_bearing * a_radian) - 1;
-  const std::int64_t last = std::min(integer_below(last_bearing * a_radian) + 2, first + count - 1);
+  const std::int64_t first = integer_floor(first_bearing * a_radian) - 1;
+  const std::int64_t last = std::min(integer_floor(last_bearing * a_radian) + 2, first + count - 1);
   std::int64_t k = first % count;
   if (k < 0) k += count;
   for (std::int64_t i = first; i <= last; ++i) {

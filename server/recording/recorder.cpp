@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "server/recording/disk_file.hpp"
+#include "server/recording/mcap/disk_file.hpp"
 #include "server/recording/facts.hpp"
 
 namespace cohort::recording {

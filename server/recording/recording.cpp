@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "server/recording/mcap_error.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/recording/mcap/mcap_error.hpp"
 
 namespace cohort::recording {
 namespace {
@@ -98,7 +99,7 @@ std::string Recording::end() const {
 }
 
 description::Experiment Recording::experiment(const World& world) const {
-  return description::read_experiment(inputs_, world.begins.seed, std::chrono::nanoseconds(world.begins.duration_ns));
+  return parsing::read_experiment(inputs_, world.begins.seed, std::chrono::nanoseconds(world.begins.duration_ns));
 }
 
 TickStream Recording::ticks(std::chrono::nanoseconds from) const { return {reader_, file_, from}; }

@@ -7,7 +7,7 @@
 #include "server/core/worker_pool.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/geometry/sight_lines.hpp"
-#include "server/physics/world.hpp"
+#include "server/physics/world/physics_world.hpp"
 
 namespace cohort::sensing {
 

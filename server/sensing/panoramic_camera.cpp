@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "server/core/floor.hpp"
+#include "server/core/integer_floor.hpp"
 #include "server/sensing/markers_in_sight.hpp"
 
 namespace cohort::sensing {
@@ -71,15 +71,15 @@ void PanoramicCamera::draw_markers(const Pose& X_WS, std::span<double> image) co
     const Spot& spot = spots[i];
     const Eigen::Vector3d direction_S(std::cos(spot.elevation) * std::cos(spot.bearing),
                                       std::cos(spot.elevation) * std::sin(spot.bearing), std::sin(spot.elevation));
-    const std::int64_t column = integer_below(spot.bearing * columns_a_radian + 0.5);
+    const std::int64_t column = integer_floor(spot.bearing * columns_a_radian + 0.5);
     const std::int64_t row = std::clamp<std::int64_t>(
-        integer_below((camera_.max_elevation - spot.elevation) * rows_a_radian), 0, height - 1);
+        integer_floor((camera_.max_elevation - spot.elevation) * rows_a_radian), 0, height - 1);
     const double half_angle = std::asin(std::min(1.0, spot_radius / std::max(spot.distance, spot_radius)));
     const double cosine = std::cos(half_angle);
     // Towards a pole a column is narrower.
     const double narrow = std::max(std::cos(std::min(std::abs(spot.elevation) + half_angle, 0.5 * pi)), 1e-6);
-    const std::int64_t rows_aside = integer_below(half_angle * rows_a_radian) + 1;
-    const std::int64_t columns_aside = integer_below(std::min(half_angle / narrow, pi) * columns_a_radian) + 1;
+    const std::int64_t rows_aside = integer_floor(half_angle * rows_a_radian) + 1;
+    const std::int64_t columns_aside = integer_floor(std::min(half_angle / narrow, pi) * columns_a_radian) + 1;
     const Eigen::Vector3d& color = mount_.emitters.marker(spot.marker).color;
     for (std::int64_t y = std::max<std::int64_t>(row - rows_aside, 0); y <= std::min(row + rows_aside, height - 1); ++y)
       for (std::int64_t x = column - columns_aside; x <= column + columns_aside; ++x) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/core/floor.hpp"
+#include "server/core/integer_floor.hpp"
 #include "server/geometry/outlines.hpp"
 
 namespace cohort::sensing {
@@ -126,9 +126,9 @@ void ProximityRing::cast_shadows(const Pose& X_WS, std::span<double> values) con
   constexpr auto count = static_cast<std::int64_t>(shadow_directions);
   constexpr double a_radian = static_cast<double>(shadow_directions) / (2.0 * std::numbers::pi);
   for (std::size_t i = 0; i < ring_.count; ++i) {
-    const std::int64_t nearest = integer_below(bearing_of(i) * a_radian + 0.5);
-    const std::int64_t first = std::min(nearest, -integer_below(-(bearing_of(i) - shadow_width_) * a_radian));
-    const std::int64_t last = std::max(nearest, integer_below((bearing_of(i) + shadow_width_) * a_radian));
+    const std::int64_t nearest = integer_floor(bearing_of(i) * a_radian + 0.5);
+    const std::int64_t first = std::min(nearest, -integer_floor(-(bearing_of(i) - shadow_width_) * a_radian));
+    const std::int64_t last = std::max(nearest, integer_floor((bearing_of(i) + shadow_width_) * a_radian));
     double sum = 0.0;
     for (std::int64_t k = first; k <= last; ++k) {
       const double distance = distances[static_cast<std::size_t>((k % count + count) % count)] - ring_.ring_radius;

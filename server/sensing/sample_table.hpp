@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "server/description/sample_file.hpp"
+#include "server/description/samples.hpp"
 
 namespace cohort::sensing {
 

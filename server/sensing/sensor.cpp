@@ -7,7 +7,7 @@
 #include "server/sensing/climate_sensor.hpp"
 #include "server/sensing/contact_sensor.hpp"
 #include "server/sensing/force_torque_sensor.hpp"
-#include "server/sensing/gripper.hpp"
+#include "server/sensing/gripper_sensor.hpp"
 #include "server/sensing/ground_sensors.hpp"
 #include "server/sensing/imu.hpp"
 #include "server/sensing/inclinometer.hpp"
@@ -42,7 +42,7 @@ struct Make {
     return std::make_unique<ProximityRing>(d, std::move(mount));
   }
   std::unique_ptr<Sensor> operator()(const description::Gripper& d) const {
-    return std::make_unique<Gripper>(d, device, std::move(mount));
+    return std::make_unique<GripperSensor>(d, device, std::move(mount));
   }
   std::unique_ptr<Sensor> operator()(const description::TorqueSensor& d) const {
     return std::make_unique<TorqueSensor>(d, model.joints[d.joint], std::move(mount));

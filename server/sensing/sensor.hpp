@@ -13,7 +13,7 @@
 #include "server/description/world.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/gripping/grippers.hpp"
-#include "server/physics/world.hpp"
+#include "server/physics/world/physics_world.hpp"
 #include "server/sensing/lamp_view.hpp"
 
 namespace cohort::sensing {

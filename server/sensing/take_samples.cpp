@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "server/physics/make_world.hpp"
 #include "server/sensing/sensor.hpp"
 
 namespace cohort::sensing {
@@ -27,11 +28,11 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   description.instances = {{"robot", 0, {}}, {"cylinder", 1, {}}};
   description.robots = {0};
   WorkerPool workers(1);
-  physics::World world(description, workers);
-  const emission::Emitters emitters(description, world);
-  LampView lamp_view(world, emitters);
-  const gripping::Grippers grippers(description, world);
-  const auto sensor = make_sensor(model, device, {world, emitters, description, grippers, lamp_view, 0, "robot", 1});
+  const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
+  const emission::Emitters emitters(description, *world);
+  LampView lamp_view(*world, emitters);
+  const gripping::Grippers grippers(description, *world);
+  const auto sensor = make_sensor(model, device, {*world, emitters, description, grippers, lamp_view, 0, "robot", 1});
   const std::uint64_t ticks = ring.technique == description::ProximityTechnique::random_ray ? random_ticks : 1;
 
   description::Samples samples;
@@ -41,14 +42,14 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   for (std::size_t i = 0; i < grid.distances; ++i)
     samples.distances.push_back(ring.ring_radius +
                                 ring.range * static_cast<double>(i) / static_cast<double>(grid.distances - 1));
-  const Pose X_WS = world.link_pose(0, ring.link) * ring.X_LS;
+  const Pose X_WS = world->link_pose(0, ring.link) * ring.X_LS;
   std::vector<double> values(ring.count);
   for (const double distance : samples.distances)
     for (const double angle : samples.angles) {
       const double away = distance + grid.radius;
       Pose X_WC;
       X_WC.position = X_WS * Eigen::Vector3d(away * std::cos(angle), away * std::sin(angle), 0.0);
-      world.place_body(1, X_WC);
+      world->place_body(1, X_WC);
       std::vector<double> sums(ring.count);
       for (std::uint64_t tick = 0; tick < ticks; ++tick) {
         sensor->sense(tick, values);

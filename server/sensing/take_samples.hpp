@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "server/description/sample_file.hpp"
+#include "server/description/samples.hpp"
 #include "server/description/world.hpp"
 
 namespace cohort::sensing {

@@ -42,7 +42,7 @@ void ask_again(Exchange& exchange, const description::Experiment& experiment, st
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
                          const std::vector<ControllerKind>& controllers, const RunOptions& options,
                          const RunListener& listener, const std::atomic<bool>& stop) {
-  RunBook book(experiment, simulation, options, listener);
+  RunMonitor monitor(experiment, simulation, options, listener);
   Exchange exchange(simulation);
   if (options.from) restore(*options.from, exchange);
   const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
@@ -62,40 +62,40 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
         ask_again(exchange, experiment, experiment.teams[team].robots, simulation.tick(), *hosts.back());
     }
 
-    book.start();
+    monitor.start();
     Exchange::Frame frame;  // reused
-    while (!book.is_over()) {
-      if (stop) return book.finish(RunResult::End::interrupted);
-      const auto begin = RunBook::Clock::now();
+    while (!monitor.is_over()) {
+      if (stop) return monitor.finish(RunResult::End::interrupted);
+      const auto begin = RunMonitor::Clock::now();
       exchange.open(begin.time_since_epoch());
-      book.at_boundary();
+      monitor.at_boundary();
       for (std::size_t team = 0; team < hosts.size(); ++team) {
         const auto taken =
             ask(exchange, frame, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team]);
         if (!taken.is_fault) continue;
-        book.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
-        if (taken.ends_run) return book.finish(RunResult::End::failed, taken.rejection->text);
+        monitor.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
+        if (taken.ends_run) return monitor.finish(RunResult::End::failed, taken.rejection->text);
       }
-      book.add_barrier(RunBook::Clock::now() - begin);
-      book.commanded(exchange.apply());
+      monitor.add_barrier(RunMonitor::Clock::now() - begin);
+      monitor.commanded(exchange.apply());
       try {
         simulation.step();
       } catch (const std::runtime_error& error) {
-        book.add_event("stopped", error.what());
-        return book.finish(RunResult::End::failed, error.what());
+        monitor.add_event("stopped", error.what());
+        return monitor.finish(RunResult::End::failed, error.what());
       }
-      book.stepped();
-      book.report(false, [](Progress&) {});
-      if (const auto due = book.due_time()) {
+      monitor.stepped();
+      monitor.report(false, [](Progress&) {});
+      if (const auto due = monitor.due_time()) {
         std::this_thread::sleep_until(*due);
-        book.add_lateness(RunBook::Clock::now() - *due);
+        monitor.add_lateness(RunMonitor::Clock::now() - *due);
       }
     }
   } catch (const ControllerFailure& failure) {
-    book.add_event("failed", failure.what());
-    return book.finish(RunResult::End::failed, failure.what());
+    monitor.add_event("failed", failure.what());
+    return monitor.finish(RunResult::End::failed, failure.what());
   }
-  return book.finish(RunResult::End::finished);
+  return monitor.finish(RunResult::End::finished);
 }
 
 }  // namespace cohort::session

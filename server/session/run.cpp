@@ -4,7 +4,7 @@
 
 namespace cohort::session {
 
-RunBook::RunBook(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
+RunMonitor::RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
                  RunListener listener)
     : simulation_(simulation),
       options_(std::move(options)),
@@ -17,7 +17,7 @@ RunBook::RunBook(const description::Experiment& experiment, const Simulation& si
       last_report_(start_),
       last_report_time_(simulation.time()) {}
 
-void RunBook::start() {
+void RunMonitor::start() {
   for (const std::string& text : simulation_.happened()) add_event("event", text);
   started_ = true;
   start_ = Clock::now();
@@ -26,32 +26,32 @@ void RunBook::start() {
   if (listener_.stepped) listener_.stepped();
 }
 
-void RunBook::stop() {
+void RunMonitor::stop() {
   if (started_ && !stopped_) result_.wall_time = Clock::now() - start_;
   stopped_ = true;
 }
 
-void RunBook::stepped() {
+void RunMonitor::stepped() {
   for (const std::string& body : simulation_.quarantined()) add_event("quarantined", body);
   for (const std::string& text : simulation_.happened()) add_event("event", text);
   if (listener_.stepped) listener_.stepped();
   if (is_over()) at_boundary();  // no frame goes out any more
 }
 
-void RunBook::at_boundary() {
+void RunMonitor::at_boundary() {
   if (last_boundary_ == simulation_.tick()) return;
   last_boundary_ = simulation_.tick();
   if (listener_.boundary) listener_.boundary();
 }
 
-std::optional<RunBook::Clock::time_point> RunBook::due_time() const {
+std::optional<RunMonitor::Clock::time_point> RunMonitor::due_time() const {
   if (options_.speed <= 0.0) return std::nullopt;
   const std::chrono::nanoseconds simulated = simulation_.time() - pace_start_time_;
   const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulated.count()) / options_.speed);
   return pace_start_ + std::chrono::duration_cast<Clock::duration>(wall);
 }
 
-void RunBook::set_speed(double speed) {
+void RunMonitor::set_speed(double speed) {
   constexpr std::chrono::milliseconds little{100};
   const Clock::time_point now = Clock::now();
   const Clock::time_point due = due_time().value_or(now);
@@ -60,12 +60,12 @@ void RunBook::set_speed(double speed) {
   options_.speed = speed;
 }
 
-void RunBook::resume() {
+void RunMonitor::resume() {
   pace_start_ = Clock::now();
   pace_start_time_ = simulation_.time();
 }
 
-Progress RunBook::progress_at(Clock::time_point now) {
+Progress RunMonitor::progress_at(Clock::time_point now) {
   Progress progress;
   progress.time = simulation_.time();
   progress.duration = step_ * static_cast<std::int64_t>(total_ticks_);
@@ -78,14 +78,14 @@ Progress RunBook::progress_at(Clock::time_point now) {
   return progress;
 }
 
-void RunBook::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
+void RunMonitor::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
   const Event event{simulation_.tick(), kind, text, count};
   const bool is_news = log_.add(event.tick, kind, text, count);
   if (listener_.event) listener_.event(event);
   if (is_news && listener_.news) listener_.news(event);
 }
 
-void RunBook::add_miss(const lockstep::Barrier::Miss& miss) {
+void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
   constexpr std::size_t most_misses = 1'000'000;
   ++result_.late;
   const Miss booked{simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited};
@@ -94,7 +94,7 @@ void RunBook::add_miss(const lockstep::Barrier::Miss& miss) {
   add_event("missed", simulation_.robot_name(miss.robot) + " did not answer in time");
 }
 
-RunResult RunBook::finish(RunResult::End end, std::string error) {
+RunResult RunMonitor::finish(RunResult::End end, std::string error) {
   stop();
   result_.end = end;
   result_.error = std::move(error);

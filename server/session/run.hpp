@@ -12,7 +12,7 @@
 #include "server/lockstep/barrier.hpp"
 #include "server/lockstep/latency_histogram.hpp"
 #include "server/session/events.hpp"
-#include "server/session/play.hpp"
+#include "server/session/playback.hpp"
 #include "server/session/session_snapshot.hpp"
 #include "server/simulation/simulation.hpp"
 
@@ -23,13 +23,13 @@ namespace cohort::session {
 struct NextRun {
   std::uint64_t seed = 0;
   std::shared_ptr<const SessionSnapshot> snapshot{};  ///< where it goes on from; none: from the beginning
-  PlayState state = PlayState::playing;
+  PlaybackState state = PlaybackState::playing;
   double speed = 0.0;
 };
 
 struct RunOptions {
   double speed = 0.0;                    ///< simulated seconds per wall second at the most; 0: as fast as it goes
-  PlayState state = PlayState::playing;  ///< at first
+  PlaybackState state = PlaybackState::playing;  ///< at first
   /// The simulation was restored from it, and the exchange has to be too; none: the run begins at the beginning.
   std::shared_ptr<const SessionSnapshot> from{};
   /// Simulated time between snapshots that stay in memory, so that whoever controls the run can go back; 0: none do.
@@ -114,11 +114,11 @@ struct RunResult {
 };
 
 /// Keeps the books of one run: wall time, pace, progress reports, events.
-class RunBook {
+class RunMonitor {
  public:
   using Clock = std::chrono::steady_clock;
 
-  RunBook(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
+  RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
           RunListener listener);
 
   /// The whole duration is simulated, or a stop condition holds.

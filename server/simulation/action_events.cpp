@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/core/overloaded.hpp"
-#include "server/description/text.hpp"
+#include "server/core/text.hpp"
 
 namespace cohort {
 namespace {
@@ -41,7 +41,7 @@ std::uint32_t find_object(const std::string& name, const ActionScope& scope) {
   check_name(name, "the name of the object");
   const std::optional<std::uint32_t> object = scope.objects.find(name);
   if (!object)
-    refuse("there is no object " + quoted(name) + description::suggestion(name, names_in_world(scope.objects)));
+    refuse("there is no object " + quoted(name) + suggestion(name, names_in_world(scope.objects)));
   if (!scope.objects.is_present(*object)) refuse(quoted(name) + " is not in the world");
   return *object;
 }
@@ -91,7 +91,7 @@ description::Event event_of_kind(const ApplyForce& apply, const ActionScope& sco
     for (const description::Link& each : model.links) names.push_back(each.name);
     link = static_cast<std::size_t>(std::ranges::find(names, apply.link) - names.begin());
     if (link == names.size())
-      refuse(quoted(apply.name) + " has no link " + quoted(apply.link) + description::suggestion(apply.link, names));
+      refuse(quoted(apply.name) + " has no link " + quoted(apply.link) + suggestion(apply.link, names));
   }
   return {{}, object, description::ApplyForce{link, apply.force_W, apply.torque_W, apply.duration}, "apply_force"};
 }
@@ -119,7 +119,7 @@ std::optional<std::pair<std::uint32_t, std::size_t>> find_light(const std::strin
       names.push_back(model.emitters[light].name);
     }
     refuse(quoted(scope.objects.name(*object)) + " has no light " + quoted(wanted) +
-           description::suggestion(wanted, names));
+           suggestion(wanted, names));
   }
   return std::nullopt;
 }
@@ -151,14 +151,14 @@ description::Event event_of_kind(const SetLight& set, const ActionScope& scope) 
     const auto light = find_light(set.name, scope);
     if (!light)
       refuse("there is no light or object " + quoted(set.name) +
-             description::suggestion(set.name, names_of_lights(scope)));
+             suggestion(set.name, names_of_lights(scope)));
     object = scope.objects.name(light->first);
     effect.emitters.push_back(light->second);
   }
   const std::uint32_t index = find_working_object(object, scope);
   if (effect.emitters.empty()) effect.emitters = lights_of(model_of(index, scope));
   if (effect.emitters.empty())
-    refuse(quoted(set.name) + " has no light" + description::suggestion(set.name, names_of_lights(scope)));
+    refuse(quoted(set.name) + " has no light" + suggestion(set.name, names_of_lights(scope)));
   return {{}, index, std::move(effect), "set_light"};
 }
 

@@ -4,7 +4,7 @@
 
 #include "server/description/event.hpp"
 #include "server/description/world.hpp"
-#include "server/physics/world.hpp"
+#include "server/physics/world/physics_world.hpp"
 #include "server/simulation/action.hpp"
 #include "server/simulation/objects.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/description/world.hpp"
-#include "server/physics/world.hpp"
+#include "server/physics/world/physics_world.hpp"
 
 namespace cohort {
 

@@ -9,7 +9,7 @@
 #include "server/core/hash.hpp"
 #include "server/core/snapshot.hpp"
 #include "server/description/experiment.hpp"
-#include "server/physics/world.hpp"
+#include "server/physics/world/physics_world.hpp"
 
 namespace cohort {
 

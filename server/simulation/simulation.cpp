@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "server/physics/make_world.hpp"
+
 namespace cohort {
 namespace {
 
@@ -28,14 +30,14 @@ std::vector<double> neutral_values(const RobotKind& kind) {
 Simulation::Simulation(const description::Experiment& experiment, unsigned threads)
     : experiment_(experiment),
       workers_(threads),
-      world_(experiment_.world, workers_),
-      breakable_joints_(experiment_.world, world_),
-      emitters_(experiment_.world, world_),
-      grippers_(experiment_.world, world_),
-      actions_(experiment_.world, world_),
-      lamp_view_(world_, emitters_),
-      objects_(experiment_, world_),
-      course_(experiment_, world_, objects_, emitters_, actions_),
+      world_(physics::make_world(experiment_.world, workers_)),
+      breakable_joints_(experiment_.world, *world_),
+      emitters_(experiment_.world, *world_),
+      grippers_(experiment_.world, *world_),
+      actions_(experiment_.world, *world_),
+      lamp_view_(*world_, emitters_),
+      objects_(experiment_, *world_),
+      schedule_(experiment_, *world_, objects_, emitters_, actions_),
       spawned_models_(experiment_) {
   const description::World& world = experiment_.world;
   kind_of_model_.assign(world.models.size(), none);
@@ -66,19 +68,20 @@ void Simulation::build_robot(std::uint32_t id) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     if (auto sensor = sensing::make_sensor(
             model, device,
-            {world_, emitters_, world, grippers_, lamp_view_, robot.body, instance.name, experiment_.seed})) {
-      if (sensor->needs_record()) world_.record(robot.body);
+            {*world_, emitters_, world, grippers_, lamp_view_, robot.body, instance.name, experiment_.seed})) {
+      if (sensor->needs_record()) world_->record(robot.body);
       rings_.resize(lamp_view_.ring_count(), {id, robot.sensors.size()});
       const std::vector<Channel> channels = sensor->channels();
       kind.observation.insert(kind.observation.end(), channels.begin(), channels.end());
       const description::Readout* readout = description::readout_of(model.devices[device]);
       robot.sensors.push_back(
           {std::move(sensor),
-           sensing::Readout(readout != nullptr ? *readout : description::Readout{}, channels, experiment_.seed,
-                            instance.name, description::name_of(model.devices[device]), world.step),
+           sensing::SignalChain(readout != nullptr ? *readout : description::Readout{}, channels, experiment_.seed,
+                                instance.name, description::name_of(model.devices[device]), world.step),
            total_size(channels)});
     }
-    if (auto actuator = actuation::make_actuator(model, device, {world_, emitters_, grippers_, actions_, robot.body})) {
+    if (auto actuator =
+            actuation::make_actuator(model, device, {*world_, emitters_, grippers_, actions_, robot.body})) {
       const std::vector<Channel> channels = actuator->channels();
       kind.command.insert(kind.command.end(), channels.begin(), channels.end());
       robot.actuators.push_back(std::move(actuator));
@@ -161,8 +164,8 @@ void Simulation::step() {
       values = values.subspan(robot.actuator_sizes[i]);
     }
   }
-  course_.push(tick_);
-  world_.step();
+  schedule_.push(tick_);
+  world_->step();
   ++tick_;
   name_quarantined();
   count_touches();
@@ -185,7 +188,7 @@ void Simulation::handle_actions() {
     bool is_handled = false;
     for (std::size_t i = 0; i < handlers_.size(); ++i) {  // NOLINT(modernize-loop-convert): a handler may add one
       const auto& [name, handler] = handlers_[i];
-      if (name != action.name || !world_.is_active(action.body)) continue;
+      if (name != action.name || !world_->is_active(action.body)) continue;
       handler(action.robot, action.value);
       is_handled = true;
     }
@@ -194,10 +197,10 @@ void Simulation::handle_actions() {
 }
 
 void Simulation::begin_tick() {
-  const std::vector<std::string> events = course_.begin_tick(tick_);
+  const std::vector<std::string> events = schedule_.begin_tick(tick_);
   happened_.insert(happened_.end(), events.begin(), events.end());
   objects_.record(tick_);
-  course_.check_stops();
+  schedule_.check_stops();
 }
 
 std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM) {
@@ -211,21 +214,21 @@ std::uint32_t Simulation::add_object(const std::string& name, std::size_t model,
 
 // The world has bodies that the description does not list.
 void Simulation::note_added() {
-  robot_of_body_.resize(world_.body_count(), none);
+  robot_of_body_.resize(world_->body_count(), none);
   note_ground();
-  body_hashes_.resize(world_.body_count());
+  body_hashes_.resize(world_->body_count());
 }
 
 void Simulation::note_ground() {
-  const geometry::Scene& scene = world_.scene();
-  is_ground_.resize(world_.body_count(), 0);
+  const geometry::Scene& scene = world_->scene();
+  is_ground_.resize(world_->body_count(), 0);
   for (; solids_noted_ < scene.size(); ++solids_noted_)
     if (geometry::is_ground(scene.solid(solids_noted_).shape)) is_ground_[scene.solid(solids_noted_).body] = 1;
 }
 
 void Simulation::name_quarantined() {
   quarantined_.clear();
-  for (const physics::Quarantine& event : world_.quarantined()) {
+  for (const physics::Quarantine& event : world_->quarantined()) {
     const bool broke = event.reason == physics::Quarantine::Reason::not_finite;
     quarantined_.push_back("'" + objects_.name(event.body) +
                            (broke ? "': its state is no longer finite" : "' has left the world"));
@@ -291,7 +294,7 @@ void Simulation::count_touches() {
     if (robot == none || is_ground_[other]) return;
     (robot_of_body_[other] == none ? touches_obstacle : touches_robot)[robot] = 1;
   };
-  for (const physics::Contact& contact : world_.contacts()) {
+  for (const physics::Contact& contact : world_->contacts()) {
     note(contact.body_a, contact.body_b);
     note(contact.body_b, contact.body_a);
   }
@@ -301,6 +304,6 @@ void Simulation::count_touches() {
   for (const char touched : touches_robot) touches_.robots += static_cast<std::uint64_t>(touched);
 }
 
-Pose Simulation::robot_pose(std::uint32_t robot) const { return world_.link_pose(robots_[robot].body, 0); }
+Pose Simulation::robot_pose(std::uint32_t robot) const { return world_->link_pose(robots_[robot].body, 0); }
 
 }  // namespace cohort

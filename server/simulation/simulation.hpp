@@ -19,13 +19,13 @@
 #include "server/description/experiment.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/gripping/grippers.hpp"
-#include "server/physics/world.hpp"
-#include "server/sensing/readout.hpp"
+#include "server/physics/world/physics_world.hpp"
 #include "server/sensing/sensor.hpp"
+#include "server/sensing/signal_chain.hpp"
 #include "server/simulation/action.hpp"
 #include "server/simulation/breakable_joints.hpp"
-#include "server/simulation/course.hpp"
 #include "server/simulation/objects.hpp"
+#include "server/simulation/schedule.hpp"
 #include "server/simulation/spawned_models.hpp"
 
 namespace cohort {
@@ -116,7 +116,7 @@ class Simulation {
   /// What happened at this boundary, a sentence for each: what broke, then actions that have a handler, then events.
   const std::vector<std::string>& happened() const { return happened_; }
   /// Says which stop condition of the experiment holds, as soon as one does.
-  const std::optional<std::string>& stop_reason() const { return course_.stop_reason(); }
+  const std::optional<std::string>& stop_reason() const { return schedule_.stop_reason(); }
 
   /// Does what a person or a program asks for, now: after the events of this boundary and what stops a run was looked
   /// at, and before any robot is asked. The robots that are due sense once more, so that what they observe at this tick
@@ -147,14 +147,14 @@ class Simulation {
   /// At rest. Throws std::invalid_argument where a planar body has no ground.
   void place_object(std::uint32_t object, const Pose& X_WM) {
     note_change();
-    world_.place_body(object, X_WM);
+    world_->place_body(object, X_WM);
   }
   /// `emitter`: index among those of its model. Throws std::invalid_argument if there is none.
   void change_emitter(std::uint32_t object, std::size_t emitter, const description::EmitterChange& change) {
     note_change();
     emitters_.change(object, emitter, change);
   }
-  Pose object_pose(std::uint32_t object) const { return world_.link_pose(object, 0); }  ///< of its root link, X_WL
+  Pose object_pose(std::uint32_t object) const { return world_->link_pose(object, 0); }  ///< of its root link, X_WL
   /// What the last step took out of the world: a sentence for each body, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }
 
@@ -170,7 +170,7 @@ class Simulation {
   std::uint64_t state_hash() const;
 
   Pose robot_pose(std::uint32_t robot) const;  ///< of its root link, X_WL
-  const physics::World& world() const { return world_; }
+  const physics::World& world() const { return *world_; }
   const emission::Emitters& emitters() const { return emitters_; }
   const gripping::Grippers& grippers() const { return grippers_; }
   const BreakableJoints& breakable_joints() const { return breakable_joints_; }
@@ -179,7 +179,7 @@ class Simulation {
  private:
   struct SensorOfRobot {
     std::unique_ptr<sensing::Sensor> sensor;
-    sensing::Readout readout;
+    sensing::SignalChain readout;
     std::size_t size = 0;  // of what it observes
   };
   struct Robot {
@@ -216,14 +216,14 @@ class Simulation {
 
   description::Experiment experiment_;  // with the models that have come since
   mutable WorkerPool workers_;
-  physics::World world_;
+  std::unique_ptr<physics::World> world_;
   BreakableJoints breakable_joints_;
   emission::Emitters emitters_;
   gripping::Grippers grippers_;
   actuation::UserActions actions_;
   sensing::LampView lamp_view_;
   Objects objects_;
-  Course course_;
+  Schedule schedule_;
   SpawnedModels spawned_models_;
   std::vector<RobotKind> kinds_;
   std::vector<std::uint32_t> kind_of_model_;

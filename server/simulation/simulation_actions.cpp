@@ -32,7 +32,7 @@ std::vector<ActionResult> Simulation::act(std::span<const Action> actions) {
 std::string Simulation::act_unsensed(const Action& action) {
   note_change();
   if (const auto* const spawn = std::get_if<SpawnObject>(&action)) return spawn_object(*spawn);
-  return course_.act_from_outside(event_of(action, {experiment_.world, world_, objects_}), tick_);
+  return schedule_.act_from_outside(event_of(action, {experiment_.world, *world_, objects_}), tick_);
 }
 
 std::string Simulation::spawn_object(const SpawnObject& spawn) {

@@ -21,9 +21,9 @@ std::vector<std::byte> Simulation::save() const {
   writer.add(static_cast<std::uint64_t>(experiment_.world.step.count()));
   writer.add(tick_);
   spawned_models_.save(writer);
-  world_.save(writer);
+  world_->save(writer);
   objects_.save(writer);
-  course_.save(writer);
+  schedule_.save(writer);
   emitters_.save(writer);
   grippers_.save(writer);
   actions_.save(writer);
@@ -59,9 +59,9 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   reader.read(tick_);
   spawned_models_.restore(reader);
   for (std::size_t model = 0; model < experiment_.world.models.size(); ++model) grippers_.note_model(model);
-  world_.restore(reader);
+  world_->restore(reader);
   objects_.restore(reader);
-  course_.restore(reader, tick_);
+  schedule_.restore(reader, tick_);
   note_added();
   emitters_.restore(reader);
   emitters_.update(workers_);
@@ -93,7 +93,7 @@ std::uint64_t Simulation::computed_state_hash() const {
   workers_.for_each_chunk(body_hashes_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t body = begin; body < end; ++body) {
       StateHash hash;
-      world_.hash_body(static_cast<std::uint32_t>(body), hash);
+      world_->hash_body(static_cast<std::uint32_t>(body), hash);
       if (robot_of_body_[body] != none) {
         for (const double value : observation(robot_of_body_[body])) hash.add(value);
         const Robot& robot = robots_[robot_of_body_[body]];
@@ -109,9 +109,9 @@ std::uint64_t Simulation::computed_state_hash() const {
   StateHash hash;
   hash.add(tick_);
   for (const std::uint64_t body_hash : body_hashes_) hash.add(body_hash);
-  world_.hash_contacts(hash);
+  world_->hash_contacts(hash);
   objects_.hash(hash);
-  course_.hash(hash);
+  schedule_.hash(hash);
   emitters_.hash(hash);
   grippers_.hash(hash);
   actions_.hash(hash);

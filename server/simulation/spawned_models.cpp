@@ -4,7 +4,8 @@
 #include <stdexcept>
 
 #include "server/core/random.hpp"
-#include "server/description/text.hpp"
+#include "server/core/text.hpp"
+#include "server/parsing/world/read_world.hpp"
 
 namespace cohort {
 namespace {
@@ -25,8 +26,7 @@ std::size_t SpawnedModels::find_or_add(const std::string& name_or_text) {
     std::vector<std::string> names;
     names.reserve(models.size());
     for (const description::Model& model : models) names.push_back(model.name);
-    throw std::invalid_argument("the world has no model '" + name_or_text + "'" +
-                                description::suggestion(name_or_text, names) +
+    throw std::invalid_argument("the world has no model '" + name_or_text + "'" + suggestion(name_or_text, names) +
                                 " (or give its text, in SDF, URDF or YAML)");
   }
   const auto known = std::ranges::find(texts_, name_or_text, &Text::text);
@@ -40,7 +40,7 @@ std::size_t SpawnedModels::find_or_add(const std::string& name_or_text) {
 void SpawnedModels::add(const std::string& text) {
   const std::size_t materials = experiment_.world.materials.size();
   try {
-    description::add_model(text, experiment_.inputs, experiment_.world);
+    parsing::add_model(text, experiment_.inputs, experiment_.world);
   } catch (const description::InputError& error) {
     std::string flaws;
     for (const description::Problem& problem : error.problems())

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "server/physics/make_world.hpp"
 #include "server/core/random.hpp"
 #include "server/sensing/sensor.hpp"
 #include "tests/support/robots.hpp"
@@ -34,7 +35,7 @@ class Swarm {
     for (std::uint32_t n = 0; n < lamps; ++n) add_emitter(description::Light{}, place(100'000 + n, 0.2));
     for (std::uint32_t n = 0; n < tones; ++n) add_emitter(description::Sound{400.0, 1.0}, place(200'000 + n, 0.2));
 
-    world_ = std::make_unique<physics::World>(description_, workers_);
+    world_ = physics::make_world(description_, workers_);
     emitters_ = std::make_unique<emission::Emitters>(description_, *world_);
     grippers_ = std::make_unique<gripping::Grippers>(description_, *world_);
     lamp_view_ = std::make_unique<LampView>(*world_, *emitters_);

@@ -4,7 +4,7 @@
 
 #include "server/geometry/scene.hpp"
 #include "tools/bench/ray_field.hpp"
-#include "tools/bench/scene.hpp"
+#include "tools/bench/bench_scene.hpp"
 
 namespace cohort::bench {
 namespace {

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "tests/commands/small_experiment.hpp"
-#include "tools/cohort/children.hpp"
+#include "tools/processes/children.hpp"
 
 namespace cohort::testing {
 namespace {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "server/core/random.hpp"
+#include "server/parsing/world/read_world.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/sensing_world.hpp"
 #include "tests/support/shipped_experiment.hpp"
@@ -184,8 +185,7 @@ TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndToget
   constexpr int side = 5;
   constexpr double spacing = 0.13;
   constexpr int ticks_a_pull = 200, ticks = 60000;
-  const description::World shipped =
-      description::read_world_or_model(COHORT_SOURCE_DIR "/worlds/robots/sbot/model.sdf", 1);
+  const description::World shipped = parsing::read_world_or_model(COHORT_SOURCE_DIR "/worlds/robots/sbot/model.sdf", 1);
   const RandomStream random(1, "swarm", "pull");
   testing::SensingWorld world(2);
   for (int i = 0; i < side * side; ++i) {

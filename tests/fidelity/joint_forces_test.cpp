@@ -218,16 +218,16 @@ TEST(JointForces, WhatNobodyAskedForAndWhatWasRestoredTellsNothing) {
   SnapshotWriter writer;
   small.world().save(writer);
   WorkerPool workers(1);
-  physics::World restored(small.description, workers);
-  restored.record(body);
+  const std::unique_ptr<physics::World> restored = physics::make_world(small.description, workers);
+  restored->record(body);
   SnapshotReader reader(writer.bytes());
-  restored.restore(reader);
-  EXPECT_EQ(restored.joint_wrench(body, 0).force_W, Vector3d::Zero());
-  restored.step();
+  restored->restore(reader);
+  EXPECT_EQ(restored->joint_wrench(body, 0).force_W, Vector3d::Zero());
+  restored->step();
   small.world().step();
-  EXPECT_EQ(restored.joint_wrench(body, 0).force_W, small.world().joint_wrench(body, 0).force_W);
-  restored.remove_body(body);
-  EXPECT_EQ(restored.joint_wrench(body, 0).force_W, Vector3d::Zero());
+  EXPECT_EQ(restored->joint_wrench(body, 0).force_W, small.world().joint_wrench(body, 0).force_W);
+  restored->remove_body(body);
+  EXPECT_EQ(restored->joint_wrench(body, 0).force_W, Vector3d::Zero());
 }
 
 TEST(Acceleration, IsGravityInFreeFallAndNothingAtRest) {

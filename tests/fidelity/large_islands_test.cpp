@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "server/core/random.hpp"
-#include "server/physics/island_parts.hpp"
-#include "server/physics/large_island_solver.hpp"
+#include "server/physics/islands/island_parts.hpp"
+#include "server/physics/islands/large_island_solver.hpp"
 #include "tests/support/small_world.hpp"
 
 namespace cohort::testing {

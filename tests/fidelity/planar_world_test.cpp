@@ -53,16 +53,16 @@ TEST(PlanarWorld, HasTheSameBitsForAnyNumberOfThreads) {
   const description::World description = busy_world();
   const auto hash_with = [&](unsigned threads) {
     WorkerPool workers(threads);
-    physics::World world(description, workers);
-    world.connect(3, 1, {{0.07, 0, 0}}, 4, 1);
+    const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
+    world->connect(3, 1, {{0.07, 0, 0}}, 4, 1);
     for (int tick = 0; tick < 300; ++tick) {
-      drive(world, tick);
-      world.step();
-      if (tick == 100) world.remove_body(7);
-      if (tick == 120) world.add_body(1, at(-0.8, -0.5, 0));
+      drive(*world, tick);
+      world->step();
+      if (tick == 100) world->remove_body(7);
+      if (tick == 120) world->add_body(1, at(-0.8, -0.5, 0));
     }
-    EXPECT_FALSE(world.is_active(7));
-    return hash_of(world);
+    EXPECT_FALSE(world->is_active(7));
+    return hash_of(*world);
   };
   const std::uint64_t expected = hash_with(1);
   EXPECT_EQ(hash_with(2), expected);
@@ -72,51 +72,51 @@ TEST(PlanarWorld, HasTheSameBitsForAnyNumberOfThreads) {
 TEST(PlanarWorld, RestoredFromASnapshotGoesOnWithTheSameBits) {
   const description::World description = busy_world();
   WorkerPool workers(1);
-  physics::World world(description, workers);
-  const std::uint32_t bond = world.connect(1, 1, {{0.07, 0, 0}}, 2, 1, {.force = 50.0});
-  world.connect(3, 1, {{0.07, 0, 0}}, 4, 1);
+  const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
+  const std::uint32_t bond = world->connect(1, 1, {{0.07, 0, 0}}, 2, 1, {.force = 50.0});
+  world->connect(3, 1, {{0.07, 0, 0}}, 4, 1);
   for (int tick = 0; tick < 150; ++tick) {
-    drive(world, tick);
-    world.step();
-    if (tick == 50) world.remove_body(9);
-    if (tick == 60) world.add_body(1, at(-0.8, -0.5, 0));
-    if (tick == 70) world.disconnect(bond);
+    drive(*world, tick);
+    world->step();
+    if (tick == 50) world->remove_body(9);
+    if (tick == 60) world->add_body(1, at(-0.8, -0.5, 0));
+    if (tick == 70) world->disconnect(bond);
   }
   SnapshotWriter writer;
-  world.save(writer);
+  world->save(writer);
 
   WorkerPool others(2);
-  physics::World restored(description, others);
+  const std::unique_ptr<physics::World> restored = physics::make_world(description, others);
   SnapshotReader reader(writer.bytes());
-  restored.restore(reader);
+  restored->restore(reader);
   EXPECT_TRUE(reader.is_at_end());
-  ASSERT_EQ(hash_of(restored), hash_of(world));
-  ASSERT_EQ(restored.contacts().size(), world.contacts().size());
-  EXPECT_GT(world.contacts().size(), 10u) << "there is something to keep";
+  ASSERT_EQ(hash_of(*restored), hash_of(*world));
+  ASSERT_EQ(restored->contacts().size(), world->contacts().size());
+  EXPECT_GT(world->contacts().size(), 10u) << "there is something to keep";
   for (int tick = 150; tick < 300; ++tick) {
-    drive(world, tick);
-    drive(restored, tick);
-    world.step();
-    restored.step();
-    ASSERT_EQ(hash_of(restored), hash_of(world)) << "at tick " << tick;
+    drive(*world, tick);
+    drive(*restored, tick);
+    world->step();
+    restored->step();
+    ASSERT_EQ(hash_of(*restored), hash_of(*world)) << "at tick " << tick;
   }
 }
 
 TEST(PlanarWorld, RefusesASnapshotThatIsCutOffOrOfAnotherWorld) {
   const description::World description = busy_world();
   WorkerPool workers(1);
-  physics::World world(description, workers);
-  world.step();
+  const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
+  world->step();
   SnapshotWriter writer;
-  world.save(writer);
+  world->save(writer);
   const description::World other = planar_world();
-  physics::World another(other, workers);
+  const std::unique_ptr<physics::World> another = physics::make_world(other, workers);
   SnapshotReader reader(writer.bytes());
-  EXPECT_THROW(another.restore(reader), SnapshotError);
+  EXPECT_THROW(another->restore(reader), SnapshotError);
   for (const std::size_t length : {std::size_t{0}, writer.bytes().size() / 2, writer.bytes().size() - 1}) {
-    physics::World cut(description, workers);
+    const std::unique_ptr<physics::World> cut = physics::make_world(description, workers);
     SnapshotReader short_reader(std::span(writer.bytes()).first(length));
-    EXPECT_THROW(cut.restore(short_reader), SnapshotError) << length << " bytes";
+    EXPECT_THROW(cut->restore(short_reader), SnapshotError) << length << " bytes";
   }
 }
 
@@ -188,7 +188,7 @@ TEST(PlanarWorld, ABodyThatGoesTooFarHasLeftTheWorld) {
 std::string refusal_of(const description::World& world) {
   WorkerPool workers(1);
   try {
-    const physics::World refused(world, workers);
+    const std::unique_ptr<physics::World> refused = physics::make_world(world, workers);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/shipped_experiment.hpp"
 
 namespace cohort {
@@ -54,7 +55,7 @@ TEST(ShippedExperiments, AreAllReadAndStepped) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(testing::shipped_experiments)) {
     SCOPED_TRACE(entry.path().string());
-    const description::Experiment experiment = description::read_experiment(entry.path());
+    const description::Experiment experiment = parsing::read_experiment(entry.path());
     EXPECT_TRUE(experiment.world.warnings.empty());
     Simulation simulation(experiment, 1);
     for (int i = 0; i < 20; ++i) simulation.step();
@@ -115,7 +116,7 @@ TEST(ShippedExperiments, WheelsRollAsTheTreelDriveThatStandsForThem) {
     double heading = 0.0;   // all that it turned by [rad]
   };
   const auto drive = [](description::Fidelity fidelity) {
-    description::Experiment experiment = description::read_experiment(testing::shipped_experiments / "wheels.yaml");
+    description::Experiment experiment = parsing::read_experiment(testing::shipped_experiments / "wheels.yaml");
     EXPECT_EQ(experiment.world.physics.fidelity, description::Fidelity::articulated);
     experiment.world.physics.fidelity = fidelity;
     Simulation simulation(experiment, 1);

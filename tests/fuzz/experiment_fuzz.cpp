@@ -1,4 +1,5 @@
 #include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/fuzz/fuzz_file.hpp"
 
 /// Any experiment, beside a world `arena.yml`, is read, or refused with InputError.
@@ -13,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return true;
   }();
   try {
-    if (has_world) cohort::description::read_experiment(file.holding(data, size));
+    if (has_world) cohort::parsing::read_experiment(file.holding(data, size));
   } catch (const cohort::description::InputError&) {
   }
   return 0;

@@ -1,4 +1,5 @@
 #include "server/description/world.hpp"
+#include "server/parsing/world/read_world.hpp"
 #include "tests/fuzz/fuzz_file.hpp"
 
 /// Any file named .yaml is read, or refused with InputError.
@@ -6,7 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const cohort::fuzz::FuzzFile file(".yaml");
   try {
-    cohort::description::read_world_or_model(file.holding(data, size), 1);
+    cohort::parsing::read_world_or_model(file.holding(data, size), 1);
   } catch (const cohort::description::InputError&) {
   }
   return 0;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
 
 namespace {
@@ -57,7 +58,7 @@ std::vector<std::byte> read(const std::string& file) {
 int main(int count, char** arguments) {
   std::map<std::string, std::string> options;
   for (int i = 4; i + 1 < count; i += 2) options[arguments[i]] = arguments[i + 1];
-  const auto experiment = cohort::description::read_experiment(arguments[1]);
+  const auto experiment = cohort::parsing::read_experiment(arguments[1]);
   const unsigned threads = options.contains("--threads") ? static_cast<unsigned>(std::stoul(options["--threads"])) : 1;
   cohort::Simulation simulation(experiment, threads);
   if (options.contains("--load")) simulation.restore(read(options["--load"]));

@@ -8,6 +8,7 @@
 #include "client_sdk/src/controller_host.hpp"
 #include "client_sdk/src/plugin_loader.hpp"
 #include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/session/roster.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/process.hpp"
@@ -23,7 +24,7 @@ class DemoRun : public ::testing::Test {
   static constexpr double cell = 0.25;            // of the coverage map [m]
 
   static void SetUpTestSuite() {
-    const description::Experiment experiment = description::read_experiment(demo_experiment());
+    const description::Experiment experiment = parsing::read_experiment(demo_experiment());
     Simulation simulation(experiment, 2);
     const LoadedPlugin plugin("obstacle_avoidance", default_plugin_directories());
     ControllerHost host(plugin.plugin());

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/core/random.hpp"
-#include "server/description/convex_hull.hpp"
+#include "server/geometry/convex_hull.hpp"
 #include "server/geometry/scene.hpp"
 
 /// Scenes at random, of every shape that there is.
@@ -37,7 +37,7 @@ inline Pose random_pose(const RandomStream& random, std::uint64_t n, double half
 inline description::Mesh random_mesh(const RandomStream& random, std::uint64_t n, bool convex) {
   std::vector<Eigen::Vector3d> points;
   for (std::uint64_t i = 0; i < 12; ++i) points.push_back(random_vector(random, 2'000'000 + 100 * n + i, 0.1));
-  auto triangles = std::make_shared<description::TriangleMesh>(description::convex_hull(points));
+  auto triangles = std::make_shared<description::TriangleMesh>(geometry::convex_hull(points));
   if (n % 2 == 0 && !convex) triangles->triangles.pop_back();  // a skin that does not close
   return {triangles, convex};
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/sensing/readout.hpp"
+#include "server/sensing/signal_chain.hpp"
 #include "server/sensing/sensor.hpp"
 #include "tests/support/small_world.hpp"
 
@@ -85,7 +85,7 @@ class Sensed {
   std::optional<gripping::Grippers> grippers_;
   std::optional<sensing::LampView> lamp_view_;
   std::unique_ptr<sensing::Sensor> sensor_;
-  std::optional<sensing::Readout> readout_;
+  std::optional<sensing::SignalChain> readout_;
   std::vector<Channel> channels_;
   std::size_t size_ = 0;
 };

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "client_sdk/src/plugin_loader.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/session/in_process.hpp"
 
 namespace cohort::testing {
@@ -25,7 +26,7 @@ class ShippedExperiment {
   /// `watch` is called at every boundary, when all robots have sensed.
   explicit ShippedExperiment(const std::string& name, std::optional<std::uint64_t> seed = {}, double seconds = 0.0,
                              std::function<void(const ShippedExperiment&)> watch = {})
-      : experiment(description::read_experiment(
+      : experiment(parsing::read_experiment(
             shipped_experiments / (name + ".yaml"), seed,
             seconds > 0.0 ? std::optional(std::chrono::nanoseconds(std::llround(seconds * 1e9))) : std::nullopt)),
         simulation(experiment, 2) {

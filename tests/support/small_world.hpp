@@ -1,8 +1,8 @@
 #pragma once
 
-#include <optional>
+#include <memory>
 
-#include "server/physics/world.hpp"
+#include "server/physics/make_world.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::testing {
@@ -17,7 +17,7 @@ class SmallWorld {
     return place(description, model, model.name + "_" + std::to_string(description.instances.size()), X_WM);
   }
   physics::World& world() {
-    if (!world_) world_.emplace(description, workers_);
+    if (!world_) world_ = physics::make_world(description, workers_);
     return *world_;
   }
   void run(double seconds) {
@@ -37,7 +37,7 @@ class SmallWorld {
 
  private:
   WorkerPool workers_;
-  std::optional<physics::World> world_;
+  std::unique_ptr<physics::World> world_;
 };
 
 /// The principal moments of inertia of a solid box about its centre [kg m^2].

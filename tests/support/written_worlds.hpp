@@ -12,6 +12,7 @@
 
 #include "server/description/input_error.hpp"
 #include "server/description/world.hpp"
+#include "server/parsing/world/read_world.hpp"
 
 /// What the tests of descriptions share: worlds written on the spot, and the flaws that they are to be reported for.
 namespace cohort::description {
@@ -47,7 +48,7 @@ class Description : public ::testing::Test {
           R"(<sdf version="1.9" xmlns:cohort="https://cohort-sim.org/sdf/1"><model name=")" + name + "\">\n" + content +
               "\n</model></sdf>\n");
   }
-  World read(const std::string& content) const { return read_world(write_world(content), 1); }
+  World read(const std::string& content) const { return parsing::read_world(write_world(content), 1); }
 
   std::filesystem::path folder_;
 };
@@ -105,7 +106,7 @@ inline void expect_problem(const std::vector<Problem>& problems, const std::file
 
 /// A world with this content has this flaw and no other.
 inline void expect_only_flaw(const Flaw& flaw, const std::filesystem::path& world) {
-  const std::vector<Problem> problems = problems_of([&] { read_world(world, 1); });
+  const std::vector<Problem> problems = problems_of([&] { parsing::read_world(world, 1); });
   expect_problem(problems, world, flaw);
   EXPECT_EQ(problems.size(), 1u);
 }

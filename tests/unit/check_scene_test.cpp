@@ -1,8 +1,8 @@
-#include "server/scene/check_scene.hpp"
+#include "server/viewing/check_scene.hpp"
 
 #include <gtest/gtest.h>
 
-namespace cohort::scene {
+namespace cohort::viewing {
 namespace {
 
 // Two objects of a model with two links, of which one is a mesh.
@@ -53,4 +53,4 @@ TEST(CheckScene, RefusesColoursOfNothing) {
 }
 
 }  // namespace
-}  // namespace cohort::scene
+}  // namespace cohort::viewing

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "server/lockstep/answer_times.hpp"
-#include "server/session/control_desk.hpp"
+#include "server/session/control/request_ledger.hpp"
 #include "server/session/exchange.hpp"
-#include "server/session/play.hpp"
+#include "server/session/playback.hpp"
 #include "server/session/session_snapshot.hpp"
 #include "tests/support/robots.hpp"
 
@@ -17,15 +17,15 @@ using testing::at;
 using testing::place;
 using testing::tracked_robot;
 using testing::world_with_floor;
-using Receipt = ControlDesk::Receipt;
+using Receipt = RequestLedger::Receipt;
 using namespace std::chrono_literals;
 
-TEST(Play, MakesTheStepsOfSeveralOneAfterTheOther) {
-  Play play(PlayState::paused);
+TEST(Playback, MakesTheStepsOfSeveralOneAfterTheOther) {
+  Playback play(PlaybackState::paused);
   EXPECT_TRUE(play.holds());
   play.step(7, 3, 0xa, 1);
   play.step(7, 2, 0xb, 5);
-  EXPECT_EQ(play.state(), PlayState::playing);
+  EXPECT_EQ(play.state(), PlaybackState::playing);
   EXPECT_TRUE(play.reached(9).empty());
   const auto first = play.reached(10);
   ASSERT_EQ(first.size(), 1u);
@@ -34,14 +34,14 @@ TEST(Play, MakesTheStepsOfSeveralOneAfterTheOther) {
   const auto second = play.reached(12);
   ASSERT_EQ(second.size(), 1u);
   EXPECT_EQ(second[0].number, 5u);
-  EXPECT_EQ(play.state(), PlayState::paused);
+  EXPECT_EQ(play.state(), PlaybackState::paused);
   EXPECT_TRUE(play.holds());
 }
 
-TEST(Play, GivesUpStepsThatAreLeftWhenItIsPausedOrGoesOn) {
-  Play play(PlayState::paused);
+TEST(Playback, GivesUpStepsThatAreLeftWhenItIsPausedOrGoesOn) {
+  Playback play(PlaybackState::paused);
   play.step(0, 100, 0xa, 1);
-  const auto given_up = play.set(PlayState::playing);
+  const auto given_up = play.set(PlaybackState::playing);
   ASSERT_EQ(given_up.size(), 1u);
   EXPECT_EQ(given_up[0].until, 100u);
   EXPECT_FALSE(play.holds());
@@ -56,8 +56,8 @@ wire::Reply reply_to(std::uint64_t client, std::uint64_t number, const std::stri
   return reply;
 }
 
-TEST(ControlDesk, DoesNoRequestTwiceAndRemembersItsReply) {
-  ControlDesk desk;
+TEST(RequestLedger, DoesNoRequestTwiceAndRemembersItsReply) {
+  RequestLedger desk;
   ASSERT_TRUE(desk.is_in_own_name(1, 0xaa));
   EXPECT_EQ(desk.receive(1, 1), Receipt::fresh);
   EXPECT_EQ(desk.receive(1, 1), Receipt::under_way);
@@ -69,8 +69,8 @@ TEST(ControlDesk, DoesNoRequestTwiceAndRemembersItsReply) {
   EXPECT_EQ(desk.receive(1, 2), Receipt::fresh);
 }
 
-TEST(ControlDesk, ForgetsOnlyWhatCanNoLongerBeAskedAgain) {
-  ControlDesk desk;
+TEST(RequestLedger, ForgetsOnlyWhatCanNoLongerBeAskedAgain) {
+  RequestLedger desk;
   ASSERT_TRUE(desk.is_in_own_name(1, 0xaa));
   for (std::uint64_t number = 1; number <= 40; ++number) {
     ASSERT_EQ(desk.receive(1, number), Receipt::fresh) << number;
@@ -81,8 +81,8 @@ TEST(ControlDesk, ForgetsOnlyWhatCanNoLongerBeAskedAgain) {
   EXPECT_EQ(desk.receive(1, 25), Receipt::answered);
 }
 
-TEST(ControlDesk, BoundsWhatOneClientHasUnderWay) {
-  ControlDesk desk;
+TEST(RequestLedger, BoundsWhatOneClientHasUnderWay) {
+  RequestLedger desk;
   ASSERT_TRUE(desk.is_in_own_name(1, 0xaa));
   for (std::uint64_t number = 1; number <= wire::requests_under_way; ++number)
     ASSERT_EQ(desk.receive(1, number), Receipt::fresh);
@@ -91,8 +91,8 @@ TEST(ControlDesk, BoundsWhatOneClientHasUnderWay) {
   EXPECT_EQ(desk.receive(1, 17), Receipt::fresh);
 }
 
-TEST(ControlDesk, KnowsWhoItSpeaksWith) {
-  ControlDesk desk;
+TEST(RequestLedger, KnowsWhoItSpeaksWith) {
+  RequestLedger desk;
   EXPECT_TRUE(desk.is_in_own_name(1, 0xaa));
   EXPECT_FALSE(desk.is_in_own_name(1, 0xbb)) << "another's name";
   EXPECT_FALSE(desk.is_in_own_name(2, 0xaa)) << "a second name";
@@ -106,8 +106,8 @@ std::vector<std::uint8_t> numbered(std::size_t count, std::uint8_t first) {
   return bytes;
 }
 
-TEST(ControlDesk, PutsPartsTogetherWhateverIsRepeated) {
-  ControlDesk desk;
+TEST(RequestLedger, PutsPartsTogetherWhateverIsRepeated) {
+  RequestLedger desk;
   EXPECT_FALSE(desk.take_part(1, 250, 0, numbered(100, 0)));
   EXPECT_FALSE(desk.take_all(1)) << "not yet";
   EXPECT_FALSE(desk.take_part(1, 250, 100, numbered(100, 100)));
@@ -121,8 +121,8 @@ TEST(ControlDesk, PutsPartsTogetherWhateverIsRepeated) {
   EXPECT_FALSE(desk.take_all(1)) << "it is gone";
 }
 
-TEST(ControlDesk, RefusesPartsThatCannotBe) {
-  ControlDesk desk;
+TEST(RequestLedger, RefusesPartsThatCannotBe) {
+  RequestLedger desk;
   EXPECT_TRUE(desk.take_part(1, wire::largest_data + 1, 0, {}));
   EXPECT_TRUE(desk.take_part(1, wire::largest_data, 0, numbered(wire::largest_part + 1, 0)));
   EXPECT_TRUE(desk.take_part(1, 10, 0, numbered(11, 0)));
@@ -132,8 +132,8 @@ TEST(ControlDesk, RefusesPartsThatCannotBe) {
   EXPECT_TRUE(desk.take_part(1, 11, 5, numbered(5, 0))) << "another size";
 }
 
-TEST(ControlDesk, GivesDataInPartsToWhoAskedForItAndKeepsThatOfTwo) {
-  ControlDesk desk;
+TEST(RequestLedger, GivesDataInPartsToWhoAskedForItAndKeepsThatOfTwo) {
+  RequestLedger desk;
   const std::vector<std::byte> data(wire::largest_part + 10, std::byte{7});
   desk.offer(1, data);
   desk.offer(2, {std::byte{1}});

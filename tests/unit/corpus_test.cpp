@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "server/description/experiment.hpp"
-#include "server/description/file_kind.hpp"
 #include "server/description/world.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/parsing/sdf/file_kind.hpp"
+#include "server/parsing/world/read_world.hpp"
 
 /// Files with the odd corners of SDF, URDF, YAML and experiments: those of tests/data/corpus/valid are read, and each
 /// of broken/ is refused with what FILE.expected says.
@@ -30,10 +32,10 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 }
 
 void read(const fs::path& file) {
-  if (kind_of_file(file) == FileKind::sdf)
-    read_world_or_model(file, 1);
+  if (parsing::kind_of_file(file) == parsing::FileKind::sdf)
+    parsing::read_world_or_model(file, 1);
   else
-    read_experiment(file);
+    parsing::read_experiment(file);
 }
 
 std::string name_of_test(const ::testing::TestParamInfo<fs::path>& info) {

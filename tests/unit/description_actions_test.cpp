@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/written_worlds.hpp"
 
 // Breakable joints, user actions, and the events that they and emitters have.
@@ -129,7 +130,7 @@ class CourseWithActions : public Description {
   std::filesystem::path write_experiment(const std::string& course) const {
     return write("e.yaml", "world: world.sdf\nduration: 10\nteams: [{name: t, robots: all, controller: x}]\n" + course);
   }
-  Experiment read_course(const std::string& course) const { return read_experiment(write_experiment(course)); }
+  Experiment read_course(const std::string& course) const { return parsing::read_experiment(write_experiment(course)); }
 };
 
 TEST_F(CourseWithActions, HasReactionsOfThoseRobotsThatHaveTheAction) {
@@ -191,7 +192,7 @@ class FlawOfACourseWithActions : public CourseWithActions, public testing::WithP
 
 TEST_P(FlawOfACourseWithActions, IsReportedAloneWithFileLineAndKey) {
   const std::filesystem::path file = write_experiment(GetParam().content);
-  const auto problems = problems_of([&] { read_experiment(file); });
+  const auto problems = problems_of([&] { parsing::read_experiment(file); });
   expect_problem(problems, file, GetParam());
   EXPECT_EQ(problems.size(), 1u) << texts_of(problems);
 }

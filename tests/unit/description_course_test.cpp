@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/written_worlds.hpp"
 
 namespace cohort::description {
@@ -9,9 +10,9 @@ namespace {
 using namespace std::chrono_literals;
 
 // A robot `a`, one in a team, a static wall, and an experiment that says something of its course.
-class Course : public Description {
+class Schedule : public Description {
  protected:
-  Course() {
+  Schedule() {
     write_world(
         "<include><uri>model://sbot</uri><name>a</name></include><include><uri>model://sbot</uri><name>team/b"
         "</name><pose>1 0 0 0 0 0</pose></include>" +
@@ -21,10 +22,10 @@ class Course : public Description {
   std::filesystem::path write_experiment(const std::string& course) const {
     return write("e.yaml", "world: world.sdf\nduration: 10\nteams: [{name: t, robots: all, controller: x}]\n" + course);
   }
-  Experiment read_course(const std::string& course) const { return read_experiment(write_experiment(course)); }
+  Experiment read_course(const std::string& course) const { return parsing::read_experiment(write_experiment(course)); }
 };
 
-TEST_F(Course, HasItsEventsInTheOrderOfTheirTimes) {
+TEST_F(Schedule, HasItsEventsInTheOrderOfTheirTimes) {
   const Experiment experiment = read_course(
       "events:\n"
       "  - at: 2\n    add: {model: model://sbot, name: team/late, pose: [0, 1, 0, 0, 0, 1.5]}\n"
@@ -58,7 +59,7 @@ TEST_F(Course, HasItsEventsInTheOrderOfTheirTimes) {
   EXPECT_EQ(std::get<SetVelocity>(experiment.events[6].effect).angular_W, Eigen::Vector3d::Zero());
 }
 
-TEST_F(Course, SaysWhatIsRecorded) {
+TEST_F(Schedule, SaysWhatIsRecorded) {
   const Recorded defaults = read_course("").recorded;
   EXPECT_EQ(defaults.observed, (std::vector<std::uint32_t>{0, 1}));
   EXPECT_EQ(defaults.pose_rate, 10.0);
@@ -72,7 +73,7 @@ TEST_F(Course, SaysWhatIsRecorded) {
   EXPECT_EQ(written.snapshot_interval, 1500ms);
 }
 
-TEST_F(Course, HasStopsPrintsAndAHistory) {
+TEST_F(Schedule, HasStopsPrintsAndAHistory) {
   const Experiment experiment = read_course(
       "stop:\n  - inside: {objects: a, min: [0, 0], max: 1 1, for: 2}\n  - at_rest:  {}\n"
       "print:\n  - {quantity: pose, objects: team/*, every: 0.5}\n  - {quantity: count}\n"
@@ -91,11 +92,11 @@ TEST_F(Course, HasStopsPrintsAndAHistory) {
   EXPECT_EQ(experiment.threads, 3u);
 }
 
-class FlawOfACourse : public Course, public testing::WithParamInterface<Flaw> {};
+class FlawOfACourse : public Schedule, public testing::WithParamInterface<Flaw> {};
 
 TEST_P(FlawOfACourse, IsReportedAloneWithFileLineAndKey) {
   const std::filesystem::path file = write_experiment(GetParam().content);
-  const auto problems = problems_of([&] { read_experiment(file); });
+  const auto problems = problems_of([&] { parsing::read_experiment(file); });
   expect_problem(problems, file, GetParam());
   EXPECT_EQ(problems.size(), 1u) << texts_of(problems);
 }

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "server/parsing/files/sample_file.hpp"
+#include "server/parsing/world/read_world.hpp"
 #include "tests/support/written_worlds.hpp"
 
 /// Cameras, techniques and samples of sensors, and the colours of links, in files.
@@ -64,7 +66,7 @@ TEST_F(Devices, WithSamplesThatCannotBeAreReported) {
     const std::string two = "<cohort:count>2<";
     device.replace(device.find(two), two.size(), "<cohort:count>" + count + "<");
     const std::filesystem::path world = write_world(model_with(device));
-    return problems_of([&] { read_world(world, 1); });
+    return problems_of([&] { parsing::read_world(world, 1); });
   };
   EXPECT_TRUE(problems_with("s.csv", "2").empty());
   const std::vector<Problem> three = problems_with("s.csv", "3");

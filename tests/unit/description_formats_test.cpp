@@ -7,9 +7,10 @@
 #include <numbers>
 #include <string>
 
-#include "server/description/convex_hull.hpp"
-#include "server/description/mass_properties.hpp"
-#include "server/description/terrain.hpp"
+#include "server/geometry/convex_hull.hpp"
+#include "server/parsing/model/mass_properties.hpp"
+#include "server/parsing/model/terrain.hpp"
+#include "server/parsing/world/read_world.hpp"
 #include "tests/support/written_worlds.hpp"
 
 // Models inside of models, URDF, older versions, mass from density, ground from functions.
@@ -32,7 +33,7 @@ class Formats : public Description {
                     "1</cohort:max_velocity><cohort:max_effort>1</cohort:max_effort></cohort:velocity_motor>");
   }
   World read_urdf(const std::string& content) const {
-    return read_world_or_model(write("r.urdf", "<robot name=\"r\">\n" + content + "\n</robot>\n"), 1);
+    return parsing::read_world_or_model(write("r.urdf", "<robot name=\"r\">\n" + content + "\n</robot>\n"), 1);
   }
 };
 
@@ -110,13 +111,13 @@ TEST_F(Formats, APathInAnIncludedFileIsRelativeToThatFile) {
 }
 
 TEST_F(Formats, AnAxisOfAnOldFileInTheModelsFrameIsTurnedIntoTheJoint) {
-  const World world =
-      read_world(write("world.sdf",
-                       "<sdf version=\"1.5\"><world name=\"w\"><model name=\"m\">" + links("p") +
-                           "<link name=\"c\"><pose>0 0 1 0 0 1.5707963267948966</pose></link>" +
-                           joint("j", "p", "c", "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>") +
-                           "</model></world></sdf>"),
-                 1);
+  const World world = parsing::read_world(
+      write("world.sdf",
+            "<sdf version=\"1.5\"><world name=\"w\"><model name=\"m\">" + links("p") +
+                "<link name=\"c\"><pose>0 0 1 0 0 1.5707963267948966</pose></link>" +
+                joint("j", "p", "c", "<xyz>1 0 0</xyz><use_parent_model_frame>1</use_parent_model_frame>") +
+                "</model></world></sdf>"),
+      1);
   expect_near(world.models[0].joints[0].axis.direction, {0, -1, 0});
 }
 
@@ -158,7 +159,7 @@ TEST_F(Formats, AUrdfRobotHasItsDevicesAndSensorsInGazeboBlocks) {
       "</cohort:max_velocity><cohort:max_effort>2</cohort:max_effort></cohort:velocity_motor></gazebo>"
       "<gazebo reference=\"b\"><cohort:grip_ring name=\"ring\"><cohort:radius>0.1</cohort:radius></cohort:grip_ring>"
       "<sensor name=\"s\" type=\"imu\"><update_rate>10</update_rate></sensor></gazebo></robot>";
-  const World world = read_world_or_model(write("r.urdf", text), 1);
+  const World world = parsing::read_world_or_model(write("r.urdf", text), 1);
   const Model& model = world.models[0];
   ASSERT_EQ(model.devices.size(), 2u);
   const auto& motor = std::get<VelocityMotor>(model.devices[0]);
@@ -222,10 +223,11 @@ TEST_F(Formats, DensityGivesALinkTheMassOfItsCollisions) {
 
 // Two halves put together are the whole, whatever the shape of the whole.
 TEST(MassProperties, TwoHalvesOfABoxAreTheBox) {
-  const MassProperties half = mass_properties(Box{{1.0, 2.0, 1.5}}, 3.0);
-  const MassProperties whole = mass_properties(Box{{1.0, 2.0, 3.0}}, 3.0);
-  const MassProperties both = together({moved(half, {{0, 0, 0.75}, Eigen::Quaterniond::Identity()}),
-                                        moved(half, {{0, 0, -0.75}, Eigen::Quaterniond(0, 1, 0, 0)})});
+  const parsing::MassProperties half = parsing::mass_properties(Box{{1.0, 2.0, 1.5}}, 3.0);
+  const parsing::MassProperties whole = parsing::mass_properties(Box{{1.0, 2.0, 3.0}}, 3.0);
+  const parsing::MassProperties both =
+      parsing::together({parsing::moved(half, {{0, 0, 0.75}, Eigen::Quaterniond::Identity()}),
+                         parsing::moved(half, {{0, 0, -0.75}, Eigen::Quaterniond(0, 1, 0, 0)})});
   EXPECT_NEAR(both.mass, whole.mass, near);
   EXPECT_LT((both.inertia - whole.inertia).norm(), near);
 }
@@ -243,7 +245,7 @@ void expect_body_of_revolution(const Shape& shape, double half_length, const std
     about_z += disc * r2 / 2.0;
     across += disc * (r2 / 4.0 + z * z);
   }
-  const MassProperties found = mass_properties(shape, 1.0);
+  const parsing::MassProperties found = parsing::mass_properties(shape, 1.0);
   EXPECT_NEAR(found.mass, mass, 1e-6 * mass);
   EXPECT_NEAR(found.inertia(2, 2), about_z, 1e-6 * about_z);
   EXPECT_NEAR(found.inertia(0, 0), across, 1e-6 * across);
@@ -267,9 +269,9 @@ TEST(MassProperties, AMeshOfABoxHasThoseOfTheBoxWhereverItIs) {
   for (const double x : {-0.5, 0.5})
     for (const double y : {-1.0, 1.0})
       for (const double z : {-1.5, 1.5}) corners.emplace_back(offset + Eigen::Vector3d(x, y, z));
-  const Mesh mesh{std::make_shared<const TriangleMesh>(convex_hull(corners)), true};
-  const MassProperties found = mass_properties(mesh, 2.0);
-  const MassProperties box = mass_properties(Box{{1.0, 2.0, 3.0}}, 2.0);
+  const Mesh mesh{std::make_shared<const TriangleMesh>(geometry::convex_hull(corners)), true};
+  const parsing::MassProperties found = parsing::mass_properties(mesh, 2.0);
+  const parsing::MassProperties box = parsing::mass_properties(Box{{1.0, 2.0, 3.0}}, 2.0);
   EXPECT_NEAR(found.mass, box.mass, near);
   expect_near(found.centre, offset);
   EXPECT_LT((found.inertia - box.inertia).norm(), 1e-10);
@@ -315,7 +317,7 @@ TEST_F(Formats, ATerrainStandsInPlaceOfAnImage) {
 }
 
 TEST(Terrain, StepsAreLevelAndReachTheTop) {
-  const HeightGrid grid = terrain_heights({"steps", {1.0, 0.1, 0.3}, 0.05, 0.25, 0});
+  const HeightGrid grid = parsing::terrain_heights({"steps", {1.0, 0.1, 0.3}, 0.05, 0.25, 0});
   EXPECT_DOUBLE_EQ(grid.height(0, 0), 0.0);
   EXPECT_DOUBLE_EQ(grid.height(4, 0), 0.0);
   EXPECT_DOUBLE_EQ(grid.height(5, 0), 0.1);
@@ -324,14 +326,14 @@ TEST(Terrain, StepsAreLevelAndReachTheTop) {
 
 TEST(Terrain, HeightsAreWithinTheSizeAndFollowTheSeed) {
   for (const std::string kind : {"sine", "hills", "rough"}) {
-    const HeightGrid grid = terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 1});
+    const HeightGrid grid = parsing::terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 1});
     const auto [least, greatest] = std::minmax_element(grid.heights.begin(), grid.heights.end());
     EXPECT_GE(*least, 0.0) << kind;
     EXPECT_LE(*greatest, 0.5) << kind;
     EXPECT_GT(*greatest - *least, 0.3) << kind;
-    EXPECT_EQ(terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 1}).heights, grid.heights) << kind;
+    EXPECT_EQ(parsing::terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 1}).heights, grid.heights) << kind;
     const bool has_seed = kind != "sine";
-    EXPECT_EQ(terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 2}).heights != grid.heights, has_seed) << kind;
+    EXPECT_EQ(parsing::terrain_heights({kind, {3.0, 2.0, 0.5}, 0.1, 0.7, 2}).heights != grid.heights, has_seed) << kind;
   }
 }
 
@@ -354,7 +356,7 @@ TEST_F(Formats, TheTimeToReadIncludesGrowsWithTheirNumberAndNotFaster) {
                          "<name>r" + std::to_string(i) + "</name><pose>" + std::to_string(i) + " 0 0 0 0 0</pose>\n");
     const std::filesystem::path file = write_world(content);
     const double before = cpu_seconds();
-    EXPECT_EQ(read_world(file, 1).robots.size(), static_cast<std::size_t>(count));
+    EXPECT_EQ(parsing::read_world(file, 1).robots.size(), static_cast<std::size_t>(count));
     return cpu_seconds() - before;
   };
   const double few = time_for(2500);

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "server/description/write_world.hpp"
+#include "server/parsing/world/read_world.hpp"
+#include "server/parsing/writing/write_world.hpp"
 #include "tests/support/written_worlds.hpp"
 
 namespace cohort::description {
@@ -82,9 +83,9 @@ TEST_F(Grippers, AreWrittenBackAsTheyWereRead) {
   const World first =
       read(robot(gripper, "<cohort:grip_ring name=\"r\"><cohort:radius>0.06</cohort:radius></cohort:grip_ring>",
                  "<cohort:grippable>true</cohort:grippable>"));
-  const std::string text = xml_text(sdf_of(first, folder_));
-  const World second = read_world(write("again.sdf", text), 1);
-  EXPECT_EQ(xml_text(sdf_of(second, folder_)), text);
+  const std::string text = parsing::xml_text(parsing::sdf_of(first, folder_));
+  const World second = parsing::read_world(write("again.sdf", text), 1);
+  EXPECT_EQ(parsing::xml_text(parsing::sdf_of(second, folder_)), text);
   EXPECT_EQ(second.models[0].grip_rings.size(), 1u);
   EXPECT_TRUE(second.models[0].links[1].collisions[0].surface.is_grippable);
 }

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "tests/support/written_worlds.hpp"
 
 // Surfaces, materials, and the settings of physics.
@@ -170,9 +171,9 @@ class PhysicsOfAnExperiment : public Description {
 };
 
 TEST_F(PhysicsOfAnExperiment, ReplacesThatOfTheWorldKeyByKey) {
-  EXPECT_EQ(read_experiment(write_experiment("")).world.physics.iterations, 20u);
+  EXPECT_EQ(parsing::read_experiment(write_experiment("")).world.physics.iterations, 20u);
   const PhysicsSettings settings =
-      read_experiment(
+      parsing::read_experiment(
           write_experiment("physics:\n  iterations: 30\n  fidelity: planar\n  strict: true\n  lowest: -1\n"))
           .world.physics;
   EXPECT_EQ(settings.solver, Solver::direct);
@@ -186,7 +187,7 @@ class FlawOfPhysicsInAnExperiment : public PhysicsOfAnExperiment, public testing
 
 TEST_P(FlawOfPhysicsInAnExperiment, IsReportedAloneWithFileLineAndKey) {
   const std::filesystem::path file = write_experiment(GetParam().content);
-  const auto problems = problems_of([&] { read_experiment(file); });
+  const auto problems = problems_of([&] { parsing::read_experiment(file); });
   expect_problem(problems, file, GetParam());
   EXPECT_EQ(problems.size(), 1u);
 }

@@ -4,7 +4,8 @@
 #include <ctime>
 #include <numbers>
 
-#include "server/description/site.hpp"
+#include "server/parsing/world/occupancy.hpp"
+#include "server/parsing/world/read_world.hpp"
 #include "tests/support/written_worlds.hpp"
 
 namespace cohort::description {
@@ -212,27 +213,29 @@ TEST_F(Populations, OfTenThousandTakeLessThanASecondOfTheProcessor) {
                             population(10'000, key("uniform", key("min", "-20 -20") + key("max", "20 20")));
   const std::filesystem::path file = write_world(world);
   const std::clock_t before = std::clock();
-  EXPECT_EQ(read_world(file, 1).robots.size(), 10'000u);
+  EXPECT_EQ(parsing::read_world(file, 1).robots.size(), 10'000u);
   const double seconds = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   std::printf("10,000 robots read and placed in %.3f s of CPU\n", seconds);
   RecordProperty("milliseconds", static_cast<int>(1000.0 * seconds));
 }
 
 TEST(Triangles, AreHighestOnADiscAtACornerAnEdgeOrUphill) {
-  const Triangle slope = {Eigen::Vector3d(-10, -10, -10), Eigen::Vector3d(10, -10, 10), Eigen::Vector3d(-10, 10, -10)};
-  EXPECT_NEAR(*highest_on_disc(slope, {-5, -5}, 1.0), -4.0, 1e-12);  // z is x: up the slope
-  EXPECT_NEAR(*highest_on_disc(slope, {10, -10}, 1.0), 10.0, 1e-12);
-  EXPECT_NEAR(*highest_on_disc(slope, {0, -10.5}, 1.0), std::sqrt(0.75), 1e-12);  // where an edge leaves the disc
-  EXPECT_FALSE(highest_on_disc(slope, {20, 20}, 1.0));
+  const parsing::Triangle slope = {Eigen::Vector3d(-10, -10, -10), Eigen::Vector3d(10, -10, 10),
+                                   Eigen::Vector3d(-10, 10, -10)};
+  EXPECT_NEAR(*parsing::highest_on_disc(slope, {-5, -5}, 1.0), -4.0, 1e-12);  // z is x: up the slope
+  EXPECT_NEAR(*parsing::highest_on_disc(slope, {10, -10}, 1.0), 10.0, 1e-12);
+  EXPECT_NEAR(*parsing::highest_on_disc(slope, {0, -10.5}, 1.0), std::sqrt(0.75),
+              1e-12);  // where an edge leaves the disc
+  EXPECT_FALSE(parsing::highest_on_disc(slope, {20, 20}, 1.0));
 }
 
 TEST(Triangles, AreAsFarAsTheirPartBetweenTheHeights) {
   // Leans from the y axis at z = 0 over x = 1 at z = 1.
-  const Triangle leaning = {Eigen::Vector3d(0, -5, 0), Eigen::Vector3d(0, 5, 0), Eigen::Vector3d(1, 0, 1)};
-  EXPECT_NEAR(distance_between_heights(leaning, 0.0, 0.25, {2, 0}), 1.75, 1e-12);
-  EXPECT_EQ(distance_between_heights(leaning, 0.0, 0.25, {0.2, 0}), 0.0);
-  EXPECT_NEAR(distance_between_heights(leaning, 0.5, 0.75, {0, 0}), 0.5, 1e-12);
-  EXPECT_EQ(distance_between_heights(leaning, 2.0, 3.0, {0, 0}), std::numeric_limits<double>::infinity());
+  const parsing::Triangle leaning = {Eigen::Vector3d(0, -5, 0), Eigen::Vector3d(0, 5, 0), Eigen::Vector3d(1, 0, 1)};
+  EXPECT_NEAR(parsing::distance_between_heights(leaning, 0.0, 0.25, {2, 0}), 1.75, 1e-12);
+  EXPECT_EQ(parsing::distance_between_heights(leaning, 0.0, 0.25, {0.2, 0}), 0.0);
+  EXPECT_NEAR(parsing::distance_between_heights(leaning, 0.5, 0.75, {0, 0}), 0.5, 1e-12);
+  EXPECT_EQ(parsing::distance_between_heights(leaning, 2.0, 3.0, {0, 0}), std::numeric_limits<double>::infinity());
 }
 
 class FlawOfAPopulation : public Populations, public testing::WithParamInterface<Flaw> {};

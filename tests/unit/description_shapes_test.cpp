@@ -5,8 +5,8 @@
 #include <set>
 
 #include "server/core/random.hpp"
-#include "server/description/convex_hull.hpp"
-#include "server/description/footprint.hpp"
+#include "server/geometry/convex_hull.hpp"
+#include "server/geometry/footprint.hpp"
 #include "tests/support/written_worlds.hpp"
 
 // Shapes, and the files that hold some of them.
@@ -293,7 +293,7 @@ TEST(ConvexHull, HoldsRandomPointsAndHasNoOthers) {
   std::vector<Vector3d> points;
   for (std::uint64_t n = 0; n < 500; ++n)
     points.emplace_back(random.normal(n, 0), 2.0 * random.normal(n, 1), 3.0 * random.normal(n, 2));
-  expect_hull(convex_hull(points), points);
+  expect_hull(geometry::convex_hull(points), points);
 }
 
 TEST(ConvexHull, OfAGridOfPointsIsTheBoxAroundThem) {
@@ -301,7 +301,7 @@ TEST(ConvexHull, OfAGridOfPointsIsTheBoxAroundThem) {
   for (int x = 0; x < 6; ++x)
     for (int y = 0; y < 6; ++y)
       for (int z = 0; z < 6; ++z) points.emplace_back(0.1 * x, 0.2 * y, 0.3 * z);
-  const TriangleMesh hull = convex_hull(points);
+  const TriangleMesh hull = geometry::convex_hull(points);
   expect_hull(hull, points);
   EXPECT_NEAR(volume_of(hull), 0.5 * 1.0 * 1.5, 1e-12);
 }
@@ -314,16 +314,16 @@ TEST(ConvexHull, OfARoundBodyHasAllItsPoints) {
       points.emplace_back(std::sin(latitude) * std::cos(longitude), std::sin(latitude) * std::sin(longitude),
                           std::cos(latitude));
     }
-  const TriangleMesh hull = convex_hull(points);
+  const TriangleMesh hull = geometry::convex_hull(points);
   expect_hull(hull, points);
   EXPECT_EQ(hull.vertices.size(), points.size());
 }
 
 TEST(ConvexHull, OfPointsWithoutVolumeIsRefused) {
-  EXPECT_THROW(convex_hull({}), std::invalid_argument);
-  EXPECT_THROW(convex_hull({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}), std::invalid_argument);
-  EXPECT_THROW(convex_hull({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), std::invalid_argument);
-  EXPECT_THROW(convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 5, 0}}), std::invalid_argument);
+  EXPECT_THROW(geometry::convex_hull({}), std::invalid_argument);
+  EXPECT_THROW(geometry::convex_hull({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}), std::invalid_argument);
+  EXPECT_THROW(geometry::convex_hull({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}), std::invalid_argument);
+  EXPECT_THROW(geometry::convex_hull({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 5, 0}}), std::invalid_argument);
 }
 
 // ---- Footprints ----
@@ -333,23 +333,23 @@ Pose turned(double angle, const Vector3d& axis) {
 }
 
 TEST(Footprints, OfACapsuleIsExactHoweverItLies) {
-  const auto upright = footprint_of(Capsule{0.5, 4.0}, turned(0.0, Vector3d::UnitX()));
+  const auto upright = geometry::footprint_of(Capsule{0.5, 4.0}, turned(0.0, Vector3d::UnitX()));
   EXPECT_NEAR(upright->distance({3.0, 2.0}), 1.5, 1e-12);
   EXPECT_NEAR(upright->highest, 5.5, 1e-12);
-  const auto leaning = footprint_of(Capsule{0.5, 4.0}, turned(std::numbers::pi / 6, Vector3d::UnitY()));
+  const auto leaning = geometry::footprint_of(Capsule{0.5, 4.0}, turned(std::numbers::pi / 6, Vector3d::UnitY()));
   EXPECT_NEAR(leaning->distance({1.0 + 2.0 * 0.5 + 1.5, 2.0}), 1.0, 1e-12);
   EXPECT_NEAR(leaning->distance({1.0, 3.0}), 0.5, 1e-12);
   EXPECT_NEAR(leaning->lowest, 3.0 - 2.0 * std::sqrt(0.75) - 0.5, 1e-12);
 }
 
 TEST(Footprints, OfAnEllipsoidHoldsItAndTouchesItsEnds) {
-  const auto round = footprint_of(Ellipsoid{{2, 2, 1}}, turned(0.3, Vector3d::UnitZ()));
+  const auto round = geometry::footprint_of(Ellipsoid{{2, 2, 1}}, turned(0.3, Vector3d::UnitZ()));
   EXPECT_NEAR(round->distance({4.0, 2.0}), 1.0, 1e-12);
-  const auto lying = footprint_of(Ellipsoid{{3, 1, 2}}, turned(std::numbers::pi / 2, Vector3d::UnitZ()));
+  const auto lying = geometry::footprint_of(Ellipsoid{{3, 1, 2}}, turned(std::numbers::pi / 2, Vector3d::UnitZ()));
   EXPECT_NEAR(lying->distance({1.0, 6.0}), 1.0, 1e-12);
   EXPECT_NEAR(lying->distance({3.0, 2.0}), 1.0, 1e-12);
   const Pose tilted = turned(0.8, Vector3d(1, 2, 3).normalized());
-  const auto any = footprint_of(Ellipsoid{{3, 1, 2}}, tilted);
+  const auto any = geometry::footprint_of(Ellipsoid{{3, 1, 2}}, tilted);
   const RandomStream random(5, "description_test", "ellipsoid");
   double highest = 0.0;
   for (std::uint64_t n = 0; n < 2000; ++n) {
@@ -363,8 +363,8 @@ TEST(Footprints, OfAnEllipsoidHoldsItAndTouchesItsEnds) {
 
 TEST(Footprints, OfAMeshIsTheLeastRectangle) {
   const std::vector<Vector3d> corners = {{-1, -2, 0}, {1, -2, 0}, {1, 2, 0}, {-1, 2, 0}, {0, 0, 5}};
-  const Mesh pyramid{std::make_shared<const TriangleMesh>(convex_hull(corners))};
-  const auto footprint = footprint_of(pyramid, turned(0.5, Vector3d::UnitZ()));
+  const Mesh pyramid{std::make_shared<const TriangleMesh>(geometry::convex_hull(corners))};
+  const auto footprint = geometry::footprint_of(pyramid, turned(0.5, Vector3d::UnitZ()));
   EXPECT_NEAR(footprint->half.prod(), 2.0, 1e-12);
   EXPECT_TRUE(footprint->centre.isApprox(Eigen::Vector2d(1, 2), 1e-12));
   EXPECT_NEAR(footprint->distance(Eigen::Vector2d(1, 2) + 3.0 * Eigen::Vector2d(std::cos(0.5), std::sin(0.5))), 2.0,
@@ -374,8 +374,8 @@ TEST(Footprints, OfAMeshIsTheLeastRectangle) {
 }
 
 TEST(Footprints, OfAHeightmapIsNone) {
-  EXPECT_FALSE(
-      footprint_of(Heightmap{std::make_shared<const HeightGrid>(HeightGrid{2, 2, {1, 1}, {0, 0, 0, 0}})}, Pose{}));
+  EXPECT_FALSE(geometry::footprint_of(
+      Heightmap{std::make_shared<const HeightGrid>(HeightGrid{2, 2, {1, 1}, {0, 0, 0, 0}})}, Pose{}));
 }
 
 }  // namespace

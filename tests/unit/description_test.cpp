@@ -11,12 +11,14 @@
 #include <vector>
 
 #include "server/description/experiment.hpp"
-#include "server/description/experiment_keys.hpp"
-#include "server/description/extensions.hpp"
-#include "server/description/footprint.hpp"
 #include "server/description/input_error.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/world.hpp"
+#include "server/geometry/footprint.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/parsing/keys/experiment_keys.hpp"
+#include "server/parsing/keys/extensions.hpp"
+#include "server/parsing/world/read_world.hpp"
 #include "tests/support/written_worlds.hpp"
 
 namespace cohort::description {
@@ -48,7 +50,7 @@ std::string uniform(const std::string& min, const std::string& max) {
 // ---- What ships ----
 
 TEST(ShippedWorlds, TheExperimentHasSixteenRobotsThatShareOneModel) {
-  const Experiment experiment = read_experiment(shipped_experiment);
+  const Experiment experiment = parsing::read_experiment(shipped_experiment);
   EXPECT_EQ(experiment.name, "obstacle_avoidance");
   EXPECT_EQ(experiment.duration, 60s);
   EXPECT_EQ(experiment.seed, 1u);
@@ -65,11 +67,11 @@ TEST(ShippedWorlds, TheExperimentHasSixteenRobotsThatShareOneModel) {
 }
 
 TEST(ShippedWorlds, TheArenaHasFourWallsTwentyFourObstaclesAndAGround) {
-  const World world = read_world(shipped_arena, 1);
+  const World world = parsing::read_world(shipped_arena, 1);
   EXPECT_EQ(world.step, 10ms);
   EXPECT_EQ(world.gravity, Eigen::Vector3d(0.0, 0.0, -9.81));
   int planes = 0, walls = 0;
-  std::vector<Footprint> obstacles;
+  std::vector<geometry::Footprint> obstacles;
   for (const Instance& each : world.instances) {
     const Model& model = world.models[each.model];
     if (!model.is_static) continue;
@@ -79,14 +81,15 @@ TEST(ShippedWorlds, TheArenaHasFourWallsTwentyFourObstaclesAndAGround) {
     else if (each.name.starts_with("wall"))
       ++walls;
     else
-      for (const Footprint& footprint : footprints_of(model, each.X_WM)) obstacles.push_back(footprint);
+      for (const geometry::Footprint& footprint : geometry::footprints_of(model, each.X_WM))
+        obstacles.push_back(footprint);
   }
   EXPECT_EQ(planes, 1);
   EXPECT_EQ(walls, 4);
   ASSERT_EQ(obstacles.size(), 24u);
-  for (const Footprint& a : obstacles) {
+  for (const geometry::Footprint& a : obstacles) {
     EXPECT_LE((a.centre.cwiseAbs() + a.half_extent()).maxCoeff(), 2.0 - 0.35);
-    for (const Footprint& b : obstacles) {
+    for (const geometry::Footprint& b : obstacles) {
       if (&a != &b) {
         EXPECT_GE(a.distance(b.centre) - b.half.norm() - b.radius, 0.25);
       }
@@ -95,7 +98,7 @@ TEST(ShippedWorlds, TheArenaHasFourWallsTwentyFourObstaclesAndAGround) {
 }
 
 TEST(ShippedWorlds, TheSbotHasItsFramesMassesAndDevices) {
-  const World world = read_world(shipped_arena, 1);
+  const World world = parsing::read_world(shipped_arena, 1);
   const Model& sbot = world.robot_model(0);
   ASSERT_EQ(sbot.links.size(), 2u);
   EXPECT_EQ(sbot.links[0].name, "chassis");
@@ -127,19 +130,19 @@ TEST(ShippedWorlds, TheManualListsEveryKeyAsTheReaderKnowsIt) {
     std::ifstream stream(source / file);
     manual.append(std::istreambuf_iterator<char>(stream), {});
   }
-  const auto expect_keys = [&](const Extension& extension) {
-    for (const ExtensionKey& key : extension.keys) {
+  const auto expect_keys = [&](const parsing::Extension& extension) {
+    for (const parsing::ExtensionKey& key : extension.keys) {
       const std::string row = "| `" + std::string(key.name) + "` | " + std::string(key.unit) + " | " +
                               (key.required() ? "required" : std::string(key.fallback)) + " | " + std::string(key.doc) +
                               " |";
       EXPECT_NE(manual.find(row), std::string::npos) << row;
     }
   };
-  for (const Extension& extension : extensions()) {
+  for (const parsing::Extension& extension : parsing::extensions()) {
     EXPECT_NE(manual.find("`<cohort:" + std::string(extension.name)), std::string::npos) << extension.name;
     expect_keys(extension);
   }
-  for (const Extension& part : experiment_parts()) {
+  for (const parsing::Extension& part : parsing::experiment_parts()) {
     if (!part.parent.empty()) {
       EXPECT_NE(manual.find("`" + std::string(part.name) + "`"), std::string::npos) << part.name;
     }
@@ -150,8 +153,8 @@ TEST(ShippedWorlds, TheManualListsEveryKeyAsTheReaderKnowsIt) {
 // ---- Populations ----
 
 TEST_F(Description, TheSameSeedPlacesAlikeAndAnotherSeedElsewhere) {
-  const World one = read_world(shipped_arena, 1), again = read_world(shipped_arena, 1),
-              other = read_world(shipped_arena, 2);
+  const World one = parsing::read_world(shipped_arena, 1), again = parsing::read_world(shipped_arena, 1),
+              other = parsing::read_world(shipped_arena, 2);
   for (std::uint32_t id = 0; id < 16; ++id) {
     EXPECT_EQ(one.robot(id).X_WM.position, again.robot(id).X_WM.position);
     EXPECT_EQ(one.robot(id).X_WM.orientation.coeffs(), again.robot(id).X_WM.orientation.coeffs());
@@ -162,13 +165,14 @@ TEST_F(Description, TheSameSeedPlacesAlikeAndAnotherSeedElsewhere) {
 TEST_F(Description, PlacedRobotsKeepTheirGapToEverything) {
   constexpr double radius = 0.058, gap = 0.08;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
-    const World world = read_world(shipped_arena, seed);
+    const World world = parsing::read_world(shipped_arena, seed);
     for (const std::size_t robot : world.robots) {
       const Eigen::Vector2d centre = world.instances[robot].X_WM.position.head<2>();
       EXPECT_EQ(world.instances[robot].X_WM.position.z(), 0.0);
       for (std::size_t i = 0; i < world.instances.size(); ++i) {
         if (i == robot) continue;
-        for (const Footprint& part : footprints_of(world.models[world.instances[i].model], world.instances[i].X_WM)) {
+        for (const geometry::Footprint& part :
+             geometry::footprints_of(world.models[world.instances[i].model], world.instances[i].X_WM)) {
           EXPECT_GE(part.distance(centre), radius + gap - 1e-12) << world.instances[i].name;
         }
       }
@@ -206,15 +210,15 @@ TEST(Footprints, AreExactForUprightBoxesAndHoldTiltedCylinders) {
   const auto turned = [](double angle, const Eigen::Vector3d& axis) {
     return Pose{Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis))};
   };
-  const auto box = footprint_of(Box{{4.0, 2.0, 1.0}}, turned(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
+  const auto box = geometry::footprint_of(Box{{4.0, 2.0, 1.0}}, turned(std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));
   EXPECT_NEAR(box->distance({3.0, 0.0}), 2.0, 1e-12);
   EXPECT_NEAR(box->distance({0.0, 3.0}), 1.0, 1e-12);
   EXPECT_NEAR(box->distance({4.0, 6.0}), 5.0, 1e-12);
-  const auto lying = footprint_of(Cylinder{0.5, 4.0}, turned(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
+  const auto lying = geometry::footprint_of(Cylinder{0.5, 4.0}, turned(std::numbers::pi / 2, Eigen::Vector3d::UnitY()));
   EXPECT_NEAR(lying->distance({3.0, 0.0}), 1.0, 1e-12);
   EXPECT_NEAR(lying->distance({0.0, 3.0}), 2.5, 1e-12);
   EXPECT_NEAR(lying->highest, 0.5, 1e-12);
-  EXPECT_FALSE(footprint_of(Plane{}, Pose{}));
+  EXPECT_FALSE(geometry::footprint_of(Plane{}, Pose{}));
 }
 
 // ---- Models, frames and files ----
@@ -300,10 +304,10 @@ TEST_F(Description, TheEnvironmentsModelPathComesFirstAndTheWorkingDirectoryNeve
   const fs::path world = write_world("<include><uri>model://sbot</uri></include>");
   const fs::path before = fs::current_path();
   fs::current_path(folder_ / "mine");
-  EXPECT_EQ(read_world(world, 1).models[0].name, "sbot");
+  EXPECT_EQ(parsing::read_world(world, 1).models[0].name, "sbot");
   fs::current_path(before);
   setenv("COHORT_MODEL_PATH", ("/nowhere:" + (folder_ / "mine").string()).c_str(), 1);
-  EXPECT_EQ(read_world(world, 1).models[0].name, "mine");
+  EXPECT_EQ(parsing::read_world(world, 1).models[0].name, "mine");
   unsetenv("COHORT_MODEL_PATH");
 }
 
@@ -311,14 +315,14 @@ TEST_F(Description, TheFoldersOfTheInstallationComeLast) {
   write("installed/sbot/model.config", "<model><name>x</name><sdf version=\"1.9\">model.sdf</sdf></model>");
   write("installed/sbot/model.sdf", "<sdf version=\"1.9\"><model name=\"theirs\">" + links("a") + "</model></sdf>");
   const fs::path world = write_world("<include><uri>model://sbot</uri></include>");
-  EXPECT_EQ(read_world(world, 1, {folder_ / "nowhere", folder_ / "installed"}).models[0].name, "sbot");
+  EXPECT_EQ(parsing::read_world(world, 1, {folder_ / "nowhere", folder_ / "installed"}).models[0].name, "sbot");
   fs::remove_all(folder_ / "robots");
-  EXPECT_EQ(read_world(world, 1, {folder_ / "nowhere", folder_ / "installed"}).models[0].name, "theirs");
+  EXPECT_EQ(parsing::read_world(world, 1, {folder_ / "nowhere", folder_ / "installed"}).models[0].name, "theirs");
 }
 
 TEST_F(Description, AModelThatIsNowhereIsAnsweredWithTheFoldersSearched) {
   const auto message_of = [&](const std::vector<fs::path>& last_folders) {
-    const auto problems = problems_of([&] { read_world(folder_ / "world.sdf", 1, last_folders); });
+    const auto problems = problems_of([&] { parsing::read_world(folder_ / "world.sdf", 1, last_folders); });
     return problems.empty() ? "" : problems.front().message;
   };
   write_world("<include><uri>model://sbit</uri></include>");
@@ -355,7 +359,7 @@ TEST_F(Description, NothingIsPrintedWhateverIsWrong) {
   testing::internal::CaptureStdout();
   problems_of([&] { read("<model name=\"m\"><link name=\"l\"><inertial><mass>x</mass></inertial></link></model>"); });
   problems_of([&] { read("<include><uri>model://nothing</uri></include>"); });
-  problems_of([&] { read_world(write("broken.sdf", "<sdf version='1.9'><world>"), 1); });
+  problems_of([&] { parsing::read_world(write("broken.sdf", "<sdf version='1.9'><world>"), 1); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
@@ -453,12 +457,12 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(Description, ABrokenXmlFileIsReportedWithTheLine) {
   const fs::path file = write("w.sdf", "<sdf version=\"1.9\">\n<world name=\"w\">\n<model>\n</world></sdf>");
-  const auto problems = problems_of([&] { read_world(file, 1); });
+  const auto problems = problems_of([&] { parsing::read_world(file, 1); });
   expect_problem(problems, file, {"", 4, "", "</world> does not close <model> of line 3"});
 }
 
 TEST_F(Description, AFileThatIsNotThereIsSaidToBeMissing) {
-  const auto problems = problems_of([&] { read_world(folder_ / "none.sdf", 1); });
+  const auto problems = problems_of([&] { parsing::read_world(folder_ / "none.sdf", 1); });
   expect_problem(problems, folder_ / "none.sdf", {"", 0, "", "no such file"});
 }
 
@@ -469,7 +473,7 @@ TEST_F(Description, FlawsOfIncludedFilesAndOfTheWorldAreReportedTogetherAndOnce)
       "<include><uri>model://bad</uri></include><include><name>bad2</name><uri>model://bad</uri></include>"
       "<include><uri>model://worse</uri></include>\n"
       "<cohort:population name=\"p\"/>");
-  const auto problems = problems_of([&] { read_world(file, 1); });
+  const auto problems = problems_of([&] { parsing::read_world(file, 1); });
   expect_problem(problems, folder_ / "robots/bad/model.sdf",
                  {"", 3, "model[bad]/link[l]/inertial/mass", "expected a mass > 0"});
   expect_problem(problems, folder_ / "robots/worse/model.sdf",
@@ -483,7 +487,7 @@ TEST_F(Description, EveryValueThatIsNoneIsReportedTogetherWithWhatElseIsWrong) {
       "<gravity>0 0 x</gravity><model name=\"m\"><link name=\"l\">\n<inertial><mass>heavy</mass></inertial>\n"
       "<collision name=\"c\"><geometry><box><size>1 1</size></box></geometry></collision>\n"
       "<cohort:grip_ring name=\"r\"><cohort:radiuss>1</cohort:radiuss></cohort:grip_ring></link></model>");
-  const auto problems = problems_of([&] { read_world(file, 1); });
+  const auto problems = problems_of([&] { parsing::read_world(file, 1); });
   expect_problem(problems, file, {"", 2, "world/gravity", "cannot have the value '0 0 x'"});
   expect_problem(problems, file, {"", 3, "world/model[m]/link[l]/inertial/mass", "cannot have the value 'heavy'"});
   expect_problem(problems, file,
@@ -502,7 +506,7 @@ class Experiments : public Description {
 };
 
 TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
-  const Experiment experiment = read_experiment(write_experiment(
+  const Experiment experiment = parsing::read_experiment(write_experiment(
       "world: world.sdf\nduration: 0.25\nseed: 18446744073709551615\nteams:\n"
       "  - {name: a, robots: [3, p/*_0], controller: x, period: 3, phase: 2, delay: 1, on_late: hold, deadline: 0.05}\n"
       "  - {name: b, robots: 1..2, controller: y,\n     restart: never}\n"));
@@ -523,7 +527,7 @@ TEST_F(Experiments, TeamsHaveTheirRobotsAndPolicies) {
 }
 
 TEST_F(Experiments, ParametersAreFlattenedInTheirOrder) {
-  const Experiment experiment = read_experiment(write_experiment(
+  const Experiment experiment = parsing::read_experiment(write_experiment(
       "world: world.sdf\nduration: 1\nteams:\n  - name: a\n    robots: all\n    controller: x\n    parameters:\n"
       "      wheel/0/velocity:\n        bias: 0.2\n        eye/*/reading: [1, -2]\n      mode: fast\n"));
   const Team& team = experiment.teams[0];
@@ -539,14 +543,15 @@ TEST_F(Experiments, ParametersAreFlattenedInTheirOrder) {
 
 TEST_F(Experiments, SeedAndDurationOfTheCallerStandInForTheFiles) {
   const fs::path file = write_experiment("world: world.sdf\nteams: [{name: a, robots: all, controller: x}]\n");
-  const Experiment experiment = read_experiment(file, 7, 2s);
+  const Experiment experiment = parsing::read_experiment(file, 7, 2s);
   EXPECT_EQ(experiment.seed, 7u);
   EXPECT_EQ(experiment.duration, 2s);
-  EXPECT_EQ(experiment.world.robot(0).X_WM.position, read_world(folder_ / "world.sdf", 7).robot(0).X_WM.position);
+  EXPECT_EQ(experiment.world.robot(0).X_WM.position,
+            parsing::read_world(folder_ / "world.sdf", 7).robot(0).X_WM.position);
 }
 
 TEST_F(Experiments, SelectorsMeanRobotsOrSayWhyNot) {
-  const World world = read_world(folder_ / "world.sdf", 1);
+  const World world = parsing::read_world(folder_ / "world.sdf", 1);
   using Ids = std::vector<std::uint32_t>;
   EXPECT_EQ(select_robots(world, "all"), (Ids{0, 1, 2, 3}));
   EXPECT_EQ(select_robots(world, " 2 "), (Ids{2}));
@@ -562,7 +567,7 @@ class FlawOfAnExperiment : public Experiments, public testing::WithParamInterfac
 
 TEST_P(FlawOfAnExperiment, IsReportedAloneWithFileLineAndKey) {
   const fs::path file = write_experiment(GetParam().content);
-  const auto problems = problems_of([&] { read_experiment(file); });
+  const auto problems = problems_of([&] { parsing::read_experiment(file); });
   expect_problem(problems, file, GetParam());
   EXPECT_EQ(problems.size(), 1u);
 }
@@ -613,7 +618,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(Experiments, FlawsOfTheWorldAreReportedWithThoseOfTheExperiment) {
   const fs::path world = write_world("<include><uri>model://sbit</uri></include>");
   const fs::path file = write_experiment("world: world.sdf\nduration: 0\nteams: [{name: a, robots: all}]\n");
-  const auto problems = problems_of([&] { read_experiment(file); });
+  const auto problems = problems_of([&] { parsing::read_experiment(file); });
   expect_problem(problems, file, {"", 2, "duration", "more than 0 s"});
   expect_problem(problems, file, {"", 3, "teams[0].controller", "missing"});
   expect_problem(problems, world, {"", 2, "world/include/uri", "there is no model 'sbit'"});

@@ -7,11 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "server/core/text.hpp"
 #include "server/description/experiment.hpp"
-#include "server/description/file_kind.hpp"
-#include "server/description/text.hpp"
 #include "server/description/world.hpp"
-#include "server/description/yaml_sdf.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/parsing/sdf/file_kind.hpp"
+#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/world/read_world.hpp"
 #include "tests/support/written_worlds.hpp"
 
 namespace cohort::description {
@@ -23,22 +25,22 @@ std::string text_of(const std::filesystem::path& file) {
 }
 
 // An element without its lines, with its attributes in order and its white space as one blank: what a round trip keeps.
-std::string canonical(const XmlNode& node) {
+std::string canonical(const parsing::XmlNode& node) {
   std::vector<std::pair<std::string, std::string>> attributes = node.attributes;
   std::sort(attributes.begin(), attributes.end());
   std::string text = "<" + node.name;
   for (const auto& [name, value] : attributes) text += " " + name + "='" + value + "'";
   text += ">";
   for (const std::string_view word : words(node.text)) text += std::string(word) + " ";
-  for (const XmlNode& child : node.children) text += canonical(child);
+  for (const parsing::XmlNode& child : node.children) text += canonical(child);
   return text + "</>";
 }
 
-XmlNode from_yaml(const std::string& text) {
-  const YamlDocument document = parse_yaml(text);
+parsing::XmlNode from_yaml(const std::string& text) {
+  const parsing::YamlDocument document = parsing::parse_yaml(text);
   std::vector<Problem> problems;
   if (!document.root) throw std::runtime_error(document.error->message);
-  XmlNode sdf = sdf_of_yaml(*document.root, "t.yaml", problems);
+  parsing::XmlNode sdf = parsing::sdf_of_yaml(*document.root, "t.yaml", problems);
   EXPECT_EQ(texts_of(problems), "");
   return sdf;
 }
@@ -48,7 +50,8 @@ std::string as_xml(const std::string& yaml) { return canonical(from_yaml(yaml));
 // As XML, with the prefix of extensions declared.
 std::string xml(const std::string& content) {
   return canonical(
-      outline_xml(R"(<sdf version="1.9" xmlns:cohort="https://cohort-sim.org/sdf/1">)" + content + "</sdf>").root);
+      parsing::outline_xml(R"(<sdf version="1.9" xmlns:cohort="https://cohort-sim.org/sdf/1">)" + content + "</sdf>")
+          .root);
 }
 
 // ---- From YAML to SDF ----
@@ -125,11 +128,11 @@ TEST(YamlWorlds, InfinityIsWrittenAsInYaml) {
 class WrittenAsYaml : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(WrittenAsYaml, IsTheSameAgain) {
-  const XmlOutline outline = outline_xml(GetParam());
+  const parsing::XmlOutline outline = parsing::outline_xml(GetParam());
   ASSERT_FALSE(outline.error) << outline.error->message;
-  const std::string yaml = yaml_of_sdf(outline.root);
+  const std::string yaml = parsing::yaml_of_sdf(outline.root);
   EXPECT_EQ(canonical(from_yaml(yaml)), canonical(outline.root)) << yaml;
-  EXPECT_EQ(yaml_of_sdf(from_yaml(yaml)), yaml);
+  EXPECT_EQ(parsing::yaml_of_sdf(from_yaml(yaml)), yaml);
 }
 
 std::string sdf(const std::string& content) {
@@ -156,13 +159,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 class YamlDescription : public Description {
  protected:
-  World read_yaml(const std::string& content) const { return read_world(write("world.yaml", content), 1); }
+  World read_yaml(const std::string& content) const { return parsing::read_world(write("world.yaml", content), 1); }
 };
 
 TEST_F(YamlDescription, AWorldIsTheSameInBothSpellings) {
   const std::string text = text_of(source / "worlds/arenas/obstacles.sdf");
-  const World from_sdf = read_world(write("world.sdf", text), 7);
-  const World from_yaml = read_world(write("same.yaml", yaml_of_sdf(outline_xml(text).root)), 7);
+  const World from_sdf = parsing::read_world(write("world.sdf", text), 7);
+  const World from_yaml =
+      parsing::read_world(write("same.yaml", parsing::yaml_of_sdf(parsing::outline_xml(text).root)), 7);
   ASSERT_EQ(from_yaml.instances.size(), from_sdf.instances.size());
   EXPECT_EQ(from_yaml.name, from_sdf.name);
   EXPECT_EQ(from_yaml.gravity, from_sdf.gravity);
@@ -181,7 +185,7 @@ TEST_F(YamlDescription, TheManualsWorldIsTheSameInBothSpellingsAndTheOneInWorlds
     return text.substr(begin, text.find("```", begin) - begin);
   };
   const std::string readme = text_of(source / "worlds/README.md");
-  EXPECT_EQ(as_xml(block(readme, "yaml")), canonical(outline_xml(block(readme, "xml")).root));
+  EXPECT_EQ(as_xml(block(readme, "yaml")), canonical(parsing::outline_xml(block(readme, "xml")).root));
   EXPECT_EQ(read_yaml(block(readme, "yaml")).robots.size(), 8u);
   EXPECT_EQ(read_yaml(block(text_of(source / "docs/worlds.md"), "yaml")).robots.size(), 8u);
 }
@@ -204,27 +208,27 @@ TEST_F(YamlDescription, AnArenaTakesTenLines) {
 }
 
 TEST_F(YamlDescription, ExperimentsAndWorldsAreToldApartByTheirContent) {
-  EXPECT_EQ(kind_of_file(write("a.yaml", "world:\n  name: w\n")), FileKind::sdf);
-  EXPECT_EQ(kind_of_file(write("b.yml", "sdf: {version: 1.9}\n")), FileKind::sdf);
-  EXPECT_EQ(kind_of_file(write("c.yaml", "model:\n  name: w\n")), FileKind::sdf);
-  EXPECT_EQ(kind_of_file(write("d.yaml", "world: w.sdf\nduration: 1\n")), FileKind::experiment);
-  EXPECT_EQ(kind_of_file(write("e.yaml", "[1, 2\n")), FileKind::experiment);
-  EXPECT_EQ(kind_of_file("w.urdf"), FileKind::sdf);
+  EXPECT_EQ(parsing::kind_of_file(write("a.yaml", "world:\n  name: w\n")), parsing::FileKind::sdf);
+  EXPECT_EQ(parsing::kind_of_file(write("b.yml", "sdf: {version: 1.9}\n")), parsing::FileKind::sdf);
+  EXPECT_EQ(parsing::kind_of_file(write("c.yaml", "model:\n  name: w\n")), parsing::FileKind::sdf);
+  EXPECT_EQ(parsing::kind_of_file(write("d.yaml", "world: w.sdf\nduration: 1\n")), parsing::FileKind::experiment);
+  EXPECT_EQ(parsing::kind_of_file(write("e.yaml", "[1, 2\n")), parsing::FileKind::experiment);
+  EXPECT_EQ(parsing::kind_of_file("w.urdf"), parsing::FileKind::sdf);
 }
 
 TEST_F(YamlDescription, AnExperimentTakesAWorldInYaml) {
   write("w.yaml", "world: {name: w, include: {uri: 'model://sbot'}}\n");
-  const Experiment experiment =
-      read_experiment(write("e.yaml", "world: w.yaml\nduration: 1\nteams: [{name: t, robots: all, controller: c}]\n"));
+  const Experiment experiment = parsing::read_experiment(
+      write("e.yaml", "world: w.yaml\nduration: 1\nteams: [{name: t, robots: all, controller: c}]\n"));
   EXPECT_EQ(experiment.world.robots.size(), 1u);
-  const auto problems = problems_of([&] { read_experiment(folder_ / "w.yaml"); });
+  const auto problems = problems_of([&] { parsing::read_experiment(folder_ / "w.yaml"); });
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_NE(problems[0].message.find("this is a world"), std::string::npos);
 }
 
 TEST_F(YamlDescription, AModelAloneCanBeRead) {
-  const World world =
-      read_world_or_model(write("m.yaml", "model: {name: m, link: {inertial: {mass: 1, inertia: {ixx: 1}}}}\n"), 1);
+  const World world = parsing::read_world_or_model(
+      write("m.yaml", "model: {name: m, link: {inertial: {mass: 1, inertia: {ixx: 1}}}}\n"), 1);
   ASSERT_EQ(world.instances.size(), 1u);
   EXPECT_EQ(world.instances[0].name, "m");
 }
@@ -237,7 +241,7 @@ TEST_F(YamlDescription, AllProblemsAreSaidAtOnce) {
                           "    - {name: a, static: true, link: {collision: {geometri: {plane: {}}}}}\n"
                           "    - {name: b, name: c}\n"
                           "  cohort:population: {name: p, uri: 'model://sbt'}\n");
-  const auto problems = problems_of([&] { read_world(file, 1); });
+  const auto problems = problems_of([&] { parsing::read_world(file, 1); });
   expect_problem(problems, file, {"", 2, "world/gravty", "did you mean 'gravity'?"});
   expect_problem(problems, file, {"", 4, "world/model[a]/link/collision/geometri", "did you mean 'geometry'?"});
   expect_problem(problems, file, {"", 5, "world/model[b]/name", "given twice"});

@@ -96,14 +96,14 @@ TEST(ObedientController, CommandsWhatIsHeldWithinTheRangesAndLeavesParametersToO
 // What pages ask for, and a server that says what it is told to say.
 class DriversTest : public testing::Test {
  protected:
-  struct Asked {
+  struct ReceivedRequest {
     std::mutex mutex;
     std::optional<Answer> answer;
   };
 
   // The answer may come later: `answer_to` waits for it.
-  std::shared_ptr<Asked> ask(std::uint64_t page, Values numbers = {}, const std::string& name = "team/cart") {
-    const auto asked = std::make_shared<Asked>();
+  std::shared_ptr<ReceivedRequest> ask(std::uint64_t page, Values numbers = {}, const std::string& name = "team/cart") {
+    const auto asked = std::make_shared<ReceivedRequest>();
     drivers->drive({.operation = "drive", .name = name, .numbers = std::move(numbers), .visitor = page},
                    [asked](const Answer& answer) {
                      const std::lock_guard lock(asked->mutex);
@@ -112,7 +112,7 @@ class DriversTest : public testing::Test {
                    });
     return asked;
   }
-  static Answer answer_to(const std::shared_ptr<Asked>& asked) {
+  static Answer answer_to(const std::shared_ptr<ReceivedRequest>& asked) {
     const auto is_there = [&] {
       const std::lock_guard lock(asked->mutex);
       return asked->answer.has_value();

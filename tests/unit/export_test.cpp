@@ -4,8 +4,10 @@
 #include <cmath>
 #include <fstream>
 
-#include "server/description/write_world.hpp"
-#include "server/description/yaml_sdf.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/world/read_world.hpp"
+#include "server/parsing/writing/write_world.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/written_worlds.hpp"
 
@@ -17,10 +19,10 @@ namespace fs = std::filesystem;
 class ExportedWorlds : public Description {
  protected:
   fs::path write_back(const World& world, const std::string& name = "exported.sdf") const {
-    return write(name, xml_text(sdf_of(world, folder_)));
+    return write(name, parsing::xml_text(parsing::sdf_of(world, folder_)));
   }
   // Every number of it, as text.
-  std::string text_of(const World& world) const { return xml_text(sdf_of(world, folder_)); }
+  std::string text_of(const World& world) const { return parsing::xml_text(parsing::sdf_of(world, folder_)); }
 
   static std::uint64_t hash_after(const World& world, std::uint64_t seed, int ticks) {
     Experiment experiment;
@@ -40,10 +42,11 @@ class ExportedWorlds : public Description {
     return simulation.state_hash();
   }
   void expect_the_same_again(const World& world, std::uint64_t seed = 1) const {
-    const World again = read_world(write_back(world), seed);
+    const World again = parsing::read_world(write_back(world), seed);
     EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);
     EXPECT_EQ(text_of(again), text_of(world));
-    const World from_yaml = read_world(write("exported.yaml", yaml_of_sdf(sdf_of(world, folder_))), seed);
+    const World from_yaml =
+        parsing::read_world(write("exported.yaml", parsing::yaml_of_sdf(parsing::sdf_of(world, folder_))), seed);
     EXPECT_EQ(text_of(from_yaml), text_of(world));
     // What an event brings is not in the world.
     if (std::ranges::all_of(world.instances, &Instance::is_present)) {
@@ -57,7 +60,7 @@ TEST_F(ExportedWorlds, OfEveryArenaThatShipsGiveTheSameHashAfterAHundredTicks) {
   for (const auto& entry : fs::directory_iterator(source / "worlds/arenas")) {
     if (entry.path().extension() != ".sdf") continue;
     SCOPED_TRACE(entry.path().filename().string());
-    expect_the_same_again(read_world(entry.path(), 5), 5);
+    expect_the_same_again(parsing::read_world(entry.path(), 5), 5);
     ++arenas;
   }
   EXPECT_GE(arenas, 12);
@@ -67,7 +70,7 @@ TEST_F(ExportedWorlds, OfEveryExperimentThatShipsHaveItsSeedItsStepAndItsPhysics
   for (const auto& entry : fs::directory_iterator(source / "worlds/experiments")) {
     if (entry.path().extension() != ".yaml") continue;
     SCOPED_TRACE(entry.path().filename().string());
-    const Experiment experiment = read_experiment(entry.path());
+    const Experiment experiment = parsing::read_experiment(entry.path());
     expect_the_same_again(experiment.world, experiment.seed);
   }
 }
@@ -196,14 +199,14 @@ TEST_F(ExportedWorlds, HaveTheModelsInsideOfModelsAsOne) {
            links("b") + "<cohort:joint_encoder name=\"e\"><cohort:joint>k</cohort:joint></cohort:joint_encoder>" +
            links("c") + joint("k", "b", "c") + "</model>" + joint("j", "a", "inner::b") + "</model>");
   EXPECT_EQ(world.models[0].links[1].name, "inner::b");
-  const World again = read_world(write_back(world), 1);
+  const World again = parsing::read_world(write_back(world), 1);
   EXPECT_EQ(again.models[0].links[1].name, "inner.b");
   EXPECT_EQ(text_of(again), text_of(world));
   EXPECT_EQ(hash_after(again, 1, 100), hash_after(world, 1, 100));
 }
 
 TEST_F(ExportedWorlds, WithAHeightMapNameItsFileFromWhereTheyAre) {
-  const World world = read_world(source / "worlds/arenas/rough_terrain.sdf", 1);
+  const World world = parsing::read_world(source / "worlds/arenas/rough_terrain.sdf", 1);
   const std::string text = text_of(world);
   EXPECT_NE(text.find("terrain/rough_terrain.png</uri>"), std::string::npos);
   EXPECT_NE(text.find("<size>4 4 0.25</size>"), std::string::npos);

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "server/core/random.hpp"
-#include "server/description/convex_hull.hpp"
+#include "server/geometry/convex_hull.hpp"
 #include "server/geometry/mesh_surface.hpp"
 #include "server/geometry/scene.hpp"
 
@@ -35,7 +35,7 @@ TriangleMesh box(const Vector3d& size) {
   for (const double x : {-0.5, 0.5})
     for (const double y : {-0.5, 0.5})
       for (const double z : {-0.5, 0.5}) corners.push_back(Vector3d(x, y, z).cwiseProduct(size));
-  return description::convex_hull(corners);
+  return geometry::convex_hull(corners);
 }
 
 // A ring like a tyre, lying: a closed surface that is far from convex.

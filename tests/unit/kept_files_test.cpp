@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/written_worlds.hpp"
 
@@ -19,7 +20,7 @@ using description::Description;
 using description::Experiment;
 using description::KeptFile;
 using description::KeptFiles;
-using description::read_experiment;
+using parsing::read_experiment;
 
 std::array<std::uint64_t, 2> hashes_at_0_and_100(const Experiment& experiment) {
   Simulation simulation(experiment, 2);

@@ -1,10 +1,10 @@
-#include "tools/cohort/keyboard.hpp"
+#include "tools/cohort/running/keyboard.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "tools/cohort/team_controllers.hpp"
+#include "tools/cohort/running/team_controllers.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -1,8 +1,8 @@
-#include "tools/cohort/manual.hpp"
+#include "tools/cohort/commands/manual.hpp"
 
 #include <gtest/gtest.h>
 
-#include "server/description/experiment_keys.hpp"
+#include "server/parsing/keys/experiment_keys.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -10,17 +10,17 @@ namespace {
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(Manual, HasEveryKeyOfEveryEntryUnderItsNameAndItsGroup) {
-  const auto check = [](const description::Extension& entry) {
+  const auto check = [](const parsing::Extension& entry) {
     for (const std::string& topic : {std::string(entry.name), std::string(entry.topic)}) {
       const auto text = manual_of(topic);
       ASSERT_TRUE(text) << topic;
-      for (const description::ExtensionKey& key : entry.keys)
+      for (const parsing::ExtensionKey& key : entry.keys)
         EXPECT_TRUE(has(*text, "    " + std::string(key.name) + " ")) << topic << " lacks " << key.name;
     }
     EXPECT_TRUE(has(manual_contents(), std::string(entry.name))) << entry.name;
   };
-  for (const auto& entry : description::extensions()) check(entry);
-  for (const auto& entry : description::experiment_parts()) check(entry);
+  for (const auto& entry : parsing::extensions()) check(entry);
+  for (const auto& entry : parsing::experiment_parts()) check(entry);
 }
 
 TEST(Manual, FindsAThingByAPartOfItsName) {

@@ -1,4 +1,4 @@
-#include "tools/cohort/plot.hpp"
+#include "tools/drawing/plot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "tests/support/robots.hpp"
-#include "tools/cohort/outline.hpp"
-#include "tools/cohort/output_file.hpp"
-#include "tools/cohort/svg.hpp"
+#include "tools/drawing/outline.hpp"
+#include "tools/cohort/cli/output_file.hpp"
+#include "tools/drawing/svg.hpp"
 
 namespace cohort::tool {
 namespace {

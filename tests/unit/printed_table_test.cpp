@@ -1,4 +1,4 @@
-#include "tools/cohort/printed_table.hpp"
+#include "tools/cohort/cli/printed_table.hpp"
 
 #include <gtest/gtest.h>
 

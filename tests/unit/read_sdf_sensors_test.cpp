@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "server/description/write_world.hpp"
-#include "server/description/yaml_sdf.hpp"
+#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/world/read_world.hpp"
+#include "server/parsing/writing/write_world.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/written_worlds.hpp"
 
@@ -371,11 +372,12 @@ TEST_F(SdfSensors, ComeBackFromAnExportBitForBit) {
            "</joint>" + extension + "</model>");
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
   ASSERT_EQ(world.models[1].devices.size(), 11u);
-  const auto text_of = [&](const World& each) { return xml_text(sdf_of(each, folder_)); };
-  const World again = read_world(write("exported.sdf", text_of(world)), 1);
+  const auto text_of = [&](const World& each) { return parsing::xml_text(parsing::sdf_of(each, folder_)); };
+  const World again = parsing::read_world(write("exported.sdf", text_of(world)), 1);
   EXPECT_TRUE(again.warnings.empty()) << texts_of(again.warnings);
   EXPECT_EQ(text_of(again), text_of(world));
-  const World from_yaml = read_world(write("exported.yaml", yaml_of_sdf(sdf_of(world, folder_))), 1);
+  const World from_yaml =
+      parsing::read_world(write("exported.yaml", parsing::yaml_of_sdf(parsing::sdf_of(world, folder_))), 1);
   EXPECT_EQ(text_of(from_yaml), text_of(world));
   EXPECT_EQ(hash_after(again, 100), hash_after(world, 100));
 }

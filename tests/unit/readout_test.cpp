@@ -1,9 +1,9 @@
-#include "server/sensing/readout.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
+
+#include "server/sensing/signal_chain.hpp"
 
 /// What lies between measurement and report, apart from any world.
 namespace cohort::sensing {
@@ -14,13 +14,13 @@ using namespace std::chrono_literals;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t samples = 20'000;
 
-Readout readout_of(const description::Readout& readout, double lower = -infinity, double upper = infinity,
-                   const std::string& robot = "robot", std::uint32_t size = 1) {
+SignalChain readout_of(const description::Readout& readout, double lower = -infinity, double upper = infinity,
+                       const std::string& robot = "robot", std::uint32_t size = 1) {
   return {readout, {{"sensor/0/reading", "1", size, lower, upper, 0.0}}, 7, robot, "sensor", 10ms};
 }
 description::Readout with_noise(const description::Noise& noise) { return {{noise}}; }
 
-double disturbed(Readout& readout, std::uint64_t tick, double value) {
+double disturbed(SignalChain& readout, std::uint64_t tick, double value) {
   double values[] = {value};
   readout.disturb(tick, values);
   return values[0];
@@ -28,7 +28,7 @@ double disturbed(Readout& readout, std::uint64_t tick, double value) {
 
 // What comes out at each tick for a measurement that is the tick's number.
 std::vector<double> reports(const description::Readout& described, std::uint64_t ticks) {
-  Readout readout = readout_of(described);
+  SignalChain readout = readout_of(described);
   std::vector<double> out;
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
     double values[] = {static_cast<double>(tick)};
@@ -40,7 +40,7 @@ std::vector<double> reports(const description::Readout& described, std::uint64_t
 }
 
 TEST(Readout, OfAnExactSensorIsWhatWasMeasured) {
-  Readout readout = readout_of({});
+  SignalChain readout = readout_of({});
   EXPECT_TRUE(readout.is_immediate());
   EXPECT_EQ(disturbed(readout, 3, 0.123456789), 0.123456789);
 }
@@ -49,7 +49,7 @@ TEST(Readout, GaussianNoiseHasItsMeanAndItsDeviation) {
   description::Noise noise;
   noise.mean = 0.5;
   noise.deviation = 2.0;
-  Readout readout = readout_of(with_noise(noise));
+  SignalChain readout = readout_of(with_noise(noise));
   double sum = 0.0, squares = 0.0;
   for (std::uint64_t tick = 0; tick < samples; ++tick) {
     const double error = disturbed(readout, tick, 10.0) - 10.0;
@@ -65,7 +65,7 @@ TEST(Readout, GaussianNoiseHasItsMeanAndItsDeviation) {
 TEST(Readout, UniformNoiseFillsItsRangeAndNoMore) {
   description::Noise noise;
   noise.uniform = 0.25;
-  Readout readout = readout_of(with_noise(noise));
+  SignalChain readout = readout_of(with_noise(noise));
   double least = 1.0, greatest = -1.0, squares = 0.0;
   for (std::uint64_t tick = 0; tick < samples; ++tick) {
     const double error = disturbed(readout, tick, 0.0);
@@ -88,7 +88,7 @@ TEST(Readout, ABiasIsDrawnOnceForEachValueOfEachRobot) {
   double sum = 0.0, squares = 0.0;
   constexpr int robots = 2000;
   for (int robot = 0; robot < robots; ++robot) {
-    Readout readout = readout_of(with_noise(noise), -infinity, infinity, std::to_string(robot), 2);
+    SignalChain readout = readout_of(with_noise(noise), -infinity, infinity, std::to_string(robot), 2);
     double first[] = {0.0, 0.0}, later[] = {0.0, 0.0};
     readout.disturb(0, first);
     readout.disturb(99, later);
@@ -111,7 +111,7 @@ TEST(Readout, ABiasThatWandersForgetsItselfInItsTime) {
   description::Noise noise;
   noise.drift_deviation = 0.2;
   noise.drift_time = 0.1;  // ten ticks
-  Readout readout = readout_of(with_noise(noise));
+  SignalChain readout = readout_of(with_noise(noise));
   std::vector<double> drift;
   for (std::uint64_t tick = 0; tick < 200'000; ++tick) drift.push_back(disturbed(readout, tick, 0.0));
   double squares = 0.0, products = 0.0;
@@ -127,7 +127,7 @@ TEST(Readout, ReadingsAreMultiplesOfThePrecisionWithinTheRange) {
   description::Noise noise;
   noise.deviation = 0.3;
   noise.precision = 0.25;
-  Readout readout = readout_of(with_noise(noise), 0.0, 1.0);
+  SignalChain readout = readout_of(with_noise(noise), 0.0, 1.0);
   std::set<double> seen;
   for (std::uint64_t tick = 0; tick < 1000; ++tick) seen.insert(disturbed(readout, tick, 0.6));
   EXPECT_EQ(seen, (std::set<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
@@ -137,11 +137,11 @@ TEST(Readout, NoiseIsOnTheQuantityThatItNames) {
   description::Noise noise;
   noise.bias = 1.0;
   noise.quantity = "velocity";
-  Readout readout({{noise}},
-                  {{"motor/0/position", "rad", 1, -infinity, infinity},
-                   {"motor/0/velocity", "rad/s", 1, -infinity, infinity},
-                   {"motor/0/count", "1", 1, -infinity, infinity, 0.0, false}},
-                  7, "robot", "motor", 10ms);
+  SignalChain readout({{noise}},
+                      {{"motor/0/position", "rad", 1, -infinity, infinity},
+                       {"motor/0/velocity", "rad/s", 1, -infinity, infinity},
+                       {"motor/0/count", "1", 1, -infinity, infinity, 0.0, false}},
+                      7, "robot", "motor", 10ms);
   double values[] = {5.0, 5.0, 5.0};
   readout.disturb(0, values);
   EXPECT_EQ(values[0], 5.0);
@@ -174,7 +174,7 @@ TEST(Readout, GoesOnFromASnapshotAsItWouldHave) {
   noise.drift_deviation = 0.2;
   noise.drift_time = 1.0;
   const description::Readout described{{noise}, 0.2, 20ms, 50ms};
-  const auto run = [](Readout& readout, std::uint64_t from, std::uint64_t to) {
+  const auto run = [](SignalChain& readout, std::uint64_t from, std::uint64_t to) {
     std::vector<double> out;
     for (std::uint64_t tick = from; tick < to; ++tick) {
       double values[] = {static_cast<double>(tick)};
@@ -187,13 +187,13 @@ TEST(Readout, GoesOnFromASnapshotAsItWouldHave) {
     }
     return out;
   };
-  Readout readout = readout_of(described);
+  SignalChain readout = readout_of(described);
   run(readout, 0, 31);
   SnapshotWriter writer;
   readout.save(writer);
   StateHash hash;
   readout.hash(hash);
-  Readout restored = readout_of(described);
+  SignalChain restored = readout_of(described);
   SnapshotReader reader(writer.bytes());
   restored.restore(reader);
   EXPECT_TRUE(reader.is_at_end());

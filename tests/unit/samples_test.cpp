@@ -8,14 +8,15 @@
 
 #include "server/core/random.hpp"
 #include "server/description/input_error.hpp"
+#include "server/parsing/files/sample_file.hpp"
 #include "server/sensing/sample_table.hpp"
 
 // Readings of a real sensor: the file, and what lies between them.
 namespace cohort::sensing {
 namespace {
 
-using description::read_samples;
 using description::Samples;
+using parsing::read_samples;
 
 constexpr double pi = std::numbers::pi;
 const std::string header = "distance [m],angle [rad],reading_0 [1],reading_1 [1]\n";
@@ -63,7 +64,7 @@ TEST(SampleFile, IsWrittenSoThatItIsReadBackWithTheSameBits) {
   samples.readings[1] = std::numeric_limits<double>::denorm_min();
   samples.readings[2] = std::numeric_limits<double>::max();
   const std::filesystem::path file = written("");
-  write_samples(samples, file);
+  parsing::write_samples(samples, file);
   const Samples again = read_samples(file);
   EXPECT_EQ(again.distances, samples.distances);
   EXPECT_EQ(again.angles, samples.angles);

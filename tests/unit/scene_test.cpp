@@ -2,14 +2,15 @@
 
 #include <set>
 
-#include "server/scene/scene_maker.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/viewing/scene_maker.hpp"
 #include "tests/support/shipped_experiment.hpp"
 
-namespace cohort::scene {
+namespace cohort::viewing {
 namespace {
 
 description::Experiment shipped(const std::string& name) {
-  return description::read_experiment(testing::shipped_experiments / (name + ".yaml"));
+  return parsing::read_experiment(testing::shipped_experiments / (name + ".yaml"));
 }
 
 TEST(SceneOfAWorld, HasEveryObjectWithItsVisuals) {
@@ -91,7 +92,7 @@ TEST(SceneOfAWorld, AHeightMapIsAMeshAsHighAsItsGround) {
 TEST(SceneOfAWorld, AMeshHasTheColoursOfItsFileUnlessItsVisualHasOne) {
   const std::filesystem::path exhibits = COHORT_SOURCE_DIR "/tests/view/exhibits";
   setenv("COHORT_MODEL_PATH", COHORT_SOURCE_DIR "/worlds/robots", 1);
-  const Simulation simulation(description::read_experiment(exhibits / "experiment.yaml"), 1);
+  const Simulation simulation(parsing::read_experiment(exhibits / "experiment.yaml"), 1);
   unsetenv("COHORT_MODEL_PATH");
   const Scene scene = SceneMaker(simulation, 1).scene();
   const auto badge = std::ranges::find(scene.models, "badge", &SceneModel::name);
@@ -155,4 +156,4 @@ TEST(SceneOfAWorld, WhatComesLaterNeedsAnotherMaker) {
 }
 
 }  // namespace
-}  // namespace cohort::scene
+}  // namespace cohort::viewing

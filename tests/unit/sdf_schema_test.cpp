@@ -1,4 +1,4 @@
-#include "server/description/sdf_schema.hpp"
+#include "server/parsing/sdf/sdf_schema.hpp"
 
 #include <gtest/gtest.h>
 
@@ -63,14 +63,14 @@ class DefinitionsForADocument : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(DefinitionsForADocument, AreFewerAndLetItReadTheSame) {
   const std::string text = std::string("<sdf version='1.9'>") + GetParam() + "</sdf>";
-  const sdf::SDFPtr whole = empty_sdf();
+  const sdf::SDFPtr whole = parsing::empty_sdf();
   sdf::Errors errors;
   ASSERT_TRUE(sdf::readString(text, sdf::ParserConfig::GlobalConfig(), whole->Root(), errors));
   std::set<std::string> names;
   add_names(whole->Root(), names);
   // As the file has them: what is required and absent is added by libsdformat.
   std::erase_if(names, [&](const std::string& name) { return text.find("<" + name) == std::string::npos; });
-  const sdf::SDFPtr lean = empty_sdf_for(names);
+  const sdf::SDFPtr lean = parsing::empty_sdf_for(names);
   EXPECT_LT(2 * size_of_definition(lean->Root()), size_of_definition(whole->Root()));
   sdf::Errors errors_of_lean;
   ASSERT_TRUE(sdf::readString(text, sdf::ParserConfig::GlobalConfig(), lean->Root(), errors_of_lean));

@@ -143,7 +143,7 @@ TEST(ViewWishes, BecomeRequestsOrAreExplained) {
 }
 
 // What a server answers that has run so far.
-wire::Reply told(std::uint32_t run, std::uint64_t revision, const scene::RunHistory& history) {
+wire::Reply told(std::uint32_t run, std::uint64_t revision, const viewing::RunHistory& history) {
   wire::Reply reply;
   reply.run = run;
   reply.offset = revision;
@@ -192,7 +192,7 @@ TEST(ViewHistory, WhatARunGoesBackBehindHasNotHappened) {
 
 TEST(ViewHistory, KeepsTheNewestEventsOnly) {
   LiveHistory history;
-  scene::RunHistory all;
+  viewing::RunHistory all;
   for (std::uint64_t i = 0; i < ViewEvents::most + 10; ++i) all.events.push_back({i, i, 1, "event", std::to_string(i)});
   history.take(told(1, all.events.size(), all), step);
   EXPECT_EQ(history.events().events.size(), ViewEvents::most);

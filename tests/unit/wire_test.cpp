@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "idl/control.hpp"
+#include "idl/control_messages.hpp"
 #include "tests/support/free_domain.hpp"
 
 namespace cohort::wire {

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/view/viewing.hpp"
 
@@ -36,7 +37,7 @@ TEST_F(WhatThePageShows, CastsShadowsAndHasTheColoursOfMeshes) { show_exhibits("
 
 TEST_F(WhatThePageShows, HasHillsAsHighAsTheirGround) {
   const std::string hills = COHORT_SOURCE_DIR "/worlds/experiments/rough_terrain.yaml";
-  const description::Experiment experiment = description::read_experiment(hills);
+  const description::Experiment experiment = parsing::read_experiment(hills);
   const Simulation simulation(experiment, 1);
   const geometry::Scene& solids = simulation.world().scene();
   nlohmann::json places = nlohmann::json::array();

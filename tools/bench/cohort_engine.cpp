@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "server/physics/world.hpp"
+#include "server/physics/make_world.hpp"
 #include "tools/bench/cohort_scene.hpp"
 #include "tools/bench/engines.hpp"
 
@@ -15,35 +15,35 @@ class CohortEngine final : public Engine {
         description_(describe(scene)),
         first_robot_(static_cast<std::uint32_t>(description_.robots.front())),
         workers_(threads),
-        world_(description_, workers_) {
+        world_(physics::make_world(description_, workers_)) {
     if (!scene.connected) return;
     const Pose X_LP{{0.5 * scene.connection_length, 0.0, robot_.turret.z - robot_.turret_joint_height}};
-    for (std::uint32_t body = first_robot_ + 1; body < world_.body_count(); ++body)
-      world_.connect(body, turret_link, X_LP, body - 1, turret_link);
+    for (std::uint32_t body = first_robot_ + 1; body < world_->body_count(); ++body)
+      world_->connect(body, turret_link, X_LP, body - 1, turret_link);
   }
 
   void set_command(std::uint32_t robot, const Command& command) override {
     const std::uint32_t body = first_robot_ + robot;
     if (drive_ == Drive::wheels) {
-      world_.set_joint_velocity_target(body, left_wheel_joint, command.left / robot_.wheel_radius);
-      world_.set_joint_velocity_target(body, right_wheel_joint, command.right / robot_.wheel_radius);
+      world_->set_joint_velocity_target(body, left_wheel_joint, command.left / robot_.wheel_radius);
+      world_->set_joint_velocity_target(body, right_wheel_joint, command.right / robot_.wheel_radius);
     } else {
-      world_.set_track_velocity_target(body, treel_drive, physics::Side::left, command.left);
-      world_.set_track_velocity_target(body, treel_drive, physics::Side::right, command.right);
+      world_->set_track_velocity_target(body, treel_drive, physics::Side::left, command.left);
+      world_->set_track_velocity_target(body, treel_drive, physics::Side::right, command.right);
     }
-    world_.set_joint_velocity_target(body, turret_joint, command.turret);
+    world_->set_joint_velocity_target(body, turret_joint, command.turret);
   }
 
-  void step() override { world_.step(); }
+  void step() override { world_->step(); }
 
   Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
     const Eigen::Vector3d centre_L(0.0, 0.0, robot_.turret.z - robot_.turret_joint_height);
-    return world_.link_pose(first_robot_ + robot, turret_link) * centre_L;
+    return world_->link_pose(first_robot_ + robot, turret_link) * centre_L;
   }
 
   std::vector<Touch> touches() const override {
     std::vector<Touch> touches;
-    for (const physics::Contact& contact : world_.contacts()) {
+    for (const physics::Contact& contact : world_->contacts()) {
       const auto [low, high] = std::minmax(contact.body_a, contact.body_b);  // what is static comes first
       if (low == ground) continue;
       touches.push_back({high - first_robot_, low < first_robot_ ? Touch::wall : low - first_robot_});
@@ -59,7 +59,7 @@ class CohortEngine final : public Engine {
   description::World description_;
   std::uint32_t first_robot_;
   WorkerPool workers_;
-  physics::World world_;
+  std::unique_ptr<physics::World> world_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "server/physics/world.hpp"
+#include "server/physics/make_world.hpp"
 #include "tools/bench/engines.hpp"
 
 namespace cohort::bench {
@@ -47,23 +47,24 @@ description::World describe(const Mechanism& mechanism) {
 
 class CohortMechanism final : public MechanismRun {
  public:
-  explicit CohortMechanism(const Mechanism& mechanism) : description_(describe(mechanism)), world_(description_, one_) {
+  explicit CohortMechanism(const Mechanism& mechanism)
+      : description_(describe(mechanism)), world_(physics::make_world(description_, one_)) {
     if (const RigidBody& body = mechanism.bodies.front(); !body.hinge_W)
-      world_.set_root_twist(0, {body.angular_velocity_W, Eigen::Vector3d::Zero()});
+      world_->set_root_twist(0, {body.angular_velocity_W, Eigen::Vector3d::Zero()});
   }
 
-  void step() override { world_.step(); }
-  Eigen::Vector3d position(std::size_t body) const override { return world_.link_pose(0, body).position; }
-  Eigen::Vector3d velocity(std::size_t body) const override { return world_.link_twist(0, body).linear_W; }
-  Eigen::Vector3d angular_velocity(std::size_t body) const override { return world_.link_twist(0, body).angular_W; }
+  void step() override { world_->step(); }
+  Eigen::Vector3d position(std::size_t body) const override { return world_->link_pose(0, body).position; }
+  Eigen::Vector3d velocity(std::size_t body) const override { return world_->link_twist(0, body).linear_W; }
+  Eigen::Vector3d angular_velocity(std::size_t body) const override { return world_->link_twist(0, body).angular_W; }
   Eigen::Matrix3d rotation(std::size_t body) const override {
-    return world_.link_pose(0, body).orientation.toRotationMatrix();
+    return world_->link_pose(0, body).orientation.toRotationMatrix();
   }
 
  private:
   description::World description_;
   WorkerPool one_{1};
-  physics::World world_;
+  std::unique_ptr<physics::World> world_;
 };
 
 }  // namespace

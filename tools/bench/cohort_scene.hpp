@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "server/description/world.hpp"
-#include "tools/bench/scene.hpp"
+#include "tools/bench/bench_scene.hpp"
 
 /// Scenes as Cohort's worlds.
 namespace cohort::bench {

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/physics/make_world.hpp"
 #include "server/sensing/sensor.hpp"
 #include "server/sensing/take_samples.hpp"
 #include "server/simulation/simulation.hpp"
@@ -105,16 +106,16 @@ class CohortSensing final : public SensingRun {
   CohortSensing(const SensingScene& scene, const std::vector<Device>& devices)
       : description_(describe(scene, devices, false)),
         workers_(1),
-        world_(description_, workers_),
-        emitters_(description_, world_),
-        grippers_(description_, world_),
-        lamp_view_(world_, emitters_) {
+        world_(physics::make_world(description_, workers_)),
+        emitters_(description_, *world_),
+        grippers_(description_, *world_),
+        lamp_view_(*world_, emitters_) {
     std::size_t size = 0;
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
         const description::Instance& robot = description_.instances[body];
         sensors_.push_back(sensing::make_sensor(description_.models[robot.model], device,
-                                                {world_, emitters_, description_, grippers_, lamp_view_,
+                                                {*world_, emitters_, description_, grippers_, lamp_view_,
                                                  static_cast<std::uint32_t>(body), robot.name, scene.seed}));
         std::size_t of_sensor = 0;
         for (const Channel& channel : sensors_.back()->channels()) of_sensor += channel.size;
@@ -148,7 +149,7 @@ class CohortSensing final : public SensingRun {
  private:
   description::World description_;
   WorkerPool workers_;
-  physics::World world_;
+  std::unique_ptr<physics::World> world_;
   emission::Emitters emitters_;
   gripping::Grippers grippers_;
   sensing::LampView lamp_view_;

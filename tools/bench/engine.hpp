@@ -10,7 +10,7 @@
 
 #include "tools/bench/driving.hpp"
 #include "tools/bench/mechanics.hpp"
-#include "tools/bench/scene.hpp"
+#include "tools/bench/bench_scene.hpp"
 
 namespace cohort::bench {
 

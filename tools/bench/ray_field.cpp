@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "server/geometry/ray_fan.hpp"
-#include "tools/bench/scene.hpp"
+#include "tools/bench/bench_scene.hpp"
 
 namespace cohort::bench {
 namespace {

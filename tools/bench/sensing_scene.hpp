@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/bench/scene.hpp"
+#include "tools/bench/bench_scene.hpp"
 
 /// Sections 5.1.3 and 5.1.4 of the thesis: robots that stand still among obstacles or sources on a plane with four
 /// walls. It gives the numbers; sizes, places and density are ours.

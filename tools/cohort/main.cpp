@@ -4,16 +4,16 @@
 
 #include "client_sdk/src/program.hpp"
 #include "idl/wire.hpp"
-#include "server/description/text.hpp"
-#include "tools/cohort/bench_options.hpp"
-#include "tools/cohort/build_facts.hpp"
-#include "tools/cohort/client_commands.hpp"
-#include "tools/cohort/command_lines.hpp"
-#include "tools/cohort/commands.hpp"
-#include "tools/cohort/log.hpp"
-#include "tools/cohort/page_commands.hpp"
-#include "tools/cohort/recording_options.hpp"
-#include "tools/cohort/usage.hpp"
+#include "server/core/text.hpp"
+#include "tools/cohort/commands/bench_options.hpp"
+#include "tools/cohort/cli/build_facts.hpp"
+#include "tools/cohort/commands/client_commands.hpp"
+#include "tools/cohort/commands/command_lines.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/cli/log.hpp"
+#include "tools/cohort/commands/page_commands.hpp"
+#include "tools/cohort/commands/recording_options.hpp"
+#include "tools/cohort/cli/usage.hpp"
 
 namespace {
 
@@ -53,14 +53,14 @@ LogLevel level_from_environment() {
     if (name == text) return level;
     names.push_back(name);
   }
-  throw UsageError("COHORT_LOG is '" + text + "'" + cohort::description::suggestion(text, names));
+  throw UsageError("COHORT_LOG is '" + text + "'" + cohort::suggestion(text, names));
 }
 
 LogFormat log_format(std::string text) {
   if (text.empty()) text = environment("COHORT_LOG_FORMAT");
   if (text.empty() || text == "text") return LogFormat::text;
   if (text == "json") return LogFormat::json;
-  throw UsageError("COHORT_LOG_FORMAT is '" + text + "'" + cohort::description::suggestion(text, log_formats));
+  throw UsageError("COHORT_LOG_FORMAT is '" + text + "'" + cohort::suggestion(text, log_formats));
 }
 
 LogOptions log_options(const LogFlags& flags) {
@@ -315,7 +315,7 @@ int main(int argc, char** argv) {
   }
   run_options.controllers = placements.at(controllers);
   if (!speed.empty())
-    run_options.speed = serve_options.speed = speed == "max" ? 0.0 : *cohort::description::parse_real(speed);
+    run_options.speed = serve_options.speed = speed == "max" ? 0.0 : *cohort::parse_real(speed);
   run_options.quiet = serve_options.quiet = log_flags.quiet;
 
   Log log(*options);

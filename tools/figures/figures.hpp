@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tools/figures/chart.hpp"
+#include "tools/drawing/chart.hpp"
 
 /// How each device of an s-bot responds (docs/sbot.md), measured in small worlds, beside the closed forms of the thesis
 /// (chapter 3) or of mechanics. The same at each run.

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "tools/cohort/output_file.hpp"
+#include "tools/cohort/cli/output_file.hpp"
 #include "tools/figures/figures.hpp"
 
 // Draws how the devices of an s-bot respond, a file for each group of them.

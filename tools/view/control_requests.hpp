@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "idl/control.hpp"
+#include "idl/control_messages.hpp"
 #include "tools/view/source.hpp"
 
 namespace cohort::view {

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cstdint>
 
-#include "idl/control.hpp"
-#include "server/scene/run_history.hpp"
+#include "idl/control_messages.hpp"
+#include "server/viewing/run_history.hpp"
 #include "tools/view/view_messages.hpp"
 
 namespace cohort::view {
@@ -26,7 +26,7 @@ class LiveHistory {
 
  private:
   void begin_run(std::uint32_t run, std::uint64_t begin_tick);
-  void add(const scene::HistoryEvent& event, std::chrono::nanoseconds step);
+  void add(const viewing::HistoryEvent& event, std::chrono::nanoseconds step);
 
   std::uint32_t run_ = 0;
   std::uint64_t revision_ = 0;

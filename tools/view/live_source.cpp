@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "server/scene/check_scene.hpp"
+#include "server/viewing/check_scene.hpp"
 #include "tools/view/control_requests.hpp"
 
 namespace cohort::view {
@@ -106,8 +106,8 @@ void LiveSource::show_what_arrives() {
 
 void LiveSource::show(Arrived& arrived) {
   if (arrived.scene) {
-    auto scene = recording::decode<scene::Scene>(*arrived.scene);
-    links_ = scene::check_scene(scene);
+    auto scene = recording::decode<viewing::Scene>(*arrived.scene);
+    links_ = viewing::check_scene(scene);
     revision_ = scene.revision;
     publisher_.show_as_it_is(std::move(scene), time_);
   }
@@ -115,14 +115,14 @@ void LiveSource::show(Arrived& arrived) {
     if (arrived.has_other_watched || arrivals_ != topics_.arrivals()) show_extras();
     return;
   }
-  const auto frame = recording::decode<scene::SceneFrame>(arrived.frame);
-  if (frame.revision == revision_) scene::check_frame(frame, links_);
+  const auto frame = recording::decode<viewing::SceneFrame>(arrived.frame);
+  if (frame.revision == revision_) viewing::check_frame(frame, links_);
   {
     const std::lock_guard lock(mutex_);
     time_ = std::chrono::nanoseconds(frame.time_ns);
   }
   publisher_.show(frame, time_);
-  publisher_.show(recording::decode<scene::SceneSignals>(arrived.signals), time_);
+  publisher_.show(recording::decode<viewing::SceneSignals>(arrived.signals), time_);
   contacts_ = std::move(arrived.contacts);
   robots_ = std::move(arrived.robots);
   show_extras();
@@ -135,9 +135,9 @@ void LiveSource::show_extras() {
 }
 
 void LiveSource::show_robots() {
-  auto robots = recording::decode<scene::SceneRobots>(robots_);
+  auto robots = recording::decode<viewing::SceneRobots>(robots_);
   const std::lock_guard lock(mutex_);
-  std::erase_if(robots.robots, [&](const scene::SceneRobot& each) {
+  std::erase_if(robots.robots, [&](const viewing::SceneRobot& each) {
     return std::ranges::find(watched_, each.robot) == watched_.end();
   });
   publisher_.publish(Topic::robots, robots, time_);
@@ -190,7 +190,7 @@ void LiveSource::serve_wishes() {
           show_status(blank_status());
           continue;
         }
-        std::optional<Asked> asked;
+        std::optional<ReceivedRequest> asked;
         {
           std::unique_lock lock(wishes_mutex_);
           wishes_changed_.wait_for(lock, status_interval, [&] { return is_stopping_ || !wishes_.empty(); });
@@ -257,12 +257,12 @@ void LiveSource::ask_history(ControlClient& client) {
 }
 
 void LiveSource::answer_all(const std::string& text) {
-  std::deque<Asked> asked;
+  std::deque<ReceivedRequest> asked;
   {
     const std::lock_guard lock(wishes_mutex_);
     asked.swap(wishes_);
   }
-  for (const Asked& each : asked) each.answer({false, text});
+  for (const ReceivedRequest& each : asked) each.answer({false, text});
 }
 
 ViewStatus LiveSource::blank_status() const {

@@ -45,7 +45,7 @@ class LiveSource final : public Source {
  private:
   using Bytes = recording::Bytes;
 
-  struct Asked {
+  struct ReceivedRequest {
     Wish wish;
     std::function<void(const Answer&)> answer;
   };
@@ -88,7 +88,7 @@ class LiveSource final : public Source {
 
   std::mutex wishes_mutex_;
   std::condition_variable wishes_changed_;
-  std::deque<Asked> wishes_;
+  std::deque<ReceivedRequest> wishes_;
 
   wire::Participant participant_;
   wire::Reader<wire::SceneDescription> descriptions_;

@@ -5,17 +5,17 @@
 namespace cohort::view {
 namespace {
 
-using scene::ShapeKind;
+using viewing::ShapeKind;
 
 constexpr double plane_size = 20.0;       // [m]
 constexpr double plane_thickness = 1e-3;  // [m]
 
-std::string frame_name(const scene::Scene& scene, std::uint32_t entity, std::size_t link) {
-  const scene::SceneEntity& named = scene.entities[entity];
+std::string frame_name(const viewing::Scene& scene, std::uint32_t entity, std::size_t link) {
+  const viewing::SceneEntity& named = scene.entities[entity];
   return named.name + "/" + scene.models[named.model].links[link].name;
 }
 
-void fill_colors(const scene::SceneMesh& mesh, float opacity, Marker& marker) {
+void fill_colors(const viewing::SceneMesh& mesh, float opacity, Marker& marker) {
   constexpr float full = 255.0f;
   marker.colors.reserve(mesh.colors.size());
   for (std::size_t i = 0; i + 2 < mesh.colors.size(); i += 3) {
@@ -24,7 +24,7 @@ void fill_colors(const scene::SceneMesh& mesh, float opacity, Marker& marker) {
   }
 }
 
-void fill_mesh(const scene::SceneMesh& mesh, Marker& marker) {
+void fill_mesh(const viewing::SceneMesh& mesh, Marker& marker) {
   marker.kind = Marker::triangle_list;
   marker.scale = {1.0, 1.0, 1.0};
   marker.points.reserve(mesh.triangles.size());
@@ -34,7 +34,7 @@ void fill_mesh(const scene::SceneMesh& mesh, Marker& marker) {
   }
 }
 
-void fill_shape(const scene::Scene& scene, const scene::SceneShape& shape, Marker& marker) {
+void fill_shape(const viewing::Scene& scene, const viewing::SceneShape& shape, Marker& marker) {
   const auto& [a, b, c] = shape.size;
   switch (static_cast<ShapeKind>(shape.kind)) {
     case ShapeKind::box: marker.scale = {a, b, c}; break;
@@ -59,7 +59,7 @@ void fill_shape(const scene::Scene& scene, const scene::SceneShape& shape, Marke
   }
 }
 
-Marker marker_of(const scene::Scene& scene, const scene::SceneShape& shape) {
+Marker marker_of(const viewing::Scene& scene, const viewing::SceneShape& shape) {
   Marker marker;
   const auto& pose = shape.pose;
   marker.pose = {{pose[0], pose[1], pose[2]}, {pose[3], pose[4], pose[5], pose[6]}};
@@ -68,9 +68,9 @@ Marker marker_of(const scene::Scene& scene, const scene::SceneShape& shape) {
   return marker;
 }
 
-void add_link(const scene::Scene& scene, const scene::SceneLink& link, const std::string& frame, MarkerArray& to) {
-  for (const scene::SceneShape& shape : link.shapes) {
-    if (shape.role == static_cast<std::uint8_t>(scene::ShapeRole::collision)) continue;
+void add_link(const viewing::Scene& scene, const viewing::SceneLink& link, const std::string& frame, MarkerArray& to) {
+  for (const viewing::SceneShape& shape : link.shapes) {
+    if (shape.role == static_cast<std::uint8_t>(viewing::ShapeRole::collision)) continue;
     Marker marker = marker_of(scene, shape);
     marker.header.frame_id = frame;
     marker.ns = frame;
@@ -81,21 +81,21 @@ void add_link(const scene::Scene& scene, const scene::SceneLink& link, const std
 
 }  // namespace
 
-MarkerArray markers_of(const scene::Scene& scene) {
+MarkerArray markers_of(const viewing::Scene& scene) {
   MarkerArray all;
   all.markers.reserve(1 + scene.entities.size());
   Marker& clear = all.markers.emplace_back();
   clear.header.frame_id = "world";
   clear.action = 3;
   for (std::uint32_t entity = 0; entity < scene.entities.size(); ++entity) {
-    const scene::SceneModel& model = scene.models[scene.entities[entity].model];
+    const viewing::SceneModel& model = scene.models[scene.entities[entity].model];
     for (std::size_t link = 0; link < model.links.size(); ++link)
       add_link(scene, model.links[link], frame_name(scene, entity, link), all);
   }
   return all;
 }
 
-recording::ros::TFMessage transforms_of(const scene::Scene& scene, const scene::SceneFrame& frame) {
+recording::ros::TFMessage transforms_of(const viewing::Scene& scene, const viewing::SceneFrame& frame) {
   constexpr std::int64_t second = 1'000'000'000;
   constexpr double full = 32767.0;
   const recording::ros::Time stamp{static_cast<std::int32_t>(frame.time_ns / second),

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/recording/ros_messages.hpp"
-#include "server/scene/scene_messages.hpp"
+#include "server/viewing/scene_messages.hpp"
 
 /// A scene in ROS 2's own messages, for viewers that know nothing of Cohort. Each link has a frame, `NAME/LINK` in the
 /// frame `world`.
@@ -87,8 +87,8 @@ struct MarkerArray {
 };
 
 /// All that is visible; of planes a piece. They take the place of all markers before.
-MarkerArray markers_of(const scene::Scene& scene);
+MarkerArray markers_of(const viewing::Scene& scene);
 /// The frames of all links that are in the world.
-recording::ros::TFMessage transforms_of(const scene::Scene& scene, const scene::SceneFrame& frame);
+recording::ros::TFMessage transforms_of(const viewing::Scene& scene, const viewing::SceneFrame& frame);
 
 }  // namespace cohort::view

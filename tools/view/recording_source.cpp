@@ -220,7 +220,7 @@ void RecordingSource::show_scene() {
   const Simulation& simulation = replay_.simulation();
   is_new_world_ = false;
   const std::uint32_t revision =
-      publisher_.show(scene::SceneMaker(simulation, 0).scene(replay_.experiment().teams), log_time_);
+      publisher_.show(viewing::SceneMaker(simulation, 0).scene(replay_.experiment().teams), log_time_);
   maker_.emplace(simulation, revision);
 }
 
@@ -230,7 +230,7 @@ void RecordingSource::show() {
   publisher_.show(maker_->frame(run_, state_hash_), log_time_);
   publisher_.show(maker_->signals(), log_time_);
   if (publisher_.is_read(Topic::contacts)) publisher_.publish(Topic::contacts, maker_->contacts(), log_time_);
-  scene::SceneRobots robots;
+  viewing::SceneRobots robots;
   robots.robots.reserve(watched_.size());
   for (const std::uint32_t robot : watched_)
     if (robot < replay_.simulation().robot_count()) robots.robots.push_back(maker_->robot(robot));

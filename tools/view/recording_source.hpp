@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "server/recording/replay.hpp"
-#include "server/scene/scene_maker.hpp"
+#include "server/viewing/scene_maker.hpp"
 #include "tools/view/scene_publisher.hpp"
 #include "tools/view/source.hpp"
 
@@ -70,7 +70,7 @@ class RecordingSource final : public Source {
   // Of the thread.
   std::uint64_t wishes_taken_ = 0;
   std::uint64_t interruptions_taken_ = 0;
-  std::optional<scene::SceneMaker> maker_;
+  std::optional<viewing::SceneMaker> maker_;
   bool is_new_world_ = false;
   bool is_at_end_ = false;
   std::string problem_;

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "server/scene/scene_messages.hpp"
+#include "server/viewing/scene_messages.hpp"
 #include "tools/view/topics.hpp"
 #include "tools/view/view_messages.hpp"
 
@@ -14,12 +14,12 @@ class ScenePublisher {
   explicit ScenePublisher(Topics& topics) : topics_(topics) {}
 
   /// Publishes it unless it was published last. Returns the revision that it has with viewers.
-  std::uint32_t show(scene::Scene scene, std::chrono::nanoseconds time);
+  std::uint32_t show(viewing::Scene scene, std::chrono::nanoseconds time);
   /// Publishes it with the revision that it has.
-  void show_as_it_is(scene::Scene scene, std::chrono::nanoseconds time);
+  void show_as_it_is(viewing::Scene scene, std::chrono::nanoseconds time);
   /// Of the scene that was shown last.
-  void show(const scene::SceneFrame& frame, std::chrono::nanoseconds time);
-  void show(const scene::SceneSignals& signals, std::chrono::nanoseconds time);
+  void show(const viewing::SceneFrame& frame, std::chrono::nanoseconds time);
+  void show(const viewing::SceneSignals& signals, std::chrono::nanoseconds time);
 
   template <recording::RosMessage Message>
   void publish(Topic topic, const Message& message, std::chrono::nanoseconds time) {
@@ -29,9 +29,9 @@ class ScenePublisher {
 
  private:
   Topics& topics_;
-  scene::Scene scene_;
+  viewing::Scene scene_;
   recording::Bytes scene_bytes_;
-  scene::SceneSignals signals_;
+  viewing::SceneSignals signals_;
   std::uint32_t revision_of_markers_ = 0;
 };
 

@@ -19,12 +19,12 @@ TopicInfo topic(const char* name) {
 
 const std::array<TopicInfo, topic_count>& topic_table() {
   static const std::array<TopicInfo, topic_count> table = {
-      topic<scene::Scene>("/cohort/scene"),
-      topic<scene::SceneFrame>("/cohort/frame"),
-      topic<scene::SceneSignals>("/cohort/signals"),
-      topic<scene::SceneContacts>("/cohort/contacts"),
+      topic<viewing::Scene>("/cohort/scene"),
+      topic<viewing::SceneFrame>("/cohort/frame"),
+      topic<viewing::SceneSignals>("/cohort/signals"),
+      topic<viewing::SceneContacts>("/cohort/contacts"),
       topic<ViewStatus>("/cohort/status"),
-      topic<scene::SceneRobots>("/cohort/robots"),
+      topic<viewing::SceneRobots>("/cohort/robots"),
       topic<ViewEvents>("/cohort/events"),
       topic<recording::ros::TFMessage>("/tf"),
       topic<MarkerArray>("/markers"),

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "server/scene/scene_messages.hpp"
+#include "server/viewing/scene_messages.hpp"
 
-/// What viewers are told beside the scene (server/scene/scene_messages.hpp).
+/// What viewers are told beside the scene (server/viewing/scene_messages.hpp).
 namespace cohort::view {
 
 using recording::field;

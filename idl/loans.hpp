@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "idl/cohort.h"
+
+/// What codecs share: samples that borrow from messages, and messages of what samples hold.
+namespace cohort::wire {
+
+// Cyclone's structs are not const-correct; writing only reads what they point to. `_release` stays false: it is ours.
+inline char* loaned(const std::string& text) { return const_cast<char*>(text.c_str()); }
+
+template <class Sequence, class Elements>
+void loan(const Elements& elements, Sequence& sequence) {
+  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
+  sequence._buffer = const_cast<Element*>(elements.data());
+  sequence._length = static_cast<std::uint32_t>(elements.size());
+  sequence._maximum = sequence._length;
+}
+
+inline std::string to_string(const char* text) { return text == nullptr ? std::string() : std::string(text); }
+
+template <class Sequence>
+auto to_span(const Sequence& sequence) {
+  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
+  return std::span<const Element>(sequence._buffer, sequence._buffer == nullptr ? 0 : sequence._length);
+}
+
+inline std::vector<std::string> to_strings(const dds_sequence_string& texts) {
+  std::vector<std::string> result;
+  for (const char* text : to_span(texts)) result.push_back(to_string(text));
+  return result;
+}
+
+}  // namespace cohort::wire

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <type_traits>
+#include <vector>
+
+#include "server/core/hash.hpp"
+#include "server/core/pose.hpp"
+#include "server/core/snapshot.hpp"
+
+/// What a `visit_state` calls for each number of a state, so that hash, snapshot and restoring see the same ones;
+/// `unusual` for what counts only where it is not as usual.
+namespace cohort {
+
+/// Adds whatever number a state holds.
+struct StateHasher {
+  StateHash& hash;
+  void operator()(const double& number) const { hash.add(number); }
+  void operator()(const bool& flag) const { hash.add(static_cast<std::uint64_t>(flag)); }
+  template <class Choice>
+  void unusual(const Choice& choice, Choice usual) const {
+    if (choice == usual) return;
+    if constexpr (std::is_floating_point_v<Choice>)
+      hash.add(choice);
+    else
+      hash.add(static_cast<std::uint64_t>(choice));
+  }
+};
+/// Writes it.
+struct StateSaver {
+  SnapshotWriter& writer;
+  template <class Number>
+  void operator()(const Number& number) const {
+    writer.add(number);
+  }
+  template <class Choice>
+  void unusual(const Choice& choice, Choice) const {
+    writer.add(choice);
+  }
+};
+/// Reads it back.
+struct StateRestorer {
+  SnapshotReader& reader;
+  template <class Number>
+  void operator()(Number& number) const {
+    reader.read(number);
+  }
+  template <class Choice>
+  void unusual(Choice& choice, Choice) const {
+    reader.read(choice);
+  }
+};
+
+template <class PoseType, class Visit>
+void visit_pose(PoseType& pose, Visit&& visit) {
+  for (int i = 0; i < 3; ++i) visit(pose.position[i]);
+  for (int i = 0; i < 4; ++i) visit(pose.orientation.coeffs()[i]);
+}
+
+/// The bodies beyond the `described` ones, which a world was given in mid-run: of which model, and where.
+template <class Body>
+void save_added_bodies(const std::vector<Body>& bodies, std::size_t described, SnapshotWriter& writer) {
+  writer.add_count(described);
+  writer.add_count(bodies.size());
+  for (std::size_t body = described; body < bodies.size(); ++body) {
+    writer.add_count(bodies[body].model);
+    visit_pose(bodies[body].X_WM, StateSaver{writer});
+  }
+}
+
+/// Calls `create(model, X_WM)` for each. Throws SnapshotError if there are not as many described bodies, or a model is
+/// not below `models`.
+template <class Create>
+void restore_added_bodies(SnapshotReader& reader, std::size_t described, std::size_t models, Create&& create) {
+  reader.expect_count(described, "models in its world");
+  constexpr std::size_t least_bytes = 1;
+  const std::size_t count = reader.read_count(least_bytes);
+  for (std::size_t body = described; body < count; ++body) {
+    const std::size_t model = reader.read_count(least_bytes);
+    if (model >= models) throw SnapshotError("the snapshot has a model that is not there");
+    Pose X_WM;
+    visit_pose(X_WM, StateRestorer{reader});
+    create(model, X_WM);
+  }
+}
+
+}  // namespace cohort

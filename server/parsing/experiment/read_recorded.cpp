@@ -1,0 +1,46 @@
+#include "server/parsing/experiment/read_recorded.hpp"
+
+#include <set>
+#include <stdexcept>
+
+#include "server/description/experiment.hpp"
+#include "server/parsing/keys/experiment_keys.hpp"
+#include "server/description/select_robots.hpp"
+#include "server/parsing/yaml/yaml_document.hpp"
+
+namespace cohort::parsing {
+
+void read_recorded(const ScheduleEntry& entry, const World& world, Recorded& recorded) {
+  if (entry.values().has("poses")) recorded.pose_rate = entry.values().real("poses");
+  if (entry.values().has("joints")) recorded.joint_rate = entry.values().real("joints");
+  if (entry.values().has("observations")) recorded.observation_rate = entry.values().real("observations");
+  recorded.snapshot_interval = entry.time("snapshots").value_or(recorded.snapshot_interval);
+  if (!entry.is_written("robots")) return;
+  std::set<std::uint32_t> observed;
+  try {
+    for (const std::string& selector : entry.values().texts("robots"))
+      for (const std::uint32_t robot : select_robots(world, selector)) observed.insert(robot);
+  } catch (const std::invalid_argument& error) {
+    entry.problem("robots", error.what());
+  }
+  recorded.observed.assign(observed.begin(), observed.end());
+}
+
+Recorded read_recorded(const std::string& text, const Experiment& experiment) {
+  Recorded recorded = experiment.recorded;
+  const std::filesystem::path place = "record";
+  const YamlDocument document = parse_yaml(text);
+  if (document.error) throw InputError({{place, document.error->line, "", document.error->message}});
+  std::vector<Problem> problems;
+  try {
+    const YamlReport report(place, problems);
+    const ScheduleEntry entry(YAML::Load(text), "record", experiment_part("record", "experiment"), report);
+    read_recorded(entry, experiment.world, recorded);
+  } catch (const YAML::Exception& error) {
+    throw InputError({{place, 0, "", error.msg}});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return recorded;
+}
+
+}  // namespace cohort::parsing

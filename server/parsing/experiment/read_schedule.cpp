@@ -1,0 +1,355 @@
+#include "server/parsing/experiment/read_schedule.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "server/core/text.hpp"
+#include "server/description/select_robots.hpp"
+#include "server/parsing/experiment/read_effects.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/parsing/experiment/read_recorded.hpp"
+#include "server/parsing/experiment/schedule_entry.hpp"
+#include "server/parsing/keys/experiment_keys.hpp"
+#include "server/parsing/world/read_world.hpp"
+#include "server/parsing/yaml/yaml_values.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+// The names of the parts that may stand in a list of the experiment.
+std::vector<std::string> kinds_in(std::string_view list) {
+  std::vector<std::string> kinds;
+  for (const Extension& part : experiment_parts())
+    if (part.parent == list) kinds.emplace_back(part.name);
+  return kinds;
+}
+
+bool is_when(std::string_view key) { return key == "at" || key == "on"; }
+
+std::string either_of(const std::vector<std::string>& kinds) {
+  std::string text;
+  for (const std::string& kind : kinds) text += (text.empty() ? "" : ", ") + kind;
+  return text;
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(bugprone-exception-escape): assigning a YAML::Node may throw, and nothing here relies on it not to.
+struct ScheduleReader::Written {
+  YAML::Node node;   // the whole entry
+  std::string path;  // of the kind, such as `events[0].add`
+  std::string kind;
+  YAML::Node map;  // of the kind's keys
+  std::chrono::nanoseconds time{0};
+  YAML::Node on;  // what makes it happen in place of a time
+  std::string on_path;
+};
+
+// NOLINTNEXTLINE(bugprone-exception-escape): the same.
+struct ScheduleReader::ReadEvent {
+  Event event;
+  YAML::Node node;
+  std::string path;
+};
+
+namespace {
+
+using Condition = decltype(StopCondition::what);
+using ReadCondition = std::optional<Condition> (*)(const ScheduleEntry& entry);
+
+std::optional<Condition> read_inside(const ScheduleEntry& entry) {
+  const KeyValues& values = entry.values();
+  if (!values.has("min") || !values.has("max")) return std::nullopt;
+  if ((values.point("min").array() > values.point("max").array()).any()) entry.problem("min", "exceeds max");
+  return AllInside{values.point("min"), values.point("max")};
+}
+std::optional<Condition> read_beyond(const ScheduleEntry& entry) {
+  const KeyValues& values = entry.values();
+  if (!values.has("point") || !values.has("direction")) return std::nullopt;
+  if (values.point("direction").isZero()) entry.problem("direction", "expected a direction that is not zero");
+  return OneBeyond{values.point("point"), values.point("direction")};
+}
+std::optional<Condition> read_at_rest(const ScheduleEntry& entry) {
+  const KeyValues& values = entry.values();
+  if (!values.has("speed") || !values.has("turn_rate")) return std::nullopt;
+  return AllAtRest{values.real("speed"), values.real("turn_rate")};
+}
+std::optional<Condition> read_quarantined(const ScheduleEntry&) { return OneQuarantined{}; }
+
+constexpr std::pair<std::string_view, ReadCondition> conditions[] = {
+    {"inside", &read_inside}, {"beyond", &read_beyond}, {"at_rest", &read_at_rest}, {"quarantined", &read_quarantined}};
+
+constexpr std::pair<std::string_view, Quantity> quantities[] = {{"position", Quantity::position},
+                                                                {"pose", Quantity::pose},
+                                                                {"heading", Quantity::heading},
+                                                                {"velocity", Quantity::velocity},
+                                                                {"count", Quantity::count},
+                                                                {"quarantined", Quantity::quarantined},
+                                                                {"joint_force", Quantity::joint_force},
+                                                                {"joint_torque", Quantity::joint_torque}};
+
+bool is_of_joints(Quantity quantity) { return quantity == Quantity::joint_force || quantity == Quantity::joint_torque; }
+
+// Ascending; what selects none is reported.
+std::vector<std::size_t> selected_joints(const ScheduleEntry& entry, const World& world) {
+  std::set<std::size_t> selected;
+  std::vector<std::string> names;
+  for (const BreakableJoint& joint : world.breakable_joints) names.push_back(joint.name);
+  for (const std::string& selector : entry.values().texts("joints")) {
+    bool selects = false;
+    for (std::size_t joint = 0; joint < names.size(); ++joint) {
+      if (!matches(names[joint], selector)) continue;
+      selected.insert(joint);
+      selects = true;
+    }
+    if (!selects)
+      entry.problem("joints", "no breakable joint is called '" + selector + "'" + suggestion(selector, names));
+  }
+  return {selected.begin(), selected.end()};
+}
+
+template <class Named>
+auto named(const Named& entries, std::string_view name) {
+  const auto* const found =
+      std::find_if(std::begin(entries), std::end(entries), [&](const auto& entry) { return entry.first == name; });
+  if (found == std::end(entries)) throw std::logic_error("nothing reads " + std::string(name));
+  return found->second;
+}
+
+}  // namespace
+
+void ScheduleReader::choose_kind(const YamlMap& map, const std::vector<std::string>& kinds, Written& written) {
+  for (const std::string& kind : kinds) {
+    if (!map.has(kind)) continue;
+    if (!written.kind.empty()) {
+      map.problem(kind, "is a second one; every entry of the list has one");
+      continue;
+    }
+    written.kind = kind;
+    written.map = map.where(kind);
+    written.path = map.path_to(kind);
+  }
+}
+
+void ScheduleReader::read_when(const YamlMap& map, Written& written) {
+  if (map.has("on")) {
+    written.on = map.where("on");
+    written.on_path = map.path_to("on");
+    if (map.has("at")) map.problem("on", "has no place beside `at`");
+    return;
+  }
+  map.require("at", "when it happens, in seconds of simulated time; or `on`, what makes it happen");
+  const std::optional<double> seconds = map.real("at");
+  if (!seconds) return;
+  const std::optional<std::chrono::nanoseconds> time = schedule_time(*seconds);
+  if (!time) map.problem("at", "expected from 0 s to 9e9 s");
+  written.time = time.value_or(written.time);
+}
+
+std::vector<ScheduleReader::Written> ScheduleReader::entries(const std::string& list, bool have_times) const {
+  std::vector<Written> found;
+  if (!top_.has(list)) return found;
+  const YAML::Node nodes = top_.where(list);
+  if (!nodes.IsSequence()) {
+    top_.problem(list, "expected a list, not " + shown(nodes));
+    return found;
+  }
+  const std::vector<std::string> kinds = kinds_in(list);
+  std::vector<std::string> known = kinds;
+  if (have_times) known.insert(known.begin(), {"at", "on"});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::string path = list + "[" + std::to_string(i) + "]";
+    const YamlMap map(nodes[i], path, known, report_);
+    if (!nodes[i].IsMap()) continue;
+    Written written{nodes[i], path, "", {}, {}, {}, ""};
+    if (have_times) read_when(map, written);
+    choose_kind(map, kinds, written);
+    if (!written.kind.empty())
+      found.push_back(written);
+    else if (std::all_of(nodes[i].begin(), nodes[i].end(),
+                         [&](const auto& entry) { return entry.first.IsScalar() && is_when(entry.first.Scalar()); }))
+      report_.problem(nodes[i], path, "missing: one of " + either_of(kinds));
+  }
+  return found;
+}
+
+std::vector<LaterObject> ScheduleReader::later_objects() const {
+  // What is wrong is reported when all of it is read.
+  std::vector<Problem> ignored;
+  std::vector<LaterObject> objects;
+  if (!top_.has("events") || !top_.where("events").IsSequence()) return objects;
+  const YAML::Node nodes = top_.where("events");
+  const YamlReport nothing(file_, ignored);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const YAML::Node& node = nodes[i];
+    if (!node.IsMap() || !node["add"] || !node["add"].IsMap()) continue;
+    const std::string path = "events[" + std::to_string(i) + "].add";
+    const KeyValues values = read_values(node["add"], path, experiment_part("add", "events"), true, nothing);
+    if (!values.has("model") || !values.has("name") || !values.has("pose")) continue;
+    objects.push_back({values.text("model"),
+                       values.text("name"),
+                       values.pose("pose"),
+                       {file_, node["add"].Mark().line + 1, path, ""}});
+  }
+  return objects;
+}
+
+void ScheduleReader::read(Experiment& experiment) const {
+  read_events(experiment);
+  read_stops(experiment);
+  read_prints(experiment);
+  read_history(experiment);
+  read_recorded(experiment);
+}
+
+void ScheduleReader::read_events(Experiment& experiment) const {
+  std::vector<ReadEvent> events;
+  std::vector<Event> at_any_time;
+  for (const Written& written : entries("events", true)) {
+    std::vector<ReadEvent> read = read_event(written, experiment.world);
+    if (written.on_path.empty()) {
+      std::move(read.begin(), read.end(), std::back_inserter(events));
+      continue;
+    }
+    std::optional<Reaction> reaction = read_on(written, experiment.world);
+    if (!reaction) continue;
+    for (const ReadEvent& each : read) reaction->events.push_back(each.event);
+    at_any_time.insert(at_any_time.end(), reaction->events.begin(), reaction->events.end());
+    experiment.reactions.push_back(*std::move(reaction));
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const ReadEvent& a, const ReadEvent& b) { return a.event.time < b.event.time; });
+  check_order(experiment.world, events, at_any_time);
+  for (ReadEvent& each : events) experiment.events.push_back(std::move(each.event));
+}
+
+// The robots among those chosen that have the action.
+std::optional<Reaction> ScheduleReader::read_on(const Written& written, const World& world) const {
+  const ScheduleEntry entry(written.on, written.on_path, experiment_part("on", "an event"), report_);
+  const KeyValues& values = entry.values();
+  if (!values.has("action") || !values.has("robots")) return std::nullopt;
+  std::set<std::uint32_t> chosen;
+  for (const std::string& selector : values.texts("robots")) {
+    try {
+      for (const std::uint32_t robot : select_robots(world, selector)) chosen.insert(robot);
+    } catch (const std::invalid_argument& error) {
+      entry.problem("robots", error.what());
+      return std::nullopt;
+    }
+  }
+  Reaction reaction{values.text("action"), {}, {}};
+  std::set<std::string> known;
+  for (const std::uint32_t robot : chosen)
+    for (const Device& device : world.robot_model(robot).devices) {
+      if (!std::holds_alternative<UserAction>(device)) continue;
+      known.insert(name_of(device));
+      if (name_of(device) == reaction.action) reaction.robots.push_back(robot);
+    }
+  if (!reaction.robots.empty()) return reaction;
+  entry.problem("action", "no robot that is chosen has an action '" + reaction.action + "'" +
+                              suggestion(reaction.action, {known.begin(), known.end()}));
+  return std::nullopt;
+}
+
+std::vector<ScheduleReader::ReadEvent> ScheduleReader::read_event(const Written& written, const World& world) const {
+  const ScheduleEntry entry(written.map, written.path, experiment_part(written.kind, "events"), report_);
+  std::vector<std::size_t> objects;
+  if (written.kind == "add") {
+    const auto is_added = [&](const Instance& instance) {
+      return entry.values().has("name") && instance.name == entry.values().text("name");
+    };
+    const auto found = std::find_if(world.instances.begin(), world.instances.end(), is_added);
+    if (found != world.instances.end()) objects.push_back(static_cast<std::size_t>(found - world.instances.begin()));
+  } else {
+    objects = entry.objects(world);
+  }
+  std::vector<ReadEvent> events;
+  for (auto& [object, effect] : read_effects(written.kind, entry, world, objects))
+    events.push_back({{written.time, object, std::move(effect), written.kind}, written.map, written.path});
+  return events;
+}
+
+// What has been removed does not come back, and what has not come yet cannot be acted on. What comes when a robot does
+// something may be there at any time.
+void ScheduleReader::check_order(const World& world, const std::vector<ReadEvent>& events,
+                                 const std::vector<Event>& at_any_time) const {
+  std::vector<char> is_there(world.instances.size());
+  std::vector<char> is_gone(world.instances.size(), 0);
+  for (std::size_t i = 0; i < world.instances.size(); ++i) is_there[i] = world.instances[i].is_present ? 1 : 0;
+  for (const Event& event : at_any_time)
+    if (event.kind == "add") is_there[event.object] = 1;
+  for (const ReadEvent& each : events) {
+    const Event& event = each.event;
+    const std::string name = "'" + world.instances[event.object].name + "'";
+    if (is_gone[event.object])
+      report_.problem(each.node, each.path, name + " has been removed by then");
+    else if (event.kind != "add" && !is_there[event.object])
+      report_.problem(each.node, each.path, name + " has not been added by then");
+    if (event.kind == "add") is_there[event.object] = 1;
+    if (event.kind == "remove" && is_there[event.object]) is_gone[event.object] = 1;
+  }
+}
+
+void ScheduleReader::read_stops(Experiment& experiment) const {
+  for (const Written& written : entries("stop", false)) {
+    const ScheduleEntry entry(written.map, written.path, experiment_part(written.kind, "stop"), report_);
+    StopCondition condition{written.kind, entry.objects(experiment.world), OneQuarantined{},
+                            entry.time("for").value_or(std::chrono::nanoseconds(0))};
+    if (const auto what = named(conditions, written.kind)(entry)) {
+      condition.what = *what;
+      experiment.stops.push_back(std::move(condition));
+    }
+  }
+}
+
+void ScheduleReader::read_prints(Experiment& experiment) const {
+  if (!top_.has("print")) return;
+  const YAML::Node nodes = top_.where("print");
+  if (!nodes.IsSequence()) return top_.problem("print", "expected a list, not " + shown(nodes));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const ScheduleEntry entry(nodes[i], "print[" + std::to_string(i) + "]", experiment_part("print", "experiment"),
+                              report_);
+    const KeyValues& values = entry.values();
+    const std::optional<std::chrono::nanoseconds> every = entry.time("every");
+    PrintedQuantity printed;
+    for (const std::string& selector : values.texts("objects"))
+      printed.selector += (printed.selector.empty() ? "" : " ") + selector;
+    if (!values.has("quantity") || !every) continue;
+    printed.quantity = named(quantities, values.text("quantity"));
+    const bool of_joints = is_of_joints(printed.quantity);
+    if (const std::string stray = of_joints ? "objects" : "joints"; entry.is_written(stray))
+      entry.problem(stray, "has no place beside the quantity '" + values.text("quantity") + "'");
+    if (of_joints)
+      printed.joints = selected_joints(entry, experiment.world);
+    else
+      printed.objects = entry.objects(experiment.world);
+    printed.every = *every;
+    experiment.prints.push_back(std::move(printed));
+  }
+}
+
+void ScheduleReader::read_history(Experiment& experiment) const {
+  if (!top_.has("history")) return;
+  const ScheduleEntry entry(top_.where("history"), "history", experiment_part("history", "experiment"), report_);
+  experiment.history.objects = entry.objects(experiment.world);
+  if (entry.values().has("length"))
+    experiment.history.length = static_cast<std::size_t>(entry.values().whole("length"));
+  experiment.history.every = entry.time("every").value_or(std::chrono::nanoseconds(0));
+}
+
+void ScheduleReader::read_recorded(Experiment& experiment) const {
+  Recorded& recorded = experiment.recorded;
+  recorded.observed.resize(experiment.world.robots.size());
+  std::iota(recorded.observed.begin(), recorded.observed.end(), 0u);
+  if (!top_.has("record")) return;
+  parsing::read_recorded(
+      ScheduleEntry(top_.where("record"), "record", experiment_part("record", "experiment"), report_), experiment.world,
+      recorded);
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <optional>
+#include <vector>
+
+#include "server/description/experiment.hpp"
+#include "server/parsing/world/read_world.hpp"
+#include "server/parsing/yaml/yaml_map.hpp"
+
+namespace cohort::parsing {
+
+/// Reads what an experiment says of the course of its run: `events`, `stop`, `print` and `history`. What is wrong goes
+/// to the report.
+class ScheduleReader {
+ public:
+  ScheduleReader(const YamlMap& top, std::filesystem::path file, const YamlReport& report)
+      : top_(top), file_(std::move(file)), report_(report) {}
+
+  /// The objects that events add: to be read with the world.
+  std::vector<LaterObject> later_objects() const;
+
+  /// All of it, into `experiment`, whose world is read.
+  void read(Experiment& experiment) const;
+
+ private:
+  struct Written;    // one entry of a list: its kind and the map of its keys
+  struct ReadEvent;  // and where it stands
+  std::vector<Written> entries(const std::string& list, bool have_times) const;
+  static void choose_kind(const YamlMap& map, const std::vector<std::string>& kinds, Written& written);
+  static void read_when(const YamlMap& map, Written& written);
+  void read_events(Experiment& experiment) const;
+  std::vector<ReadEvent> read_event(const Written& written, const World& world) const;
+  std::optional<Reaction> read_on(const Written& written, const World& world) const;
+  void check_order(const World& world, const std::vector<ReadEvent>& events,
+                   const std::vector<Event>& at_any_time) const;
+  void read_stops(Experiment& experiment) const;
+  void read_prints(Experiment& experiment) const;
+  void read_history(Experiment& experiment) const;
+  void read_recorded(Experiment& experiment) const;
+
+  const YamlMap& top_;
+  std::filesystem::path file_;
+  const YamlReport& report_;
+};
+
+}  // namespace cohort::parsing

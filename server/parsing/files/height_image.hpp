@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+
+#include "server/parsing/files/input_file.hpp"
+#include "server/description/shape.hpp"
+
+namespace cohort::parsing {
+
+/// Heights from a grey PNG image: a height for each pixel, black is 0 and white is `size.z()`. The image covers
+/// `size.x()` by `size.y()`, its upper edge towards +y. Throws std::runtime_error that says what is wrong with the
+/// file.
+HeightGrid read_height_image(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& size);
+
+}  // namespace cohort::parsing

@@ -1,0 +1,109 @@
+#include "server/parsing/files/input_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+namespace cohort::parsing {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* is_a_folder = "this is a folder; name a file in it";
+
+}  // namespace
+
+std::optional<std::string> why_unreadable(const fs::path& file) {
+  const auto because = [](const std::error_code& error) { return "the file cannot be read: " + error.message(); };
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) return "there is no such file";
+  if (error) return because(error);
+  if (fs::is_directory(status)) return is_a_folder;
+  if (!fs::is_regular_file(status)) return "this is not a regular file";
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return because({errno, std::generic_category()});
+  close(descriptor);
+  return std::nullopt;
+}
+
+InputFiles::InputFiles() {
+  std::error_code removed_meanwhile;
+  working_folder_ = fs::current_path(removed_meanwhile);
+  if (const char* const path = std::getenv("COHORT_MODEL_PATH")) model_path_ = path;
+}
+
+InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)
+    : source_(std::move(kept)),
+      working_folder_(source_->working_folder),
+      model_path_(source_->model_path),
+      folders_(source_->folders.begin(), source_->folders.end()) {}
+
+void InputFiles::add(const fs::path& file, std::string bytes) { files_[key_of(file)] = std::move(bytes); }
+
+fs::path InputFiles::absolute(const fs::path& path) const { return (working_folder_ / path).lexically_normal(); }
+
+// Not normalised: through a symbolic link, ".." leads elsewhere than its text says.
+std::string InputFiles::key_of(const fs::path& path) const { return (working_folder_ / path).string(); }
+
+const std::string* InputFiles::find(const std::string& key) const {
+  if (const auto added = files_.find(key); added != files_.end()) return &added->second;
+  if (!source_) return nullptr;
+  const auto found = std::find_if(source_->files.begin(), source_->files.end(),
+                                  [&](const KeptFile& file) { return file.path == key; });
+  return found == source_->files.end() ? nullptr : &found->bytes;
+}
+
+std::optional<std::string> InputFiles::why_unreadable(const fs::path& file) const {
+  const std::string key = key_of(file);
+  if (find(key) != nullptr) return std::nullopt;
+  if (!source_) return parsing::why_unreadable(key);
+  return folders_.contains(key) ? is_a_folder : "it is none of the files that the experiment was read from";
+}
+
+const std::string& InputFiles::read(const fs::path& file) {
+  const std::string key = key_of(file);
+  if (const std::string* const known = find(key)) return *known;
+  if (auto reason = why_unreadable(file)) throw std::runtime_error(*std::move(reason));
+  std::ifstream stream(key, std::ios::binary);
+  std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  if (!stream) throw std::runtime_error("the file cannot be read");
+  return files_.emplace(key, std::move(bytes)).first->second;
+}
+
+bool InputFiles::is_file(const fs::path& file) const {
+  const std::string key = key_of(file);
+  std::error_code none;
+  return find(key) != nullptr || (!source_ && fs::is_regular_file(key, none));
+}
+
+bool InputFiles::is_folder(const fs::path& folder) {
+  std::string key = key_of(folder);
+  if (folders_.contains(key)) return true;
+  std::error_code none;
+  if (source_ || !fs::is_directory(key, none)) return false;
+  folders_.insert(std::move(key));
+  return true;
+}
+
+KeptFiles InputFiles::kept() const {
+  KeptFiles kept;
+  if (source_) kept = *source_;
+  kept.working_folder = working_folder_.string();
+  kept.model_path = model_path_;
+  kept.folders.assign(folders_.begin(), folders_.end());
+  kept.files.reserve(kept.files.size() + files_.size());
+  for (const auto& [path, bytes] : files_) kept.files.push_back({path, bytes});
+  std::ranges::sort(kept.files, {}, &KeptFile::path);
+  return kept;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/description/kept_files.hpp"
+#include "server/parsing/parsing.hpp"
+
+namespace cohort::parsing {
+
+/// Why a file that a person named cannot be read, such as "there is no such file"; nothing if it can.
+std::optional<std::string> why_unreadable(const std::filesystem::path& file);
+
+/// The one way to the files of a world: from the disk, keeping what it has read, or from what was kept, without looking
+/// at the disk at all. Each file is read once, so that all readers see the same content. One thread uses it.
+class InputFiles {
+ public:
+  /// From the disk.
+  InputFiles();
+  /// From `kept` alone: what is not in it does not exist.
+  explicit InputFiles(std::shared_ptr<const KeptFiles> kept);
+  InputFiles(const InputFiles&) = delete;
+  InputFiles& operator=(const InputFiles&) = delete;
+
+  /// Answers for `file` with `bytes` from now on.
+  void add(const std::filesystem::path& file, std::string bytes);
+
+  /// As the function above.
+  std::optional<std::string> why_unreadable(const std::filesystem::path& file) const;
+  /// The content, which stays where it is as long as this lives. Throws std::runtime_error that says why there is none.
+  const std::string& read(const std::filesystem::path& file);
+  bool is_file(const std::filesystem::path& file) const;
+  bool is_folder(const std::filesystem::path& folder);
+
+  /// Without "." and "..".
+  std::filesystem::path absolute(const std::filesystem::path& path) const;
+  const std::string& model_path() const { return model_path_; }
+
+  /// What reading has taken so far; `experiment` and `last_model_folders` are for those to fill in who know them.
+  KeptFiles kept() const;
+
+ private:
+  std::string key_of(const std::filesystem::path& path) const;
+  const std::string* find(const std::string& key) const;
+
+  std::shared_ptr<const KeptFiles> source_;  // null: the disk
+  std::filesystem::path working_folder_;
+  std::string model_path_;
+  std::map<std::string, std::string> files_;  // by absolute path
+  std::set<std::string> folders_;
+};
+
+}  // namespace cohort::parsing

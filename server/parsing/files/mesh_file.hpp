@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "server/parsing/files/input_file.hpp"
+#include "server/description/shape.hpp"
+
+namespace cohort::parsing {
+
+/// Reads all triangles of an STL, OBJ or COLLADA file. Coordinates are as in the file, in metres, multiplied by
+/// `scale`; a unit that a COLLADA file gives is heeded, its up-axis is not. Vertices at the same place are one. Colours
+/// are those of materials (of an OBJ in its .mtl), where there are any. Throws std::runtime_error that says what is
+/// wrong with the file.
+TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale);
+
+}  // namespace cohort::parsing

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "server/parsing/files/input_file.hpp"
+
+namespace cohort::parsing {
+
+/// A model that a URI leads to.
+struct FoundModel {
+  std::filesystem::path file;  ///< in SDF, URDF or YAML
+};
+
+/// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these
+/// that has one (`package://` means the same): the folders of the environment variable COHORT_MODEL_PATH (separated by
+/// colons), `robots` and `objects` in the folder of the world file and in its parents, four levels up, and the
+/// `last_folders`. Any other URI is a path, to a model's folder or to an SDF file.
+class ModelSearch {
+ public:
+  /// `input` must outlive this.
+  ModelSearch(InputFiles& input, const std::filesystem::path& world_file,
+              const std::vector<std::filesystem::path>& last_folders);
+
+  /// Throws std::runtime_error that says what is missing and where it was looked for.
+  /// A path is relative to `folder`.
+  FoundModel find(const std::string& uri, const std::filesystem::path& folder) const;
+  /// A file that is no model, such as a mesh: `model://NAME/...` is in a model's folder, and a path is relative to
+  /// `folder`. Throws std::runtime_error as well.
+  std::filesystem::path find_file(const std::string& uri, const std::filesystem::path& folder) const;
+
+ private:
+  std::filesystem::path path_of(const std::string& uri, const std::filesystem::path& folder) const;
+  std::filesystem::path find_folder(const std::string& name) const;
+
+  /// The SDF file of a model's folder.
+  std::filesystem::path sdf_file_of(const std::filesystem::path& folder) const;
+
+  InputFiles& input_;
+  std::filesystem::path world_folder_;
+  std::vector<std::filesystem::path> folders_;
+};
+
+}  // namespace cohort::parsing

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "server/description/samples.hpp"
+#include "server/parsing/files/input_file.hpp"
+
+namespace cohort::parsing {
+
+/// Reads comma-separated values:
+///
+///     # anything
+///     distance [m],angle [rad],reading_0 [1],reading_1 [1]
+///     0.01,-1.5708,0.9,0.2
+///
+/// The first line that is neither empty nor a comment names the columns and their units; readings are numbered from 0.
+/// Then come the places, by distance and then by angle, with every angle at every distance. Throws InputError with all
+/// that is wrong, but for what follows from it.
+Samples read_samples(const std::filesystem::path& file);
+Samples read_samples(InputFiles& input, const std::filesystem::path& file);
+
+/// The same as text: read again, it gives the same bits.
+std::string samples_as_text(const Samples& samples);
+
+/// Throws std::runtime_error if the file cannot be written.
+void write_samples(const Samples& samples, const std::filesystem::path& file);
+
+}  // namespace cohort::parsing

@@ -1,0 +1,108 @@
+#include <cmath>
+#include <sdf/Light.hh>
+#include <sdf/Link.hh>
+
+#include "server/parsing/sdf/extension_values.hpp"
+#include "server/parsing/model/read_model.hpp"
+#include "server/core/text.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+double number(const sdf::ElementPtr& element, double by_default, const SdfReport& report) {
+  if (!is_written(element)) return by_default;
+  const std::string text = element->GetValue()->GetAsString();
+  if (const std::optional<double> value = parse_real(text); value && !std::isnan(*value)) return *value;
+  report.problem(element, "'" + text + "' is not a number");
+  return by_default;
+}
+
+Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
+  const sdf::ElementPtr element = sdf_light.Element();
+  Light light;
+  if (sdf_light.Type() == sdf::LightType::SPOT) light.kind = Light::Kind::spot;
+  if (sdf_light.Type() == sdf::LightType::DIRECTIONAL) light.kind = Light::Kind::directional;
+  const ignition::math::Color color = sdf_light.Diffuse();
+  light.color = {static_cast<double>(color.R()), static_cast<double>(color.G()), static_cast<double>(color.B())};
+  light.intensity = number(find(element, {"intensity"}), 1.0, report);
+  // libsdformat keeps factors in ranges of its own.
+  const sdf::ElementPtr attenuation = find(element, {"attenuation"});
+  if (attenuation && (is_written(find(attenuation, {"range"})) || is_written(find(attenuation, {"constant"})) ||
+                      is_written(find(attenuation, {"linear"})) || is_written(find(attenuation, {"quadratic"})))) {
+    light.range = number(find(attenuation, {"range"}), 10.0, report);
+    light.constant = number(find(attenuation, {"constant"}), 1.0, report);
+    light.linear = number(find(attenuation, {"linear"}), 1.0, report);
+    light.quadratic = number(find(attenuation, {"quadratic"}), 0.0, report);
+    const bool is_valid = light.constant >= 0.0 && light.linear >= 0.0 && light.quadratic >= 0.0 &&
+                          light.constant + light.linear + light.quadratic > 0.0 && light.range >= 0.0;
+    if (!is_valid) report.problem(attenuation, "expected numbers >= 0, and one of the three factors > 0");
+  }
+  if (light.intensity < 0.0 || !std::isfinite(light.intensity))
+    report.problem(find(element, {"intensity"}), "expected a finite intensity >= 0");
+  const sdf::ElementPtr direction = find(element, {"direction"});
+  const Eigen::Vector3d written = to_eigen(sdf_light.Direction());
+  if (const auto unit = written_unit_vector(direction))
+    light.direction_E = *unit;
+  else if (written.norm() > 0.0 && written.allFinite())
+    light.direction_E = written.normalized();
+  else if (direction)
+    report.problem(direction, "expected a direction that is not zero");
+  if (light.kind == Light::Kind::spot) {
+    // The angles of the whole cones.
+    light.inner_angle = 0.5 * number(find(element, {"spot", "inner_angle"}), 0.0, report);
+    light.outer_angle = 0.5 * number(find(element, {"spot", "outer_angle"}), 0.0, report);
+    light.falloff = number(find(element, {"spot", "falloff"}), 0.0, report);
+    if (!(light.inner_angle >= 0.0 && light.outer_angle >= light.inner_angle && light.falloff >= 0.0))
+      report.problem(find(element, {"spot"}) ? find(element, {"spot"}) : element,
+                     "expected 0 <= inner_angle <= outer_angle, and a falloff >= 0");
+  }
+  return light;
+}
+
+std::optional<Emitter> read_extension(const sdf::ElementPtr& element, const Extension& extension,
+                                      const SdfReport& report) {
+  const auto values = ExtensionValues::read(element, extension, report);
+  if (!values) return std::nullopt;
+  Emitter emitter;
+  emitter.name = values->name();
+  emitter.X_LE = values->pose("pose");
+  emitter.is_on = values->flag("on");
+  if (extension.name == "sound") {
+    Sound sound{values->real("frequency"), values->real("intensity")};
+    if (values->has("range")) sound.range = values->real("range");
+    emitter.what = sound;
+  } else if (extension.name == "marker") {
+    const Eigen::Vector3d color = values->vector("color");
+    if ((color.array() < 0.0).any() || (color.array() > 1.0).any())
+      report.problem(values->where("color"), "expected red, green and blue from 0 to 1");
+    emitter.what = Marker{color};
+  } else {
+    emitter.what = ClimateSource{values->real("temperature"), values->real("humidity"), values->real("spread")};
+  }
+  return emitter;
+}
+
+}  // namespace
+
+Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading) {
+  Emitter emitter;
+  emitter.name = sdf_light.Name();
+  emitter.X_LE = resolved_pose(sdf_light, reading);
+  emitter.what = read_light_values(sdf_light, reading.report);
+  return emitter;
+}
+
+std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading& reading) {
+  std::vector<Emitter> emitters;
+  for (std::uint64_t i = 0; i < sdf_link.LightCount(); ++i)
+    emitters.push_back(read_light(*sdf_link.LightByIndex(i), reading));
+  const sdf::ElementPtr link = sdf_link.Element();
+  for (sdf::ElementPtr child = link->GetFirstElement(); child; child = child->GetNextElement())
+    for (const std::string_view name : {"sound", "marker", "climate_source"})
+      if (child->GetName() == std::string(extension_prefix) + ":" + std::string(name))
+        if (auto emitter = read_extension(child, *find_extension(name, "link"), reading.report))
+          emitters.push_back(*std::move(emitter));
+  return emitters;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,190 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sdf/Collision.hh>
+#include <sdf/Geometry.hh>
+#include <sdf/Heightmap.hh>
+#include <sdf/Material.hh>
+#include <sdf/Visual.hh>
+#include <utility>
+
+#include "server/parsing/sdf/extension_values.hpp"
+#include "server/parsing/model/mass_properties.hpp"
+#include "server/parsing/model/read_model.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+// Here and below, NaN passes: check_numbers has reported it.
+Inertial read_written_inertial(const sdf::Link& link, const SdfReport& report) {
+  const sdf::ElementPtr element = link.Element();
+  const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
+  const sdf::ElementPtr inertia = find(element, {"inertial", "inertia"});
+  if (!mass) report.warning(element, "has no mass; SDF's default acts, 1 kg");
+  if (!inertia) report.warning(element, "has no inertia; SDF's default acts, 1 kg m^2 about each axis");
+
+  Inertial inertial;
+  inertial.X_LI = written_pose(link.Inertial().Pose(), find(element, {"inertial"}));
+  if (mass) inertial.mass = mass->Get<double>();
+  if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
+    report.problem(mass, "expected a mass > 0 kg, not " + mass->GetValue()->GetAsString());
+  if (!inertia) return inertial;
+
+  const auto component = [&](const char* name) { return inertia->Get<double>(name); };
+  const double xx = component("ixx"), yy = component("iyy"), zz = component("izz");
+  const double xy = component("ixy"), xz = component("ixz"), yz = component("iyz");
+  inertial.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  if (!inertial.inertia.allFinite()) {
+    if (!inertial.inertia.hasNaN()) report.problem(inertia, "expected finite moments of inertia");
+    return inertial;
+  }
+  const Eigen::Vector3d moments =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertial.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  // Solids made of mass somewhere obey the triangle inequality, thin ones with equality.
+  constexpr double rounding = 1e-6;
+  if (!(moments[0] > 0.0))
+    report.problem(inertia, "the matrix is not positive definite");
+  else if (moments[2] > (moments[0] + moments[1]) * (1.0 + rounding))
+    report.problem(inertia, "no body is like this: one principal moment exceeds the sum of the other two");
+  return inertial;
+}
+
+// <cohort:density> of a link or a collision; nothing if it has none.
+std::optional<double> read_density(const sdf::ElementPtr& parent, const SdfReport& report) {
+  const sdf::ElementPtr element = parent->FindElement("cohort:density");
+  if (!element) return std::nullopt;
+  if (const sdf::ElementPtr again = element->GetNextElement("cohort:density"))
+    report.problem(again, "<cohort:density> is given twice");
+  const auto values = ExtensionValues::read(element, *find_extension("density", parent->GetName()), report);
+  return values ? std::optional(values->real("density")) : std::nullopt;
+}
+
+// Nothing if neither the link nor any of its collisions has a density.
+std::optional<Inertial> read_inertial_from_density(const sdf::Link& sdf_link, const Link& link,
+                                                   const SdfReport& report) {
+  const std::optional<double> of_link = read_density(sdf_link.Element(), report);
+  bool has_density = of_link.has_value();
+  std::vector<MassProperties> parts;
+  for (const Collision& collision : link.collisions) {
+    const auto own = read_density(sdf_link.CollisionByName(collision.name)->Element(), report);
+    has_density = has_density || own;
+    if (const std::optional<double> density = own ? own : of_link)
+      parts.push_back(moved(mass_properties(collision.shape, *density), collision.X_LC));
+  }
+  if (!has_density) return std::nullopt;
+  if (const sdf::ElementPtr written = sdf_link.Element()->FindElement("inertial");
+      written && written->GetExplicitlySetInFile())
+    report.problem(written, "expected either <inertial> or <cohort:density>, not both");
+  const MassProperties whole = together(parts);
+  if (!(whole.mass > 0.0) && link.collisions.size() == sdf_link.CollisionCount())
+    report.problem(sdf_link.Element(), "<cohort:density> needs a <collision> that has a volume");
+  if (!std::isfinite(whole.mass) || !whole.inertia.allFinite())
+    report.problem(sdf_link.Element(), "the collisions are too large for their density");
+  return Inertial{whole.mass, {whole.centre, Eigen::Quaterniond::Identity()}, whole.inertia};
+}
+
+double read_coefficient(const sdf::ElementPtr& element, double by_default, double greatest, const char* expected,
+                        const SdfReport& report) {
+  if (!element) return by_default;
+  const auto value = element->Get<double>();
+  if (value < 0.0 || value > greatest) report.problem(element, expected);
+  return value;
+}
+
+std::uint32_t read_material(const sdf::ElementPtr& collision, const ModelReading& reading) {
+  const sdf::ElementPtr element = collision->FindElement("cohort:material");
+  if (!element) return 0;
+  if (const sdf::ElementPtr again = element->GetNextElement("cohort:material"))
+    reading.report.problem(again, "<cohort:material> is given twice");
+  const auto values = ExtensionValues::read(element, *find_extension("material", "collision"), reading.report);
+  if (!values) return 0;
+  std::vector<std::string>& materials = reading.materials;
+  const auto found = std::find(materials.begin(), materials.end(), values->text("material"));
+  const auto index = static_cast<std::uint32_t>(found - materials.begin());
+  if (found == materials.end()) materials.push_back(values->text("material"));
+  return index;
+}
+
+bool read_grippable(const sdf::ElementPtr& collision, const SdfReport& report) {
+  const sdf::ElementPtr element = collision->FindElement("cohort:grippable");
+  if (!element) return false;
+  const auto values = ExtensionValues::read(element, *find_extension("grippable", "collision"), report);
+  return values && values->flag("grippable");
+}
+
+Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& reading) {
+  const Surface by_default;
+  const SdfReport& report = reading.report;
+  const double most = std::numeric_limits<double>::max();
+  Surface surface;
+  surface.friction = read_coefficient(find(collision, {"surface", "friction", "ode", "mu"}), by_default.friction, most,
+                                      "expected a coefficient >= 0", report);
+  surface.restitution = read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}),
+                                         by_default.restitution, 1.0, "expected a coefficient from 0 to 1", report);
+  surface.rolling_resistance =
+      read_coefficient(find(collision, {"surface", "friction", "bullet", "rolling_friction"}),
+                       by_default.rolling_resistance, most, "expected a rolling resistance >= 0 m", report);
+  surface.material = read_material(collision, reading);
+  surface.is_grippable = read_grippable(collision, report);
+  return surface;
+}
+
+// The parts are floats in SDF: what is written with up to six digits comes out as written.
+double read_part(float part) {
+  constexpr double digits = 1e6;
+  return std::clamp(std::round(static_cast<double>(part) * digits) / digits, 0.0, 1.0);
+}
+
+bool has_color(const sdf::Visual& visual) { return find(visual.Element(), {"material", "diffuse"}) != nullptr; }
+
+Eigen::Vector3d read_color(const sdf::Visual& visual) {
+  if (!has_color(visual)) return default_color();
+  const ignition::math::Color color = visual.Material()->Diffuse();
+  const Eigen::Vector3d rounded(read_part(color.R()), read_part(color.G()), read_part(color.B()));
+  return rounded.allFinite() ? rounded : default_color();
+}
+
+double read_opacity(const sdf::Visual& visual) {
+  const double opacity = visual.Material() == nullptr ? 1.0 : read_part(visual.Material()->Diffuse().A());
+  return std::clamp(opacity - read_part(visual.Transparency()), 0.0, 1.0);
+}
+
+void read_visuals(const sdf::Link& sdf_link, const ModelReading& reading, Link& link) {
+  if (sdf_link.VisualCount() > 0) link.color = read_color(*sdf_link.VisualByIndex(0));
+  link.visuals.reserve(sdf_link.VisualCount());
+  for (std::uint64_t i = 0; i < sdf_link.VisualCount(); ++i) {
+    const sdf::Visual& visual = *sdf_link.VisualByIndex(i);
+    std::optional<Shape> shape = read_visual_shape(*visual.Geom(), reading);
+    if (!shape) continue;
+    Eigen::Vector4d color;
+    color << read_color(visual), read_opacity(visual);
+    link.visuals.push_back(
+        {visual.Name(), resolved_pose(visual, reading), *std::move(shape), color, has_color(visual)});
+  }
+}
+
+}  // namespace
+
+Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
+  Link link;
+  link.name = sdf_link.Name();
+  link.X_ML = resolved_pose(sdf_link, reading);
+  read_visuals(sdf_link, reading, link);
+  for (std::uint64_t i = 0; i < sdf_link.CollisionCount(); ++i) {
+    const sdf::Collision& sdf_collision = *sdf_link.CollisionByIndex(i);
+    const sdf::Geometry& geometry = *sdf_collision.Geom();
+    std::optional<Shape> shape = read_shape(geometry, reading);
+    const Surface surface = read_surface(sdf_collision.Element(), reading);
+    if (!shape) continue;
+    Pose X_LC = resolved_pose(sdf_collision, reading);
+    if (const sdf::Heightmap* const map = geometry.HeightmapShape()) X_LC.position = X_LC * to_eigen(map->Position());
+    link.collisions.push_back({sdf_collision.Name(), X_LC, *std::move(shape), surface});
+  }
+  if (reading.is_static) return link;
+  const auto computed = read_inertial_from_density(sdf_link, link, reading.report);
+  link.inertial = computed ? *computed : read_written_inertial(sdf_link, reading.report);
+  return link;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,180 @@
+#include "server/parsing/model/read_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/parsing/model/not_supported.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+bool every_link_has_one_parent(const sdf::Model& sdf_model, const Model& model, const SdfReport& report) {
+  std::vector<const Joint*> joint_above(model.links.size(), nullptr);
+  bool valid = true;
+  for (const Joint& joint : model.joints) {
+    const Joint*& above = joint_above[joint.child];
+    if (above != nullptr) {
+      report.problem(sdf_model.JointByName(joint.name)->Element(), "the link '" + model.links[joint.child].name +
+                                                                       "' is the child of joint '" + above->name +
+                                                                       "' already; closed loops are not supported");
+      valid = false;
+    }
+    above = &joint;
+  }
+  return valid;
+}
+
+// Puts parents before children and otherwise keeps the order of the document. False if the links are not one tree.
+bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& report) {
+  const std::size_t count = model.links.size();
+  std::vector<std::size_t> parent(count, count);  // `count` is none
+  for (const Joint& joint : model.joints)
+    if (joint.parent != Joint::world) parent[joint.child] = joint.parent;
+
+  std::vector<std::size_t> order;  // old indices
+  std::vector<std::size_t> place(count, count);
+  const auto put = [&](std::size_t link) {
+    place[link] = order.size();
+    order.push_back(link);
+  };
+  std::vector<std::size_t> roots;
+  for (std::size_t link = 0; link < count; ++link)
+    if (parent[link] == count) roots.push_back(link);
+  if (roots.size() > 1) {
+    std::string names;
+    for (const std::size_t root : roots) names += (names.empty() ? "'" : ", '") + model.links[root].name + "'";
+    report.problem(sdf_model.Element(),
+                   "the links " + names + " have no joint to a parent link; a model that moves has one such root");
+    return false;
+  }
+  for (const std::size_t root : roots) put(root);
+  for (std::size_t before = count; before != order.size();) {
+    before = order.size();
+    for (std::size_t link = 0; link < count; ++link)
+      if (place[link] == count && place[parent[link]] != count) {
+        put(link);
+        break;
+      }
+  }
+  if (order.size() != count) {
+    const auto in_loop = std::find_if(model.joints.begin(), model.joints.end(),
+                                      [&](const Joint& joint) { return place[joint.child] == count; });
+    report.problem(sdf_model.JointByName(in_loop->name)->Element(), "is part of a loop of joints");
+    return false;
+  }
+
+  std::vector<Link> links;
+  links.reserve(order.size());
+  for (const std::size_t link : order) links.push_back(std::move(model.links[link]));
+  model.links = std::move(links);
+  for (Joint& joint : model.joints) {
+    if (joint.parent != Joint::world) joint.parent = place[joint.parent];
+    joint.child = place[joint.child];
+  }
+  for (Emitter& emitter : model.emitters) emitter.link = place[emitter.link];
+  for (GripRing& ring : model.grip_rings) ring.link = place[ring.link];
+  return true;
+}
+
+// The parts of a model that stand in it and in the models inside of it, with scoped names.
+class ModelFlattener {
+ public:
+  ModelFlattener(Model& model, const ModelReading& reading) : model_(model), reading_(reading) {}
+
+  /// The links come first, since joints of an outer model may name links of an inner one.
+  void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN);
+  void add_joints(const sdf::Model& sdf_model, const std::string& scope);
+
+  const std::vector<DeviceScope>& scopes() const { return scopes_; }
+  const std::vector<SensorPlace>& sensors() const { return sensors_; }
+  /// Also of those that could not be read.
+  std::size_t joint_count() const { return joint_count_; }
+
+ private:
+  Model& model_;
+  const ModelReading& reading_;
+  template <class Owner>
+  void note_sensors(const Owner& owner, bool is_joint, const std::string& scope) {
+    for (std::uint64_t i = 0; i < owner.SensorCount(); ++i)
+      if (is_sensor(owner.SensorByIndex(i)->Element()))
+        sensors_.push_back({owner.SensorByIndex(i), is_joint, scope + owner.Name(), scope});
+  }
+
+  std::vector<DeviceScope> scopes_;
+  std::vector<SensorPlace> sensors_;
+  std::size_t joint_count_ = 0;
+};
+
+void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN) {
+  scopes_.push_back({sdf_model.Element(), scope});
+  for (std::uint64_t i = 0; i < sdf_model.LinkCount(); ++i) {
+    Link link = read_link(*sdf_model.LinkByIndex(i), reading_);
+    link.name = scope + link.name;
+    link.X_ML = X_MN * link.X_ML;
+    for (Emitter& emitter : read_emitters(*sdf_model.LinkByIndex(i), reading_)) {
+      emitter.name = scope + emitter.name;
+      emitter.link = model_.links.size();
+      model_.emitters.push_back(std::move(emitter));
+    }
+    for (GripRing& ring : read_grip_rings(*sdf_model.LinkByIndex(i), reading_)) {
+      ring.name = scope + ring.name;
+      ring.link = model_.links.size();
+      model_.grip_rings.push_back(std::move(ring));
+    }
+    model_.links.push_back(std::move(link));
+    note_sensors(*sdf_model.LinkByIndex(i), false, scope);
+  }
+  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) note_sensors(*sdf_model.JointByIndex(i), true, scope);
+  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
+    const sdf::Model& inner = *sdf_model.ModelByIndex(i);
+    warn_of_unsupported(inner.Element(), reading_.report);
+    if (inner.Static() && !reading_.is_static)
+      reading_.report.problem(inner.Element(),
+                              "a static model inside of one that moves is not supported; a fixed joint can hold it");
+    add_links(inner, scope + inner.Name() + "::", X_MN * resolved_pose(inner, reading_));
+  }
+}
+
+void ModelFlattener::add_joints(const sdf::Model& sdf_model, const std::string& scope) {
+  joint_count_ += sdf_model.JointCount();
+  for (Joint& joint : read_joints(sdf_model, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
+  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i)
+    add_joints(*sdf_model.ModelByIndex(i), scope + sdf_model.ModelByIndex(i)->Name() + "::");
+}
+
+}  // namespace
+
+Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
+  const sdf::ElementPtr element = sdf_model.Element();
+  Model model;
+  model.name = sdf_model.Name();
+  model.is_static = reading.is_static;
+  model.self_collide = sdf_model.SelfCollide();
+  warn_of_unsupported(element, reading.report);
+
+  ModelFlattener parts(model, reading);
+  parts.add_links(sdf_model, "", {});
+  if (model.links.empty() && model.is_static) reading.report.problem(element, "expected at least one <link>");
+
+  if (model.is_static) {
+    for (const DeviceScope& scope : parts.scopes()) {
+      const bool has_sensor = std::ranges::any_of(
+          parts.sensors(), [&](const SensorPlace& sensor) { return sensor.prefix == scope.prefix; });
+      if (!extensions_in(scope.model_element, reading.report).empty() || has_sensor)
+        reading.report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
+    }
+    return model;
+  }
+  parts.add_joints(sdf_model, "");
+  const bool is_tree = reading.frames_resolve && model.joints.size() == parts.joint_count() &&
+                       every_link_has_one_parent(sdf_model, model, reading.report) &&
+                       order_links(sdf_model, model, reading.report);
+  // Devices name links and joints: with some of those missing, each device would be reported for it.
+  if (!is_tree) return model;
+  model.devices = read_devices(parts.scopes(), model, reading.report, reading.shape_files);
+  for (Device& sensor : read_sdf_sensors(parts.sensors(), model, reading)) model.devices.push_back(std::move(sensor));
+  return model;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <optional>
+#include <sdf/Error.hh>
+#include <sdf/Geometry.hh>
+#include <sdf/Joint.hh>
+#include <sdf/Link.hh>
+#include <sdf/Model.hh>
+#include <sdf/SemanticPose.hh>
+#include <sdf/Sensor.hh>
+#include <string>
+#include <vector>
+
+#include "server/description/model.hpp"
+#include "server/parsing/sdf/sdf_report.hpp"
+#include "server/parsing/sdf/sdf_values.hpp"
+#include "server/parsing/model/shape_files.hpp"
+
+namespace cohort::parsing {
+
+/// How a model is read.
+struct ModelReading {
+  bool is_static = false;
+  bool frames_resolve = false;  ///< libsdformat found no fault with the file; if it did, it has said why
+  const SdfReport& report;
+  ShapeFiles& shape_files;
+  std::vector<std::string>& materials;  ///< of the world; a new name is added
+};
+
+/// A model, checked; what is wrong goes to the report, and the model is then not to be used.
+Model read_model(const sdf::Model& sdf_model, const ModelReading& reading);
+
+/// Nothing if there is no such shape; the report then has it.
+std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading);
+
+/// The same of a visual, whose mistakes are nobody's: nothing is simulated of it. Nothing for what is not shown.
+std::optional<Shape> read_visual_shape(const sdf::Geometry& geometry, const ModelReading& reading);
+
+/// A link with its inertial, its visuals and its collisions.
+Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
+
+/// Its lights, and its `cohort:` elements that emit; of link 0.
+std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading& reading);
+Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading);
+
+/// Its `cohort:grip_ring` elements; of link 0.
+std::vector<GripRing> read_grip_rings(const sdf::Link& sdf_link, const ModelReading& reading);
+
+/// The joints of a model between `links`, in document order. Of a model inside of the one that is read, `scope` is the
+/// prefix of all names in it, such as `arm::`.
+std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,
+                               const ModelReading& reading);
+
+/// Where `cohort:` devices stand: a model, or one inside of it.
+struct DeviceScope {
+  sdf::ElementPtr model_element;
+  std::string prefix;  ///< of all names in it, such as `arm::`
+};
+
+/// The devices of a model whose links and joints are read.
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report,
+                                 ShapeFiles& files);
+
+/// Where one of SDF's own sensors stands.
+struct SensorPlace {
+  const sdf::Sensor* sensor = nullptr;
+  bool is_on_joint = false;
+  std::string owner;   ///< scoped name of the link or joint
+  std::string prefix;  ///< of all names in its model
+};
+
+/// Whether a <sensor> is of a type that is simulated where it stands.
+bool is_sensor(const sdf::ElementPtr& element);
+
+/// Those that are simulated, of a model whose links, joints and other devices are read: in the order of the links, then
+/// of the joints.
+std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, const Model& model,
+                                     const ModelReading& reading);
+
+/// Whether the pose is given in the frame that it is to be in, and needs no resolving.
+inline bool is_in_frame_of_parent(const sdf::Model& model) {
+  return model.PoseRelativeTo().empty() && model.PlacementFrameName().empty();
+}
+template <class Posed>
+bool is_in_frame_of_parent(const Posed& posed) {
+  return posed.PoseRelativeTo().empty();
+}
+
+/// The pose of anything that has one, in the frame `in`; by default, in that of the element that it stands in.
+template <class Posed>
+Pose resolved_pose(const Posed& posed, const ModelReading& reading, const std::string& in = "") {
+  if (!reading.frames_resolve) return {};
+  if (in.empty() && is_in_frame_of_parent(posed)) return written_pose(posed.RawPose(), posed.Element());
+  ignition::math::Pose3d X;
+  for (const sdf::Error& error : posed.SemanticPose().Resolve(X, in))
+    reading.report.problem(posed.Element(), error.Message());
+  return to_pose(X);
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,171 @@
+#include "server/parsing/sdf/extension_values.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "server/core/text.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
+
+bool has_prefix(const sdf::ElementPtr& element) { return element->GetName().starts_with(prefixed("")); }
+
+std::string_view without_prefix(const sdf::ElementPtr& element) {
+  return std::string_view(element->GetName()).substr(extension_prefix.size() + 1);
+}
+
+const ExtensionKey* find_key(const Extension& extension, const sdf::ElementPtr& element) {
+  if (!has_prefix(element)) return nullptr;
+  for (const ExtensionKey& key : extension.keys)
+    if (key.name == without_prefix(element)) return &key;
+  return nullptr;
+}
+
+std::string text_of(const sdf::ElementPtr& element) {
+  return element->GetValue() ? std::string(trimmed(element->GetValue()->GetAsString())) : std::string();
+}
+
+// The names that an element of this parent may have, with their prefix.
+std::vector<std::string> names_in(std::string_view parent) {
+  std::vector<std::string> names;
+  for (const Extension& extension : extensions())
+    if (extension.parent == parent) names.push_back(prefixed(extension.name));
+  return names;
+}
+
+bool is_extension(std::string_view name) {
+  const std::span<const Extension> all = extensions();
+  return std::any_of(all.begin(), all.end(), [&](const Extension& extension) { return extension.name == name; });
+}
+
+void report_misplaced(const sdf::ElementPtr& element, std::string_view parent, const SdfReport& report) {
+  for (const Extension& extension : extensions())
+    if (has_prefix(element) && extension.name == without_prefix(element)) {
+      const std::string home =
+          is_extension(extension.parent) ? prefixed(extension.parent) : std::string(extension.parent);
+      report.problem(element, "<" + element->GetName() + "> belongs in <" + home + ">");
+      return;
+    }
+  report.problem(element, "unknown element" + suggestion(element->GetName(), names_in(parent)));
+}
+
+void report_extensions_below(const sdf::ElementPtr& element, const SdfReport& report) {
+  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
+    if (has_prefix(child)) {
+      if (find_extension(without_prefix(child), element->GetName()) == nullptr)
+        report_misplaced(child, element->GetName(), report);
+    } else if (child->GetName() != "plugin") {
+      report_extensions_below(child, report);
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<ExtensionValues> ExtensionValues::read(const sdf::ElementPtr& element, const Extension& extension,
+                                                     const SdfReport& report) {
+  ExtensionValues values;
+  values.element_ = element;
+  const bool name_is_right = values.read_name(extension, report);
+  const ExtensionKey itself{extension.name, extension.value, "", "", extension.doc};
+  const bool content_is_right = extension.value == ExtensionValue::group ? values.read_children(extension, report)
+                                                                         : values.read_value(element, itself, report);
+  if (!name_is_right || !content_is_right) return std::nullopt;
+  return values;
+}
+
+void ExtensionValues::put_in_scope(const std::string& prefix, const Extension& extension) {
+  if (prefix.empty()) return;
+  name_ = prefix + name_;
+  for (const ExtensionKey& key : extension.keys)
+    if (key.value == ExtensionValue::name) prefix_texts(key.name, prefix);
+}
+
+sdf::ElementPtr ExtensionValues::where(std::string_view key, std::size_t place) const {
+  sdf::ElementPtr child = element_->FindElement(prefixed(key));
+  while (child && place-- > 0) child = child->GetNextElement(prefixed(key));
+  return child ? child : element_;
+}
+
+bool ExtensionValues::read_name(const Extension& extension, const SdfReport& report) {
+  bool valid = true;
+  for (const sdf::ParamPtr& attribute : element_->GetAttributes()) {
+    const std::string& key = attribute->GetKey();
+    if (key.find(':') != std::string::npos || (extension.has_name && key == "name")) continue;
+    report.problem(element_, "unknown attribute '" + key + "'");
+    valid = false;
+  }
+  if (!extension.has_name) return valid;
+  if (element_->HasAttribute("name")) name_ = trimmed(element_->GetAttribute("name")->GetAsString());
+  // A slash separates the parts of the names of channels and instances.
+  if (name_.empty() || name_.find('/') != std::string::npos) {
+    report.problem(element_, "expected an attribute name=\"NAME\", without '/' in it");
+    valid = false;
+  }
+  return valid;
+}
+
+bool ExtensionValues::read_children(const Extension& extension, const SdfReport& report) {
+  bool valid = true;
+  std::vector<std::string> known;
+  for (const ExtensionKey& each : extension.keys) known.push_back(prefixed(each.name));
+  std::set<std::string> misspelt;
+  for (sdf::ElementPtr child = element_->GetFirstElement(); child; child = child->GetNextElement()) {
+    const ExtensionKey* const key = find_key(extension, child);
+    if (key == nullptr) {
+      report.problem(child, "unknown element" + suggestion(child->GetName(), known));
+      if (const auto meant = nearest(child->GetName(), known)) misspelt.insert(*meant);
+      valid = false;
+    } else if (!key->repeats && child != element_->FindElement(child->GetName())) {
+      report.problem(child, "<" + child->GetName() + "> is given twice");
+      valid = false;
+    } else if (key->value != ExtensionValue::group) {
+      valid = read_value(child, *key, report) && valid;
+    }
+  }
+  for (const ExtensionKey& key : extension.keys) {
+    if (element_->HasElement(prefixed(key.name))) continue;
+    if (misspelt.contains(prefixed(key.name))) continue;  // one mistake, one message
+    if (key.required()) {
+      report.problem(element_, "missing: " + std::string(key.doc), prefixed(key.name));
+      valid = false;
+    } else if (key.fallback != no_value) {
+      add(key.name, *parse_value(key.fallback, key));
+    }
+  }
+  return valid;
+}
+
+bool ExtensionValues::read_value(const sdf::ElementPtr& element, const ExtensionKey& key, const SdfReport& report) {
+  if (const sdf::ElementPtr stray = element->GetFirstElement()) {
+    report.problem(stray, "unexpected element; <" + element->GetName() + "> holds " + expected(key));
+    return false;
+  }
+  const std::string text = text_of(element);
+  std::optional<Value> value = parse_value(text, key);
+  if (!value) {
+    report.problem(element, why_wrong(text, key));
+    return false;
+  }
+  add(key.name, *std::move(value));
+  return true;
+}
+
+std::vector<std::pair<sdf::ElementPtr, const Extension*>> extensions_in(const sdf::ElementPtr& element,
+                                                                        const SdfReport& report) {
+  std::vector<std::pair<sdf::ElementPtr, const Extension*>> found;
+  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
+    if (!has_prefix(child)) {
+      if (child->GetName() != "model") report_extensions_below(child, report);
+    } else if (const Extension* const extension = find_extension(without_prefix(child), element->GetName())) {
+      found.emplace_back(child, extension);
+    } else {
+      report_misplaced(child, element->GetName(), report);
+    }
+  }
+  return found;
+}
+
+}  // namespace cohort::parsing

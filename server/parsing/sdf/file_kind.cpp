@@ -1,0 +1,45 @@
+#include "server/parsing/sdf/file_kind.hpp"
+
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "server/core/text.hpp"
+#include "server/parsing/yaml/yaml_document.hpp"
+#include "server/parsing/sdf/yaml_sdf.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+// Of a text that is no YAML: a world stands below its key, the name of one beside it.
+bool starts_like_sdf(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("sdf:") || line.starts_with("model:")) return true;
+    if (!line.starts_with("world:")) continue;
+    const std::string_view rest = trimmed(std::string_view(line).substr(6));
+    return rest.empty() || std::string_view("{&#").find(rest[0]) != std::string_view::npos;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_yaml(const std::filesystem::path& file) { return file.extension() == ".yaml" || file.extension() == ".yml"; }
+
+FileKind kind_of_file(const std::filesystem::path& file) {
+  InputFiles disk;
+  return kind_of_file(disk, file);
+}
+
+FileKind kind_of_file(InputFiles& input, const std::filesystem::path& file) {
+  for (const char* const extension : {".sdf", ".world", ".urdf"})
+    if (file.extension() == extension) return FileKind::sdf;
+  if (!is_yaml(file) || input.why_unreadable(file)) return FileKind::experiment;
+  const std::string& text = input.read(file);
+  const YamlDocument document = parse_yaml(text);
+  const bool is_sdf = document.root ? is_sdf_in_yaml(*document.root) : starts_like_sdf(text);
+  return is_sdf ? FileKind::sdf : FileKind::experiment;
+}
+
+}  // namespace cohort::parsing

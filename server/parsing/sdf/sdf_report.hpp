@@ -1,0 +1,30 @@
+#pragma once
+
+#include <sdf/Element.hh>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/description/input_error.hpp"
+#include "server/parsing/sdf/sdf_files.hpp"
+
+namespace cohort::parsing {
+
+/// Where checks of SDF elements put what they find.
+class SdfReport {
+ public:
+  SdfReport(const SdfFiles& files, std::vector<Problem>& problems, std::vector<Problem>& warnings)
+      : files_(files), problems_(problems), warnings_(warnings) {}
+
+  /// `child` is added to the path of the element, for a child that is not there.
+  void problem(const sdf::ElementPtr& element, std::string message, std::string_view child = {}) const;
+  void warning(const sdf::ElementPtr& element, std::string message) const;
+  void problem(Problem problem) const { problems_.push_back(std::move(problem)); }
+
+ private:
+  const SdfFiles& files_;
+  std::vector<Problem>& problems_;
+  std::vector<Problem>& warnings_;
+};
+
+}  // namespace cohort::parsing

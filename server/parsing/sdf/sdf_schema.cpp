@@ -1,0 +1,176 @@
+#include "server/parsing/sdf/sdf_schema.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <sdf/parser.hh>
+
+namespace cohort::parsing {
+namespace {
+
+constexpr std::string_view prefix = "cohort:";
+
+std::string_view without_prefix(std::string_view name) {
+  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+}
+
+bool is_vector_type(std::string_view type) {
+  constexpr std::string_view types[] = {"pose", "vector2d", "vector2i", "vector3", "color", "quaternion"};
+  return std::find(std::begin(types), std::end(types), type) != std::end(types);
+}
+
+// With attributes and value, but no definitions of children.
+sdf::ElementPtr bare_copy(const sdf::ElementPtr& definition) {
+  sdf::ElementPtr copy = std::make_shared<sdf::Element>();
+  copy->SetName(definition->GetName());
+  copy->SetRequired(definition->GetRequired());
+  copy->SetCopyChildren(definition->GetCopyChildren());
+  copy->SetReferenceSDF(definition->ReferenceSDF());
+  for (const sdf::ParamPtr& attribute : definition->GetAttributes())
+    copy->AddAttribute(attribute->GetKey(), attribute->GetTypeName(), attribute->GetDefaultAsString(),
+                       attribute->GetRequired(), attribute->GetDescription());
+  if (const sdf::ParamPtr value = definition->GetValue())
+    copy->AddValue(value->GetTypeName(), value->GetDefaultAsString(), value->GetRequired(),
+                   value->GetMinValueAsString().value_or(""), value->GetMaxValueAsString().value_or(""),
+                   value->GetDescription());
+  return copy;
+}
+
+// `child_definition` says what becomes of that of a child. What has no children stays what it is.
+template <class ChildDefinition>
+sdf::ElementPtr copy_with(const sdf::ElementPtr& definition, ChildDefinition child_definition) {
+  if (definition->GetElementDescriptionCount() == 0) return definition;
+  sdf::ElementPtr copy = bare_copy(definition);
+  for (unsigned i = 0; i < definition->GetElementDescriptionCount(); ++i)
+    copy->AddElementDescription(child_definition(definition->GetElementDescription(i)));
+  return copy;
+}
+
+sdf::ElementPtr childless(const sdf::ElementPtr& definition) {
+  return definition->GetElementDescriptionCount() == 0 ? definition : bare_copy(definition);
+}
+
+// Of these libsdformat reads also what they do not hold, as if it were there.
+bool is_read_whole(const std::string& name) { return name == "sensor" || name == "light" || name == "actor"; }
+
+sdf::ElementPtr definition_for(const sdf::ElementPtr& definition, const std::set<std::string>& names) {
+  const std::string& name = definition->GetName();
+  const bool comes = names.contains(name);
+  if (comes && is_read_whole(name)) return definition;
+  const bool may_come = comes || definition->GetRequired() == "1" || definition->GetRequired() == "+";
+  if (!may_come) return copy_with(definition, childless);
+  return copy_with(definition, [&](const sdf::ElementPtr& child) { return definition_for(child, names); });
+}
+
+sdf::SDFPtr sdf_with(const sdf::ElementPtr& root) {
+  sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+  sdf->Root(root);
+  return sdf;
+}
+
+const ExtensionKey* find_key(const Extension& extension, std::string_view name) {
+  for (const ExtensionKey& key : extension.keys)
+    if (key.name == name) return &key;
+  return nullptr;
+}
+
+}  // namespace
+
+const sdf::ElementPtr& sdf_definition() {
+  static const sdf::ElementPtr root = [] {
+    const sdf::SDFPtr sdf = std::make_shared<sdf::SDF>();
+    sdf::init(sdf);
+    return sdf->Root();
+  }();
+  return root;
+}
+
+sdf::SDFPtr empty_sdf() {
+  // Not a clone, which would copy the definition of every element there is: those are only read.
+  return sdf_with(copy_with(sdf_definition(), [](const sdf::ElementPtr& child) { return child; }));
+}
+
+sdf::SDFPtr empty_sdf_for(const std::set<std::string>& names) {
+  return sdf_with(definition_for(sdf_definition(), names));
+}
+
+ElementSchema ElementSchema::root() {
+  ElementSchema schema;
+  schema.name_ = "sdf";
+  schema.element_ = sdf_definition();
+  return schema;
+}
+
+ElementSchema ElementSchema::child(const std::string& name) const {
+  ElementSchema schema;
+  schema.name_ = name;
+  if (is_extension() || name.starts_with(prefix)) {
+    schema.name_ = without_prefix(name);
+    schema.extension_ = find_extension(schema.name_, name_);
+    if (extension_ != nullptr) schema.key_ = find_key(*extension_, schema.name_);
+    schema.unknown_extension_ = schema.extension_ == nullptr && schema.key_ == nullptr;
+  } else if (element_ && !element_->GetCopyChildren()) {
+    // The schema of a model in a model is that of the model.
+    const bool is_same = name == name_ && element_->HasElementDescription(name);
+    schema.element_ = is_same ? element_ : element_->GetElementDescription(name);
+  }
+  return schema;
+}
+
+bool ElementSchema::takes_anything() const { return is_free() || (element_ && element_->GetCopyChildren()); }
+
+bool ElementSchema::has_child(const std::string& name) const {
+  const std::vector<std::string> known = children();
+  return std::find(known.begin(), known.end(), is_extension() ? std::string(prefix) + name : name) != known.end();
+}
+
+bool ElementSchema::has_attribute(const std::string& name) const {
+  const std::vector<std::string> known = attributes();
+  return std::find(known.begin(), known.end(), name) != known.end();
+}
+
+bool ElementSchema::is_single() const {
+  // What SDF says of these where they are included is lost in libsdformat: any number.
+  if (name_ == "sensor" || name_ == "projector") return false;
+  return element_ && (element_->GetRequired() == "0" || element_->GetRequired() == "1");
+}
+
+bool ElementSchema::has_value() const {
+  if (element_) return static_cast<bool>(element_->GetValue());
+  if (key_ != nullptr) return key_->value != ExtensionValue::group;
+  return extension_ != nullptr && extension_->value != ExtensionValue::group;
+}
+
+bool ElementSchema::can_have(const std::string& text) const {
+  return !element_ || !element_->GetValue() || element_->GetValue()->Clone()->SetFromString(text);
+}
+
+std::string ElementSchema::default_text() const {
+  return element_ && element_->GetValue() ? element_->GetValue()->GetDefaultAsString() : std::string();
+}
+
+bool ElementSchema::is_vector() const {
+  if (element_) return element_->GetValue() && is_vector_type(element_->GetValue()->GetTypeName());
+  return key_ != nullptr && (key_->value == ExtensionValue::point || key_->value == ExtensionValue::pose);
+}
+
+std::vector<std::string> ElementSchema::children() const {
+  std::vector<std::string> names;
+  if (element_)
+    for (unsigned i = 0; i < element_->GetElementDescriptionCount(); ++i)
+      names.push_back(element_->GetElementDescription(i)->GetName());
+  if (extension_ != nullptr)
+    for (const ExtensionKey& key : extension_->keys) names.push_back(std::string(prefix) + std::string(key.name));
+  for (const Extension& extension : extensions())
+    if (extension.parent == name_) names.push_back(std::string(prefix) + std::string(extension.name));
+  return names;
+}
+
+std::vector<std::string> ElementSchema::attributes() const {
+  std::vector<std::string> names;
+  if (element_)
+    for (const sdf::ParamPtr& attribute : element_->GetAttributes()) names.push_back(attribute->GetKey());
+  if (extension_ != nullptr && extension_->has_name) names.emplace_back("name");
+  return names;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "server/parsing/keys/key_values.hpp"
+#include "server/description/world.hpp"
+#include "server/parsing/yaml/yaml_map.hpp"
+
+namespace cohort::parsing {
+
+/// Settings of which the keys of `cohort:physics` that are given replace those of `settings`.
+PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values);
+
+/// As `cohort:physics` calls it.
+std::string name_of(Fidelity fidelity);
+std::string name_of(Solver solver);
+
+/// The keys of `cohort:physics` in YAML, only those that are there. What is wrong with them is reported.
+KeyValues read_physics_map(const YAML::Node& node, const std::string& path, const YamlReport& report);
+
+}  // namespace cohort::parsing

@@ -1,0 +1,160 @@
+#include "server/parsing/world/population.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "server/parsing/sdf/extension_values.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr std::pair<std::string_view, HeadingKind> headings[] = {{"random", HeadingKind::random},
+                                                                 {"fixed", HeadingKind::fixed},
+                                                                 {"towards", HeadingKind::towards},
+                                                                 {"away", HeadingKind::away},
+                                                                 {"along", HeadingKind::along}};
+
+std::optional<Layout> read_uniform(const ExtensionValues& values, std::uint64_t, const SdfReport& report) {
+  const UniformLayout layout{values.point("min"), values.point("max")};
+  if (!(layout.lower.array() > layout.upper.array()).any()) return layout;
+  report.problem(values.where("min"), "exceeds <cohort:max>");
+  return std::nullopt;
+}
+
+std::optional<Layout> read_grid(const ExtensionValues& values, std::uint64_t count, const SdfReport&) {
+  const auto square = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  return GridLayout{values.point("center"), values.real("spacing"),
+                    values.has("columns") ? values.whole("columns") : square, values.real("yaw")};
+}
+
+std::optional<Layout> read_gaussian(const ExtensionValues& values, std::uint64_t, const SdfReport&) {
+  return GaussianLayout{values.point("center"), values.real("deviation")};
+}
+
+std::optional<Layout> read_ring(const ExtensionValues& values, std::uint64_t, const SdfReport&) {
+  return RingLayout{values.point("center"), values.real("radius"), values.real("first_bearing")};
+}
+
+std::optional<Layout> read_line(const ExtensionValues& values, std::uint64_t, const SdfReport&) {
+  return LineLayout{values.point("from"), values.point("to")};
+}
+
+// The places of a pattern, in units of its spacing: the first member in front, the others behind or beside it.
+Vector3d place_in(std::string_view pattern, std::uint64_t member, std::uint64_t count) {
+  const auto number = static_cast<double>(member);
+  if (pattern == "column") return {-number, 0.0, 0.0};
+  if (pattern == "row") return {0.0, 0.5 * static_cast<double>(count - 1) - number, 0.0};
+  // A wedge: by turns to the left and to the right of the one in front.
+  const std::uint64_t side_by_side = (member + 1) / 2;
+  const auto rank = static_cast<double>(side_by_side);
+  return {-rank, member % 2 == 1 ? rank : -rank, 0.0};
+}
+
+std::optional<Layout> read_formation(const ExtensionValues& values, std::uint64_t count, const SdfReport& report) {
+  FormationLayout layout{values.point("center"), values.vectors("member")};
+  if (values.has("pattern") == !layout.members.empty()) {
+    report.problem(values.element(), "expected either a <cohort:pattern> or its members, each as a <cohort:member>");
+    return std::nullopt;
+  }
+  if (values.has("pattern")) {
+    if (!values.has("spacing")) {
+      report.problem(values.element(), "missing: distance of the members of a pattern", "cohort:spacing");
+      return std::nullopt;
+    }
+    for (std::uint64_t i = 0; i < count; ++i)
+      layout.members.emplace_back(values.real("spacing") * place_in(values.text("pattern"), i, count));
+  } else if (layout.members.size() < count) {
+    report.problem(values.element(), "has " + std::to_string(layout.members.size()) +
+                                         " members, and <cohort:count> is " + std::to_string(count));
+    return std::nullopt;
+  }
+  return layout;
+}
+
+using ReadLayout = std::optional<Layout> (*)(const ExtensionValues&, std::uint64_t, const SdfReport&);
+constexpr std::pair<std::string_view, ReadLayout> layouts[] = {
+    {"uniform", &read_uniform}, {"gaussian", &read_gaussian}, {"grid", &read_grid},
+    {"ring", &read_ring},       {"line", &read_line},         {"formation", &read_formation},
+};
+
+std::optional<Layout> read_layout(const ExtensionValues& placement, std::uint64_t count, const SdfReport& report) {
+  std::optional<Layout> layout;
+  std::string known;
+  int given = 0;
+  for (const auto& [name, read] : layouts) {
+    const sdf::ElementPtr element = placement.where(name);
+    known += (known.empty() ? "<cohort:" : ", <cohort:") + std::string(name) + ">";
+    if (element == placement.element()) continue;
+    if (++given > 1) {
+      report.problem(element, "is a second layout; a placement has one");
+      return std::nullopt;
+    }
+    const auto values = ExtensionValues::read(element, *find_extension(name, "placement"), report);
+    if (values) layout = read(*values, count, report);
+  }
+  if (given == 0) report.problem(placement.element(), "missing: one of " + known);
+  return layout;
+}
+
+// False if it makes no sense; the report then has it.
+bool read_heading(const ExtensionValues& values, const SdfReport& report, Placement& placement) {
+  const bool is_random = std::holds_alternative<UniformLayout>(placement.layout) ||
+                         std::holds_alternative<GaussianLayout>(placement.layout);
+  const bool has_course =
+      std::holds_alternative<RingLayout>(placement.layout) || std::holds_alternative<LineLayout>(placement.layout);
+  placement.heading = is_random ? HeadingKind::random : HeadingKind::fixed;
+  placement.yaw = values.real("yaw");
+  if (values.has("heading")) {
+    const std::string& name = values.text("heading");
+    placement.heading = std::find_if(std::begin(headings), std::end(headings), [&](const auto& each) {
+                          return each.first == name;
+                        })->second;
+  }
+  if (placement.heading == HeadingKind::along && !has_course) {
+    report.problem(values.where("heading"), "'along' is for <cohort:ring> and <cohort:line>");
+    return false;
+  }
+  const bool needs_point = placement.heading == HeadingKind::towards || placement.heading == HeadingKind::away;
+  if (needs_point != values.has("point")) {
+    report.problem(values.where(needs_point ? "heading" : "point"),
+                   needs_point ? "'" + values.text("heading") + "' needs a <cohort:point>"
+                               : "is for the headings 'towards' and 'away'");
+    return false;
+  }
+  if (needs_point) placement.point = values.point("point");
+  return true;
+}
+
+}  // namespace
+
+std::optional<Population> read_population(const sdf::ElementPtr& element, const Extension& extension,
+                                          std::uint64_t seed, const SdfReport& report) {
+  const auto values = ExtensionValues::read(element, extension, report);
+  if (!values) return std::nullopt;
+  const auto placement =
+      ExtensionValues::read(values->where("placement"), *find_extension("placement", "population"), report);
+  if (!placement) return std::nullopt;
+
+  Population population;
+  population.uri_element = values->where("uri");
+  population.placement_element = placement->element();
+  population.uri = values->text("uri");
+  population.may_be_fewer = values->flag("may_be_fewer");
+  population.placement.name = values->name();
+  population.placement.seed = seed + values->whole("seed_offset");
+  population.placement.count = values->whole("count");
+  population.placement.gap = placement->real("gap");
+  population.placement.level = placement->real("level");
+  const std::optional<Layout> layout = read_layout(*placement, population.placement.count, report);
+  if (!layout) return std::nullopt;
+  population.placement.layout = *layout;
+  if (!read_heading(*placement, report, population.placement)) return std::nullopt;
+  return population;
+}
+
+}  // namespace cohort::parsing

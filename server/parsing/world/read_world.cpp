@@ -1,0 +1,395 @@
+#include "server/parsing/world/read_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sdf/Error.hh>
+#include <sdf/Frame.hh>
+#include <sdf/Light.hh>
+#include <sdf/Physics.hh>
+#include <sdf/World.hh>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "server/core/text.hpp"
+#include "server/description/world.hpp"
+#include "server/parsing/model/not_supported.hpp"
+#include "server/parsing/model/read_model.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
+#include "server/parsing/sdf/sdf_files.hpp"
+#include "server/parsing/sdf/sdf_values.hpp"
+#include "server/parsing/world/physics_settings.hpp"
+#include "server/parsing/world/population.hpp"
+#include "server/parsing/world/read_breakable_joints.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
+
+class WorldReader {
+ public:
+  WorldReader(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
+              const std::vector<std::filesystem::path>& last_model_folders)
+      : seed_(seed),
+        files_(input, file, last_model_folders, problems_, world_.warnings),
+        shape_files_(files_),
+        report_(files_, problems_, world_.warnings) {
+    world_.file = file;
+  }
+
+  World read(bool may_be_a_model, const std::vector<LaterObject>& later);
+  /// A world with nothing but the model of the file. Materials are numbered on from `materials`.
+  World read_model_file(std::vector<std::string> materials);
+
+ private:
+  World finished();
+  void read_model_alone(const SdfFile& file);
+  void read_settings(const sdf::World& sdf_world);
+  void read_models(const sdf::World& sdf_world, const SdfFile& file);
+  void read_lights(const sdf::World& sdf_world, const SdfFile& file);
+  void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
+  void add_included_model(const Include& include, const Pose& X_WM);
+  void read_extensions(const sdf::World& sdf_world);
+  void read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read);
+  void add_material_pair(const ExtensionValues& values);
+  void add_breakable_joint(const ExtensionValues& values);
+  /// The index of the material that `key` names; reported if nothing is made of it.
+  std::optional<std::uint32_t> find_material(const ExtensionValues& values, const char* key) const;
+  ModelReading reading(bool is_static, const SdfFile& file) {
+    return {is_static, file.sound, report_, shape_files_, world_.materials};
+  }
+  void expand(const Population& population);
+  /// The file of a model. Null if there is none, or it is not sound; `problem` is called with what is wrong.
+  template <class Report>
+  const SdfFile* find_model(const std::string& uri, const Report& problem);
+  /// The place in World::models of the model in a file: one for all that include it.
+  std::size_t shared_model(const SdfFile& file, bool is_static);
+  void add_later(const LaterObject& object);
+  /// False if the name is taken.
+  bool add_instance(std::string name, std::size_t model, const Pose& X_WM);
+
+  std::uint64_t seed_;
+  World world_;
+  std::vector<Problem> problems_;
+  SdfFiles files_;
+  ShapeFiles shape_files_;
+  SdfReport report_;
+  std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
+  std::set<std::string> names_;
+  Occupancy occupancy_;  // with the first `in_site_` instances
+  std::size_t in_site_ = 0;
+};
+
+World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& later) {
+  const SdfFile& file = files_.world();
+  if (!file.loaded) throw InputError(std::move(problems_));
+  if (may_be_a_model && file.root.Model() != nullptr) {
+    read_model_alone(file);
+    return finished();
+  }
+  if (file.root.WorldCount() != 1) {
+    // A misspelt <world> has been reported.
+    if (problems_.empty())
+      problems_.push_back(
+          {file.shown, file.tree.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+    throw InputError(std::move(problems_));
+  }
+  const sdf::World& sdf_world = *file.root.WorldByIndex(0);
+  read_settings(sdf_world);
+  read_models(sdf_world, file);
+  read_lights(sdf_world, file);
+  read_extensions(sdf_world);
+  for (const LaterObject& object : later) add_later(object);
+  return finished();
+}
+
+World WorldReader::read_model_file(std::vector<std::string> materials) {
+  world_.materials = std::move(materials);
+  const SdfFile& file = files_.world();
+  if (file.loaded && file.root.Model() == nullptr)
+    problems_.push_back({file.shown, file.tree.line, "", "expected one <model> or <robot>"});
+  if (!file.loaded || file.root.Model() == nullptr) throw InputError(std::move(problems_));
+  read_model_alone(file);
+  return finished();
+}
+
+World WorldReader::finished() {
+  if (!problems_.empty()) throw InputError(std::move(problems_));
+
+  for (std::size_t i = 0; i < world_.instances.size(); ++i)
+    if (world_.models[world_.instances[i].model].is_robot()) world_.robots.push_back(i);
+  return std::move(world_);
+}
+
+void WorldReader::read_model_alone(const SdfFile& file) {
+  world_.name = file.root.Model()->Name();
+  world_.gravity = sdf_gravity;
+  add_instance(world_.name, shared_model(file, file.root.Model()->Static()), {});
+}
+
+void WorldReader::read_settings(const sdf::World& sdf_world) {
+  world_.name = sdf_world.Name();
+  world_.gravity = to_eigen(sdf_world.Gravity());
+  // SDF's default is World's, which libsdformat rounds.
+  if (const sdf::ElementPtr field = find(sdf_world.Element(), {"magnetic_field"}); is_written(field))
+    world_.magnetic_field = to_eigen(field->Get<ignition::math::Vector3d>());
+  check_numbers(sdf_world.Element(), report_);
+  warn_of_unsupported(sdf_world.Element(), report_);
+
+  // SDF's default would be 1 ms, which libsdformat fills in where there is none.
+  const sdf::Physics* const physics = sdf_world.PhysicsDefault();
+  if (physics == nullptr || !physics->Element()) return;
+  const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
+  if (!step || !step->GetExplicitlySetInFile()) return;
+  constexpr double nanoseconds = 1e9;
+  constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
+  constexpr double longest = 1.0;
+  const auto seconds = step->Get<double>();
+  if (!(seconds > 0.0 && seconds <= longest)) {
+    if (!std::isnan(seconds)) report_.problem(step, "expected a step > 0 s and <= 1 s");
+    return;
+  }
+  const double count = std::round(seconds * nanoseconds);
+  if (count < 1.0 || std::abs(seconds * nanoseconds - count) > rounding)
+    report_.problem(step, "expected a whole number of nanoseconds, not " + step->GetValue()->GetAsString() + " s");
+  world_.step = std::chrono::nanoseconds(static_cast<std::int64_t>(count));
+}
+
+void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {
+  std::map<std::string, const Include*> includes;
+  for (const Include& include : file.includes) includes.emplace(include.name, &include);
+  auto next = file.includes.begin();
+  const auto add_placed_before = [&](std::size_t place) {
+    for (; next != file.includes.end() && next->place <= place; ++next)
+      if (next->X_WM) add_included_model(*next, to_pose(*next->X_WM));
+  };
+  std::map<std::string, const sdf::Frame*> frames;  // FrameByName would search all of them for each
+  for (std::uint64_t i = 0; i < sdf_world.FrameCount(); ++i)
+    frames.emplace(sdf_world.FrameByIndex(i)->Name(), sdf_world.FrameByIndex(i));
+
+  std::size_t place = 0;
+  for (sdf::ElementPtr child = sdf_world.Element()->GetFirstElement(); child; child = child->GetNextElement()) {
+    const bool is_frame = child->GetName() == "frame";
+    if (!is_frame && child->GetName() != "model") continue;
+    add_placed_before(place++);
+    if (!child->GetAttributeSet("name")) continue;
+    const auto name = child->Get<std::string>("name");
+    const auto include = includes.find(name);
+    const auto frame = frames.find(name);
+    const sdf::Model* const sdf_model = is_frame ? nullptr : sdf_world.ModelByName(name);
+    const ModelReading how = reading(false, file);
+    const bool is_included = include != includes.end();
+    if (is_frame && is_included && frame != frames.end()) {
+      add_included_model(*include->second, resolved_pose(*frame->second, how));
+    } else if (sdf_model != nullptr && is_included) {
+      add_included_model(*include->second, resolved_pose(*sdf_model, how));
+    } else if (sdf_model != nullptr && !names_.contains(name)) {
+      read_inline_model(*sdf_model, file);
+    } else if (sdf_model != nullptr) {  // libsdformat drops the second of two, and the first one is found here again
+      report_.problem(child, "another model has the name '" + name + "'");
+    }
+  }
+  add_placed_before(place);
+}
+
+// A light of the world is an object with nothing but the light: events switch it off and move it as any other.
+void WorldReader::read_lights(const sdf::World& sdf_world, const SdfFile& file) {
+  const ModelReading how = reading(true, file);
+  for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
+    const sdf::Light& sdf_light = *sdf_world.LightByIndex(i);
+    Emitter light = read_light(sdf_light, how);
+    Model model;
+    model.name = light.name;
+    model.is_static = true;
+    model.links.push_back({"link", {}, {}, {}});
+    const Pose X_WM = light.X_LE;
+    light.X_LE = {};
+    model.emitters.push_back(std::move(light));
+    world_.models.push_back(std::move(model));
+    if (!add_instance(sdf_light.Name(), world_.models.size() - 1, X_WM))
+      report_.problem(sdf_light.Element(), "another object has the name '" + sdf_light.Name() + "'");
+  }
+}
+
+void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
+  const ModelReading how = reading(sdf_model.Static(), file);
+  world_.models.push_back(read_model(sdf_model, how));
+  add_instance(sdf_model.Name(), world_.models.size() - 1, resolved_pose(sdf_model, how));
+}
+
+void WorldReader::add_included_model(const Include& include, const Pose& X_WM) {
+  add_instance(include.name, shared_model(*include.file, include.is_static), X_WM);
+}
+
+std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
+  const auto [entry, is_new] = shared_.emplace(std::pair{&file, is_static}, world_.models.size());
+  if (is_new) {
+    check_numbers(file.root.Element(), report_);
+    world_.models.push_back(read_model(*file.root.Model(), reading(is_static, file)));
+  }
+  return entry->second;
+}
+
+void WorldReader::read_extensions(const sdf::World& sdf_world) {
+  const auto extensions = extensions_in(sdf_world.Element(), report_);
+  bool has_physics = false;
+  for (const auto& [element, extension] : extensions) {
+    if (extension->name == "population") {
+      if (const auto population = read_population(element, *extension, seed_, report_)) expand(*population);
+    } else if (extension->name == "physics") {
+      if (has_physics) report_.problem(element, "<cohort:physics> is given twice");
+      has_physics = true;
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.physics = with_values(world_.physics, *values);
+    } else if (extension->name == "climate") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.climate = {values->real("temperature"), values->real("humidity")};
+    }
+  }
+  // Last, when all materials and objects are known; what could not be read may have had more.
+  const bool all_is_read = problems_.empty();
+  for (const auto& [element, extension] : extensions) read_reference(element, *extension, all_is_read);
+}
+
+// What names a material or an object. Its keys are checked in any case.
+void WorldReader::read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read) {
+  const bool is_pair = extension.name == "material_pair";
+  if (!is_pair && extension.name != "breakable_joint") return;
+  const auto values = ExtensionValues::read(element, extension, report_);
+  if (!values || !all_is_read) return;
+  if (is_pair)
+    add_material_pair(*values);
+  else
+    add_breakable_joint(*values);
+}
+
+std::optional<std::uint32_t> WorldReader::find_material(const ExtensionValues& values, const char* key) const {
+  const std::vector<std::string> named(world_.materials.begin() + 1, world_.materials.end());
+  const auto found = std::find(named.begin(), named.end(), values.text(key));
+  if (found != named.end()) return static_cast<std::uint32_t>(found - named.begin() + 1);
+  report_.problem(values.where(key),
+                  "nothing is made of '" + values.text(key) + "'" + suggestion(values.text(key), named));
+  return std::nullopt;
+}
+
+void WorldReader::add_material_pair(const ExtensionValues& values) {
+  const std::optional<std::uint32_t> first = find_material(values, "first");
+  const std::optional<std::uint32_t> second = find_material(values, "second");
+  if (!first || !second) return;
+  for (const MaterialPair& other : world_.material_pairs)
+    if (std::minmax(other.first, other.second) == std::minmax(*first, *second))
+      report_.problem(values.element(), "another <cohort:material_pair> is of '" + values.text("first") + "' and '" +
+                                            values.text("second") + "'");
+  world_.material_pairs.push_back(
+      {*first, *second, values.real("friction"), values.real("restitution"), values.real("rolling_resistance")});
+}
+
+void WorldReader::add_breakable_joint(const ExtensionValues& values) {
+  const std::vector<BreakableJoint>& others = world_.breakable_joints;
+  if (std::any_of(others.begin(), others.end(), [&](const auto& other) { return other.name == values.name(); }))
+    return report_.problem(values.element(), "another breakable joint has the name '" + values.name() + "'");
+  if (auto joint = read_breakable_joint(values, world_, report_)) world_.breakable_joints.push_back(*std::move(joint));
+}
+
+template <class Report>
+const SdfFile* WorldReader::find_model(const std::string& uri, const Report& problem) {
+  const SdfFile* file = nullptr;
+  try {
+    file = &files_.model(uri);
+  } catch (const std::runtime_error& error) {
+    problem(error.what());
+    return nullptr;
+  }
+  if (!file->loaded) return nullptr;
+  if (file->root.Model() == nullptr) {
+    problem("'" + file->shown.string() + "' has no <model>");
+    return nullptr;
+  }
+  return file;
+}
+
+void WorldReader::add_later(const LaterObject& object) {
+  const auto problem = [&](std::string message) {
+    problems_.push_back({object.where.file, object.where.line, object.where.element, std::move(message)});
+  };
+  const SdfFile* const file = find_model(object.uri, problem);
+  if (file == nullptr) return;
+  if (!add_instance(object.name, shared_model(*file, file->root.Model()->Static()), object.X_WM))
+    return problem("another object has the name '" + object.name + "'");
+  world_.instances.back().is_present = false;
+}
+
+void WorldReader::expand(const Population& population) {
+  const auto problem = [&](std::string message) { report_.problem(population.uri_element, std::move(message)); };
+  const SdfFile* const file = find_model(population.uri, problem);
+  if (file == nullptr) return;
+  const std::size_t model = shared_model(*file, file->root.Model()->Static());
+  // Where a shape is wrong, so is the room that it takes.
+  if (!problems_.empty()) return;
+
+  for (; in_site_ < world_.instances.size(); ++in_site_) {
+    const Instance& instance = world_.instances[in_site_];
+    occupancy_.add(world_.models[instance.model], instance.X_WM);
+  }
+  const std::vector<Placed> placed = place_instances(population.placement, world_.models[model], occupancy_);
+  if (placed.size() < population.placement.count) {
+    const std::string how_many =
+        "only " + std::to_string(placed.size()) + " of " + std::to_string(population.placement.count) + " fit";
+    if (population.may_be_fewer)
+      report_.warning(population.placement_element, how_many);
+    else
+      report_.problem(population.placement_element,
+                      how_many + "; enlarge the area, or lower the count or the gap, or set <cohort:may_be_fewer>");
+  }
+  for (const Placed& each : placed) {
+    const std::string name =
+        population.placement.name + "/" + world_.models[model].name + "_" + std::to_string(each.number);
+    if (add_instance(name, model, each.X_WM)) continue;
+    report_.problem(population.uri_element->GetParent(), "another instance has the name '" + name + "'");
+    return;
+  }
+}
+
+bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& X_WM) {
+  if (!names_.insert(name).second) return false;
+  world_.instances.push_back({std::move(name), model, X_WM});
+  return true;
+}
+
+}  // namespace
+
+World read_world(const std::filesystem::path& file, std::uint64_t seed,
+                 const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
+  InputFiles disk;
+  return read_world(disk, file, seed, last_model_folders, later);
+}
+
+World read_world(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
+                 const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
+  return WorldReader(input, file, seed, last_model_folders).read(false, later);
+}
+
+World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
+                          const std::vector<std::filesystem::path>& last_model_folders) {
+  InputFiles disk;
+  return WorldReader(disk, file, seed, last_model_folders).read(true, {});
+}
+
+std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world) {
+  const std::shared_ptr<const KeptFiles> kept = inputs ? inputs : std::make_shared<const KeptFiles>();
+  InputFiles input(kept);
+  const std::filesystem::path file =
+      world.file.parent_path() / (trimmed(text).starts_with('<') ? "(model).sdf" : "(model).yaml");
+  input.add(file, text);
+  constexpr std::uint64_t no_seed = 0;  // nothing is drawn
+  World alone = WorldReader(input, file, no_seed, {kept->last_model_folders.begin(), kept->last_model_folders.end()})
+                    .read_model_file(world.materials);
+  world.materials = std::move(alone.materials);
+  world.warnings.insert(world.warnings.end(), alone.warnings.begin(), alone.warnings.end());
+  world.models.push_back(std::move(alone.models.front()));
+  return world.models.size() - 1;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "server/description/world.hpp"
+#include "server/parsing/files/input_file.hpp"
+
+namespace cohort::parsing {
+
+/// An object that an event of an experiment brings into the world.
+struct LaterObject {
+  std::string uri;  ///< of its model
+  std::string name;
+  Pose X_WM;
+  Problem where;  ///< of the event, without a message
+};
+
+/// Reads a world, in SDF or YAML, with libsdformat and expands its includes and, by `seed`, its `cohort:population`
+/// elements. The instances are the models and includes in document order, then the populations in theirs.
+/// `model://NAME` is looked for in the folders of the environment variable COHORT_MODEL_PATH, in `robots` and `objects`
+/// in the folder of the file and in its parents, four levels up, and in `last_model_folders`; other URIs are paths
+/// relative to the file. docs/worlds.md has the details. `later`: instances that are not present at first; they come
+/// last. Throws InputError with every problem found. Callable from any thread; calls wait for each other.
+World read_world(const std::filesystem::path& file, std::uint64_t seed,
+                 const std::vector<std::filesystem::path>& last_model_folders = {},
+                 const std::vector<LaterObject>& later = {});
+
+/// The same from `input`, which goes on keeping what was read.
+World read_world(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
+                 const std::vector<std::filesystem::path>& last_model_folders = {},
+                 const std::vector<LaterObject>& later = {});
+
+/// The same; a file with a model alone is a world with nothing but this model, at the origin.
+World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
+                          const std::vector<std::filesystem::path>& last_model_folders = {});
+
+/// Adds to `world` the model that a text in SDF, URDF or YAML describes, and the materials that it names. Returns its
+/// index. What the text includes or names, such as a mesh, has to be in `inputs`, from which `world` was read; null is
+/// nothing. Throws InputError with every problem found; `world` is then as it was.
+std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world);
+
+}  // namespace cohort::parsing

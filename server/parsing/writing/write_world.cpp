@@ -1,0 +1,238 @@
+#include "server/parsing/writing/write_world.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "server/parsing/world/physics_settings.hpp"
+#include "server/parsing/writing/write_values.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+struct ShapeWriter {
+  XmlNode& geometry;
+  const std::filesystem::path& folder;
+
+  void operator()(const Box& box) const { add_value(add(geometry, "box"), "size", box.size); }
+  void operator()(const Sphere& sphere) const { add_value(add(geometry, "sphere"), "radius", sphere.radius); }
+  void operator()(const Cylinder& cylinder) const { add_round("cylinder", cylinder.radius, cylinder.length); }
+  void operator()(const Capsule& capsule) const { add_round("capsule", capsule.radius, capsule.length); }
+  void operator()(const Ellipsoid& ellipsoid) const { add_value(add(geometry, "ellipsoid"), "radii", ellipsoid.radii); }
+  void operator()(const Plane& plane) const { add_value(add(geometry, "plane"), "normal", plane.normal); }
+  void operator()(const Mesh& mesh) const {
+    XmlNode& element = add(geometry, "mesh");
+    add_value(element, "uri", relative(mesh.triangles->file));
+    add_value(element, "scale", mesh.triangles->scale);
+  }
+  void operator()(const Heightmap& map) const {
+    XmlNode& element = add(geometry, "heightmap");
+    if (!map.grid->terrain) {
+      add_value(element, "uri", relative(map.grid->file));
+      add_value(element, "size", map.grid->size);
+      return;
+    }
+    const Terrain& terrain = *map.grid->terrain;
+    add_value(element, "size", terrain.size);
+    XmlNode& extension = add(element, prefixed("terrain"));
+    add_key(extension, "kind", terrain.kind);
+    add_key(extension, "spacing", terrain.spacing);
+    add_key(extension, "wavelength", terrain.wavelength);
+    add_key(extension, "seed", terrain.seed);
+  }
+
+ private:
+  void add_round(const char* name, double radius, double length) const {
+    XmlNode& element = add(geometry, name);
+    add_value(element, "radius", radius);
+    add_value(element, "length", length);
+  }
+  std::string relative(const std::filesystem::path& file) const { return relative_to(folder, file); }
+};
+
+class WorldWriter {
+ public:
+  WorldWriter(const World& world, const std::filesystem::path& folder) : world_(world), folder_(folder) {}
+
+  XmlNode write() const {
+    XmlNode root;
+    root.name = "sdf";
+    root.attributes = {{"version", "1.9"}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
+    XmlNode& world = add_named(root, "world", world_.name);
+    add_value(world, "gravity", world_.gravity);
+    add_value(world, "magnetic_field", world_.magnetic_field);
+    write_physics(world);
+    XmlNode& climate = add(world, prefixed("climate"));
+    add_key(climate, "temperature", world_.climate.temperature);
+    add_key(climate, "humidity", world_.climate.humidity);
+    for (const Instance& instance : world_.instances)
+      if (instance.is_present) write_model(world, instance);
+    for (const MaterialPair& pair : world_.material_pairs) {
+      XmlNode& element = add(world, prefixed("material_pair"));
+      add_key(element, "first", world_.materials[pair.first]);
+      add_key(element, "second", world_.materials[pair.second]);
+      add_key(element, "friction", pair.friction);
+      add_key(element, "restitution", pair.restitution);
+      add_key(element, "rolling_resistance", pair.rolling_resistance);
+    }
+    for (const BreakableJoint& joint : world_.breakable_joints) write_breakable_joint(world, joint);
+    return root;
+  }
+
+ private:
+  void write_breakable_joint(XmlNode& world, const BreakableJoint& joint) const {
+    XmlNode& element = add_named(world, prefixed("breakable_joint"), joint.name);
+    const auto add_end = [&](const std::string& key, std::size_t object, std::size_t link) {
+      const Instance& instance = world_.instances[object];
+      add_key(element, key, instance.name);
+      add_key(element, key + "_link", without_scope_marks(world_.models[instance.model].links[link].name));
+    };
+    add_end("first", joint.first, joint.first_link);
+    add_end("second", joint.second, joint.second_link);
+    if (joint.X_LP) add_key(element, "pose", *joint.X_LP);
+    if (std::isfinite(joint.breaking_force)) add_key(element, "breaking_force", joint.breaking_force);
+    if (std::isfinite(joint.breaking_torque)) add_key(element, "breaking_torque", joint.breaking_torque);
+  }
+
+  void write_physics(XmlNode& world) const {
+    XmlNode& sdf = add_named(world, "physics", "default");
+    sdf.attributes.emplace_back("type", "ignored");
+    constexpr double nanoseconds = 1e9;
+    add_value(sdf, "max_step_size", static_cast<double>(world_.step.count()) / nanoseconds);
+    const PhysicsSettings& settings = world_.physics;
+    XmlNode& physics = add(world, prefixed("physics"));
+    add_key(physics, "fidelity", name_of(settings.fidelity));
+    add_key(physics, "solver", name_of(settings.solver));
+    add_key(physics, "iterations", static_cast<std::uint64_t>(settings.iterations));
+    add_key(physics, "direct_bodies", static_cast<std::uint64_t>(settings.direct_bodies));
+    if (std::isfinite(settings.lowest)) add_key(physics, "lowest", settings.lowest);
+    add_key(physics, "strict", settings.strict);
+  }
+
+  void write_model(XmlNode& parent, const Instance& instance) const {
+    const Model& model = world_.models[instance.model];
+    XmlNode& element = add_named(parent, "model", instance.name);
+    add_value(element, "static", model.is_static);
+    add_value(element, "self_collide", model.self_collide);
+    add_pose(element, instance.X_WM);
+    for (std::size_t link = 0; link < model.links.size(); ++link) write_link(element, model, link);
+    for (const Joint& joint : model.joints) write_joint(element, joint, model);
+    for (const Device& device : model.devices) write_device(element, model, device, folder_);
+  }
+
+  void write_link(XmlNode& parent, const Model& model, std::size_t index) const {
+    const Link& link = model.links[index];
+    const bool is_static = model.is_static;
+    XmlNode& element = add_named(parent, "link", without_scope_marks(link.name));
+    add_pose(element, link.X_ML);
+    if (!is_static) {
+      XmlNode& inertial = add(element, "inertial");
+      add_pose(inertial, link.inertial.X_LI);
+      add_value(inertial, "mass", link.inertial.mass);
+      XmlNode& inertia = add(inertial, "inertia");
+      const char* const axes = "xyz";
+      for (int row = 0; row < 3; ++row)
+        for (int column = row; column < 3; ++column)
+          add_value(inertia, std::string("i") + axes[row] + axes[column], link.inertial.inertia(row, column));
+    }
+    if (link.color != default_color()) {
+      XmlNode& visual = add_named(element, "visual", "color");
+      add(add(visual, "geometry"), "empty");
+      add_value(add(visual, "material"), "diffuse", link.color).text += " 1";
+    }
+    for (const Collision& collision : link.collisions) {
+      XmlNode& shape = add_named(element, "collision", collision.name);
+      add_pose(shape, collision.X_LC);
+      std::visit(ShapeWriter{add(shape, "geometry"), folder_}, collision.shape);
+      XmlNode& surface = add(shape, "surface");
+      XmlNode& friction = add(surface, "friction");
+      add_value(add(friction, "ode"), "mu", collision.surface.friction);
+      add_value(add(friction, "bullet"), "rolling_friction", collision.surface.rolling_resistance);
+      add_value(add(surface, "bounce"), "restitution_coefficient", collision.surface.restitution);
+      if (collision.surface.is_grippable) add_key(shape, "grippable", true);
+      if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
+    }
+    for (const GripRing& ring : model.grip_rings)
+      if (ring.link == index) write_grip_ring(element, ring);
+    for (const Emitter& emitter : model.emitters)
+      if (emitter.link == index) write_emitter(element, emitter);
+  }
+
+  static void write_joint(XmlNode& parent, const Joint& joint, const Model& model) {
+    constexpr std::pair<JointType, const char*> names[] = {{JointType::fixed, "fixed"},
+                                                           {JointType::revolute, "revolute"},
+                                                           {JointType::prismatic, "prismatic"},
+                                                           {JointType::ball, "ball"},
+                                                           {JointType::universal, "universal"}};
+    XmlNode& element = add_named(parent, "joint", without_scope_marks(joint.name));
+    for (const auto& [type, name] : names)
+      if (type == joint.type) element.attributes.emplace_back("type", name);
+    add_pose(element, joint.X_LJ);
+    add_value(
+        element, "parent",
+        joint.parent == Joint::world ? std::string("world") : without_scope_marks(model.links[joint.parent].name));
+    add_value(element, "child", without_scope_marks(model.links[joint.child].name));
+    if (joint.type != JointType::fixed) write_axis(add(element, "axis"), joint.axis);
+    if (joint.type == JointType::universal) write_axis(add(element, "axis2"), joint.second_axis);
+  }
+
+  static void write_axis(XmlNode& element, const JointAxis& axis) {
+    constexpr double no_limit = 1e16;  // as SDF writes it
+    add_value(element, "xyz", axis.direction);
+    if (std::isfinite(axis.lower) || std::isfinite(axis.upper)) {
+      XmlNode& limit = add(element, "limit");
+      add_value(limit, "lower", std::isfinite(axis.lower) ? axis.lower : -no_limit);
+      add_value(limit, "upper", std::isfinite(axis.upper) ? axis.upper : no_limit);
+    }
+    XmlNode& dynamics = add(element, "dynamics");
+    add_value(dynamics, "damping", axis.damping);
+    add_value(dynamics, "friction", axis.friction);
+    add_value(dynamics, "spring_stiffness", axis.spring_stiffness);
+    add_value(dynamics, "spring_reference", axis.spring_reference);
+  }
+
+  const World& world_;
+  const std::filesystem::path& folder_;
+};
+
+std::string escaped(std::string_view text) {
+  std::string result;
+  for (const char character : text) {
+    switch (character) {
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '&': result += "&amp;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += character;
+    }
+  }
+  return result;
+}
+
+void print(const XmlNode& node, std::size_t depth, std::string& text) {
+  const std::string indent(2 * depth, ' ');
+  text += indent + "<" + node.name;
+  for (const auto& [name, value] : node.attributes) text += " " + name + "=\"" + escaped(value) + "\"";
+  if (node.children.empty() && node.text.empty()) {
+    text += "/>\n";
+    return;
+  }
+  text += ">" + escaped(node.text);
+  if (!node.children.empty()) {
+    text += "\n";
+    for (const XmlNode& child : node.children) print(child, depth + 1, text);
+    text += indent;
+  }
+  text += "</" + node.name + ">\n";
+}
+
+}  // namespace
+
+XmlNode sdf_of(const World& world, const std::filesystem::path& folder) { return WorldWriter(world, folder).write(); }
+
+std::string xml_text(const XmlNode& root) {
+  std::string text = "<?xml version=\"1.0\"?>\n";
+  print(root, 0, text);
+  return text;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,174 @@
+#include "server/parsing/yaml/yaml_document.hpp"
+
+#include <yaml-cpp/anchor.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <map>
+#include <sstream>
+
+namespace cohort::parsing {
+namespace {
+
+constexpr std::size_t deepest = 64;
+constexpr std::size_t most_from_aliases = 10'000;
+
+struct Refused {
+  int line;
+  std::string message;
+};
+
+bool has_control_character(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r'; });
+}
+
+/// Builds the tree from yaml-cpp's events. Its own nodes know neither where an alias stands nor that a key came twice.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  YamlPtr root() const { return root_; }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    put(make(YamlNode::Kind::nothing, mark), anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override;
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override;
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(make(YamlNode::Kind::list, mark), anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(make(YamlNode::Kind::map, mark), anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    std::shared_ptr<YamlNode> node;
+    YAML::anchor_t anchor;
+    YamlPtr key;  // of a map, that still waits for its value
+  };
+
+  static std::shared_ptr<YamlNode> make(YamlNode::Kind kind, const YAML::Mark& mark) {
+    auto node = std::make_shared<YamlNode>();
+    node->kind = kind;
+    node->line = mark.line + 1;
+    return node;
+  }
+  void open(std::shared_ptr<YamlNode> node, YAML::anchor_t anchor) {
+    if (open_.size() >= deepest)
+      throw Refused{node->line, "is nested more than " + std::to_string(deepest) + " levels deep"};
+    open_.push_back({std::move(node), anchor, nullptr});
+  }
+  void close() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    put(std::move(done.node), done.anchor);
+  }
+  void put(YamlPtr node, YAML::anchor_t anchor);
+
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, YamlPtr> anchored_;
+  std::size_t from_aliases_ = 0;
+  YamlPtr root_;
+};
+
+void TreeBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
+  const auto found = anchored_.find(anchor);
+  if (found == anchored_.end()) throw Refused{mark.line + 1, "this alias stands for something that it is a part of"};
+  const YamlPtr& meant = found->second;
+  from_aliases_ += meant->size;
+  if (from_aliases_ > most_from_aliases)
+    throw Refused{mark.line + 1,
+                  "the aliases of this file stand for more than " + std::to_string(most_from_aliases) + " values"};
+  if (open_.size() + meant->depth > deepest)
+    throw Refused{mark.line + 1, "is nested more than " + std::to_string(deepest) + " levels deep"};
+  put(meant, YAML::NullAnchor);
+}
+
+void TreeBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                           const std::string& value) {
+  if (has_control_character(value)) throw Refused{mark.line + 1, "there is a control character in this text"};
+  const auto node = make(YamlNode::Kind::scalar, mark);
+  node->text = value;
+  node->is_plain = tag == "?";  // as yaml-cpp says it
+  put(node, anchor);
+}
+
+void TreeBuilder::put(YamlPtr node, YAML::anchor_t anchor) {
+  if (anchor != YAML::NullAnchor) anchored_[anchor] = node;
+  if (open_.empty()) {
+    root_ = std::move(node);
+    return;
+  }
+  Open& parent = open_.back();
+  parent.node->size += node->size;
+  parent.node->depth = std::max(parent.node->depth, node->depth + 1);
+  if (parent.node->is_list())
+    parent.node->items.push_back(std::move(node));
+  else if (!parent.key)
+    parent.key = std::move(node);
+  else
+    parent.node->pairs.emplace_back(std::exchange(parent.key, nullptr), std::move(node));
+}
+
+/// Sees that there is no more.
+class NoMore : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    throw Refused{mark.line + 1, "a second document starts here; expected one in a file"};
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+}  // namespace
+
+YamlDocument parse_yaml(std::string_view text) {
+  YamlDocument document;
+  try {
+    std::istringstream stream{std::string(text)};
+    YAML::Parser parser(stream);
+    TreeBuilder tree;
+    if (!parser.HandleNextDocument(tree) || !tree.root()) {
+      document.error = {0, "there is nothing in this file"};
+      return document;
+    }
+    NoMore no_more;
+    parser.HandleNextDocument(no_more);
+    document.root = tree.root();
+  } catch (const Refused& refused) {
+    document.error = {refused.line, refused.message};
+  } catch (const YAML::Exception& error) {
+    document.error = {error.mark.is_null() ? 0 : error.mark.line + 1, "not YAML: " + error.msg};
+  }
+  return document;
+}
+
+std::string shown(const YamlNode& node) {
+  constexpr std::size_t most = 60;  // a whole file may be one scalar
+  switch (node.kind) {
+    case YamlNode::Kind::scalar:
+      return "'" + (node.text.size() <= most ? node.text : node.text.substr(0, most) + "…") + "'";
+    case YamlNode::Kind::list: return "a list";
+    case YamlNode::Kind::map: return "a map";
+    case YamlNode::Kind::nothing: break;
+  }
+  return "nothing";
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,163 @@
+#include "server/physics/contact/box_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cohort::physics {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// An edge has to separate by this much better than a face to be preferred [m]: faces give more points.
+constexpr double edge_handicap = 1e-4;
+
+struct Placed {
+  Vector3d half;
+  Vector3d centre;
+  Matrix3d R;
+
+  double reach(const Vector3d& direction) const { return (R.transpose() * direction).cwiseAbs().dot(half); }
+  // The corner that is furthest along a direction.
+  Vector3d corner(const Vector3d& direction) const {
+    Vector3d corner_W = centre;
+    for (int i = 0; i < 3; ++i) corner_W += (R.col(i).dot(direction) < 0.0 ? -half[i] : half[i]) * R.col(i);
+    return corner_W;
+  }
+};
+
+// The clipped face, in the frame of the reference face: x and y along it, z above it.
+struct Polygon {
+  std::array<Vector3d, 8> corners;
+  std::size_t count = 0;
+  void add(const Vector3d& corner) {
+    if (count < corners.size()) corners[count++] = corner;
+  }
+};
+
+// Keeps what has sign * coordinate <= limit.
+Polygon clip(const Polygon& polygon, int axis, double sign, double limit) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const Vector3d& here = polygon.corners[i];
+    const Vector3d& next = polygon.corners[(i + 1) % polygon.count];
+    const double beyond_here = sign * here[axis] - limit;
+    const double beyond_next = sign * next[axis] - limit;
+    if (beyond_here <= 0.0) kept.add(here);
+    if ((beyond_here < 0.0 && beyond_next > 0.0) || (beyond_here > 0.0 && beyond_next < 0.0))
+      kept.add(here + beyond_here / (beyond_here - beyond_next) * (next - here));
+  }
+  return kept;
+}
+
+// Of many corners the four furthest out along the diagonals, always in that order: they hold the face as all would.
+Polygon thin_out(const Polygon& polygon) {
+  Polygon kept;
+  std::array<bool, 8> taken{};
+  for (const auto& [x, y] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}) {
+    std::size_t best = 0;
+    double furthest = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+      const double along = x * polygon.corners[i].x() + y * polygon.corners[i].y();
+      if (along <= furthest) continue;
+      furthest = along;
+      best = i;
+    }
+    if (polygon.count == 0 || taken[best]) continue;
+    taken[best] = true;
+    kept.add(polygon.corners[best]);
+  }
+  return kept;
+}
+
+// `normal`: outwards from the reference's face `axis`. `sign`: of the normal that points towards a.
+void find_face_contact(const Placed& reference, int axis, const Vector3d& normal, const Placed& incident, double sign,
+                       double margin, ContactPoints& found) {
+  // The face of the other box that looks at this one the most.
+  int facing = 0;
+  (incident.R.transpose() * normal).cwiseAbs().maxCoeff(&facing);
+  const double away = incident.R.col(facing).dot(normal) > 0.0 ? -1.0 : 1.0;
+  const int u = (facing + 1) % 3;
+  const int v = (facing + 2) % 3;
+  const int x = (axis + 1) % 3;
+  const int y = (axis + 2) % 3;
+  const Vector3d face_centre = reference.centre + reference.half[axis] * normal;
+  Polygon polygon;
+  for (const auto& [du, dv] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}) {
+    const Vector3d corner_W = incident.centre + away * incident.half[facing] * incident.R.col(facing) +
+                              du * incident.half[u] * incident.R.col(u) + dv * incident.half[v] * incident.R.col(v);
+    const Vector3d offset = corner_W - face_centre;
+    polygon.add({reference.R.col(x).dot(offset), reference.R.col(y).dot(offset), normal.dot(offset)});
+  }
+  polygon = clip(polygon, 0, 1.0, reference.half[x]);
+  polygon = clip(polygon, 0, -1.0, reference.half[x]);
+  polygon = clip(polygon, 1, 1.0, reference.half[y]);
+  polygon = clip(polygon, 1, -1.0, reference.half[y]);
+  Polygon near;
+  for (std::size_t i = 0; i < polygon.count; ++i)
+    if (polygon.corners[i].z() < margin) near.add(polygon.corners[i]);
+  near = thin_out(near);
+  for (std::size_t i = 0; i < near.count; ++i) {
+    const Vector3d& point = near.corners[i];
+    const Vector3d position_W =
+        face_centre + point.x() * reference.R.col(x) + point.y() * reference.R.col(y) + 0.5 * point.z() * normal;
+    found.add(position_W, sign * normal, point.z());
+  }
+}
+
+void find_edge_contact(const Placed& a, int i, const Placed& b, int j, const Vector3d& normal, double gap,
+                       ContactPoints& found) {
+  // The lines of the two edges that look at each other, and where they are nearest.
+  const Vector3d on_a = a.corner(-normal);
+  const Vector3d on_b = b.corner(normal);
+  const Vector3d along_a = a.R.col(i);
+  const Vector3d along_b = b.R.col(j);
+  const Vector3d offset = on_b - on_a;
+  const double cosine = along_a.dot(along_b);
+  const double s = (along_a.dot(offset) - cosine * along_b.dot(offset)) / (1.0 - cosine * cosine);
+  const Vector3d nearest_a = on_a + s * along_a;
+  found.add(nearest_a - 0.5 * gap * normal, normal, gap);
+}
+
+}  // namespace
+
+void find_box_contact(const description::Box& box_a, const Pose& X_WA, const description::Box& box_b, const Pose& X_WB,
+                      double margin, ContactPoints& found) {
+  const Placed a{0.5 * box_a.size, X_WA.position, X_WA.orientation.toRotationMatrix()};
+  const Placed b{0.5 * box_b.size, X_WB.position, X_WB.orientation.toRotationMatrix()};
+  const Vector3d offset = a.centre - b.centre;
+
+  struct Best {
+    double gap = -std::numeric_limits<double>::infinity();
+    Vector3d normal = Vector3d::Zero();  // from b to a
+    int axis_a = -1;
+    int axis_b = -1;
+  } best;
+  const auto look_along = [&](const Vector3d& axis, int axis_a, int axis_b, double handicap) {
+    const double apart = axis.dot(offset);
+    const double gap = std::abs(apart) - a.reach(axis) - b.reach(axis);
+    if (gap - handicap > best.gap) best = {gap, apart < 0.0 ? Vector3d(-axis) : axis, axis_a, axis_b};
+    return gap < margin;
+  };
+  for (int i = 0; i < 3; ++i)
+    if (!look_along(b.R.col(i), -1, i, 0.0)) return;
+  for (int i = 0; i < 3; ++i)
+    if (!look_along(a.R.col(i), i, -1, edge_handicap)) return;  // of two faces alike, always b's
+  constexpr double parallel = 1e-6;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Vector3d axis = a.R.col(i).cross(b.R.col(j));
+      const double length = axis.norm();
+      if (length > parallel && !look_along(axis / length, i, j, edge_handicap)) return;
+    }
+  }
+  if (best.axis_a >= 0 && best.axis_b >= 0) {
+    find_edge_contact(a, best.axis_a, b, best.axis_b, best.normal, best.gap, found);
+  } else if (best.axis_b >= 0) {
+    find_face_contact(b, best.axis_b, best.normal, a, 1.0, margin, found);
+  } else {
+    find_face_contact(a, best.axis_a, -best.normal, b, -1.0, margin, found);
+  }
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,125 @@
+#include "server/physics/contact/bullet_shape.hpp"
+
+#include <algorithm>
+
+#include "server/physics/contact/bullet.hpp"
+
+namespace cohort::physics {
+namespace {
+
+using description::HeightGrid;
+using description::TriangleMesh;
+using Eigen::Vector3d;
+
+// Bullet finds contacts between hulls best if they are rounded a little; it adds this all around [m].
+constexpr double hull_rounding = 0.0005;
+
+// Bullet has no ellipsoid: the point furthest along a direction is all that its narrow phase asks for.
+class EllipsoidShape final : public btConvexInternalShape {
+ public:
+  explicit EllipsoidShape(const Vector3d& radii) : radii_(radii) {
+    m_shapeType = CUSTOM_CONVEX_SHAPE_TYPE;
+    setMargin(0.0);
+  }
+
+  btVector3 localGetSupportingVertexWithoutMargin(const btVector3& direction) const override {
+    const Vector3d scaled = radii_.cwiseProduct(to_eigen(direction));
+    const double length = scaled.norm();
+    if (length == 0.0) return to_bullet(Vector3d(radii_.x(), 0.0, 0.0));
+    return to_bullet(radii_.cwiseProduct(scaled) / length);
+  }
+  btVector3 localGetSupportingVertex(const btVector3& direction) const override {
+    return localGetSupportingVertexWithoutMargin(direction);
+  }
+  void batchedUnitVectorGetSupportingVertexWithoutMargin(const btVector3* directions, btVector3* found,
+                                                         int count) const override {
+    for (int i = 0; i < count; ++i) found[i] = localGetSupportingVertexWithoutMargin(directions[i]);
+  }
+  void calculateLocalInertia(btScalar, btVector3& inertia) const override { inertia.setZero(); }  // nobody asks
+  void getAabb(const btTransform& X_WC, btVector3& lower, btVector3& upper) const override {
+    const btVector3 half(radii_.maxCoeff(), radii_.maxCoeff(), radii_.maxCoeff());
+    lower = X_WC.getOrigin() - half;
+    upper = X_WC.getOrigin() + half;
+  }
+  const char* getName() const override { return "ellipsoid"; }
+
+ private:
+  Vector3d radii_;
+};
+
+}  // namespace
+
+struct BulletShape::Data {
+  std::shared_ptr<const TriangleMesh> mesh;  // Bullet's shapes point into these
+  std::shared_ptr<const HeightGrid> grid;
+  std::unique_ptr<btTriangleMesh> triangles;
+  std::unique_ptr<btCollisionShape> shape;
+};
+
+namespace {
+
+struct Make {
+  std::unique_ptr<btTriangleMesh>& triangles;
+  Vector3d& offset;
+
+  std::unique_ptr<btCollisionShape> operator()(const description::Box& box) const {
+    return std::make_unique<btBoxShape>(to_bullet(0.5 * box.size));
+  }
+  std::unique_ptr<btCollisionShape> operator()(const description::Sphere& sphere) const {
+    return std::make_unique<btSphereShape>(sphere.radius);
+  }
+  std::unique_ptr<btCollisionShape> operator()(const description::Cylinder& cylinder) const {
+    return std::make_unique<btCylinderShapeZ>(btVector3(cylinder.radius, cylinder.radius, 0.5 * cylinder.length));
+  }
+  std::unique_ptr<btCollisionShape> operator()(const description::Plane& plane) const {
+    return std::make_unique<btStaticPlaneShape>(to_bullet(plane.normal), 0.0);
+  }
+  std::unique_ptr<btCollisionShape> operator()(const description::Capsule& capsule) const {
+    return std::make_unique<btCapsuleShapeZ>(capsule.radius, capsule.length);
+  }
+  std::unique_ptr<btCollisionShape> operator()(const description::Ellipsoid& ellipsoid) const {
+    return std::make_unique<EllipsoidShape>(ellipsoid.radii);
+  }
+  std::unique_ptr<btCollisionShape> operator()(const description::Mesh& mesh) const {
+    if (mesh.convex) {
+      auto hull = std::make_unique<btConvexHullShape>();
+      for (const Vector3d& vertex : mesh.triangles->vertices) hull->addPoint(to_bullet(vertex), false);
+      hull->recalcLocalAabb();
+      hull->setMargin(hull_rounding);
+      return hull;
+    }
+    triangles = std::make_unique<btTriangleMesh>();
+    for (const auto& corners : mesh.triangles->triangles)
+      triangles->addTriangle(to_bullet(mesh.triangles->vertices[corners[0]]),
+                             to_bullet(mesh.triangles->vertices[corners[1]]),
+                             to_bullet(mesh.triangles->vertices[corners[2]]));
+    const bool compress_boxes = false;
+    return std::make_unique<btBvhTriangleMeshShape>(triangles.get(), compress_boxes);
+  }
+  std::unique_ptr<btCollisionShape> operator()(const description::Heightmap& map) const {
+    const HeightGrid& grid = *map.grid;
+    const auto [lowest, highest] = std::minmax_element(grid.heights.begin(), grid.heights.end());
+    const int upwards = 2;
+    const bool flip_diagonals = false;
+    auto field =
+        std::make_unique<btHeightfieldTerrainShape>(static_cast<int>(grid.columns), static_cast<int>(grid.rows),
+                                                    grid.heights.data(), *lowest, *highest, upwards, flip_diagonals);
+    field->setLocalScaling(btVector3(grid.spacing.x(), grid.spacing.y(), 1.0));
+    offset.z() = 0.5 * (*lowest + *highest);
+    return field;
+  }
+};
+
+}  // namespace
+
+BulletShape::BulletShape(const geometry::Shape& shape) : data_(std::make_unique<Data>()) {
+  if (const auto* mesh = std::get_if<description::Mesh>(&shape)) data_->mesh = mesh->triangles;
+  if (const auto* map = std::get_if<description::Heightmap>(&shape)) data_->grid = map->grid;
+  data_->shape = std::visit(Make{data_->triangles, offset_}, shape);
+}
+
+BulletShape::~BulletShape() = default;
+
+btCollisionShape* BulletShape::get() const { return data_->shape.get(); }
+
+}  // namespace cohort::physics

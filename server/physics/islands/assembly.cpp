@@ -1,0 +1,194 @@
+#include "server/physics/islands/assembly.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cohort::physics {
+namespace {
+
+// Further from the origin a body has left the world [m].
+constexpr double furthest = 1e6;
+
+// False for velocities from which the next step would leave the numbers [m/s or rad/s].
+bool is_sensible(const double* velocities, int count) {
+  constexpr double senseless = 1e6;
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) sum += std::abs(velocities[i]);
+  return sum < senseless;
+}
+
+}  // namespace
+
+Assembly::Assembly(const description::World& world)
+    : step(std::chrono::duration<double>(world.step).count()),
+      gravity(world.gravity),
+      settings(world.physics),
+      surfaces(world),
+      collision(scene, [this](std::uint32_t solid, std::uint32_t other) { return may_touch(solid, other); }) {}
+
+void Assembly::add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
+                         const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
+  const description::Collision& part_collision = model.links[link].collisions[number];
+  scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC,
+             static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(number), model.links[link].color});
+  collision.add(std::move(shape));
+  anchors.part_of_solid.push_back(part);
+}
+
+std::vector<std::uint32_t> Assembly::add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
+                                                std::span<const std::shared_ptr<const BulletShape>> shapes) {
+  std::vector<std::uint32_t> solids;
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    const std::vector<description::Collision>& parts = model.links[link].collisions;
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const std::shared_ptr<const BulletShape>& shape = shapes[solids.size()];
+      solids.push_back(static_cast<std::uint32_t>(scene.size()));
+      add_solid(body, model, link, part, X_WM * model.links[link].X_ML * parts[part].X_LC, {}, shape);
+    }
+  }
+  return solids;
+}
+
+std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
+                                   std::span<const std::shared_ptr<const BulletShape>> shapes) {
+  const auto index = static_cast<std::uint32_t>(members.size());
+  const Multibody& body = *multibody;
+  Member& member = members.emplace_back();
+  member.body = body.body();
+  member.multibody = std::move(multibody);
+  anchors.index_of_member.push_back(-1);
+  const description::Model& model = body.mechanism().model();
+  const std::vector<description::Link>& links = model.links;
+  std::size_t shape = 0;
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    const Mechanism::LinkPlace& place = body.mechanism().link(link);
+    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
+      const std::shared_ptr<const BulletShape>& shape_of_part = shapes[shape++];
+      if (!place.collides) continue;
+      const Pose X_SC = place.X_SL * links[link].collisions[part].X_LC;
+      member.parts.push_back({static_cast<std::uint32_t>(scene.size()), place.segment, X_SC});
+      add_solid(body.body(), model, link, part, body.segment_pose(place.segment) * X_SC, {index, place.segment},
+                shape_of_part);
+    }
+  }
+  return index;
+}
+
+void Assembly::take_out(std::uint32_t member) {
+  members[member].is_active = false;
+  if (members[member].record) members[member].record->forget();
+  connections.release_of(member);
+  for (const Part& part : members[member].parts) {
+    scene.remove(part.solid);
+    collision.remove(part.solid);
+  }
+}
+
+void Assembly::put_back(std::uint32_t index) {
+  Member& member = members[index];
+  if (!member.is_finite || !member.is_inside) member.multibody->stop();
+  member.is_active = member.is_finite = member.is_inside = true;
+  place_solids_of(member);
+  for (const Part& part : member.parts) scene.put_back(part.solid);
+}
+
+void Assembly::place(std::uint32_t index, const Pose& X_WM) {
+  const Member& member = members[index];
+  connections.release_of(index);
+  member.multibody->place(X_WM);
+  if (member.record) member.record->forget();
+  for (const Part& part : member.parts) collision.remove(part.solid);
+  place_solids_of(member);
+  scene.update();
+}
+
+void Assembly::place_solids_of(const Member& member) {
+  for (const Part& part : member.parts)
+    scene.set_pose(part.solid, member.multibody->segment_pose(part.segment) * part.X_SC);
+}
+
+// Solids of one body: only if the model says so, and not beside a joint, where they overlap by design.
+bool Assembly::may_touch(std::uint32_t solid, std::uint32_t other) const {
+  if (!anchors.moves(solid)) return false;
+  const Mechanism& mechanism = members[anchors.member(solid)].multibody->mechanism();
+  if (!mechanism.model().self_collide) return false;
+  const auto above = [&](int segment) {
+    // Over the massless middle of a universal joint.
+    const auto& segments = mechanism.segments();
+    int parent = segments[static_cast<std::size_t>(segment)].parent;
+    while (parent >= 0 && segments[static_cast<std::size_t>(parent)].mass == 0.0)
+      parent = segments[static_cast<std::size_t>(parent)].parent;
+    return parent;
+  };
+  const int one = anchors.part_of_solid[solid].segment;
+  const int two = anchors.part_of_solid[other].segment;
+  return one != two && above(one) != two && above(two) != one;
+}
+
+// One look around the scene for all of a body.
+void Assembly::look_around(const Member& member, std::vector<std::uint32_t>& near,
+                           std::vector<std::uint32_t>& candidates) {
+  Multibody& multibody = *member.multibody;
+  if (member.parts.empty() && multibody.treels().empty()) return;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  geometry::Bounds around{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
+  for (const Part& part : member.parts) around.include(scene.bounds(part.solid).grown_by(Collision::margin));
+  const Pose& X_WS = multibody.segment_pose(0);
+  for (const TrackRows& treel : multibody.treels()) around.include(treel.ground_region(X_WS));
+  near.clear();
+  scene.for_each_overlap(around, [&](std::uint32_t solid) { near.push_back(solid); });
+  std::sort(near.begin(), near.end());
+
+  for (const Part& part : member.parts) collision.detect(part.solid, near);
+  for (TrackRows& treel : multibody.treels()) {
+    const geometry::Bounds region = treel.ground_region(X_WS);
+    candidates.clear();
+    for (const std::uint32_t solid : near)
+      if (scene.solid(solid).body != member.body && scene.reaches_into(solid, region)) candidates.push_back(solid);
+    treel.find_ground(scene, X_WS, candidates);
+  }
+}
+
+void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) const {
+  Equations& equations = bodies[anchors.index_of_member[member]];
+  equations.set_up(*members[member].multibody, gravity, step);
+  members[member].multibody->apply_efforts(equations, step);
+  pushes.for_each_of(member, [&](const Pushes::Push& push) {
+    equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
+  });
+}
+
+void Assembly::add_own_rows(std::uint32_t member, Problem& problem) {
+  members[member].multibody->add_rows(problem, anchors.index_of_member[member], anchors, step);
+}
+
+void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
+  if (connection.b().member != Anchors::nobody && anchors.index_of_member[connection.b().member] < 0) return;
+  connection.add_rows(problem, anchors, pose_of(connection.a()), pose_of(connection.b()), step);
+}
+
+void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
+  if (anchors.moves(pair.b) && anchors.of(pair.b).body < 0) return;
+  const SurfacePair both = surfaces.of(scene.solid(pair.a).surface, scene.solid(pair.b).surface);
+  physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, step);
+}
+
+bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
+  const Equations& equations = bodies[anchors.index_of_member[member]];
+  return members[member].is_finite = is_sensible(equations.velocity(), equations.size());
+}
+
+void Assembly::integrate(std::uint32_t index, const Problem& problem) {
+  Member& member = members[index];
+  Multibody& multibody = *member.multibody;
+  for (TrackRows& treel : multibody.treels()) treel.read_rows(problem, step);
+  if (member.record) member.record->begin(multibody);
+  multibody.integrate(problem.equations(anchors.index_of_member[index]).velocity(), step);
+  if (member.record) member.record->finish(multibody, gravity, step);
+  const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
+  member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest;
+  place_solids_of(member);
+}
+
+}  // namespace cohort::physics

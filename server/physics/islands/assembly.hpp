@@ -1,0 +1,143 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "server/physics/world/anchors.hpp"
+#include "server/physics/contact/collision.hpp"
+#include "server/physics/multibody/connections.hpp"
+#include "server/physics/multibody/contact_rows.hpp"
+#include "server/physics/islands/force_record.hpp"
+#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/world/pushes.hpp"
+#include "server/physics/multibody/rows.hpp"
+
+namespace cohort::physics {
+
+/// A solid of a body that moves.
+struct Part {
+  std::uint32_t solid = 0;
+  int segment = 0;
+  Pose X_SC;
+};
+
+/// A body that moves.
+struct Member {
+  std::uint32_t body = 0;
+  std::unique_ptr<Multibody> multibody;
+  std::vector<Part> parts;  ///< ascending solids
+  bool is_active = true;
+  bool is_finite = true;                  ///< of the last step: its velocities were
+  bool is_inside = true;                  ///< of the last step: it is still in the world
+  std::unique_ptr<ForceRecord> record{};  ///< null: nobody asked for it
+};
+
+/// The bodies of a world that move, and all that couples them to each other and to what stands still: what the rows of
+/// an island are made from. Of different members from different threads, unless a function says otherwise.
+struct Assembly {
+  explicit Assembly(const description::World& world);
+  Assembly(const Assembly&) = delete;
+  Assembly& operator=(const Assembly&) = delete;
+
+  double step;                            ///< [s]
+  Eigen::Vector3d gravity;                ///< [m/s^2]
+  description::PhysicsSettings settings;  ///< with the lowest point that is meant if the world does not say
+  SurfacePairs surfaces;
+  geometry::Scene scene;
+  Anchors anchors;
+  Collision collision;
+  std::vector<Member> members;
+  Connections connections;
+  Pushes pushes;
+
+  /// One thread alone. `shapes`: of the model's collisions, in their order. Returns the solids.
+  std::vector<std::uint32_t> add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
+                                        std::span<const std::shared_ptr<const BulletShape>> shapes);
+  /// One thread alone. Returns the index of the member.
+  std::uint32_t add_member(std::unique_ptr<Multibody> multibody,
+                           std::span<const std::shared_ptr<const BulletShape>> shapes);
+  /// From then on nothing touches it. One thread alone.
+  void take_out(std::uint32_t member);
+  /// In the world again, as it was, but at rest if it broke or had left the world. One thread alone.
+  void put_back(std::uint32_t index);
+  /// At rest at X_WM, with its joints as they are. One thread alone.
+  void place(std::uint32_t index, const Pose& X_WM);
+  void place_solids_of(const Member& member);
+  /// From the next step on keeps what goes through the member's joints. One thread alone.
+  void record(std::uint32_t index);
+  /// Tells the records what acted on their bodies in this step; after it, before anything is released or taken out. One
+  /// thread alone.
+  void record_outside();
+  /// Whether an end is on a light part of its body.
+  bool is_light(const Connection::End& end) const {
+    return end.member != Anchors::nobody && members[end.member].multibody->mechanism().is_light(end.segment);
+  }
+  /// X_WS of the segment that an end is on; of the world's none.
+  Pose pose_of(const Connection::End& end) const {
+    return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->segment_pose(end.segment);
+  }
+
+  /// Finds what the member touches and stands on. The vectors are scratch memory.
+  void look_around(const Member& member, std::vector<std::uint32_t>& near, std::vector<std::uint32_t>& candidates);
+
+  /// Calls `visit(other)` for every member that this one is coupled to by what it reports: its pairs, its connections
+  /// and what its tracks stand on. Some more than once.
+  template <class Visit>
+  void for_each_coupled(std::uint32_t member, Visit&& visit) {
+    for_each_pair(member, [&](const SolidPair& pair) {
+      if (anchors.moves(pair.b)) visit(anchors.member(pair.b));
+    });
+    connections.for_each_of(member, [&](const Connection& connection) {
+      if (connection.b().member != Anchors::nobody) visit(connection.b().member);
+    });
+    for_each_ground(member, visit);
+  }
+  /// The pairs with contact points that the member reports.
+  template <class Visit>
+  void for_each_pair(std::uint32_t member, Visit&& visit) {
+    for (const Part& part : members[member].parts)
+      for (SolidPair& pair : collision.pairs_of(part.solid))
+        if (pair.contact.count > 0) visit(pair);
+  }
+  template <class Visit>
+  void for_each_pair(std::uint32_t member, Visit&& visit) const {
+    for (const Part& part : members[member].parts)
+      for (const SolidPair& pair : collision.pairs_of(part.solid))
+        if (pair.contact.count > 0) visit(pair);
+  }
+  /// The members that the tracks of this one stand on.
+  template <class Visit>
+  void for_each_ground(std::uint32_t member, Visit&& visit) const {
+    for (const TrackRows& treel : members[member].multibody->treels())
+      treel.for_each_ground([&](std::uint32_t solid) {
+        if (anchors.moves(solid)) visit(anchors.member(solid));
+      });
+  }
+
+  // Rows, of what is in the problem. What a row couples must be set up.
+  void set_up(std::uint32_t member, IslandBodies& bodies) const;
+  void add_own_rows(std::uint32_t member, Problem& problem);
+  void add_connection_rows(Connection& connection, Problem& problem);
+  void add_contact_rows(SolidPair& pair, Problem& problem) const;
+
+  /// Whether its velocities are such that the step may go on; the member is told.
+  bool check(std::uint32_t member, const IslandBodies& bodies);
+  /// Moves the body by the velocities found. `problem`: the one that has its own rows.
+  void integrate(std::uint32_t index, const Problem& problem);
+
+ private:
+  /// Of the collision `number` of a link.
+  void add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
+                 const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape);
+  bool may_touch(std::uint32_t solid, std::uint32_t other) const;
+  ForceRecord* record_of(std::uint32_t member) const {
+    return member == Anchors::nobody ? nullptr : members[member].record.get();
+  }
+  void record_pair(const SolidPair& pair) const;
+  void record_connection(const Connection& connection) const;
+
+  bool has_records_ = false;
+};
+
+}  // namespace cohort::physics

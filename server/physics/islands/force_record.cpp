@@ -1,0 +1,127 @@
+#include "server/physics/islands/force_record.hpp"
+
+namespace cohort::physics {
+
+using Eigen::Vector3d;
+
+ForceRecord::ForceRecord(const Mechanism& mechanism, std::uint32_t first_solid,
+                         std::vector<std::size_t> links_of_solids)
+    : mechanism_(mechanism), first_solid_(first_solid), links_of_solids_(std::move(links_of_solids)) {
+  const description::Model& model = mechanism.model();
+  for (std::size_t link = 0; link < model.links.size(); ++link) parents_.push_back(link);
+  for (const description::Joint& joint : model.joints)
+    if (joint.parent != description::Joint::world) parents_[joint.child] = joint.parent;
+}
+
+void ForceRecord::begin(const Multibody& body) {
+  motion_.before(body, parents_.size());
+  const std::size_t segments = mechanism_.segments().size();
+  X_WS_.resize(segments);
+  for (std::size_t s = 0; s < segments; ++s) X_WS_[s] = body.segment_pose(static_cast<int>(s));
+  velocities_.assign(body.velocities(), body.velocities() + mechanism_.dof_count());
+  reference_W_ = body.reference();
+}
+
+void ForceRecord::finish(const Multibody& body, const Vector3d& gravity, double step) {
+  step_ = step;
+  motion_.after(body, parents_.size());
+  find_accelerations(body, step);
+  needed_.resize(parents_.size());
+  for (std::size_t link = 0; link < parents_.size(); ++link) {
+    const description::Inertial& inertial = mechanism_.model().links[link].inertial;
+    const auto segment = static_cast<std::size_t>(mechanism_.link(link).segment);
+    const SegmentMotion& motion = segments_[segment];
+    const Vector3d& w = motion.angular_velocity_W;
+    const Pose X_WI = motion_.pose_before(link) * inertial.X_LI;
+    const Vector3d arm_W = X_WI.position - X_WS_[segment].position;
+    const Vector3d acceleration_W =
+        motion.acceleration_W + motion.angular_acceleration_W.cross(arm_W) + w.cross(w.cross(arm_W));
+    const Eigen::Matrix3d R = X_WI.orientation.toRotationMatrix();
+    const Eigen::Matrix3d inertia_W = R * inertial.inertia * R.transpose();
+    Wrench& needed = needed_[link];
+    needed.force_W = inertial.mass * (acceleration_W - gravity);
+    needed.torque_W = inertia_W * motion.angular_acceleration_W + w.cross(inertia_W * w) +
+                      (X_WI.position - reference_W_).cross(needed.force_W);
+  }
+}
+
+// From the root to the leaves, of the segments' origins (Craig, "Introduction to robotics", section 6.5).
+void ForceRecord::find_accelerations(const Multibody& body, double step) {
+  segments_.resize(X_WS_.size());
+  const Vector3d zero = Vector3d::Zero();
+  for (std::size_t s = 0; s < X_WS_.size(); ++s) {
+    const Segment& segment = mechanism_.segments()[s];
+    const double* before = velocities_.data() + segment.first_dof;
+    const double* after = body.velocities() + segment.first_dof;
+    const auto velocity = [&](int i) { return Vector3d(before[i], before[i + 1], before[i + 2]); };
+    const auto acceleration = [&](int i) -> Vector3d {
+      return (Vector3d(after[i], after[i + 1], after[i + 2]) - velocity(i)) / step;
+    };
+    SegmentMotion& motion = segments_[s];
+    motion = {zero, zero, zero};
+    if (segment.parent >= 0) {
+      const auto parent = static_cast<std::size_t>(segment.parent);
+      motion = segments_[parent];
+      const Vector3d arm_W = X_WS_[s].position - X_WS_[parent].position;
+      const Vector3d& w = motion.angular_velocity_W;
+      motion.acceleration_W += motion.angular_acceleration_W.cross(arm_W) + w.cross(w.cross(arm_W));
+    }
+    const Vector3d w = motion.angular_velocity_W;  // of the parent
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free: {
+        const Vector3d arm_W = X_WS_[s].position - reference_W_;
+        motion.angular_velocity_W = velocity(0);
+        motion.angular_acceleration_W = acceleration(0);
+        motion.acceleration_W = acceleration(3) + motion.angular_acceleration_W.cross(arm_W) +
+                                motion.angular_velocity_W.cross(motion.angular_velocity_W.cross(arm_W));
+        break;
+      }
+      case Motion::revolute: {
+        const Vector3d axis_W = X_WS_[s].orientation * segment.axis_S;
+        motion.angular_velocity_W += before[0] * axis_W;
+        motion.angular_acceleration_W += (after[0] - before[0]) / step * axis_W + w.cross(before[0] * axis_W);
+        break;
+      }
+      case Motion::prismatic: {
+        const Vector3d axis_W = X_WS_[s].orientation * segment.axis_S;
+        motion.acceleration_W += (after[0] - before[0]) / step * axis_W + 2.0 * w.cross(before[0] * axis_W);
+        break;
+      }
+      case Motion::ball: {
+        const Vector3d relative_W = X_WS_[s].orientation * velocity(0);
+        motion.angular_velocity_W += relative_W;
+        motion.angular_acceleration_W += X_WS_[s].orientation * acceleration(0) + w.cross(relative_W);
+        break;
+      }
+    }
+  }
+}
+
+void ForceRecord::add_outside(std::size_t link, const Vector3d& point_W, const Vector3d& impulse_W,
+                              const Vector3d& angular_impulse_W) {
+  if (!motion_.is_whole()) return;
+  const Vector3d torque_W = angular_impulse_W + (point_W - reference_W_).cross(impulse_W);
+  needed_[link].force_W -= impulse_W / step_;
+  needed_[link].torque_W -= torque_W / step_;
+}
+
+Wrench ForceRecord::joint_wrench(std::size_t index) const {
+  Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
+  if (!motion_.is_whole()) return sum;
+  const description::Joint& joint = mechanism_.model().joints[index];
+  // The child with all that hangs on it: links come after their parents.
+  std::vector<char> is_below(parents_.size(), 0);
+  is_below[joint.child] = 1;
+  for (std::size_t link = joint.child; link < parents_.size(); ++link) {
+    if (link != joint.child) is_below[link] = is_below[parents_[link]] != 0 && parents_[link] != link ? 1 : 0;
+    if (is_below[link] == 0) continue;
+    sum.force_W += needed_[link].force_W;
+    sum.torque_W += needed_[link].torque_W;
+  }
+  const Vector3d origin_W = motion_.pose_before(joint.child) * joint.X_LJ.position;
+  sum.torque_W -= (origin_W - reference_W_).cross(sum.force_W);
+  return sum;
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,89 @@
+#include "server/physics/islands/island_solver.hpp"
+
+#include "server/physics/solvers/active_set_solver.hpp"
+#include "server/physics/solvers/direct_solver.hpp"
+#include "server/physics/solvers/iterative_solver.hpp"
+
+namespace cohort::physics {
+
+namespace {
+
+// Where light links hold heavy bodies sequential impulses give way by millimetres. A few are solved exactly instead;
+// beyond, that takes too long.
+constexpr std::size_t most_solved_as_group = 6;
+
+}  // namespace
+
+bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
+  return settings.solver == description::Solver::direct ||
+         (settings.solver == description::Solver::hybrid && bodies <= settings.direct_bodies);
+}
+
+void number_bodies(std::span<const std::uint32_t> members, Assembly& assembly, IslandBodies& bodies) {
+  bodies.reset(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i) assembly.anchors.index_of_member[members[i]] = static_cast<int>(i);
+}
+
+void leave_out_broken(std::vector<std::uint32_t>& members, Assembly& assembly) {
+  std::erase_if(members, [&](std::uint32_t member) {
+    if (assembly.members[member].is_finite) return false;
+    assembly.anchors.index_of_member[member] = -1;
+    return true;
+  });
+}
+
+void keep_impulses(const Problem& problem) {
+  for (const Row& row : problem.rows())
+    if (row.kept != nullptr) *row.kept = row.impulse;
+}
+
+void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
+  sound_.clear();
+  for (const std::uint32_t member : members)
+    if (assembly.members[member].is_active) sound_.push_back(member);
+  while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
+}
+
+// False, and no body moved, if one of them has no sensible velocities.
+bool IslandSolver::try_to_solve(Assembly& assembly) {
+  const auto all_are_finite = [&] {
+    bool all = true;
+    for (const std::uint32_t member : sound_) all = assembly.check(member, bodies_) && all;
+    return all;
+  };
+  number_bodies(sound_, assembly, bodies_);
+  for (const std::uint32_t member : sound_) assembly.set_up(member, bodies_);
+  if (!all_are_finite()) return false;
+
+  problem_.clear();
+  for (const std::uint32_t member : sound_) assembly.add_own_rows(member, problem_);
+  bool has_connections = false;
+  bool has_light_connections = false;
+  for (const std::uint32_t member : sound_)
+    assembly.connections.for_each_of(member, [&](Connection& connection) {
+      assembly.add_connection_rows(connection, problem_);
+      has_connections = true;
+      has_light_connections =
+          has_light_connections || assembly.is_light(connection.a()) || assembly.is_light(connection.b());
+    });
+  for (const std::uint32_t member : sound_)
+    assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_); });
+
+  const bool directly = is_solved_directly(assembly.settings, sound_.size());
+  bool is_solved = false;
+  if (directly) {
+    is_solved = solve_directly(problem_);
+  } else if (has_light_connections && sound_.size() <= most_solved_as_group) {
+    is_solved = group_solver_.solve(problem_) || solve_directly(problem_);
+  } else {
+    is_solved = solve_by_active_set(problem_);
+  }
+  if (!is_solved) solve_iteratively(problem_, assembly.settings.iterations, has_connections ? start_of_connected : 1.0);
+  if (!all_are_finite()) return false;
+
+  keep_impulses(problem_);
+  for (const std::uint32_t member : sound_) assembly.integrate(member, problem_);
+  return true;
+}
+
+}  // namespace cohort::physics

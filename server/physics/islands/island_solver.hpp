@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "server/physics/islands/assembly.hpp"
+#include "server/physics/solvers/group_solver.hpp"
+
+namespace cohort::physics {
+
+/// Moves the bodies of one island by one step. Keeps its memory from island to island: one for each worker.
+class IslandSolver {
+ public:
+  /// A body whose state breaks is left where it is, and the rest of the island solved without it.
+  void solve(Assembly& assembly, std::span<const std::uint32_t> members);
+
+ private:
+  bool try_to_solve(Assembly& assembly);
+
+  IslandBodies bodies_;
+  Problem problem_{bodies_};
+  GroupSolver group_solver_;
+  std::vector<std::uint32_t> sound_;  // members
+};
+
+/// Whether an island of so many bodies is solved by Dantzig's algorithm.
+bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);
+
+/// Gives each its index in `bodies`.
+void number_bodies(std::span<const std::uint32_t> members, Assembly& assembly, IslandBodies& bodies);
+/// Takes those whose state broke out of `members`.
+void leave_out_broken(std::vector<std::uint32_t>& members, Assembly& assembly);
+/// Keeps the impulses for the next step's start.
+void keep_impulses(const Problem& problem);
+
+}  // namespace cohort::physics

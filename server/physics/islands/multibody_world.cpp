@@ -1,0 +1,223 @@
+#include "server/physics/islands/multibody_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace cohort::physics {
+namespace {
+
+constexpr std::size_t bodies_a_chunk = 16;
+constexpr std::size_t islands_a_chunk = 8;
+
+}  // namespace
+
+MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool& workers)
+    : description_(description),
+      workers_(workers),
+      mechanisms_(description.models.size()),
+      shapes_(description.models.size()),
+      assembly_(description),
+      large_island_solver_(workers),
+      memory_(workers.threads()) {
+  bodies_.reserve(description.instances.size());
+  for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
+  assembly_.scene.build();
+  find_lowest();
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(body);
+}
+
+std::uint32_t MultibodyWorld::add_body(std::size_t model, const Pose& X_WM) {
+  const std::uint32_t body = create_body(model, X_WM);
+  assembly_.scene.build();
+  return body;
+}
+
+std::uint32_t MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM) {
+  const auto body = static_cast<std::uint32_t>(bodies_.size());
+  const description::Model& model = description_.models[model_index];
+  if (model_index >= shapes_.size()) {  // it has come since
+    mechanisms_.resize(model_index + 1);
+    shapes_.resize(model_index + 1);
+  }
+  std::unique_ptr<Multibody> multibody = model.is_static ? nullptr : make_multibody(model_index, X_WM, body);
+  std::vector<std::shared_ptr<const BulletShape>>& shapes = shapes_[model_index];
+  if (shapes.empty())
+    for (const description::Link& link : model.links)
+      for (const description::Collision& collision : link.collisions)
+        shapes.push_back(std::make_shared<BulletShape>(collision.shape));
+  PlacedBody placed;
+  placed.model = model_index;
+  placed.X_WM = X_WM;
+  if (multibody)
+    placed.member = assembly_.add_member(std::move(multibody), shapes);
+  else
+    placed.solids = assembly_.add_static(body, model, X_WM, shapes);
+  bodies_.push_back(std::move(placed));
+  return body;
+}
+
+std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_index, const Pose& X_WM,
+                                                          std::uint32_t body) {
+  const description::Model& model = description_.models[model_index];
+  std::unique_ptr<Mechanism>& known = mechanisms_[model_index];
+  try {
+    std::unique_ptr<Mechanism> made =
+        known ? nullptr : std::make_unique<Mechanism>(model, description_.physics.fidelity);
+    auto multibody = std::make_unique<Multibody>(made ? *made : *known, X_WM, body);
+    if (made) known = std::move(made);
+    return multibody;
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("model '" + model.name + "': " + error.what());
+  }
+}
+
+// Well below everything that was there at first, unless the world says where.
+void MultibodyWorld::find_lowest() {
+  constexpr double below_all = 10.0;  // [m]
+  double& lowest = assembly_.settings.lowest;
+  if (std::isfinite(lowest)) return;
+  lowest = std::numeric_limits<double>::infinity();
+  const geometry::Scene& scene = assembly_.scene;
+  for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
+    const double low = scene.bounds(solid).lower.z();
+    lowest = std::min(lowest, std::isfinite(low) ? low : scene.solid(solid).X_WC.position.z());
+  }
+  for (const Member& member : assembly_.members)
+    lowest = std::min(lowest, member.multibody->segment_pose(0).position.z());
+  lowest -= below_all;
+}
+
+bool MultibodyWorld::is_active(std::uint32_t body) const {
+  return is_static(body) ? !bodies_[body].is_out : assembly_.members[bodies_[body].member].is_active;
+}
+
+Pose MultibodyWorld::link_pose(std::uint32_t body, std::size_t link) const {
+  if (!is_static(body)) return multibody(body).link_pose(link);
+  return bodies_[body].X_WM * description_.models[bodies_[body].model].links[link].X_ML;
+}
+
+Twist MultibodyWorld::link_twist(std::uint32_t body, std::size_t link) const {
+  if (!is_static(body) && is_active(body)) return multibody(body).link_twist(link);
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
+Wrench MultibodyWorld::joint_wrench(std::uint32_t body, std::size_t joint) const {
+  if (const ForceRecord* record = record_of(body)) return record->joint_wrench(joint);
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
+Eigen::Vector3d MultibodyWorld::link_acceleration(std::uint32_t body, std::size_t link,
+                                                  const Eigen::Vector3d& p_LP) const {
+  if (const ForceRecord* record = record_of(body)) return record->motion().acceleration(link, p_LP, assembly_.step);
+  return Eigen::Vector3d::Zero();
+}
+
+Wrench MultibodyWorld::connection_wrench(std::uint32_t index) const {
+  const Connection& connection = assembly_.connections[index];
+  return connection.wrench_on_a(assembly_.pose_of(connection.a()), assembly_.pose_of(connection.b()), assembly_.step);
+}
+
+Wrench MultibodyWorld::connection_reaction(std::uint32_t index) const {
+  const Connection& connection = assembly_.connections[index];
+  return connection.wrench_on_b(assembly_.pose_of(connection.a()), assembly_.pose_of(connection.b()), assembly_.step);
+}
+
+void MultibodyWorld::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                                     std::span<const double> velocities) {
+  multibody(body).set_joint_state(joint, coordinates, velocities);
+  assembly_.place_solids_of(assembly_.members[bodies_[body].member]);
+  assembly_.scene.update();
+}
+
+void MultibodyWorld::step() {
+  detect();
+  find_islands();
+  solve_islands();
+  report_contacts();
+  assembly_.connections.settle([&](const Connection::End& end) { return assembly_.pose_of(end); }, assembly_.step);
+  assembly_.record_outside();
+  assembly_.connections.break_overloaded(assembly_.step);
+  quarantine();
+  assembly_.pushes.clear();
+  assembly_.scene.update();
+}
+
+void MultibodyWorld::detect() {
+  const std::vector<Member>& members = assembly_.members;
+  workers_.for_each_chunk(members.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    Memory& memory = memory_[worker];
+    for (std::size_t i = begin; i < end; ++i)
+      if (members[i].is_active) assembly_.look_around(members[i], memory.near, memory.candidates);
+  });
+}
+
+void MultibodyWorld::find_islands() {
+  const auto count = static_cast<std::uint32_t>(assembly_.members.size());
+  islands_.reset(count);
+  for (std::uint32_t member = 0; member < count; ++member)
+    if (assembly_.members[member].is_active)
+      assembly_.for_each_coupled(member, [&](std::uint32_t other) { islands_.link(member, other); });
+  islands_.finish();
+}
+
+// The small ones first, each by one worker; then the large ones, each by all workers.
+void MultibodyWorld::solve_islands() {
+  const auto is_large = [&](std::uint32_t island) {
+    const std::size_t bodies = islands_.members(island).size();
+    return bodies >= LargeIslandSolver::least_bodies && !is_solved_directly(assembly_.settings, bodies);
+  };
+  workers_.for_each_chunk(islands_.count(), islands_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
+      if (!is_large(island)) memory_[worker].solver.solve(assembly_, islands_.members(island));
+  });
+  for (std::uint32_t island = 0; island < islands_.count(); ++island)
+    if (is_large(island)) large_island_solver_.solve(assembly_, islands_.members(island));
+}
+
+void MultibodyWorld::quarantine() {
+  quarantined_.clear();
+  for (std::uint32_t index = 0; index < assembly_.members.size(); ++index) {
+    const Member& member = assembly_.members[index];
+    if (!member.is_active || (member.is_finite && member.is_inside)) continue;
+    using Reason = Quarantine::Reason;
+    quarantined_.push_back({member.body, member.is_finite ? Reason::left_world : Reason::not_finite});
+    assembly_.take_out(index);
+  }
+}
+
+std::uint32_t MultibodyWorld::connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                                      std::size_t link_b, const ConnectionLimits& limits) {
+  const Multibody& a = multibody(body_a);
+  const Mechanism::LinkPlace& place_a = a.mechanism().link(link_a);
+  const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
+                              place_a.X_SL * X_LP, body_a};
+  const Pose X_WP = a.segment_pose(place_a.segment) * end_a.X_SP;
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, body_b};
+  if (!is_static(body_b)) {
+    const Multibody& b = multibody(body_b);
+    const int segment = b.mechanism().link(link_b).segment;
+    end_b = {bodies_[body_b].member, segment, static_cast<std::uint32_t>(link_b),
+             b.segment_pose(segment).inverse() * X_WP, body_b};
+  }
+  return assembly_.connections.add(end_a, end_b, limits);
+}
+
+void MultibodyWorld::report_contacts() {
+  contacts_.clear();
+  const geometry::Scene& scene = assembly_.scene;
+  for (std::uint32_t member = 0; member < assembly_.members.size(); ++member) {
+    assembly_.for_each_pair(member, [&](const SolidPair& pair) {
+      for (const ContactPoint& point : pair.contact) {
+        if (point.gap > 0.0 && point.impulse[0] == 0.0) continue;  // near, but it did not touch
+        contacts_.push_back({scene.solid(pair.a).body, scene.solid(pair.b).body, point.position_W, point.normal_W,
+                             point.gap, point.impulse[0], pair.a, pair.b});
+      }
+    });
+  }
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,62 @@
+// The state of a world, hashed, saved and restored: all three see the same numbers.
+
+#include "server/core/state_visitors.hpp"
+#include "server/physics/islands/multibody_world.hpp"
+
+namespace cohort::physics {
+
+void MultibodyWorld::hash_body(std::uint32_t body, StateHash& hash) const {
+  hash_changes(bodies_[body], hash);
+  if (is_static(body)) return;
+  StateHasher{hash}(is_active(body));
+  Multibody::visit_state(multibody(body), StateHasher{hash});
+}
+
+void MultibodyWorld::hash_contacts(StateHash& hash) const {
+  assembly_.connections.hash(hash);
+  for (std::uint32_t member = 0; member < assembly_.members.size(); ++member) {
+    assembly_.for_each_pair(member, [&](const SolidPair& pair) {
+      hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
+      for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateHasher{hash});
+    });
+  }
+}
+
+void MultibodyWorld::save(SnapshotWriter& writer) const {
+  const StateSaver save{writer};
+  save_added_bodies(bodies_, description_.instances.size(), writer);
+  save_changes(bodies_, writer);
+  for (const Member& member : assembly_.members) {
+    save(member.is_active);
+    save(member.is_finite);
+    save(member.is_inside);
+    Multibody::visit_state(*member.multibody, save);
+  }
+  assembly_.connections.save(writer);
+  assembly_.collision.save(writer);
+}
+
+void MultibodyWorld::restore(SnapshotReader& reader) {
+  const StateRestorer restore{reader};
+  restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
+                       [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
+  assembly_.scene.build();
+  restore_changes(reader, *this);
+  for (std::uint32_t index = 0; index < assembly_.members.size(); ++index) {
+    bool is_active = true;
+    restore(is_active);
+    Member& member = assembly_.members[index];
+    restore(member.is_finite);
+    restore(member.is_inside);
+    Multibody::visit_state(*member.multibody, restore);
+    member.multibody->update_poses();
+    assembly_.place_solids_of(member);
+    if (!is_active) assembly_.take_out(index);
+  }
+  assembly_.scene.update();
+  assembly_.connections.restore(reader, assembly_.members.size());
+  assembly_.collision.restore(reader);
+  report_contacts();
+}
+
+}  // namespace cohort::physics

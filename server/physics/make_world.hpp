@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "server/physics/world/physics_world.hpp"
+
+namespace cohort::physics {
+
+/// The world that the fidelity of `description` asks for. Keeps a reference to both. Throws std::invalid_argument for a
+/// model that cannot be simulated.
+std::unique_ptr<World> make_world(const description::World& description, WorkerPool& workers);
+
+}  // namespace cohort::physics

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+
+#include "server/physics/world/anchors.hpp"
+#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/multibody/rows.hpp"
+#include "server/physics/world/physics_world.hpp"
+
+namespace cohort::physics {
+
+/// Two segments held together as they were when they were connected, or as they came to be by slipping.
+class Connection {
+ public:
+  /// One end: a segment of a body that moves, or the world if there is no body. `X_SP`: the frame of the connection.
+  struct End {
+    std::uint32_t member = Anchors::nobody;
+    int segment = 0;
+    std::uint32_t link = 0;  ///< of the model; several may be one segment
+    Pose X_SP;
+    std::uint32_t body = 0;  ///< in the world, also if it does not move
+  };
+  using Impulses = std::array<double, 6>;  ///< linear [N s], then angular [N m s]
+
+  /// `a` is on a body that moves.
+  Connection(const End& a, const End& b, const ConnectionLimits& limits) : a_(a), b_(b), limits_(limits) {}
+
+  const End& a() const { return a_; }
+  const End& b() const { return b_; }
+  const ConnectionLimits& limits() const { return limits_; }
+  const ConnectionGive& give() const { return give_; }
+  void set_give(const ConnectionGive& give);
+  bool holds() const { return holds_; }
+  void release();
+  /// Releases it for what the last step did to it, which `wrench` tells until the end of the next.
+  void break_now();
+  /// From now on `wrench` no longer tells what broke it.
+  void forget_break() { breaking_ = {}; }
+
+  /// Adds three rows against moving apart and three against turning; X_WS: of the segments of both ends.
+  void add_rows(Problem& problem, const Anchors& anchors, const Pose& X_WSa, const Pose& X_WSb, double step);
+  /// Whether it has to be told where its ends are after each step.
+  bool may_slip() const { return yields_; }
+  /// After the step: takes over the impulses, and the rest from where it slipped.
+  void settle(const Pose& X_WSa, const Pose& X_WSb, double step);
+
+  /// On a by b over the last step, in world axes, at `point`. For a solver with rows of its own.
+  Impulses& impulses() { return impulses_; }
+  const Impulses& impulses() const { return impulses_; }
+  /// Halfway between the two ends, where the last step took its rows.
+  const Eigen::Vector3d& point() const { return point_W_; }
+  /// The sum over the last step at `point`; X_WSa and X_WSb: of the segments of both ends.
+  Wrench wrench_on_a(const Pose& X_WSa, const Pose& X_WSb, double step) const;
+  Wrench wrench_on_b(const Pose& X_WSa, const Pose& X_WSb, double step) const;
+  /// Whether the last step took more than it can bear.
+  bool is_overloaded(double step) const;
+
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    visit(self.holds_);
+    for (auto& impulse : self.impulses_) visit(impulse);
+    visit.unusual(self.yields_, false);
+    if (!self.yields_) return;
+    visit(self.give_.linear_stiffness);
+    visit(self.give_.linear_damping);
+    visit(self.give_.holding_force);
+    for (auto* each : {&self.give_.angular_stiffness, &self.give_.angular_damping, &self.give_.holding_torque})
+      for (int axis = 0; axis < 3; ++axis) visit((*each)[axis]);
+    for (int i = 0; i < 3; ++i) visit(self.b_.X_SP.position[i]);
+    for (int i = 0; i < 4; ++i) visit(self.b_.X_SP.orientation.coeffs()[i]);
+  }
+
+ private:
+  struct Spring {
+    double stiffness;
+    double damping;
+    double limit;
+  };
+  Spring spring(int axis) const;
+  void add_yielding_rows(Problem& problem, Anchor a, Anchor b, const Pose& X_WPa, const Pose& X_WPb, double step);
+  const Impulses& last() const { return holds_ ? impulses_ : breaking_; }
+
+  End a_;
+  End b_;
+  ConnectionLimits limits_;
+  ConnectionGive give_;
+  bool holds_ = true;
+  bool yields_ = false;  // it has, or had, a give
+  Impulses impulses_{};
+  // Of the last step, no part of the state:
+  Impulses breaking_{};
+  Impulses row_impulses_{};  // of what yields: along the axes of P
+  Eigen::Matrix3d axes_W_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d point_W_ = Eigen::Vector3d::Zero();
+  bool has_rows_ = false;
+};
+
+}  // namespace cohort::physics

@@ -1,0 +1,132 @@
+#include "server/physics/multibody/contact_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cohort::physics {
+namespace {
+
+// Share of the overlap that one step takes away, and how fast it may at the most [m/s].
+constexpr double correction_share = 0.2;
+constexpr double max_correction_velocity = 0.3;
+// Slower than this nothing bounces [m/s]: what rests would never come to rest.
+constexpr double least_bounce = 0.05;
+
+struct Tangents {
+  Eigen::Vector3d first;
+  Eigen::Vector3d second;
+};
+
+Tangents tangents_of(const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d across =
+      std::abs(normal.z()) > 0.7 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d first = (across - normal.dot(across) * normal).normalized();
+  return {first, normal.cross(first)};
+}
+
+}  // namespace
+
+SurfacePairs::SurfacePairs(const description::World& world)
+    : materials_(world.materials.size()), pairs_(materials_ * materials_), is_given_(materials_ * materials_, 0) {
+  for (const description::MaterialPair& pair : world.material_pairs) {
+    for (const std::size_t index : {pair.first * materials_ + pair.second, pair.second * materials_ + pair.first}) {
+      pairs_[index] = {pair.friction, pair.restitution, pair.rolling_resistance};
+      is_given_[index] = 1;
+    }
+  }
+}
+
+namespace {
+
+SurfacePair of_coefficients(const description::Surface& a, const description::Surface& b) {
+  return {std::min(a.friction, b.friction), std::max(a.restitution, b.restitution),
+          std::max(a.rolling_resistance, b.rolling_resistance)};
+}
+
+}  // namespace
+
+SurfacePair SurfacePairs::of(const description::Surface& a, const description::Surface& b) const {
+  if (a.material >= materials_ || b.material >= materials_) return of_coefficients(a, b);  // came later
+  const std::size_t index = a.material * materials_ + b.material;
+  if (is_given_[index]) return pairs_[index];
+  return of_coefficients(a, b);
+}
+
+namespace {
+
+// Where friction starts from. Between two bodies at nothing: what a heap of bodies needed a step ago would rock it, as
+// the solver cannot follow that fast. On the world at what it was, but only the sum over the points, each with its
+// share of the load: they can strain against each other without any effect, and that strain would grow from step to
+// step.
+void start_friction(ContactPoints& contact, bool on_the_world) {
+  double load = 0.0;
+  Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
+  for (const ContactPoint& point : contact) {
+    const Tangents tangents = tangents_of(point.normal_W);
+    load += point.impulse[0];
+    sum_W += point.impulse[1] * tangents.first + point.impulse[2] * tangents.second;
+  }
+  for (ContactPoint& point : contact) {
+    const double share = on_the_world && load > 0.0 ? point.impulse[0] / load : 0.0;
+    const Tangents tangents = tangents_of(point.normal_W);
+    point.impulse[1] = share * tangents.first.dot(sum_W);
+    point.impulse[2] = share * tangents.second.dot(sum_W);
+  }
+}
+
+void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, const SurfacePair& surfaces,
+                    double step) {
+  const int normal = problem.row_count();
+  Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, point.impulse.data());
+  // Apart: may close the gap within the step. Overlapping: pushed out gently.
+  push.target =
+      point.gap > 0.0 ? -point.gap / step : std::min(max_correction_velocity, -point.gap * correction_share / step);
+  push.set_limits(0.0, unlimited);
+  if (surfaces.restitution > 0.0) {
+    const double approach = -problem.velocity_before(push, a, b);
+    if (approach > least_bounce && approach * step > point.gap)
+      push.target = std::max(push.target, surfaces.restitution * approach);
+  }
+
+  const auto limit_by_load = [&](Row& row, double coefficient) {
+    row.limits = Row::Limits::friction;
+    row.friction = coefficient;
+    row.load_begin = normal;
+    row.load_end = normal + 1;
+  };
+  const Tangents tangents = tangents_of(point.normal_W);
+  if (surfaces.friction > 0.0) {
+    Row& first = problem.add_force_row(a, b, point.position_W, tangents.first, &point.impulse[1]);
+    limit_by_load(first, surfaces.friction);
+    first.limits = Row::Limits::cone;
+    Row& second = problem.add_force_row(a, b, point.position_W, tangents.second, &point.impulse[2]);
+    limit_by_load(second, surfaces.friction);
+    second.limits = Row::Limits::coned;
+  } else {
+    point.impulse[1] = point.impulse[2] = 0.0;
+  }
+  if (surfaces.rolling_resistance > 0.0) {
+    limit_by_load(problem.add_torque_row(a, b, tangents.first, point.rolling_impulse.data()),
+                  surfaces.rolling_resistance);
+    limit_by_load(problem.add_torque_row(a, b, tangents.second, &point.rolling_impulse[1]),
+                  surfaces.rolling_resistance);
+  } else {
+    point.rolling_impulse = {};
+  }
+}
+
+}  // namespace
+
+ContactImpulse impulse_of(const ContactPoint& point) {
+  const Tangents tangents = tangents_of(point.normal_W);
+  return {point.impulse[0] * point.normal_W + point.impulse[1] * tangents.first + point.impulse[2] * tangents.second,
+          point.rolling_impulse[0] * tangents.first + point.rolling_impulse[1] * tangents.second};
+}
+
+void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
+                      double step) {
+  start_friction(contact, b.body < 0);
+  for (ContactPoint& point : contact) add_point_rows(problem, a, b, point, surfaces, step);
+}
+
+}  // namespace cohort::physics

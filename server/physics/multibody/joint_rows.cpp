@@ -1,0 +1,102 @@
+#include "server/physics/multibody/joint_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/multibody/rows.hpp"
+
+namespace cohort::physics {
+namespace {
+
+constexpr double correction_share = 0.2;  // of an overshoot, taken away by one step
+// Of what a motor can brake with, the least that is counted on, however much gravity takes of it.
+constexpr double least_braking_share = 0.1;
+
+// The greatest velocity from which a joint that has `way` to go comes to rest there, slower by `braking` [1/s^2] times
+// the step in each step: the sum of v, v - b h, v - 2 b h ... times h is `way`. What is left for one step is done in
+// one.
+double velocity_to_rest(double way, double braking, double step) {
+  const double last = braking * step * step;
+  if (!(way > last)) return way / step;
+  const double half = 0.5 * braking * step;
+  return std::sqrt(half * half + 2.0 * braking * way) - half;
+}
+
+}  // namespace
+
+JointRows::JointRows(const Mechanism& mechanism) : motor_of_(mechanism.dofs().size(), -1) {
+  for (int i = 0; i < mechanism.dof_count(); ++i) {
+    const Dof& dof = mechanism.dofs()[static_cast<std::size_t>(i)];
+    if (dof.coordinate >= 0 && (std::isfinite(dof.axis.lower) || std::isfinite(dof.axis.upper)))
+      limits_.push_back({.dof = i});
+    if (dof.axis.friction > 0.0) frictions_.push_back({.dof = i});
+  }
+}
+
+void JointRows::add_motor(int dof, double max_effort, double max_velocity) {
+  motor_of_[static_cast<std::size_t>(dof)] = static_cast<int>(motors_.size());
+  motors_.push_back({.dof = dof, .max_effort = max_effort, .max_velocity = max_velocity});
+}
+
+void JointRows::apply_efforts(Equations& equations, double step) {
+  for (Motor& motor : motors_) {
+    if (motor.control != Control::effort) continue;
+    motor.impulse = std::clamp(motor.target, -motor.max_effort, motor.max_effort) * step;
+    equations.push_dof(motor.dof, motor.impulse);
+  }
+}
+
+// `row`: of the motor, with the velocities as they are without any impulse of the step.
+double JointRows::velocity_towards_target(const Motor& motor, const Row& row, const Problem& problem,
+                                          const Multibody& body, double step) {
+  const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(motor.dof)];
+  if (dof.coordinate < 0) return 0.0;
+  const double way = std::clamp(motor.target, dof.axis.lower, dof.axis.upper) - body.coordinates()[dof.coordinate];
+  const double direction = way < 0.0 ? -1.0 : 1.0;
+  // What the motor can do, less what gravity and inertia do to the joint in this direction.
+  const double by_motor = row.inverse > 0.0 ? motor.max_effort / row.inverse : 0.0;
+  const double by_others = direction * (problem.velocity(row) - body.velocities()[motor.dof]) / step;
+  const double braking = std::max(by_motor - by_others, least_braking_share * by_motor);
+  return direction * std::min(motor.max_velocity, velocity_to_rest(direction * way, braking, step));
+}
+
+void JointRows::add_rows(Problem& problem, int index, const Multibody& body, double step) {
+  for (Friction& friction : frictions_) {
+    const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(friction.dof)];
+    const double limit = dof.axis.friction * step;
+    problem.add_dof_row(index, friction.dof, &friction.impulse).set_limits(-limit, limit);
+  }
+  for (Motor& motor : motors_) {
+    if (motor.control == Control::effort) continue;
+    Row& row = problem.add_dof_row(index, motor.dof, &motor.impulse);
+    row.target =
+        motor.control == Control::velocity ? motor.target : velocity_towards_target(motor, row, problem, body, step);
+    row.set_limits(-motor.max_effort * step, motor.max_effort * step);
+  }
+  // One-sided rows, as a contact is: inactive until a step could pass the limit.
+  for (Limit& limit : limits_) {
+    const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(limit.dof)];
+    const double position = body.coordinates()[dof.coordinate];
+    const double velocity = body.velocities()[limit.dof];
+    // The velocity that just closes the gap, or that takes back a share of an overshoot.
+    const auto target = [&](double gap) { return (gap > 0.0 ? gap : correction_share * gap) / step; };
+    const auto is_near = [&](double gap) { return gap < 2.0 * std::abs(velocity) * step + 1e-3; };
+    if (is_near(position - dof.axis.lower)) {
+      Row& row = problem.add_dof_row(index, limit.dof, &limit.lower_impulse);
+      row.target = -target(position - dof.axis.lower);
+      row.set_limits(0.0, unlimited);
+    } else {
+      limit.lower_impulse = 0.0;
+    }
+    if (is_near(dof.axis.upper - position)) {
+      Row& row = problem.add_dof_row(index, limit.dof, &limit.upper_impulse);
+      row.target = target(dof.axis.upper - position);
+      row.set_limits(-unlimited, 0.0);
+    } else {
+      limit.upper_impulse = 0.0;
+    }
+  }
+}
+
+}  // namespace cohort::physics

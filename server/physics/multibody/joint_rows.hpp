@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "server/physics/multibody/mechanism.hpp"
+
+namespace cohort::physics {
+
+class Equations;
+class Multibody;
+class Problem;
+struct Row;
+
+/// Motors, limits and friction of the joints of one body.
+class JointRows {
+ public:
+  explicit JointRows(const Mechanism& mechanism);
+
+  /// What a motor is told.
+  enum class Control : std::uint8_t { velocity, position, effort };
+
+  /// A motor on one dof, with a limited force or torque; `max_velocity` is for going to a position. At most one for
+  /// each dof.
+  void add_motor(int dof, double max_effort, double max_velocity);
+  bool has_motor(int dof) const { return motor_of_[static_cast<std::size_t>(dof)] >= 0; }
+  void set_target(int dof, Control control, double target) {
+    motor(dof).control = control;
+    motor(dof).target = target;
+  }
+  /// Impulse of the motor over the last step [N s] or [N m s].
+  double motor_impulse(int dof) const { return motor(dof).impulse; }
+
+  /// Changes the velocities by what motors give that are told an effort; before the rows.
+  void apply_efforts(Equations& equations, double step);
+  void add_rows(Problem& problem, int index, const Multibody& body, double step);
+
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (auto& motor : self.motors_) {
+      visit(motor.target);
+      visit(motor.impulse);
+      visit.unusual(motor.control, Control::velocity);
+    }
+    for (auto& limit : self.limits_) {
+      visit(limit.lower_impulse);
+      visit(limit.upper_impulse);
+    }
+    for (auto& friction : self.frictions_) visit(friction.impulse);
+  }
+
+ private:
+  struct Motor {
+    int dof = 0;
+    double max_effort = 0.0;
+    double max_velocity = 0.0;
+    Control control = Control::velocity;
+    double target = 0.0;
+    double impulse = 0.0;
+  };
+  struct Limit {
+    int dof = 0;
+    double lower_impulse = 0.0;
+    double upper_impulse = 0.0;
+  };
+  struct Friction {
+    int dof = 0;
+    double impulse = 0.0;
+  };
+  static double velocity_towards_target(const Motor& motor, const Row& row, const Problem& problem,
+                                        const Multibody& body, double step);
+  Motor& motor(int dof) { return motors_[static_cast<std::size_t>(motor_of_[static_cast<std::size_t>(dof)])]; }
+  const Motor& motor(int dof) const {
+    return motors_[static_cast<std::size_t>(motor_of_[static_cast<std::size_t>(dof)])];
+  }
+
+  std::vector<Motor> motors_;
+  std::vector<int> motor_of_;  // by dof, -1: none
+  std::vector<Limit> limits_;
+  std::vector<Friction> frictions_;
+};
+
+}  // namespace cohort::physics

@@ -1,0 +1,167 @@
+#include "server/physics/multibody/mechanism.hpp"
+
+#include "server/physics/multibody/rotation.hpp"
+
+namespace cohort::physics {
+namespace {
+
+using description::JointType;
+
+// The parallel-axis theorem: what a point mass at `offset` adds to the inertia about the origin.
+Eigen::Matrix3d inertia_of_point(double mass, const Eigen::Vector3d& offset) {
+  return mass * (offset.squaredNorm() * Eigen::Matrix3d::Identity() - offset * offset.transpose());
+}
+
+const description::Joint* joint_above(const description::Model& model, std::size_t link) {
+  for (const description::Joint& joint : model.joints)
+    if (joint.child == link) return &joint;
+  return nullptr;
+}
+
+}  // namespace
+
+Pose moved_by_joint(const Segment& segment, const Pose& X_WS, const double* coordinates) {
+  Pose moved = X_WS;
+  switch (segment.motion) {
+    case Motion::free:
+    case Motion::anchored: break;
+    case Motion::revolute: moved.orientation *= rotation_about(segment.axis_S, coordinates[0]); break;
+    case Motion::prismatic: moved.position += coordinates[0] * (moved.orientation * segment.axis_S); break;
+    case Motion::ball:
+      moved.orientation *= Eigen::Quaterniond(coordinates[3], coordinates[0], coordinates[1], coordinates[2]);
+      break;
+  }
+  return moved;
+}
+
+Mechanism::Mechanism(const description::Model& model, description::Fidelity fidelity)
+    : model_(&model), links_(model.links.size()), joints_(model.joints.size()) {
+  std::vector<char> welded(model.joints.size(), 0);
+  for (const description::Device& device : model.devices) {
+    const auto* drive = std::get_if<description::TreelDrive>(&device);
+    if (drive == nullptr) continue;
+    for (const auto* wheels : {&drive->left_wheels, &drive->right_wheels}) {
+      for (const std::size_t wheel : *wheels) {
+        if (fidelity == description::Fidelity::articulated) {
+          has_wheels_ = true;
+        } else {
+          welded[wheel] = 1;
+          links_[model.joints[wheel].child].collides = false;
+        }
+      }
+    }
+  }
+  for (std::size_t link = 0; link < model.links.size(); ++link) add_link(link, welded);
+  for (const description::Device& device : model.devices)
+    if (const auto motor = description::motor_limits(device); motor && joints_[motor->joint].dofs > 0)
+      dofs_[static_cast<std::size_t>(joints_[motor->joint].first_dof)].rotor_inertia = motor->rotor_inertia;
+  find_light_segments();
+}
+
+void Mechanism::find_light_segments() {
+  constexpr double light_share = 0.25;
+  std::vector<double> masses;  // of each segment with all that hangs on it
+  for (const Segment& segment : segments_) masses.push_back(segment.mass);
+  for (std::size_t s = segments_.size(); s-- > 0;)
+    if (segments_[s].parent >= 0) masses[static_cast<std::size_t>(segments_[s].parent)] += masses[s];
+  for (const double mass : masses) is_light_.push_back(mass < light_share * masses[0] ? 1 : 0);
+}
+
+void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {
+  const description::Link& described = model_->links[link];
+  const description::Joint* joint = joint_above(*model_, link);
+  const Pose no_offset;
+  if (joint == nullptr) {
+    links_[link].segment = add_segment(-1, Motion::free, described.X_ML, Eigen::Vector3d::Zero(), nullptr);
+    add_mass(links_[link].segment, described.inertial, no_offset);
+    return;
+  }
+
+  const bool to_world = joint->parent == description::Joint::world;
+  const int parent = to_world ? -1 : links_[joint->parent].segment;
+  // The parent segment's frame, or the model's, in the model's.
+  const Pose X_MP = to_world ? Pose{} : model_->links[joint->parent].X_ML * links_[joint->parent].X_SL.inverse();
+  const Pose X_PL = X_MP.inverse() * described.X_ML;
+  const Pose X_PJ = X_PL * joint->X_LJ;
+  const Pose X_JL = joint->X_LJ.inverse();
+  const auto index = static_cast<std::size_t>(joint - model_->joints.data());
+  JointPlace& place = joints_[index];
+  LinkPlace& linked = links_[link];
+  linked.X_SL = X_JL;
+  place.first_coordinate = static_cast<int>(zero_coordinates_.size());
+  place.first_dof = dof_count();
+  const Eigen::Vector3d& axis = joint->axis.direction;
+  switch (welded[index] ? JointType::fixed : joint->type) {
+    case JointType::fixed:
+      if (to_world) {
+        linked.segment = add_segment(-1, Motion::anchored, X_PJ, axis, nullptr);
+      } else {
+        linked.segment = parent;
+        linked.X_SL = X_PL;
+      }
+      break;
+    case JointType::revolute: linked.segment = add_segment(parent, Motion::revolute, X_PJ, axis, &joint->axis); break;
+    case JointType::prismatic: linked.segment = add_segment(parent, Motion::prismatic, X_PJ, axis, &joint->axis); break;
+    case JointType::ball: linked.segment = add_segment(parent, Motion::ball, X_PJ, axis, &joint->axis); break;
+    case JointType::universal: {
+      const int middle = add_segment(parent, Motion::revolute, X_PJ, axis, &joint->axis);
+      linked.segment =
+          add_segment(middle, Motion::revolute, no_offset, joint->second_axis.direction, &joint->second_axis);
+      break;
+    }
+  }
+  place.segment = linked.segment;
+  place.dofs = dof_count() - place.first_dof;
+  add_mass(linked.segment, described.inertial, linked.X_SL);
+}
+
+int Mechanism::add_segment(int parent, Motion motion, const Pose& X_PS, const Eigen::Vector3d& axis_S,
+                           const description::JointAxis* axis) {
+  Segment segment;
+  segment.parent = parent;
+  segment.motion = motion;
+  segment.X_PS = X_PS;
+  segment.axis_S = axis_S;
+  segment.first_dof = dof_count();
+  segment.first_coordinate = static_cast<int>(zero_coordinates_.size());
+  switch (motion) {
+    case Motion::free: segment.dofs = 6; break;
+    case Motion::anchored: segment.dofs = 0; break;
+    case Motion::revolute:
+    case Motion::prismatic:
+      segment.dofs = 1;
+      zero_coordinates_.push_back(0.0);
+      break;
+    case Motion::ball:
+      segment.dofs = 3;
+      zero_coordinates_.insert(zero_coordinates_.end(), {0.0, 0.0, 0.0, 1.0});
+      break;
+  }
+  int above = parent < 0 ? -1 : segments_[static_cast<std::size_t>(parent)].last_dof;
+  for (int i = 0; i < segment.dofs; ++i) {
+    Dof dof;
+    if (axis != nullptr) dof.axis = *axis;
+    if (motion == Motion::revolute || motion == Motion::prismatic) dof.coordinate = segment.first_coordinate;
+    is_chain_ = is_chain_ && above == dof_count() - 1;
+    parents_.push_back(above);
+    above = dof_count();
+    dofs_.push_back(dof);
+  }
+  segment.last_dof = above;
+  segments_.push_back(segment);
+  return static_cast<int>(segments_.size()) - 1;
+}
+
+void Mechanism::add_mass(int index, const description::Inertial& inertial, const Pose& X_SL) {
+  Segment& segment = segments_[static_cast<std::size_t>(index)];
+  const Pose X_SI = X_SL * inertial.X_LI;
+  const Eigen::Matrix3d R = X_SI.orientation.toRotationMatrix();
+  const double mass = segment.mass + inertial.mass;
+  const Eigen::Vector3d centre = (segment.mass * segment.centre_S + inertial.mass * X_SI.position) / mass;
+  segment.inertia_S += inertia_of_point(segment.mass, segment.centre_S - centre) +
+                       R * inertial.inertia * R.transpose() + inertia_of_point(inertial.mass, X_SI.position - centre);
+  segment.centre_S = centre;
+  segment.mass = mass;
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,263 @@
+#include "server/physics/multibody/multibody.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "server/physics/multibody/rotation.hpp"
+
+namespace cohort::physics {
+namespace {
+
+Eigen::Quaterniond ball_rotation(const double* coordinates) {
+  return {coordinates[3], coordinates[0], coordinates[1], coordinates[2]};
+}
+
+}  // namespace
+
+Multibody::Multibody(const Mechanism& mechanism, const Pose& X_WM, std::uint32_t body)
+    : mechanism_(&mechanism),
+      body_(body),
+      X_WM_(X_WM),
+      coordinates_(mechanism.zero_coordinates()),
+      velocities_(static_cast<std::size_t>(mechanism.dof_count()), 0.0),
+      X_WS_(mechanism.segments().size()),
+      joints_(mechanism) {
+  const Segment& root = mechanism.segments()[0];
+  const Pose X_WS = X_WM * root.X_PS;
+  root_rotation_ = X_WS.orientation;
+  reference_W_ = mechanism.has_free_root() ? X_WS * root.centre_S : X_WS.position;
+  update_poses();
+  build_devices();
+}
+
+void Multibody::build_devices() {
+  const description::Model& model = mechanism_->model();
+  drives_.resize(model.devices.size());
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    if (const auto motor = description::motor_limits(model.devices[device])) {
+      const std::string& name = description::name_of(model.devices[device]);
+      if (mechanism_->joint(motor->joint).dofs == 0)
+        throw std::invalid_argument("motor '" + name + "' drives the fixed joint '" + model.joints[motor->joint].name +
+                                    "'");
+      add_motor(mechanism_->joint(motor->joint).first_dof, motor->max_effort, motor->max_velocity, name);
+    } else if (const auto* drive = std::get_if<description::TreelDrive>(&model.devices[device])) {
+      add_drive(device, *drive);
+    }
+  }
+}
+
+void Multibody::add_motor(int dof, double max_effort, double max_velocity, const std::string& device) {
+  if (joints_.has_motor(dof))
+    throw std::invalid_argument("motor '" + device + "' drives a joint that has a motor already");
+  joints_.add_motor(dof, max_effort, max_velocity);
+}
+
+void Multibody::add_drive(std::size_t device, const description::TreelDrive& drive) {
+  const description::Model& model = mechanism_->model();
+  if (mechanism_->link(drive.link).segment != 0)
+    throw std::invalid_argument("treel drive '" + drive.name + "' is not on the root link '" + model.links[0].name +
+                                "'");
+  if (!mechanism_->has_wheels() || (drive.left_wheels.empty() && drive.right_wheels.empty())) {
+    drives_[device].treel = static_cast<int>(treels_.size());
+    treels_.emplace_back(drive, mechanism_->link(drive.link).X_SL);
+    return;
+  }
+  drives_[device].wheels = static_cast<int>(wheels_.size());
+  WheelDrive& wheels = wheels_.emplace_back();
+  wheels.radius = drive.wheel_radius;
+  for (const Side side : {Side::left, Side::right}) {
+    const auto s = static_cast<std::size_t>(side);
+    const std::vector<std::size_t>& joints = side == Side::left ? drive.left_wheels : drive.right_wheels;
+    for (const std::size_t joint : joints) {
+      const Mechanism::JointPlace& place = mechanism_->joint(joint);
+      const Segment& wheel = mechanism_->segments()[static_cast<std::size_t>(place.segment)];
+      const Eigen::Vector3d axis = wheel.X_PS.orientation * wheel.axis_S;
+      add_motor(place.first_dof, drive.max_torque / static_cast<double>(joints.size()),
+                drive.max_velocity / drive.wheel_radius, drive.name);
+      wheels.dofs[s].push_back(place.first_dof);
+      wheels.senses[s].push_back(axis.y() < 0.0 ? -1.0 : 1.0);
+    }
+  }
+}
+
+void Multibody::update_poses() {
+  for (std::size_t s = 0; s < X_WS_.size(); ++s) {
+    const Segment& segment = mechanism_->segments()[s];
+    if (segment.motion == Motion::free) {
+      X_WS_[s] = {reference_W_ - root_rotation_ * segment.centre_S, root_rotation_};
+      continue;
+    }
+    const Pose& X_WP = segment.parent < 0 ? X_WM_ : X_WS_[static_cast<std::size_t>(segment.parent)];
+    X_WS_[s] = moved_by_joint(segment, X_WP * segment.X_PS, coordinates_.data() + segment.first_coordinate);
+  }
+  if (!mechanism_->has_free_root()) reference_W_ = X_WS_[0].position;
+}
+
+Pose Multibody::link_pose(std::size_t link) const {
+  const Mechanism::LinkPlace& place = mechanism_->link(link);
+  return segment_pose(place.segment) * place.X_SL;
+}
+
+Twist Multibody::link_twist(std::size_t link) const {
+  const Mechanism::LinkPlace& place = mechanism_->link(link);
+  const Eigen::Vector3d origin_W = link_pose(link).position;
+  Twist twist{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  // From the link to the root: each joint adds what it does to the link's origin.
+  for (int s = place.segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
+    const Segment& segment = mechanism_->segments()[static_cast<std::size_t>(s)];
+    const Pose& X_WS = segment_pose(s);
+    const double* v = velocities_.data() + segment.first_dof;
+    Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();
+    Eigen::Vector3d pivot_W = X_WS.position;
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free:
+        angular_W = {v[0], v[1], v[2]};
+        pivot_W = reference_W_;
+        twist.linear_W += Eigen::Vector3d(v[3], v[4], v[5]);
+        break;
+      case Motion::revolute: angular_W = v[0] * (X_WS.orientation * segment.axis_S); break;
+      case Motion::prismatic: twist.linear_W += v[0] * (X_WS.orientation * segment.axis_S); break;
+      case Motion::ball: angular_W = X_WS.orientation * Eigen::Vector3d(v[0], v[1], v[2]); break;
+    }
+    twist.angular_W += angular_W;
+    twist.linear_W += angular_W.cross(origin_W - pivot_W);
+  }
+  return twist;
+}
+
+double Multibody::joint_position(std::size_t joint) const {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  return place.dofs == 0 ? 0.0 : coordinates_[static_cast<std::size_t>(place.first_coordinate)];
+}
+
+double Multibody::joint_velocity(std::size_t joint) const {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  return place.dofs == 0 ? 0.0 : velocities_[static_cast<std::size_t>(place.first_dof)];
+}
+
+void Multibody::place(const Pose& X_WM) {
+  const Segment& root = mechanism_->segments()[0];
+  const Pose X_WS = X_WM * root.X_PS;
+  X_WM_ = X_WM;
+  root_rotation_ = X_WS.orientation;
+  reference_W_ = mechanism_->has_free_root() ? X_WS * root.centre_S : X_WS.position;
+  stop();
+  update_poses();
+}
+
+void Multibody::set_root_twist(const Twist& twist) {
+  const Eigen::Vector3d to_reference_W = reference_W_ - link_pose(0).position;
+  const Eigen::Vector3d linear_W = twist.linear_W + twist.angular_W.cross(to_reference_W);
+  for (std::size_t i = 0; i < 3; ++i) {
+    velocities_[i] = twist.angular_W[static_cast<Eigen::Index>(i)];
+    velocities_[3 + i] = linear_W[static_cast<Eigen::Index>(i)];
+  }
+}
+
+void Multibody::set_joint_state(std::size_t joint, std::span<const double> coordinates,
+                                std::span<const double> velocities) {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  std::copy(coordinates.begin(), coordinates.end(), coordinates_.begin() + place.first_coordinate);
+  std::copy(velocities.begin(), velocities.end(), velocities_.begin() + place.first_dof);
+  update_poses();
+}
+
+void Multibody::set_joint_target(std::size_t joint, JointRows::Control control, double target) {
+  joints_.set_target(mechanism_->joint(joint).first_dof, control, target);
+}
+
+double Multibody::joint_effort(std::size_t joint) const {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  if (place.dofs == 0 || !joints_.has_motor(place.first_dof) || last_step_ == 0.0) return 0.0;
+  return joints_.motor_impulse(place.first_dof) / last_step_;
+}
+
+void Multibody::set_track_velocity_target(std::size_t device, Side side, double velocity) {
+  const Drive& drive = drives_[device];
+  if (drive.treel >= 0) {
+    treels_[static_cast<std::size_t>(drive.treel)].set_target(side, velocity);
+    return;
+  }
+  const WheelDrive& wheels = wheels_[static_cast<std::size_t>(drive.wheels)];
+  const auto s = static_cast<std::size_t>(side);
+  for (std::size_t i = 0; i < wheels.dofs[s].size(); ++i)
+    joints_.set_target(wheels.dofs[s][i], JointRows::Control::velocity, wheels.senses[s][i] * velocity / wheels.radius);
+}
+
+TrackState Multibody::track(std::size_t device, Side side) const {
+  const Drive& drive = drives_[device];
+  if (drive.treel >= 0) return treels_[static_cast<std::size_t>(drive.treel)].track(side);
+  // Wheels of one side turn alike but for slip: their mean.
+  const WheelDrive& wheels = wheels_[static_cast<std::size_t>(drive.wheels)];
+  const auto s = static_cast<std::size_t>(side);
+  TrackState state;
+  for (std::size_t i = 0; i < wheels.dofs[s].size(); ++i) {
+    const int dof = wheels.dofs[s][i];
+    const double sense = wheels.senses[s][i];
+    const auto coordinate = static_cast<std::size_t>(mechanism_->dofs()[static_cast<std::size_t>(dof)].coordinate);
+    state.position += sense * coordinates_[coordinate] * wheels.radius;
+    state.velocity += sense * velocities_[static_cast<std::size_t>(dof)] * wheels.radius;
+    if (last_step_ > 0.0) state.traction += sense * joints_.motor_impulse(dof) / last_step_ / wheels.radius;
+  }
+  if (const auto count = static_cast<double>(wheels.dofs[s].size()); count > 0.0) {
+    state.position /= count;
+    state.velocity /= count;
+  }
+  return state;
+}
+
+void Multibody::add_rows(Problem& problem, int index, const Anchors& anchors, double step) {
+  joints_.add_rows(problem, index, *this, step);
+  for (TrackRows& treel : treels_) treel.add_rows(problem, index, anchors, step);
+}
+
+// Keeps the angular momentum as it is while the body turns, and its energy nearly: half a step with the angular
+// velocity at its beginning, then all of it with that of the middle.
+void Multibody::turn_freely(double step) {
+  const Eigen::Matrix3d& inertia_S = mechanism_->segments()[0].inertia_S;
+  const Eigen::Matrix3d inverse_S = inertia_S.inverse();
+  const Eigen::Map<Eigen::Vector3d> angular_W(velocities_.data());
+  const Eigen::Vector3d momentum_W = root_rotation_ * (inertia_S * (root_rotation_.conjugate() * angular_W));
+  const auto turned_by = [&](const Eigen::Vector3d& turn) { return (rotation_by(turn) * root_rotation_).normalized(); };
+  const auto velocity_at = [&](const Eigen::Quaterniond& rotation) -> Eigen::Vector3d {
+    return rotation * (inverse_S * (rotation.conjugate() * momentum_W));
+  };
+  const Eigen::Vector3d middle_W = velocity_at(turned_by(0.5 * step * angular_W));
+  root_rotation_ = turned_by(step * middle_W);
+  const Eigen::Vector3d new_angular_W = velocity_at(root_rotation_);
+  std::copy_n(new_angular_W.data(), 3, velocities_.begin());
+}
+
+void Multibody::integrate(const double* velocities, double step) {
+  std::copy_n(velocities, velocities_.size(), velocities_.begin());
+  last_step_ = step;
+  for (const Segment& segment : mechanism_->segments()) {
+    const double* v = velocities_.data() + segment.first_dof;
+    double* coordinates = coordinates_.data() + segment.first_coordinate;
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free:
+        if (mechanism_->is_free_body()) {
+          turn_freely(step);
+          reference_W_ += step * Eigen::Vector3d(v[3], v[4], v[5]);
+          break;
+        }
+        root_rotation_ = (rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2])) * root_rotation_).normalized();
+        reference_W_ += step * Eigen::Vector3d(v[3], v[4], v[5]);
+        break;
+      case Motion::revolute:
+      case Motion::prismatic: coordinates[0] += step * v[0]; break;
+      case Motion::ball: {
+        const Eigen::Quaterniond turned =
+            (ball_rotation(coordinates) * rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]))).normalized();
+        for (int i = 0; i < 4; ++i) coordinates[i] = turned.coeffs()[i];  // x y z w
+        break;
+      }
+    }
+  }
+  update_poses();
+}
+
+}  // namespace cohort::physics

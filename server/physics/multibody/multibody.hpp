@@ -1,0 +1,114 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/geometry/scene.hpp"
+#include "server/physics/multibody/joint_rows.hpp"
+#include "server/physics/multibody/mechanism.hpp"
+#include "server/physics/multibody/track_rows.hpp"
+#include "server/physics/world/physics_world.hpp"
+
+namespace cohort::physics {
+
+/// One instance of a model that moves: its state, and the devices that drive it.
+class Multibody {
+ public:
+  /// The mechanism is shared and must outlive this; X_WM places the model with all its joints at zero. Throws
+  /// std::invalid_argument for a device that cannot be simulated.
+  Multibody(const Mechanism& mechanism, const Pose& X_WM, std::uint32_t body);
+  Multibody(const Multibody&) = delete;
+  Multibody& operator=(const Multibody&) = delete;
+
+  const Mechanism& mechanism() const { return *mechanism_; }
+  std::uint32_t body() const { return body_; }
+
+  // The state: what decides how the body goes on.
+  const double* coordinates() const { return coordinates_.data(); }
+  const double* velocities() const { return velocities_.data(); }
+  /// Where the spatial velocities of this body are taken: the centre of mass of the root segment, or the origin of a
+  /// root that is tied to the world [m].
+  const Eigen::Vector3d& reference() const { return reference_W_; }
+
+  const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
+  Pose link_pose(std::size_t link) const;  ///< X_WL
+  Twist link_twist(std::size_t link) const;
+  double joint_position(std::size_t joint) const;
+  double joint_velocity(std::size_t joint) const;
+
+  /// Puts the model at X_WM, at rest, with its joints as they are.
+  void place(const Pose& X_WM);
+  /// All velocities become zero.
+  void stop() { std::fill(velocities_.begin(), velocities_.end(), 0.0); }
+  void set_root_twist(const Twist& twist);
+  void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
+
+  /// The joint has to have a motor.
+  void set_joint_target(std::size_t joint, JointRows::Control control, double target);
+  /// Of the joint's motor over the last step [N m] or [N], 0 if it has none.
+  double joint_effort(std::size_t joint) const;
+  /// The device has to be a treel drive.
+  void set_track_velocity_target(std::size_t device, Side side, double velocity);
+  TrackState track(std::size_t device, Side side) const;
+
+  /// Those drives that stand on tracks, not on wheels.
+  std::vector<TrackRows>& treels() { return treels_; }
+  const std::vector<TrackRows>& treels() const { return treels_; }
+
+  /// Changes the velocities by what motors give that are told an effort.
+  void apply_efforts(Equations& equations, double step) { joints_.apply_efforts(equations, step); }
+  /// Adds the rows of joints and drives; `index`: of this body in the problem.
+  void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
+  /// Takes the velocities that the solver found and moves the body by them.
+  void integrate(const double* velocities, double step);
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (int i = 0; i < 3; ++i) visit(self.reference_W_[i]);
+    for (int i = 0; i < 4; ++i) visit(self.root_rotation_.coeffs()[i]);
+    for (auto& coordinate : self.coordinates_) visit(coordinate);
+    for (auto& velocity : self.velocities_) visit(velocity);
+    JointRows::visit_state(self.joints_, visit);
+    for (auto& treel : self.treels_) TrackRows::visit_state(treel, visit);
+    visit(self.last_step_);
+  }
+  /// After the state was changed through `visit_state`.
+  void update_poses();
+
+ private:
+  /// Drives whose wheels are simulated: how the velocity of a track becomes that of its joints.
+  struct WheelDrive {
+    double radius = 0.0;
+    std::array<std::vector<int>, 2> dofs;       // by side
+    std::array<std::vector<double>, 2> senses;  // 1: a positive velocity of the joint drives forwards; or -1
+  };
+  struct Drive {  // index into treels_ or wheels_, -1: not so
+    int treel = -1;
+    int wheels = -1;
+  };
+
+  void turn_freely(double step);
+  void build_devices();
+  void add_drive(std::size_t device, const description::TreelDrive& drive);
+  void add_motor(int dof, double max_effort, double max_velocity, const std::string& device);
+
+  const Mechanism* mechanism_;
+  std::uint32_t body_;
+  Pose X_WM_;  // of a root that is tied to the world
+  Eigen::Vector3d reference_W_;
+  Eigen::Quaterniond root_rotation_;  // of a free root
+  std::vector<double> coordinates_;
+  std::vector<double> velocities_;
+  std::vector<Pose> X_WS_;  // follow from the state
+  JointRows joints_;
+  std::vector<Drive> drives_;  // by device
+  std::vector<TrackRows> treels_;
+  std::vector<WheelDrive> wheels_;
+  double last_step_ = 0.0;  // [s]
+};
+
+}  // namespace cohort::physics

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+
+#include "server/description/model.hpp"
+#include "server/physics/world/anchors.hpp"
+#include "server/physics/multibody/ground.hpp"
+#include "server/physics/world/physics_world.hpp"
+
+namespace cohort::physics {
+
+class Problem;
+
+/// Both tracks of a robot, without wheels: up to four ground points under the root link that push, one drive row for
+/// each side and one row against sliding sideways, 7 rows in all. Traction is limited by the motor and by friction
+/// under the normal impulses of the same iteration. Against wheels with contacts it needs a quarter of the rows, and a
+/// robot told to stand still stands still.
+class TrackRows {
+ public:
+  /// `X_SL`: the drive's link in the root segment.
+  TrackRows(const description::TreelDrive& drive, const Pose& X_SL) : drive_(drive), X_SL_(X_SL) {}
+
+  void set_target(Side side, double velocity) { side_of(side).target = velocity; }
+  const TrackState& track(Side side) const { return side_of(side).state; }
+
+  /// Where the ground is looked for. `X_WS`: the root segment.
+  geometry::Bounds ground_region(const Pose& X_WS) const;
+  /// Looks for what each ground point stands on. `candidates`: the solids of other bodies in the ground region.
+  void find_ground(const geometry::Scene& scene, const Pose& X_WS, std::span<const std::uint32_t> candidates);
+  /// Calls `visit(solid)` for what was found.
+  template <class Visit>
+  void for_each_ground(Visit&& visit) const {
+    for (const Point& point : points_)
+      if (point.ground) visit(point.ground->solid);
+  }
+
+  /// The link that the tracks are on.
+  std::size_t link() const { return drive_.link; }
+  /// Calls `visit(solid, point_W, impulse_W)` for what each solid under the tracks did to the link in the last step.
+  template <class Visit>
+  void for_each_impulse(Visit&& visit) const;
+
+  void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
+  /// Takes over what the tracks do from the solved rows.
+  void read_rows(const Problem& problem, double step);
+
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (auto& track : self.tracks_) {
+      visit(track.target);
+      visit(track.state.position);
+      visit(track.state.velocity);
+      visit(track.state.traction);
+      visit(track.impulse);
+    }
+    for (auto& point : self.points_) visit(point.impulse);
+    visit(self.lateral_impulse_);
+  }
+
+ private:
+  struct Track {
+    double target = 0.0;
+    TrackState state;
+    double impulse = 0.0;  // of the drive row
+    int row = -1;          // of this step, -1 while no ground point of this side touches
+  };
+  struct Point {
+    double impulse = 0.0;
+    // Of this step:
+    Eigen::Vector3d position_W = Eigen::Vector3d::Zero();
+    std::optional<Ground> ground;
+  };
+  /// Directions on the ground in this step, those of a track that rolls forwards and to its left; zero if nothing is
+  /// under the tracks.
+  struct Directions {
+    Eigen::Vector3d forward_W = Eigen::Vector3d::Zero();
+    Eigen::Vector3d left_W = Eigen::Vector3d::Zero();
+  };
+  std::optional<Directions> directions() const;
+  /// What a side stands on: of two things the one under its rear.
+  std::optional<std::uint32_t> solid_under(Side side) const;
+  Eigen::Vector3d point_of(Side side) const { return X_WL_ * Eigen::Vector3d(0.0, y_of(side), drive_.ground_height); }
+  Eigen::Vector3d middle() const { return X_WL_ * Eigen::Vector3d(0.0, 0.0, drive_.ground_height); }
+  Track& side_of(Side side) { return tracks_[static_cast<std::size_t>(side)]; }
+  const Track& side_of(Side side) const { return tracks_[static_cast<std::size_t>(side)]; }
+  double y_of(Side side) const { return side == Side::left ? drive_.half_gauge : -drive_.half_gauge; }
+
+  description::TreelDrive drive_;
+  Pose X_SL_;
+  std::array<Track, 2> tracks_;
+  std::array<Point, 4> points_;  // left front, left rear, right front, right rear
+  double lateral_impulse_ = 0.0;
+  Pose X_WL_;  // of this step
+};
+
+template <class Visit>
+void TrackRows::for_each_impulse(Visit&& visit) const {
+  for (const Point& point : points_)
+    if (point.ground)
+      visit(point.ground->solid, point.position_W, Eigen::Vector3d(point.impulse * point.ground->normal_W));
+  const std::optional<Directions> along = directions();
+  if (!along) return;
+  for (const Side side : {Side::left, Side::right})
+    if (const std::optional<std::uint32_t> solid = solid_under(side))
+      visit(*solid, point_of(side), Eigen::Vector3d(side_of(side).impulse * along->forward_W));
+  const std::optional<std::uint32_t> left = solid_under(Side::left);
+  visit(left ? *left : *solid_under(Side::right), middle(), Eigen::Vector3d(lateral_impulse_ * along->left_W));
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,80 @@
+// What changes in a planar world between steps, from outside.
+
+#include "server/physics/planar/planar_world.hpp"
+
+namespace cohort::physics {
+
+void PlanarWorld::remove_body(std::uint32_t index) {
+  PlacedBody& body = bodies_[index];
+  if (!is_active(index)) return;
+  if (body.member != Anchors::nobody) return take_out(body.member);
+  body.is_out = true;
+  connections_.release_of_body(index);
+  for (const std::uint32_t solid : body.solids) scene_.remove(solid);
+}
+
+void PlanarWorld::put_back_body(std::uint32_t index) {
+  PlacedBody& body = bodies_[index];
+  if (is_active(index)) return;
+  if (body.member == Anchors::nobody) {
+    body.is_out = false;
+    for (const std::uint32_t solid : body.solids) scene_.put_back(solid);
+    return;
+  }
+  Member& member = members_[body.member];
+  if (!member.is_finite || !member.is_inside) planar_.stop(body.member);
+  member.is_active = member.is_finite = member.is_inside = true;
+  collision_.put_back(body.member);
+  place_solids(body.member);
+  for (std::uint32_t i = 0; i < member.part_count; ++i) scene_.put_back(parts_[member.first_part + i].solid);
+}
+
+void PlanarWorld::place_body(std::uint32_t index, const Pose& X_WM) {
+  PlacedBody& body = bodies_[index];
+  if (body.member != Anchors::nobody) place_on_ground(body.member, X_WM);
+  body.X_WM = X_WM;
+  body.is_placed_again = true;
+  if (body.member == Anchors::nobody) {
+    connections_.release_of_body(index);
+    std::size_t next = 0;
+    for (const description::Link& link : description_.models[body.model].links)
+      for (const description::Collision& collision : link.collisions) {
+        scene_.set_pose(body.solids[next], X_WM * link.X_ML * collision.X_LC);
+        collision_.place_static(body.solids[next++]);
+      }
+    return scene_.build();
+  }
+  connections_.release_of(body.member);
+  if (members_[body.member].record) members_[body.member].record->forget();
+  collision_.forget(body.member);
+  place_solids(body.member);
+  scene_.update();
+}
+
+// Where there is no ground it stays where it was.
+void PlanarWorld::place_on_ground(std::uint32_t member, const Pose& X_WM) {
+  const bool had_ground = members_[member].has_ground;
+  SnapshotWriter before;
+  PlanarBodies::visit_state(planar_, member, StateSaver{before});
+  planar_.place(member, X_WM);
+  find_parts_in_body(members_[member], member);
+  try {
+    put_on_ground(member);
+  } catch (const std::invalid_argument&) {
+    SnapshotReader reader(before.bytes());
+    PlanarBodies::visit_state(planar_, member, StateRestorer{reader});
+    planar_.update_poses(member);
+    find_parts_in_body(members_[member], member);
+    members_[member].has_ground = had_ground;
+    throw;
+  }
+}
+
+void PlanarWorld::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {
+  const std::uint32_t member = bodies_[body].member;
+  const description::Inertial& inertial = description_.models[bodies_[body].model].links[link].inertial;
+  pushes_.add({member, planar_.model(member).mechanism().link(link).segment, link,
+               link_pose(body, link) * inertial.X_LI.position, wrench});
+}
+
+}  // namespace cohort::physics

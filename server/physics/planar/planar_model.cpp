@@ -1,0 +1,67 @@
+#include "server/physics/planar/planar_model.hpp"
+
+#include <stdexcept>
+
+namespace cohort::physics {
+
+PlanarModel::PlanarModel(const description::Model& model)
+    : mechanism_(model, description::Fidelity::planar),
+      motor_of_joint_(model.joints.size(), no_motor),
+      motor_of_segment_(mechanism_.segments().size(), no_motor) {
+  const std::vector<Segment>& segments = mechanism_.segments();
+  for (std::size_t s = 0; s < segments.size(); ++s)
+    if (segments[s].parent < 0 &&
+        (s > 0 || (segments[s].motion != Motion::free && segments[s].motion != Motion::anchored)))
+      throw std::invalid_argument("a joint that moves against the world cannot be planar");
+  for (const description::Device& device : model.devices) {
+    if (const auto motor = description::motor_limits(device)) {
+      add_motor(*motor, description::name_of(device));
+    } else if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
+      if (drive_ != nullptr) throw std::invalid_argument("more than one treel drive cannot be planar");
+      if (mechanism_.link(drive->link).segment != 0)
+        throw std::invalid_argument("treel drive '" + drive->name + "' is not on the root link '" +
+                                    model.links[0].name + "'");
+      drive_ = drive;
+    }
+  }
+  add_masses();
+}
+
+void PlanarModel::add_motor(const description::MotorLimits& motor, const std::string& name) {
+  const description::Joint& joint = mechanism_.model().joints[motor.joint];
+  const Mechanism::JointPlace& place = mechanism_.joint(motor.joint);
+  if (place.dofs == 0) throw std::invalid_argument("motor '" + name + "' drives the fixed joint '" + joint.name + "'");
+  const Dof& dof = mechanism_.dofs()[static_cast<std::size_t>(place.first_dof)];
+  if (dof.coordinate < 0)
+    throw std::invalid_argument("motor '" + name + "' drives the ball joint '" + joint.name +
+                                "', which cannot be planar");
+  if (motor_of_joint_[motor.joint] != no_motor)
+    throw std::invalid_argument("motor '" + name + "' drives a joint that has a motor already");
+  // The first axis of a universal joint is that of the segment in its middle.
+  int segment = place.segment;
+  while (mechanism_.segments()[static_cast<std::size_t>(segment)].first_coordinate != dof.coordinate)
+    segment = mechanism_.segments()[static_cast<std::size_t>(segment)].parent;
+  motor_of_joint_[motor.joint] = static_cast<int>(motors_.size());
+  motor_of_segment_[static_cast<std::size_t>(segment)] = static_cast<int>(motors_.size());
+  motors_.push_back(
+      {segment, static_cast<std::size_t>(dof.coordinate), dof.axis.lower, dof.axis.upper, motor.max_velocity});
+}
+
+void PlanarModel::add_masses() {
+  const std::vector<Segment>& segments = mechanism_.segments();
+  std::vector<Pose> X_MS;
+  for (const Segment& segment : segments) {
+    X_MS.push_back(segment.parent < 0 ? segment.X_PS : X_MS[static_cast<std::size_t>(segment.parent)] * segment.X_PS);
+    mass_ += segment.mass;
+    centre_M_ += segment.mass * (X_MS.back() * segment.centre_S);
+  }
+  centre_M_ /= mass_;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const Eigen::Matrix3d R = X_MS[s].orientation.toRotationMatrix();
+    const Eigen::Vector3d offset = X_MS[s] * segments[s].centre_S - centre_M_;
+    inertia_M_ += R * segments[s].inertia_S * R.transpose() +
+                  segments[s].mass * (offset.squaredNorm() * Eigen::Matrix3d::Identity() - offset * offset.transpose());
+  }
+}
+
+}  // namespace cohort::physics

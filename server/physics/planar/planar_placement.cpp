@@ -1,0 +1,213 @@
+// How the bodies of a planar world are made and what each stands on.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "server/physics/planar/planar_world.hpp"
+
+namespace cohort::physics {
+namespace {
+
+using Eigen::Vector3d;
+
+// What leans by less is upright, and ground level [rad].
+constexpr double most_lean = 1e-3;
+
+// The mean distance of the points of a rectangle with rounded corners from a point in the plane.
+double mean_distance(const geometry::Footprint& outline, const Eigen::Vector2d& point) {
+  constexpr int points_across = 32;
+  const Eigen::Vector2d half = outline.half_extent();
+  double sum = 0.0;
+  int count = 0;
+  for (int row = 0; row < points_across; ++row) {
+    for (int column = 0; column < points_across; ++column) {
+      const Eigen::Vector2d share((2.0 * column + 1.0) / points_across - 1.0, (2.0 * row + 1.0) / points_across - 1.0);
+      const Eigen::Vector2d at = outline.centre + half.cwiseProduct(share);
+      if (outline.distance(at) > 0.0) continue;
+      sum += (at - point).norm();
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+}  // namespace
+
+PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& workers)
+    : description_(description),
+      workers_(workers),
+      step_(std::chrono::duration<double>(description.step).count()),
+      surfaces_(description),
+      models_(description.models.size()),
+      collision_(scene_) {
+  const Vector3d& gravity = description.gravity;
+  if (gravity.head<2>().norm() > -most_lean * gravity.z())
+    throw std::invalid_argument("planar physics needs gravity along -z");
+  for (unsigned worker = 0; worker < workers.threads(); ++worker)
+    memory_.push_back({PlanarSolver(planar_, grounds_), {}, {}});
+  bodies_.reserve(description.instances.size());
+  for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
+  scene_.build();
+  for (std::uint32_t member = 0; member < members_.size(); ++member) put_on_ground(member);
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(body);
+}
+
+std::uint32_t PlanarWorld::add_body(std::size_t model, const Pose& X_WM) {
+  check_ground(description_.models[model], X_WM);
+  const std::uint32_t body = create_body(model, X_WM);
+  scene_.build();
+  if (const std::uint32_t member = bodies_[body].member; member != Anchors::nobody) put_on_ground(member);
+  return body;
+}
+
+// Throws as create_body and put_on_ground would, for a body that is not there yet.
+void PlanarWorld::check_ground(const description::Model& described, const Pose& X_WM) const {
+  if (described.is_static) return;
+  try {
+    const PlanarModel model(described);
+    if (!needs_ground(model)) return;
+    PlanarBodies alone;
+    const std::uint32_t index = alone.add(model, X_WM);
+    double lowest = std::numeric_limits<double>::infinity();
+    double highest = alone.segment_in_body(index, 0).position.z();
+    for (std::size_t link = 0; link < described.links.size(); ++link) {
+      const Mechanism::LinkPlace& place = model.mechanism().link(link);
+      if (!place.collides) continue;
+      for (const description::Collision& collision : described.links[link].collisions) {
+        const Pose X_BC = alone.segment_in_body(index, place.segment) * (place.X_SL * collision.X_LC);
+        const geometry::Footprint outline = *geometry::footprint_of(collision.shape, X_BC);
+        lowest = std::min(lowest, outline.lowest);
+        highest = std::max(highest, outline.highest);
+      }
+    }
+    const double from = std::isfinite(lowest) ? 0.5 * (lowest + highest) : highest;
+    ground_under({alone.place(index).x, alone.place(index).y, from});
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("model '" + described.name + "': " + error.what());
+  }
+}
+
+bool PlanarWorld::needs_ground(const PlanarModel& model) const {
+  return !model.is_fixed() && description_.gravity.z() * model.mass() != 0.0;
+}
+
+std::uint32_t PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
+  const auto body = static_cast<std::uint32_t>(bodies_.size());
+  const description::Model& model = description_.models[model_index];
+  if (model_index >= models_.size()) models_.resize(model_index + 1);  // it has come since
+  try {
+    if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_unique<PlanarModel>(model);
+    const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
+    if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
+      throw std::invalid_argument("a robot that leans cannot be planar");
+    PlacedBody& placed = bodies_.emplace_back();
+    placed.model = model_index;
+    placed.X_WM = X_WM;
+    if (model.is_static) {
+      add_static(body);
+    } else {
+      add_moving(body);
+    }
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("model '" + model.name + "': " + error.what());
+  }
+  return body;
+}
+
+void PlanarWorld::add_static(std::uint32_t body) {
+  const std::vector<description::Link>& links = description_.models[bodies_[body].model].links;
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
+      const description::Collision& collision = links[link].collisions[part];
+      const Pose X_WC = bodies_[body].X_WM * links[link].X_ML * collision.X_LC;
+      bodies_[body].solids.push_back(
+          scene_.add({collision.shape, collision.surface, body, false, X_WC, static_cast<std::uint32_t>(link),
+                      static_cast<std::uint32_t>(part), links[link].color}));
+      collision_.add_static();
+      part_of_solid_.emplace_back();
+    }
+  }
+}
+
+void PlanarWorld::add_moving(std::uint32_t body) {
+  const PlanarModel& model = *models_[bodies_[body].model];
+  const std::uint32_t index = planar_.add(model, bodies_[body].X_WM);
+  bodies_[body].member = index;
+  collision_.add_member(model.is_fixed());
+  grounds_.emplace_back();
+  Member& member = members_.emplace_back();
+  member.body = body;
+  member.first_part = static_cast<std::uint32_t>(parts_.size());
+  const std::vector<description::Link>& links = model.mechanism().model().links;
+  for (std::size_t link = 0; link < links.size(); ++link) {
+    const Mechanism::LinkPlace& place = model.mechanism().link(link);
+    if (!place.collides) continue;
+    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
+      const description::Collision& collision = links[link].collisions[part];
+      const Pose X_SC = place.X_SL * collision.X_LC;
+      const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
+      const std::uint32_t solid =
+          scene_.add({collision.shape, collision.surface, body, true, X_WC, static_cast<std::uint32_t>(link),
+                      static_cast<std::uint32_t>(part), links[link].color});
+      parts_.push_back({solid, place.segment, X_SC, {}});
+      parts_in_body_.emplace_back();
+      collision_.add_moving();
+      part_of_solid_.push_back({index, place.segment});
+      ++member.part_count;
+    }
+  }
+  find_parts_in_body(member, index);
+  place_solids(index);
+}
+
+void PlanarWorld::put_on_ground(std::uint32_t index) {
+  Member& member = members_[index];
+  const PlanarModel& model = planar_.model(index);
+  const double weight = -description_.gravity.z() * model.mass();
+  member.has_ground = !needs_ground(model);
+  if (member.has_ground) return;
+  const std::span<const Part> parts(parts_.data() + member.first_part, member.part_count);
+  const auto is_lower = [](const Part& a, const Part& b) { return a.outline_B.lowest < b.outline_B.lowest; };
+  const auto lowest = std::min_element(parts.begin(), parts.end(), is_lower);
+
+  // From the middle of the body: it may be placed a little into the ground.
+  double highest = planar_.segment_in_body(index, 0).position.z();
+  for (const Part& part : parts) highest = std::max(highest, part.outline_B.highest);
+  const double from = lowest != parts.end() ? 0.5 * (lowest->outline_B.lowest + highest) : highest;
+  std::uint32_t ground = 0;
+  try {
+    ground = ground_under({planar_.place(index).x, planar_.place(index).y, from});
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("model '" + model.mechanism().model().name + "': " + error.what());
+  }
+  member.has_ground = true;
+  const description::Surface& under = scene_.solid(ground).surface;
+  if (const description::TreelDrive* drive = model.drive()) {
+    const Mechanism::LinkPlace& place = model.mechanism().link(drive->link);
+    grounds_[index] = PlanarGround(*drive, planar_.segment_in_body(index, place.segment) * place.X_SL,
+                                   std::min(drive->friction, under.friction), weight, planar_.inertia(index), step_);
+  } else if (lowest != parts.end()) {
+    const SurfacePair surfaces = surfaces_.of(scene_.solid(lowest->solid).surface, under);
+    grounds_[index] =
+        PlanarGround(surfaces.friction, weight, mean_distance(lowest->outline_B, Eigen::Vector2d::Zero()), step_);
+  }
+}
+
+// The first solid below a point that does not move.
+std::uint32_t PlanarWorld::ground_under(const Vector3d& origin_W) const {
+  constexpr double depth = 10.0;  // [m]
+  std::vector<std::uint32_t> below;
+  scene_.for_each_static_overlap({origin_W - depth * Vector3d::UnitZ(), origin_W},
+                                 [&](std::uint32_t solid) { below.push_back(solid); });
+  const auto hit = scene_.cast_ray_among(below, origin_W, -Vector3d::UnitZ(), depth);
+  if (!hit || hit->distance == 0.0) throw std::invalid_argument("there is no ground under it, so it cannot be planar");
+  if (hit->normal_W.head<2>().norm() > most_lean)
+    throw std::invalid_argument("the ground under it is not level, so it cannot be planar");
+  return hit->solid;
+}
+
+}  // namespace cohort::physics

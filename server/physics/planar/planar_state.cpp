@@ -1,0 +1,70 @@
+// The state of a planar world, hashed, saved and restored: all three see the same numbers.
+
+#include "server/core/state_visitors.hpp"
+#include "server/physics/planar/planar_world.hpp"
+
+namespace cohort::physics {
+
+void PlanarWorld::hash_body(std::uint32_t body, StateHash& hash) const {
+  const std::uint32_t member = bodies_[body].member;
+  hash_changes(bodies_[body], hash);
+  if (member == Anchors::nobody) return;
+  StateHasher{hash}(members_[member].is_active);
+  PlanarBodies::visit_state(planar_, member, StateHasher{hash});
+  PlanarGround::visit_state(grounds_[member], StateHasher{hash});
+}
+
+void PlanarWorld::hash_contacts(StateHash& hash) const {
+  connections_.hash(hash);
+  for (std::uint32_t member = 0; member < members_.size(); ++member) {
+    for (const PlanarPair& pair : collision_.pairs_of(member)) {
+      hash.add(static_cast<std::uint64_t>(pair.a) << 32 | pair.b);
+      for (const PlanarPoint& point : pair.contact) PlanarPoint::visit_state(point, StateHasher{hash});
+    }
+  }
+}
+
+void PlanarWorld::save(SnapshotWriter& writer) const {
+  const StateSaver save{writer};
+  save_added_bodies(bodies_, description_.instances.size(), writer);
+  save_changes(bodies_, writer);
+  for (std::uint32_t member = 0; member < members_.size(); ++member) {
+    save(members_[member].is_active);
+    save(members_[member].is_finite);
+    save(members_[member].is_inside);
+    save(members_[member].has_ground);
+    PlanarBodies::visit_state(planar_, member, save);
+    PlanarGround::visit_state(grounds_[member], save);
+  }
+  connections_.save(writer);
+  collision_.save(writer);
+}
+
+void PlanarWorld::restore(SnapshotReader& reader) {
+  const StateRestorer restore{reader};
+  restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
+                       [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
+  scene_.build();
+  restore_changes(reader, *this);
+  for (std::uint32_t member = 0; member < members_.size(); ++member) {
+    bool is_active = true;
+    restore(is_active);
+    restore(members_[member].is_finite);
+    restore(members_[member].is_inside);
+    bool has_ground = true;
+    restore(has_ground);
+    if (has_ground && !members_[member].has_ground) put_on_ground(member);
+    PlanarBodies::visit_state(planar_, member, restore);
+    PlanarGround::visit_state(grounds_[member], restore);
+    planar_.update_poses(member);
+    find_parts_in_body(members_[member], member);
+    place_solids(member);
+    if (!is_active) take_out(member);
+  }
+  scene_.update();
+  connections_.restore(reader, members_.size());
+  collision_.restore(reader);
+  report_contacts();
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,267 @@
+#include "server/physics/planar/planar_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cohort::physics {
+namespace {
+
+constexpr std::size_t members_a_chunk = 64;
+constexpr std::size_t islands_a_chunk = 32;
+
+// Further from the origin a body has left the world [m].
+constexpr double furthest = 1e6;
+
+// The links of one body, as a MotionRecord looks at them.
+struct LinksOf {
+  const PlanarBodies& bodies;
+  std::uint32_t member;
+  Pose link_pose(std::size_t link) const { return bodies.link_pose(member, link); }
+  Twist link_twist(std::size_t link) const { return bodies.link_twist(member, link); }
+};
+
+Wrench in_plane(const Wrench& wrench) {
+  return {{wrench.force_W.x(), wrench.force_W.y(), 0.0}, {0.0, 0.0, wrench.torque_W.z()}};
+}
+
+}  // namespace
+
+bool PlanarWorld::is_active(std::uint32_t body) const {
+  return bodies_[body].member == Anchors::nobody ? !bodies_[body].is_out : members_[bodies_[body].member].is_active;
+}
+
+Pose PlanarWorld::link_pose(std::uint32_t body, std::size_t link) const {
+  if (bodies_[body].member != Anchors::nobody) return planar_.link_pose(bodies_[body].member, link);
+  return bodies_[body].X_WM * description_.models[bodies_[body].model].links[link].X_ML;
+}
+
+Twist PlanarWorld::link_twist(std::uint32_t body, std::size_t link) const {
+  if (bodies_[body].member != Anchors::nobody && is_active(body)) return planar_.link_twist(bodies_[body].member, link);
+  return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+}
+
+void PlanarWorld::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+                                  std::span<const double> velocities) {
+  const std::uint32_t member = bodies_[body].member;
+  planar_.set_joint_state(member, joint, coordinates, velocities);
+  find_parts_in_body(members_[member], member);
+  place_solids(member);
+  scene_.update();
+}
+
+void PlanarWorld::record(std::uint32_t body) {
+  if (bodies_[body].member == Anchors::nobody) return;
+  std::unique_ptr<MotionRecord>& record = members_[bodies_[body].member].record;
+  if (!record) record = std::make_unique<MotionRecord>();
+  has_records_ = true;
+}
+
+Eigen::Vector3d PlanarWorld::link_acceleration(std::uint32_t body, std::size_t link,
+                                               const Eigen::Vector3d& p_LP) const {
+  if (bodies_[body].member == Anchors::nobody) return Eigen::Vector3d::Zero();
+  const std::unique_ptr<MotionRecord>& record = members_[bodies_[body].member].record;
+  return record ? record->acceleration(link, p_LP, step_) : Eigen::Vector3d::Zero();
+}
+
+Pose PlanarWorld::pose_of(const Connection::End& end) const {
+  return end.member == Anchors::nobody ? Pose{} : planar_.segment_pose(end.member, end.segment);
+}
+
+Wrench PlanarWorld::connection_wrench(std::uint32_t index) const {
+  const Connection& connection = connections_[index];
+  return in_plane(connection.wrench_on_a(pose_of(connection.a()), pose_of(connection.b()), step_));
+}
+
+Wrench PlanarWorld::connection_reaction(std::uint32_t index) const {
+  const Connection& connection = connections_[index];
+  return in_plane(connection.wrench_on_b(pose_of(connection.a()), pose_of(connection.b()), step_));
+}
+
+void PlanarWorld::step() {
+  if (has_records_)
+    for (std::uint32_t index = 0; index < members_.size(); ++index)
+      if (members_[index].record)
+        members_[index].record->before(LinksOf{planar_, index}, planar_.model(index).link_count());
+  collision_.detect(workers_);
+  find_islands();
+  workers_.for_each_chunk(islands_.count(), islands_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    for (std::size_t i = begin; i < end; ++i)
+      solve_island(islands_.members(static_cast<std::uint32_t>(i)), memory_[worker]);
+  });
+  workers_.for_each_chunk(members_.size(), members_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t member = begin; member < end; ++member) move(static_cast<std::uint32_t>(member));
+  });
+  report_contacts();
+  connections_.break_overloaded(step_);
+  quarantine();
+  pushes_.clear();
+  scene_.update();
+}
+
+void PlanarWorld::find_islands() {
+  const auto count = static_cast<std::uint32_t>(members_.size());
+  islands_.reset(count);
+  for (std::uint32_t member = 0; member < count; ++member) {
+    if (!members_[member].is_active) continue;
+    for (const PlanarPair& pair : collision_.pairs_of(member))
+      if (pair.member_b != Anchors::nobody) islands_.link(member, pair.member_b);
+    connections_.for_each_of(member, [&](const Connection& connection) {
+      if (connection.b().member != Anchors::nobody) islands_.link(member, connection.b().member);
+    });
+  }
+  islands_.finish();
+}
+
+// Whose state breaks is left out, and the rest of the island is solved without it.
+void PlanarWorld::solve_island(std::span<const std::uint32_t> members, Memory& memory) {
+  std::vector<std::uint32_t>& sound = memory.members;
+  sound.clear();
+  for (const std::uint32_t member : members) {
+    if (!members_[member].is_active) continue;
+    planar_.drive_joints(member, step_);
+    members_[member].is_finite = planar_.is_sensible(member);
+    if (members_[member].is_finite) sound.push_back(member);
+  }
+  while (!sound.empty() && !try_island(sound, memory))
+    std::erase_if(sound, [&](std::uint32_t member) { return !members_[member].is_finite; });
+}
+
+// False, and nothing changed, if a body has no sensible velocities then: its member says so.
+bool PlanarWorld::try_island(const std::vector<std::uint32_t>& members, Memory& memory) {
+  PlanarSolver& solver = memory.solver;
+  solver.clear();
+  memory.before.clear();
+  for (const std::uint32_t member : members) {
+    memory.before.push_back({planar_.velocity(member), grounds_[member].impulse()});
+    pushes_.for_each_of(member, [&](const Pushes::Push& push) {
+      planar_.push(member, push.point_W, step_ * push.wrench.force_W, step_ * push.wrench.torque_W);
+    });
+    solver.add_member(member);
+    add_rows_of(member, solver);
+  }
+  solver.solve(description_.physics.iterations);
+  bool is_good = true;
+  for (const std::uint32_t member : members) {
+    members_[member].is_finite = planar_.is_sensible(member);
+    is_good = is_good && members_[member].is_finite;
+  }
+  if (is_good) {
+    solver.keep(step_);
+    return true;
+  }
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    planar_.velocity(members[i]) = memory.before[i].velocity;
+    grounds_[members[i]].set_impulse(memory.before[i].ground_impulse);
+  }
+  return false;
+}
+
+void PlanarWorld::add_rows_of(std::uint32_t member, PlanarSolver& solver) {
+  const auto is_out = [&](std::uint32_t other) { return other != Anchors::nobody && !members_[other].is_finite; };
+  connections_.for_each_of(member, [&](Connection& connection) {
+    if (!is_out(connection.b().member)) solver.add_connection(connection, step_);
+  });
+  for (PlanarPair& pair : collision_.pairs_of(member)) {
+    if (is_out(pair.member_b)) continue;
+    const SurfacePair surfaces = surfaces_.of(scene_.solid(pair.a).surface, scene_.solid(pair.b).surface);
+    for (PlanarPoint& point : pair.contact)
+      solver.add_contact(part_of(pair.a), part_of(pair.b), point, pair.z, surfaces, step_);
+  }
+}
+
+void PlanarWorld::move(std::uint32_t index) {
+  Member& member = members_[index];
+  if (!member.is_active || !member.is_finite) return;
+  if (planar_.integrate(index, step_)) find_parts_in_body(member, index);
+  if (member.record) member.record->after(LinksOf{planar_, index}, planar_.model(index).link_count());
+  place_solids(index);
+  const PlanarPlace& place = planar_.place(index);
+  member.is_inside = std::abs(place.x) < furthest && std::abs(place.y) < furthest &&
+                     planar_.segment_in_body(index, 0).position.z() >= description_.physics.lowest;
+}
+
+void PlanarWorld::find_parts_in_body(const Member& member, std::uint32_t index) {
+  double radius = 0.0;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i) {
+    Part& part = parts_[i];
+    const Pose X_BC = planar_.segment_in_body(index, part.segment) * part.X_SC;
+    // Nothing that moves is a plane or a height map, so it has one.
+    const geometry::Footprint outline = *geometry::footprint_of(scene_.solid(part.solid).shape, X_BC);
+    part.outline_B = outline;
+    parts_in_body_[i] = {X_BC, outline.centre, outline.axis};
+    collision_.set_outline(part.solid, outline);
+    radius = std::max(radius, outline.centre.norm() + outline.half.norm() + outline.radius);
+    lowest = std::min(lowest, outline.lowest);
+    highest = std::max(highest, outline.highest);
+  }
+  collision_.set_extent(index, radius, lowest, highest);
+}
+
+void PlanarWorld::place_solids(std::uint32_t index) {
+  const Member& member = members_[index];
+  const PlanarPlace& place = planar_.place(index);
+  collision_.move_member(index, {place.x, place.y});
+  for (std::uint32_t i = member.first_part; i < member.first_part + member.part_count; ++i) {
+    const PartInBody& part = parts_in_body_[i];
+    scene_.set_pose(parts_[i].solid, place * part.X_BC);
+    collision_.move(parts_[i].solid, place * part.centre_B, place.rotate(part.axis_B));
+  }
+}
+
+void PlanarWorld::report_contacts() {
+  contacts_.clear();
+  for (std::uint32_t member = 0; member < members_.size(); ++member) {
+    for (const PlanarPair& pair : collision_.pairs_of(member)) {
+      for (const PlanarPoint& point : pair.contact) {
+        if (point.gap > 0.0 && point.normal_impulse == 0.0) continue;  // near, but it did not touch
+        contacts_.push_back({scene_.solid(pair.a).body, scene_.solid(pair.b).body,
+                             Eigen::Vector3d(point.position_W.x(), point.position_W.y(), pair.z),
+                             Eigen::Vector3d(point.normal_W.x(), point.normal_W.y(), 0.0), point.gap,
+                             point.normal_impulse, pair.a, pair.b});
+      }
+    }
+  }
+}
+
+std::uint32_t PlanarWorld::connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
+                                   std::size_t link_b, const ConnectionLimits& limits) {
+  const auto link_of = [&](std::uint32_t body, std::size_t link) -> const Mechanism::LinkPlace& {
+    return planar_.model(bodies_[body].member).mechanism().link(link);
+  };
+  const Mechanism::LinkPlace& place_a = link_of(body_a, link_a);
+  const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
+                              place_a.X_SL * X_LP, body_a};
+  const Pose X_WP = planar_.segment_pose(end_a.member, end_a.segment) * end_a.X_SP;
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, body_b};
+  if (const std::uint32_t member = bodies_[body_b].member; member != Anchors::nobody) {
+    const int segment = link_of(body_b, link_b).segment;
+    end_b = {member, segment, static_cast<std::uint32_t>(link_b),
+             planar_.segment_pose(member, segment).inverse() * X_WP, body_b};
+  }
+  return connections_.add(end_a, end_b, limits);
+}
+
+void PlanarWorld::quarantine() {
+  quarantined_.clear();
+  for (std::uint32_t index = 0; index < members_.size(); ++index) {
+    const Member& member = members_[index];
+    if (!member.is_active || (member.is_finite && member.is_inside)) continue;
+    using Reason = Quarantine::Reason;
+    quarantined_.push_back({member.body, member.is_finite ? Reason::left_world : Reason::not_finite});
+    take_out(index);
+  }
+}
+
+void PlanarWorld::take_out(std::uint32_t index) {
+  members_[index].is_active = false;
+  if (members_[index].record) members_[index].record->forget();
+  connections_.release_of(index);
+  for (std::uint32_t i = 0; i < members_[index].part_count; ++i)
+    scene_.remove(parts_[members_[index].first_part + i].solid);
+  collision_.remove(index);
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,134 @@
+#include "server/physics/solvers/direct_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/physics/contact/bullet.hpp"
+
+namespace cohort::physics {
+namespace {
+
+// Solutions after the first, each with the friction limits that follow from the normal impulses of the one before.
+constexpr int most_solutions = 8;
+constexpr double limit_tolerance = 1e-9;  // [N s or N m s]
+// Each row gives way by this share of its own response, or redundant rows would have no solution.
+constexpr double give = 1e-6;
+
+class DirectSolver {
+ public:
+  explicit DirectSolver(Problem& problem) : problem_(problem), count_(problem.row_count()), size_(index(count_)) {}
+
+  bool run() {
+    gather();
+    set_limits();
+    for (int solution = 0; solution < most_solutions; ++solution) {
+      if (!solve()) return false;
+      if (set_limits()) break;
+    }
+    apply();
+    return true;
+  }
+
+ private:
+  static std::size_t index(int i) { return static_cast<std::size_t>(i); }
+  const Row& row_at(int i) const { return problem_.rows()[index(i)]; }
+
+  // Velocity of row i by a unit impulse in row j: the sum over the bodies that both act on.
+  double gain(const Row& i, const Row& j) const {
+    const double* jacobian_a = problem_.numbers() + i.numbers;
+    const double* jacobian_b = jacobian_a + 2 * i.stride_a;
+    const double* response_a = problem_.numbers() + j.numbers + j.stride_a;
+    const double* response_b = response_a + j.stride_a + j.stride_b;
+    double sum = 0.0;
+    if (i.velocity_a == j.velocity_a) sum += dot(jacobian_a, response_a, i.stride_a);
+    if (j.velocity_b != nullptr && i.velocity_a == j.velocity_b) sum += dot(jacobian_a, response_b, i.stride_a);
+    if (i.velocity_b == nullptr) return sum;
+    if (i.velocity_b == j.velocity_a) sum += dot(jacobian_b, response_a, i.stride_b);
+    if (i.velocity_b == j.velocity_b) sum += dot(jacobian_b, response_b, i.stride_b);
+    return sum;
+  }
+
+  void gather() {
+    gains_.resize(size_ * size_);
+    wanted_.resize(size_);
+    impulses_.resize(size_);
+    lower_.assign(size_, 0.0);
+    upper_.assign(size_, 0.0);
+    for (int i = 0; i < count_; ++i) {
+      const Row& row = row_at(i);
+      wanted_[index(i)] = row.target - problem_.velocity(row);
+      impulses_[index(i)] = row.impulse;
+      for (int j = 0; j <= i; ++j)
+        gains_[index(i) * size_ + index(j)] = gains_[index(j) * size_ + index(i)] = gain(row, row_at(j));
+      double& own = gains_[index(i) * size_ + index(i)];
+      own += own * give + row.softness;
+    }
+  }
+
+  // From the impulses as they are. False if that moved a limit.
+  bool set_limits() {
+    bool hold = true;
+    for (int i = 0; i < count_; ++i) {
+      const Row& row = row_at(i);
+      double& lower = lower_[index(i)];
+      double& upper = upper_[index(i)];
+      if (row.inverse == 0.0) {
+        lower = upper = 0.0;
+      } else if (row.has_fixed_limits()) {
+        lower = row.lower;
+        upper = row.upper;
+      } else {
+        double load = 0.0;
+        for (int k = row.load_begin; k < row.load_end; ++k) load += impulses_[index(k)];
+        const double limit = std::max(0.0, std::min(row.cap, row.friction * load));
+        if (std::abs(limit - upper) > limit_tolerance) hold = false;
+        lower = -limit;
+        upper = limit;
+      }
+    }
+    return hold;
+  }
+
+  // The algorithm spoils what it is given.
+  bool solve() {
+    std::vector<double> gains = gains_;
+    std::vector<double> right = wanted_;
+    std::vector<double> lower = lower_;
+    std::vector<double> upper = upper_;
+    std::vector<double> remainder(size_);
+    std::vector<int> no_friction(size_, -1);
+    btDantzigScratchMemory scratch;
+    return btSolveDantzigLCP(count_, gains.data(), impulses_.data(), right.data(), remainder.data(), 0, lower.data(),
+                             upper.data(), no_friction.data(), scratch);
+  }
+
+  void apply() {
+    for (int i = 0; i < count_; ++i) {
+      Row& row = problem_.rows()[index(i)];
+      row.impulse = impulses_[index(i)];
+      row.set_limits(lower_[index(i)], upper_[index(i)]);
+      const double* response = problem_.numbers() + row.numbers + row.stride_a;
+      add_scaled(row.impulse, response, row.velocity_a, row.stride_a);
+      if (row.velocity_b != nullptr)
+        add_scaled(row.impulse, response + row.stride_a + row.stride_b, row.velocity_b, row.stride_b);
+    }
+  }
+
+  Problem& problem_;
+  int count_;
+  std::size_t size_;
+  std::vector<double> gains_;
+  std::vector<double> wanted_;
+  std::vector<double> impulses_;
+  std::vector<double> lower_;
+  std::vector<double> upper_;
+};
+
+}  // namespace
+
+bool solve_directly(Problem& problem) {
+  if (problem.row_count() == 0) return true;
+  return DirectSolver(problem).run();
+}
+
+}  // namespace cohort::physics

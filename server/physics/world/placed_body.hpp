@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "server/physics/world/anchors.hpp"
+#include "server/core/state_visitors.hpp"
+
+namespace cohort::physics {
+
+/// An instance of a model, and what was done to it from outside since the world began.
+struct PlacedBody {
+  std::size_t model = 0;
+  Pose X_WM;                               ///< where it was placed; a static body is there
+  std::uint32_t member = Anchors::nobody;  ///< `nobody`: it is static
+  std::vector<std::uint32_t> solids{};     ///< of a static one
+  bool is_placed_again = false;            ///< X_WM is not what the description says
+  bool is_out = false;                     ///< of a static one: it was removed
+};
+
+/// Adds nothing for a body that was left alone.
+inline void hash_changes(const PlacedBody& body, StateHash& hash) {
+  if (body.is_placed_again) visit_pose(body.X_WM, StateHasher{hash});
+  if (body.is_out) StateHasher{hash}(body.is_out);
+}
+
+inline void save_changes(const std::vector<PlacedBody>& bodies, SnapshotWriter& writer) {
+  const StateSaver save{writer};
+  for (const PlacedBody& body : bodies) {
+    save(body.is_placed_again);
+    if (body.is_placed_again) visit_pose(body.X_WM, save);
+    save(body.is_out);
+  }
+}
+
+/// Does the same again to the bodies of `engine`, all of which are in the world afterwards but for static ones that
+/// were removed.
+template <class Engine>
+void restore_changes(SnapshotReader& reader, Engine& engine) {
+  const StateRestorer restore{reader};
+  for (std::uint32_t body = 0; body < engine.body_count(); ++body) {
+    bool is_placed_again = false;
+    restore(is_placed_again);
+    if (is_placed_again) {
+      Pose X_WM;
+      visit_pose(X_WM, restore);
+      engine.place_body(body, X_WM);
+    }
+    bool is_out = false;
+    restore(is_out);
+    if (is_out)
+      engine.remove_body(body);
+    else
+      engine.put_back_body(body);
+  }
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "idl/control_messages.hpp"
+#include "server/session/control/request_ledger.hpp"
+#include "server/session/control/kept_snapshots.hpp"
+#include "server/session/control/live_recordings.hpp"
+#include "server/session/playback.hpp"
+#include "server/session/run.hpp"
+
+namespace cohort::session {
+
+/// A request, and where it came in.
+struct ReceivedRequest {
+  wire::Request request;
+  wire::Sender sender;
+  wire::Participant* door = nullptr;
+};
+
+/// What those who control it see and change of a run. All of it is good until the end of the run.
+struct ControlledRun {
+  const description::Experiment& experiment;
+  Simulation& simulation;
+  RunMonitor& monitor;
+  std::uint32_t number = 0;
+  std::function<void(wire::SimulationStatus&)> fill_status;  ///< what control does not know itself
+  std::function<SessionSnapshot()> take_snapshot;            ///< at a boundary
+};
+
+/// Control of a session over DDS: docs/protocol.md, "Control", the server's side. Questions are answered at once; what
+/// changes something waits for a boundary, and is done in the order of arrival. All on the thread of the run.
+class Control {
+ public:
+  using Clock = RunMonitor::Clock;
+
+  /// `recordings` must outlive this.
+  explicit Control(LiveRecordings& recordings) : recordings_(recordings) {}
+
+  void begin(ControlledRun run);
+  /// Tells those who wait for something that it will not come, unless the next run brings it.
+  void end(RunResult::End how);
+
+  void take(const ReceivedRequest& asked);
+  /// The writer of somebody's requests has gone.
+  void lose(const wire::Sender& sender);
+
+  /// The run has come to a boundary: steps may be done.
+  void reach_boundary();
+  /// Does what waits. In the midst of a tick that is only what ends the run: nothing that it does comes to anything any
+  /// more. False if the run has to end, as `ending` says.
+  enum class Moment { boundary, midst };
+  bool perform(Moment moment);
+  struct Ending {
+    RunResult::End how = RunResult::End::shut_down;
+    std::optional<NextRun> next{};
+  };
+  const std::optional<Ending>& ending() const { return ending_; }
+  /// Whether the run stays at this boundary.
+  bool holds() const { return playback_.holds(); }
+  bool has_work() const { return !ledger_.waiting().empty(); }
+
+ private:
+  struct Requester {
+    std::string label;  // for people
+    std::uint64_t writer = 0;
+    wire::Writer<wire::Reply> replies;
+  };
+  // A reply to a request, not filled in yet.
+  static wire::Reply reply_to(const wire::Request& request);
+  Requester* requester_of(const ReceivedRequest& asked);
+  void receive(const wire::Request& request);
+  void send(wire::Reply reply, bool is_kept);
+  void answer(const wire::Request& request, wire::ResultCode result, const std::string& text);
+  void answer_steps(const std::vector<Playback::Steps>& steps, wire::ResultCode result, const std::string& text);
+  void tell(const wire::Request& request, const std::string& text, std::vector<std::byte> action = {});
+  std::string label_of(std::uint64_t client) const;
+
+  // Queries (control_queries.cpp).
+  void answer_query(const wire::Request& request);
+  void fill_features(wire::Reply& reply) const;
+  void fill_entities(wire::Reply& reply, const wire::Request& request) const;
+  void fill_entity_state(wire::Reply& reply, const wire::Request& request) const;
+  void fill_status(wire::Reply& reply);
+  void fill_data(wire::Reply& reply, const wire::Request& request) const;
+  void take_data(wire::Reply& reply, const wire::Request& request);
+  void fill_recording(wire::Reply& reply, const wire::Request& request);
+  void stop_recording(wire::Reply& reply, const wire::Request& request);
+  void fill_history(wire::Reply& reply, const wire::Request& request) const;
+  std::optional<std::uint32_t> find_entity(wire::Reply& reply, const std::string& name) const;
+
+  // Operations: done or refused with a reply, or begun.
+  void do_one(const wire::Request& request);
+  void set_state(const wire::Request& request);
+  void step(const wire::Request& request);
+  void set_speed(const wire::Request& request);
+  void quit(const wire::Request& request);
+  // What begins a run anew, and what is kept of one (control_snapshots.cpp).
+  void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
+  void save(const wire::Request& request);
+  void load(const wire::Request& request);
+  void go_back(const wire::Request& request);
+  void go_on_from(const wire::Request& request, std::shared_ptr<const SessionSnapshot> snapshot);
+  void start_recording(const wire::Request& request);
+  // Actions on the world (control_actions.cpp).
+  static bool is_action(const wire::Request& request);
+  void act(std::span<const wire::Request> requests);
+  wire::ResultCode code_of_failure(const wire::Request& request) const;
+
+  LiveRecordings& recordings_;
+  std::optional<ControlledRun> run_;
+  Playback playback_;
+  std::optional<Ending> ending_;
+  std::vector<wire::Request> answered_by_next_run_;
+  KeptSnapshots kept_{0, 0};
+  bool goes_back_ = false;  // the next run is this one's past
+  RequestLedger ledger_;
+  std::map<std::uint64_t, Requester> requesters_;            // by client
+  std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of requests
+  // Of the real-time factor, half a second and more apart.
+  struct Sample {
+    Clock::time_point wall{};
+    std::chrono::nanoseconds time{0};  // simulated
+  };
+  void note_progress(Clock::time_point now);
+  Sample older_, newer_;
+};
+
+}  // namespace cohort::session

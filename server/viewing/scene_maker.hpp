@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "server/viewing/scene_messages.hpp"
+#include "server/simulation/simulation.hpp"
+
+namespace cohort::viewing {
+
+/// Tells viewers of a simulation. Reads and changes nothing, so the run's hash is the same without it. Between steps,
+/// on the thread that steps.
+class SceneMaker {
+ public:
+  /// `simulation` must outlive this. `revision`: another one for each maker of a source.
+  SceneMaker(const Simulation& simulation, std::uint32_t revision);
+
+  /// Objects have come that are not in the scene: time for another maker.
+  bool is_outdated() const;
+  /// `teams`: those of the experiment, by the robots' ids.
+  Scene scene(std::span<const description::Team> teams = {}) const;
+  SceneFrame frame(std::uint32_t run, std::uint64_t state_hash) const;
+  SceneSignals signals() const;
+  SceneContacts contacts() const;
+  /// `robot`: an id of the simulation.
+  SceneRobot robot(std::uint32_t robot) const;
+
+ private:
+  struct PlacedLink {
+    std::uint32_t body = 0;
+    std::uint32_t link = 0;
+  };
+  std::uint32_t place_of(const emission::Mount& mount) const {
+    return first_of_link_[simulation_.world().model_of(mount.body)][mount.link] + place_in_model_[mount.body];
+  }
+  SceneEmitter emitter(const emission::Mount& mount) const;
+  void add_entities(Scene& scene, std::span<const description::Team> teams) const;
+  void add_emitters(Scene& scene) const;
+  void choose_lamps();
+
+  const Simulation& simulation_;
+  std::uint32_t revision_;
+  std::uint32_t objects_;
+  std::vector<PlacedLink> links_;                          // in the order of a frame
+  std::vector<std::uint32_t> place_in_model_;              // of each object
+  std::vector<std::vector<std::uint32_t>> first_of_link_;  // by model and link: place among links_
+  std::vector<std::uint32_t> lamps_;                       // those that are no LEDs
+};
+
+}  // namespace cohort::viewing

@@ -1,0 +1,229 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "server/recording/cdr.hpp"
+
+/// What viewers are told of a world, as messages of a ROS 2 package `cohort_msgs` would be. SI units, radians; frames
+/// as in description/model.hpp. A pose is x y z and a quaternion qx qy qz qw. Numbers are float32 where they are only
+/// to be looked at.
+namespace cohort::viewing {
+
+using recording::field;
+
+using Vector = std::array<float, 3>;
+using PoseNumbers = std::array<float, 7>;
+using Color = std::array<float, 4>;  ///< red, green, blue and opacity, from 0 to 1
+
+inline constexpr std::uint32_t none = 0xffffffffu;
+
+enum class ShapeKind : std::uint8_t {
+  box = 0,        ///< size: edges
+  sphere = 1,     ///< size: radius
+  cylinder = 2,   ///< size: radius, length along z
+  capsule = 3,    ///< size: radius, length along z without the half spheres
+  ellipsoid = 4,  ///< size: radii
+  plane = 5,      ///< size: normal; without end
+  mesh = 6,
+};
+
+enum class ShapeRole : std::uint8_t {
+  visual = 0,
+  collision = 1,            ///< of a link that has visuals too
+  collision_as_visual = 2,  ///< of one that has none
+};
+
+struct SceneShape {
+  std::uint8_t kind = 0;      ///< a ShapeKind
+  std::uint8_t role = 0;      ///< a ShapeRole
+  std::uint32_t mesh = none;  ///< index into Scene::meshes
+  Vector size{};
+  PoseNumbers pose{};  ///< in its link
+  Color color{};
+  bool has_mesh_colors = false;  ///< of `color` only the opacity counts: the mesh has the colours
+  static constexpr const char* type = "cohort_msgs/msg/SceneShape";
+  static constexpr auto fields =
+      std::tuple(field("kind", &SceneShape::kind), field("role", &SceneShape::role), field("mesh", &SceneShape::mesh),
+                 field("size", &SceneShape::size), field("pose", &SceneShape::pose), field("color", &SceneShape::color),
+                 field("has_mesh_colors", &SceneShape::has_mesh_colors));
+};
+
+struct SceneMesh {
+  std::vector<float> vertices;           ///< x y z of each
+  std::vector<std::uint32_t> triangles;  ///< three vertices each, counter-clockwise seen from outside
+  std::vector<std::uint8_t> colors{};    ///< red, green, blue of each triangle; empty if it has none
+  static constexpr const char* type = "cohort_msgs/msg/SceneMesh";
+  static constexpr auto fields =
+      std::tuple(field("vertices", &SceneMesh::vertices), field("triangles", &SceneMesh::triangles),
+                 field("colors", &SceneMesh::colors));
+};
+
+struct SceneLink {
+  std::string name;
+  PoseNumbers pose{};  ///< in its model, with all joints at rest
+  std::vector<SceneShape> shapes;
+  static constexpr const char* type = "cohort_msgs/msg/SceneLink";
+  static constexpr auto fields =
+      std::tuple(field("name", &SceneLink::name), field("pose", &SceneLink::pose), field("shapes", &SceneLink::shapes));
+};
+
+/// What a sensor looks along: as many rays as `directions` has vectors.
+struct SceneSensor {
+  std::string name;
+  std::string kind;  ///< as a world writes it, such as `proximity_ring`
+  std::uint32_t link = 0;
+  std::vector<float> origins;     ///< x y z of each ray in its link
+  std::vector<float> directions;  ///< the same, unit
+  float range = 0.0f;             ///< [m]
+  float cone = 0.0f;              ///< full angle of what one ray stands for; 0: a ray
+  std::string channel;            ///< of the first ray's reading; those of the others follow it in the observation
+  static constexpr const char* type = "cohort_msgs/msg/SceneSensor";
+  static constexpr auto fields = std::tuple(
+      field("name", &SceneSensor::name), field("kind", &SceneSensor::kind), field("link", &SceneSensor::link),
+      field("origins", &SceneSensor::origins), field("directions", &SceneSensor::directions),
+      field("range", &SceneSensor::range), field("cone", &SceneSensor::cone), field("channel", &SceneSensor::channel));
+};
+
+struct SceneChannel {
+  std::string name;  ///< `device/index/quantity`
+  std::string unit;
+  std::uint32_t size = 1;
+  double lower = 0.0;
+  double upper = 0.0;
+  double neutral = 0.0;  ///< of a command: what it is until it is set
+  static constexpr const char* type = "cohort_msgs/msg/SceneChannel";
+  static constexpr auto fields =
+      std::tuple(field("name", &SceneChannel::name), field("unit", &SceneChannel::unit),
+                 field("size", &SceneChannel::size), field("lower", &SceneChannel::lower),
+                 field("upper", &SceneChannel::upper), field("neutral", &SceneChannel::neutral));
+};
+
+struct SceneModel {
+  std::string name;
+  bool is_static = false;
+  std::vector<SceneLink> links;
+  std::vector<SceneSensor> sensors;
+  std::vector<SceneChannel> observation;
+  std::vector<SceneChannel> command;
+  static constexpr const char* type = "cohort_msgs/msg/SceneModel";
+  static constexpr auto fields =
+      std::tuple(field("name", &SceneModel::name), field("is_static", &SceneModel::is_static),
+                 field("links", &SceneModel::links), field("sensors", &SceneModel::sensors),
+                 field("observation", &SceneModel::observation), field("command", &SceneModel::command));
+};
+
+struct SceneEntity {
+  std::string name;  ///< scoped
+  std::uint32_t model = 0;
+  std::uint32_t robot = none;  ///< its id, if it is one
+  std::string team{};
+  static constexpr const char* type = "cohort_msgs/msg/SceneEntity";
+  static constexpr auto fields = std::tuple(field("name", &SceneEntity::name), field("model", &SceneEntity::model),
+                                            field("robot", &SceneEntity::robot), field("team", &SceneEntity::team));
+};
+
+/// A lamp, a loudspeaker or a LED; `link`: index among the links of a SceneFrame.
+struct SceneEmitter {
+  std::uint32_t entity = 0;
+  std::uint32_t link = 0;
+  Vector position{};   ///< in its link
+  Vector direction{};  ///< of a lamp that shines in one, in its link; zero otherwise
+  float range = 0.0f;  ///< [m], may be infinite
+  static constexpr const char* type = "cohort_msgs/msg/SceneEmitter";
+  static constexpr auto fields =
+      std::tuple(field("entity", &SceneEmitter::entity), field("link", &SceneEmitter::link),
+                 field("position", &SceneEmitter::position), field("direction", &SceneEmitter::direction),
+                 field("range", &SceneEmitter::range));
+};
+
+/// What there is in a world. Another one comes with another world, and when objects come that were not in it.
+struct Scene {
+  std::uint32_t revision = 0;  ///< that frames refer to; never used twice by a source
+  std::string world;
+  std::int64_t step_ns = 0;
+  std::vector<SceneMesh> meshes;
+  std::vector<SceneModel> models;
+  std::vector<SceneEntity> entities;
+  std::vector<SceneEmitter> lamps;
+  std::vector<SceneEmitter> tones;
+  std::vector<SceneEmitter> leds;
+  static constexpr const char* type = "cohort_msgs/msg/Scene";
+  static constexpr auto fields =
+      std::tuple(field("revision", &Scene::revision), field("world", &Scene::world), field("step_ns", &Scene::step_ns),
+                 field("meshes", &Scene::meshes), field("models", &Scene::models), field("entities", &Scene::entities),
+                 field("lamps", &Scene::lamps), field("tones", &Scene::tones), field("leds", &Scene::leds));
+};
+
+/// Where everything is at a boundary. Links are in the order of models, within a model of its links, and within a link
+/// of the entities of that model: so all instances of one link stand in a row.
+struct SceneFrame {
+  std::uint32_t revision = 0;
+  std::uint32_t run = 0;
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::uint64_t state_hash = 0;
+  std::vector<std::uint32_t> absent;       ///< entities that are not in the world, ascending
+  std::vector<std::uint32_t> quarantined;  ///< and those that are no longer simulated
+  std::vector<float> positions;            ///< x y z of each link in the world
+  std::vector<std::int16_t> orientations;  ///< qx qy qz qw of each link, times 32767
+  static constexpr const char* type = "cohort_msgs/msg/SceneFrame";
+  static constexpr auto fields = std::tuple(
+      field("revision", &SceneFrame::revision), field("run", &SceneFrame::run), field("tick", &SceneFrame::tick),
+      field("time_ns", &SceneFrame::time_ns), field("state_hash", &SceneFrame::state_hash),
+      field("absent", &SceneFrame::absent), field("quarantined", &SceneFrame::quarantined),
+      field("positions", &SceneFrame::positions), field("orientations", &SceneFrame::orientations));
+};
+
+/// What lamps, loudspeakers and LEDs do, in the order of the scene's.
+struct SceneSignals {
+  std::uint32_t revision = 0;
+  std::vector<float> lamps;        ///< red, green, blue and intensity of each; 0 if it is off
+  std::vector<float> tones;        ///< frequency [Hz] and intensity of each; 0 if it is silent
+  std::vector<std::uint8_t> leds;  ///< red, green, blue of each, from 0 to 255
+  static constexpr const char* type = "cohort_msgs/msg/SceneSignals";
+  static constexpr auto fields =
+      std::tuple(field("revision", &SceneSignals::revision), field("lamps", &SceneSignals::lamps),
+                 field("tones", &SceneSignals::tones), field("leds", &SceneSignals::leds));
+  bool operator==(const SceneSignals&) const = default;
+};
+
+/// What touches and what holds on to what, at a boundary.
+struct SceneContacts {
+  std::uint32_t revision = 0;
+  std::vector<float> positions;         ///< x y z of each contact point in the world
+  std::vector<float> forces;            ///< the same along the normal, of entity b on entity a, over the last step [N]
+  std::vector<std::uint32_t> entities;  ///< a and b of each
+  std::vector<float> grips;             ///< of each gripper that holds something: x y z of its jaw, and the force [N]
+  static constexpr const char* type = "cohort_msgs/msg/SceneContacts";
+  static constexpr auto fields =
+      std::tuple(field("revision", &SceneContacts::revision), field("positions", &SceneContacts::positions),
+                 field("forces", &SceneContacts::forces), field("entities", &SceneContacts::entities),
+                 field("grips", &SceneContacts::grips));
+};
+
+/// What one robot observes and is told, as float64 by the channels of its model.
+struct SceneRobot {
+  std::uint32_t revision = 0;
+  std::uint32_t robot = 0;
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;
+  std::vector<double> observation;
+  std::vector<double> command;
+  static constexpr const char* type = "cohort_msgs/msg/SceneRobot";
+  static constexpr auto fields =
+      std::tuple(field("revision", &SceneRobot::revision), field("robot", &SceneRobot::robot),
+                 field("tick", &SceneRobot::tick), field("time_ns", &SceneRobot::time_ns),
+                 field("observation", &SceneRobot::observation), field("command", &SceneRobot::command));
+};
+
+/// Some of the robots.
+struct SceneRobots {
+  std::vector<SceneRobot> robots;
+  static constexpr const char* type = "cohort_msgs/msg/SceneRobots";
+  static constexpr auto fields = std::tuple(field("robots", &SceneRobots::robots));
+};
+
+}  // namespace cohort::viewing

@@ -1,0 +1,203 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+// Holds the sources to the table of docs/architecture.md.
+namespace cohort {
+namespace {
+
+using Names = std::set<std::string>;
+using Graph = std::map<std::string, Names>;
+
+std::vector<std::string> matches_in(const std::string& text, const std::regex& pattern) {
+  std::vector<std::string> found;
+  for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
+    found.push_back((*match)[1]);
+  return found;
+}
+
+struct Row {
+  Names includes;
+  std::string libraries;
+};
+
+// By folder.
+std::map<std::string, Row> read_table() {
+  std::map<std::string, Row> table;
+  std::ifstream document(COHORT_SOURCE_DIR "/docs/architecture.md");
+  const std::regex row(R"(\| `([\w/]+)/` \| ([^|]*) \| ([^|]*) \| ([^|]*)\|)");
+  for (std::string line; std::getline(document, line);) {
+    std::smatch cells;
+    if (!std::regex_match(line, cells, row)) continue;
+    Row& entry = table[cells[1]];
+    entry.libraries = cells[4];
+    for (const std::string& name : matches_in(cells[3], std::regex("`([\\w/]+)`")))
+      entry.includes.insert(std::filesystem::exists(COHORT_SOURCE_DIR "/server/" + name) ? "server/" + name : name);
+  }
+  return table;
+}
+
+struct Source {
+  std::string path;  // from the top
+  std::string folder;
+  Names files;    // of ours that it includes
+  Names headers;  // of others
+};
+
+std::vector<Source> read_sources() {
+  const std::filesystem::path top = COHORT_SOURCE_DIR;
+  const Names endings = {".cpp", ".hpp", ".h", ".c"};
+  std::vector<Source> sources;
+  for (const char* const part : {"idl", "client_sdk", "server", "tools"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(top / part)) {
+      if (!endings.contains(entry.path().extension())) continue;
+      const std::filesystem::path path = entry.path().lexically_relative(top);
+      Source source{path, path.parent_path(), {}, {}};
+      std::stringstream text;
+      text << std::ifstream(entry.path()).rdbuf();
+      for (const std::string& file : matches_in(text.str(), std::regex("\n *#include \"([^\"]+)\""))) {
+        const bool is_beside = std::filesystem::exists(entry.path().parent_path() / file);
+        const std::filesystem::path named = is_beside ? source.folder + "/" + file : file;
+        if (named != "idl/cohort.h") source.files.insert(named.lexically_normal());  // which the IDL compiler makes
+      }
+      for (const std::string& header : matches_in(text.str(), std::regex("\n *#include <([^>]+)>")))
+        source.headers.insert(header);
+      sources.push_back(std::move(source));
+    }
+  return sources;
+}
+
+std::string folder_of(const std::string& file) { return std::filesystem::path(file).parent_path(); }
+
+// One that leads back to where it began, as `a > b > a`; empty if there is none.
+std::string circle_in(const Graph& graph) {
+  std::set<std::string> done;
+  std::vector<std::string> way;
+  std::string found;
+  const auto visit = [&](const auto& self, const std::string& node) -> void {
+    if (!found.empty() || done.contains(node)) return;
+    if (const auto before = std::ranges::find(way, node); before != way.end()) {
+      for (auto each = before; each != way.end(); ++each) found += *each + " > ";
+      found += node;
+      return;
+    }
+    way.push_back(node);
+    if (const auto next = graph.find(node); next != graph.end())
+      for (const std::string& each : next->second) self(self, each);
+    way.pop_back();
+    done.insert(node);
+  };
+  for (const auto& [node, next] : graph) visit(visit, node);
+  return found;
+}
+
+TEST(Architecture, EveryFolderHasARowAndIncludesWhatItNamesAndNothingElse) {
+  const std::map<std::string, Row> table = read_table();
+  ASSERT_GT(table.size(), 40u);
+  std::map<std::string, Names> used;
+  for (const Source& source : read_sources()) {
+    const auto row = table.find(source.folder);
+    if (row == table.end()) {
+      ADD_FAILURE() << source.folder << " has no row in the table of docs/architecture.md";
+      continue;
+    }
+    used[source.folder];
+    for (const std::string& file : source.files) {
+      EXPECT_TRUE(std::filesystem::exists(COHORT_SOURCE_DIR "/" + file)) << source.path << " includes " << file;
+      const std::string folder = folder_of(file);
+      if (folder == source.folder) continue;
+      used[source.folder].insert(folder);
+      EXPECT_TRUE(row->second.includes.contains(folder))
+          << source.path << " includes " << file << ", which the row of " << source.folder << " does not name";
+    }
+  }
+  for (const auto& [folder, row] : table) {
+    EXPECT_TRUE(used.contains(folder)) << folder << " has a row and no sources";
+    for (const std::string& named : row.includes)
+      EXPECT_TRUE(used[folder].contains(named)) << folder << " does not include " << named << ", which its row names";
+  }
+}
+
+TEST(Architecture, NeitherFoldersNorFilesIncludeEachOtherInACircle) {
+  Graph folders, files;
+  for (const Source& source : read_sources()) {
+    files[source.path] = source.files;
+    for (const std::string& file : source.files)
+      if (folder_of(file) != source.folder) folders[source.folder].insert(folder_of(file));
+  }
+  EXPECT_EQ(circle_in(folders), "");
+  EXPECT_EQ(circle_in(files), "");
+  EXPECT_EQ(circle_in({{"a", {"b"}}, {"b", {"c"}}, {"c", {"b"}}}), "b > c > b");
+}
+
+TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
+  const std::vector<std::pair<std::string, std::regex>> libraries = {
+      {"Cyclone DDS", std::regex("dds/.*")},
+      {"oneTBB", std::regex("tbb/.*")},
+      {"Random123", std::regex("Random123/.*")},
+      {"libsdformat", std::regex("(sdf|ignition|console_bridge)/.*")},
+      {"yaml-cpp", std::regex("yaml-cpp/.*")},
+      {"expat", std::regex("expat\\.h")},
+      {"Assimp", std::regex("assimp/.*")},
+      {"libpng", std::regex("png\\.h")},
+      {"Bullet", std::regex("(bt|Bullet).*")},
+      {"zstd", std::regex("zstd\\.h")},
+      {"zlib", std::regex("zlib\\.h")},
+      {"hdf5", std::regex("hdf5\\.h")},
+      {"Boost.Beast", std::regex("boost/(beast|asio).*")},
+      {"Boost.CRC", std::regex("boost/crc.*")},
+      {"ODE", std::regex("ode/.*")},
+      {"MuJoCo", std::regex("mujoco/.*")},
+      {"Enki", std::regex("enki/.*")},
+      {"CLI11", std::regex("CLI/.*")},
+      {"spdlog", std::regex("spdlog/.*")},
+      {"nlohmann-json", std::regex("nlohmann/.*")},
+  };
+  // Of the system, of the language, and what any folder may have.
+  const std::regex others(
+      "[a-z_]+|(std|sys|net|netinet|arpa|linux)[a-z]*/.*|(std[a-z]+|dlfcn|fcntl|ifaddrs|netdb|poll|pthread|regex|spawn|"
+      "termios|unistd|math|string|signal|fenv|time)\\.h|Eigen/.*|fmt/.*|cohort/.*|cohort\\.h|cohort_build/"
+      ".*|cxxabi\\.h|"
+      "immintrin\\.h|x86intrin\\.h|execinfo\\.h");
+  const std::map<std::string, Row> table = read_table();
+  Names seen;
+  for (const Source& source : read_sources())
+    for (const std::string& header : source.headers) {
+      const auto library =
+          std::ranges::find_if(libraries, [&](const auto& each) { return std::regex_match(header, each.second); });
+      if (library == libraries.end()) {
+        EXPECT_TRUE(std::regex_match(header, others))
+            << source.path << " includes <" << header << "> of nobody knows whom";
+        continue;
+      }
+      seen.insert(library->first);
+      const bool is_here = std::ranges::any_of(table, [&](const auto& row) {
+        return (source.folder + "/").starts_with(row.first + "/") &&
+               row.second.libraries.find(library->first) != std::string::npos;
+      });
+      EXPECT_TRUE(is_here) << source.path << " includes <" << header << ">, but no row gives it " << library->first;
+    }
+  EXPECT_GT(seen.size(), 14u);
+}
+
+TEST(Architecture, NoTwoHeadersHaveTheSameName) {
+  std::map<std::string, std::string> paths;
+  for (const Source& source : read_sources()) {
+    const std::filesystem::path path = source.path;
+    if (path.extension() == ".cpp" || path.extension() == ".c") continue;
+    const auto [found, is_new] = paths.emplace(path.stem(), source.path);
+    EXPECT_TRUE(is_new) << source.path << " and " << found->second;
+  }
+}
+
+}  // namespace
+}  // namespace cohort

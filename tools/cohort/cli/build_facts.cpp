@@ -1,0 +1,34 @@
+#include "tools/cohort/cli/build_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <cohort_build/commit.hpp>
+#include <cohort_build/facts.hpp>
+
+#include "client_sdk/math/portable_math.hpp"
+#include "idl/survey.hpp"
+
+namespace cohort::tool {
+namespace {
+
+std::string mathematics() {
+  const std::vector<std::string> foreign = functions_not_portable();
+  return foreign.empty() ? "portable" : fmt::format("not portable, the C library's: {}", fmt::join(foreign, ", "));
+}
+
+}  // namespace
+
+std::string version_text() {
+  return fmt::format(
+      "cohort {}\n"
+      "commit        {}\n"
+      "compiler      {}\n"
+      "flags         {}\n"
+      "architecture  {}\n"
+      "libraries     Cyclone DDS {}, {}\n"
+      "mathematics   {}",
+      COHORT_VERSION, build::commit, build::compiler, build::flags, build::architecture, wire::dds_version(),
+      build::libraries, mathematics());
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,128 @@
+#include "tools/cohort/cli/log.hpp"
+
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace cohort::tool {
+namespace {
+
+spdlog::level::level_enum to_spdlog(LogLevel level) {
+  switch (level) {
+    case LogLevel::debug: return spdlog::level::debug;
+    case LogLevel::info: return spdlog::level::info;
+    case LogLevel::warning: return spdlog::level::warn;
+    case LogLevel::error: return spdlog::level::err;
+    case LogLevel::off: break;
+  }
+  return spdlog::level::off;
+}
+
+std::shared_ptr<spdlog::logger> make_logger(LogFormat format, const std::string& text_pattern) {
+  auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+  auto logger = std::make_shared<spdlog::logger>("cohort", std::move(sink));
+  if (format == LogFormat::json)
+    logger->set_pattern(R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ","level":"%l",%v})", spdlog::pattern_time_type::utc);
+  else
+    logger->set_pattern(text_pattern);
+  return logger;
+}
+
+// What follows time and level. Texts of files and controllers need not be UTF-8.
+std::string json_members(const std::string& message, const LogFields& fields) {
+  nlohmann::ordered_json object = {{"message", message}};
+  for (const auto& [name, value] : fields) object[name] = value;
+  const std::string text = object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return text.substr(1, text.size() - 2);
+}
+
+}  // namespace
+
+LogLevel level_of(Severity severity) {
+  switch (severity) {
+    case Severity::info: return LogLevel::info;
+    case Severity::warning: return LogLevel::warning;
+    case Severity::error: break;
+  }
+  return LogLevel::error;
+}
+
+Log::Log(const LogOptions& options)
+    : options_(options),
+      rewrites_progress_(options.format == LogFormat::text && isatty(STDERR_FILENO) != 0),
+      messages_(make_logger(options.format, "%^%n: %l:%$ %v")),
+      lines_(make_logger(options.format, "%v")) {
+  messages_->set_level(to_spdlog(options.level));
+  lines_->set_level(spdlog::level::debug);
+}
+
+Log::~Log() { clear_progress(); }
+
+void Log::write(LogLevel level, const std::string& message, const LogFields& fields) {
+  if (shows(level)) print(*messages_, level, message, fields);
+}
+
+void Log::problem(LogLevel level, const description::Problem& problem) {
+  if (!shows(level)) return;
+  if (options_.format == LogFormat::json) {
+    LogFields fields = {{"file", problem.file.string()}};
+    if (problem.line > 0) fields.emplace_back("line", problem.line);
+    if (!problem.element.empty()) fields.emplace_back("element", problem.element);
+    print(*lines_, level, problem.message, fields);
+    return;
+  }
+  description::Problem shown = problem;
+  if (level == LogLevel::warning) shown.element = shown.element.empty() ? "warning" : "warning: " + shown.element;
+  print(*lines_, level, shown.text(), {});
+}
+
+void Log::problems(const description::InputError& error) {
+  for (const description::Problem& each : error.problems()) problem(LogLevel::error, each);
+}
+
+void Log::notice(const std::string& message, const LogFields& fields) {
+  if (options_.progress) print(*lines_, LogLevel::info, message, fields);
+}
+
+void Log::echo(const std::string& line, const LogFields& fields) {
+  if (options_.format == LogFormat::json) {
+    const auto object = nlohmann::json::parse(line, nullptr, false);
+    const bool is_ours =
+        object.is_object() && object.contains("time") && object.contains("level") && object.contains("message");
+    if (!is_ours) return print(*lines_, LogLevel::info, line, fields);
+  }
+  const std::lock_guard lock(mutex_);
+  clear_progress_line();
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void Log::progress(const std::string& message, const LogFields& fields) {
+  if (!options_.progress) return;
+  if (!rewrites_progress_) return notice(message, fields);
+  const std::lock_guard lock(mutex_);
+  clear_progress_line();
+  std::fputs(message.c_str(), stderr);
+  progress_line_open_ = true;
+}
+
+void Log::clear_progress() {
+  const std::lock_guard lock(mutex_);
+  clear_progress_line();
+}
+
+void Log::print(spdlog::logger& logger, LogLevel level, const std::string& message, const LogFields& fields) {
+  const std::lock_guard lock(mutex_);
+  clear_progress_line();
+  logger.log(to_spdlog(level), options_.format == LogFormat::json ? json_members(message, fields) : message);
+}
+
+void Log::clear_progress_line() {
+  if (!progress_line_open_) return;
+  std::fputs("\r\033[K", stderr);
+  progress_line_open_ = false;
+}
+
+}  // namespace cohort::tool

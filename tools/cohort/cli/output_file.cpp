@@ -1,0 +1,42 @@
+#include "tools/cohort/cli/output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace cohort::tool {
+namespace {
+
+[[noreturn]] void refuse(std::string_view what, const std::filesystem::path& file, int error) {
+  throw std::runtime_error(
+      fmt::format("{} cannot be written to {}: {}", what, file.string(), std::generic_category().message(error)));
+}
+
+}  // namespace
+
+void check_writable(std::string_view what, const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) refuse(what, file, EISDIR);
+  if (std::filesystem::exists(file, ignored)) {  // not opened: it may be a pipe, and someone reads from it
+    if (access(file.c_str(), W_OK) != 0) refuse(what, file, errno);
+    return;
+  }
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) refuse(what, file, errno);
+  close(descriptor);
+  std::filesystem::remove(std::filesystem::canonical(file, ignored), ignored);
+}
+
+void write_file(std::string_view what, const std::filesystem::path& file, std::string_view contents) {
+  std::ofstream out(file, std::ios::binary);
+  out << contents;
+  out.close();
+  if (!out) refuse(what, file, errno);
+}
+
+}  // namespace cohort::tool

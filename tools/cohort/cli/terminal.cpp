@@ -1,0 +1,110 @@
+#include "tools/cohort/cli/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <utility>
+
+#include "tools/cohort/cli/wording.hpp"
+
+namespace cohort::tool {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr std::chrono::seconds line_interval{2};            // where lines cannot be rewritten
+constexpr std::chrono::milliseconds worth_mentioning{300};  // a wait
+
+double seconds(std::chrono::nanoseconds duration) { return Seconds(duration).count(); }
+
+std::string awaited_text(const session::Progress& progress) {
+  std::string text = "waiting for " + progress.awaited.front();
+  if (progress.awaited.size() > 1) text += fmt::format(" and {} more", progress.awaited.size() - 1);
+  if (!progress.awaited_from.empty()) text += ": " + progress.awaited_from;
+  return text;
+}
+
+std::string microseconds(std::chrono::nanoseconds duration) {
+  return fmt::format("{:.0f}", std::chrono::duration<double, std::micro>(duration).count());
+}
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+void Terminal::progress(const session::Progress& progress) {
+  const bool waits = !progress.awaited.empty() && (!progress.started || progress.waiting > worth_mentioning);
+  const std::string awaited = waits ? awaited_text(progress) : std::string();
+  std::string line;
+  // In columns for people: the line stands still while its numbers change.
+  if (progress.started)
+    line = fmt::format(
+        fmt::runtime(log_.format() == LogFormat::text ? "{:8.2f} of {:.2f} s simulated   {:6.1f} x real time"
+                                                      : "{:.2f} of {:.2f} s simulated, {:.1f} x real time"),
+        seconds(progress.time), seconds(progress.duration), progress.real_time_factor);
+  if (waits) line += (line.empty() ? "" : log_.format() == LogFormat::text ? "   " : ", ") + awaited;
+  if (progress.paused) line += log_.format() == LogFormat::text ? "   paused" : ", paused";
+  if (waits && progress.started) line += fmt::format(", {:.1f} s", seconds(progress.waiting));
+
+  if (line.empty()) return log_.clear_progress();
+  const auto now = std::chrono::steady_clock::now();
+  const bool news = (awaited != last_awaited_ && waits) || progress.paused != was_paused_;
+  last_awaited_ = awaited;
+  was_paused_ = progress.paused;
+  if (!log_.rewrites_progress() && !news && now - last_line_ < line_interval) return;
+  last_line_ = now;
+  LogFields fields = {{"sim_time_s", seconds(progress.time)}, {"duration_s", seconds(progress.duration)}};
+  if (progress.started) fields.emplace_back("real_time_factor", progress.real_time_factor);
+  if (progress.paused) fields.emplace_back("paused", true);
+  if (waits) fields.emplace_back("waiting_for", progress.awaited);
+  log_.progress(line, fields);
+}
+
+void Terminal::event(const session::Event& event) {
+  log_.write(level_of(event), fmt::format("tick {}: {}: {}", event.tick, event.kind, event.text),
+             {{"tick", event.tick}, {"kind", event.kind}});
+}
+
+// What an error at the end says again, or what is in the nature of things, need not be read.
+LogLevel Terminal::level_of(const session::Event& event) {
+  const std::string& kind = event.kind;
+  if (kind == "event" || kind == "joined" || kind == "back" || kind == "superseded" || kind == "failed" ||
+      kind == "control" || kind == "stopped")
+    return LogLevel::info;
+  if (kind == "lost" && options_.own_controllers) return LogLevel::info;
+  // A frame that is sent again may be answered twice.
+  if (kind == "rejected" && (event.text.starts_with("repeated") || event.text.starts_with("stale")))
+    return LogLevel::info;
+  // The summary counts them.
+  if (kind == "missed" && std::exchange(miss_was_told_, true)) return LogLevel::info;
+  return LogLevel::warning;
+}
+
+void Terminal::summary(const session::RunResult& result, double cpu_seconds) {
+  log_.info(result.end == session::RunResult::End::finished ? "the run is finished" : "the run has ended early",
+            {{"ticks", result.ticks}, {"state_hash", fmt::format("{:016x}", result.state_hash)}});
+  log_.clear_progress();
+  if (options_.quiet) return;
+  const double wall = seconds(result.wall_time);
+  std::printf("ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
+              seconds(result.sim_time), counted(result.robots, "robot").c_str());
+  if (!result.stop_reason.empty()) std::printf("stopped           by %s\n", result.stop_reason.c_str());
+  std::printf("real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0,
+              wall, cpu_seconds);
+  std::printf("barrier latency   p50 %s us, p99 %s us, max %s us\n", microseconds(result.barrier.quantile(0.5)).c_str(),
+              microseconds(result.barrier.quantile(0.99)).c_str(), microseconds(result.barrier.max()).c_str());
+  if (result.lateness.count() > 0)
+    std::printf("tick lateness     p50 %s us, p99 %s us, max %s us\n",
+                microseconds(result.lateness.quantile(0.5)).c_str(),
+                microseconds(result.lateness.quantile(0.99)).c_str(), microseconds(result.lateness.max()).c_str());
+  std::printf("contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
+              percent(result.touches.obstacles, result.touches.robot_ticks),
+              percent(result.touches.robots, result.touches.robot_ticks));
+  if (result.late > 0) std::printf("late answers      %lu\n", static_cast<unsigned long>(result.late));
+  std::printf("state hash        %016lx\n", static_cast<unsigned long>(result.state_hash));
+  std::fflush(stdout);
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,58 @@
+#include <iostream>
+
+#include "server/description/experiment.hpp"
+#include "server/description/input_error.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/parsing/sdf/file_kind.hpp"
+#include "server/parsing/world/read_world.hpp"
+#include "server/simulation/simulation.hpp"
+#include "tools/cohort/cli/installed_models.hpp"
+#include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/running/team_controllers.hpp"
+
+namespace cohort::tool {
+namespace {
+
+void print_world(const description::World& world) {
+  std::cout << world.file.string() << ": " << counted(world.instances.size(), "model") << ", "
+            << counted(world.robots.size(), "robot") << ", steps of "
+            << std::chrono::duration<double, std::milli>(world.step).count() << " ms\n";
+}
+
+void warn(const description::World& world, Log& log) {
+  for (const description::Problem& warning : world.warnings) log.problem(LogLevel::warning, warning);
+}
+
+}  // namespace
+
+int check(const std::filesystem::path& file, Log& log) {
+  try {
+    if (parsing::kind_of_file(file) == parsing::FileKind::sdf) {
+      description::Experiment experiment;
+      experiment.file = file;
+      experiment.world = parsing::read_world_or_model(file, experiment.seed, installed_model_folders());
+      warn(experiment.world, log);
+      const Simulation built(experiment, 1);  // some mistakes only show when physics takes the world
+      print_world(experiment.world);
+    } else {
+      const description::Experiment experiment = parsing::read_experiment(file, {}, {}, installed_model_folders());
+      warn(experiment.world, log);
+      const Simulation built(experiment, 1);
+      try_controllers(experiment, built, load_controllers(experiment));
+      print_world(experiment.world);
+      for (const description::Team& team : experiment.teams)
+        std::cout << "team " << team.name << ": " << counted(team.robots.size(), "robot") << ", controller "
+                  << team.controller << "\n";
+    }
+    std::cout << file.string() << ": no mistakes found\n";
+    return exit_ok;
+  } catch (const description::InputError& error) {
+    log.problems(error);
+  } catch (const std::exception& error) {
+    log.problem(LogLevel::error, {file, 0, "", error.what()});
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,60 @@
+#include "tools/cohort/commands/ctl_history.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace cohort::tool {
+namespace {
+
+using nlohmann::ordered_json;
+
+double seconds_at(std::uint64_t tick, std::chrono::nanoseconds step) {
+  return static_cast<double>(tick) * std::chrono::duration<double>(step).count();
+}
+
+}  // namespace
+
+void add(viewing::RunHistory& history, viewing::RunHistory later) {
+  std::vector<viewing::HistoryEvent> events = std::move(history.events);
+  for (viewing::HistoryEvent& event : later.events) {
+    std::erase_if(events, [&](const auto& known) { return known.kind == event.kind && known.text == event.text; });
+    events.push_back(std::move(event));
+  }
+  std::ranges::stable_sort(events, {}, &viewing::HistoryEvent::tick);
+  history = std::move(later);
+  history.events = std::move(events);
+}
+
+std::string history_text(const viewing::RunHistory& history, std::chrono::nanoseconds step) {
+  std::string text;
+  for (const viewing::HistoryEvent& event : history.events) {
+    text += fmt::format("{:10.3f} s  {:<11} {}", seconds_at(event.tick, step), event.kind, event.text);
+    if (event.count > 1)
+      text += fmt::format(" ({} times, last at {:.3f} s)", event.count, seconds_at(event.last_tick, step));
+    text += "\n";
+  }
+  if (history.keep_interval == 0) return text;
+  return text + fmt::format("it can go back to {:.3f} s, {:.3f} s at the latest; a snapshot is kept every {:g} s\n",
+                            seconds_at(history.first_kept_tick, step), seconds_at(history.last_kept_tick, step),
+                            seconds_at(history.keep_interval, step));
+}
+
+ordered_json history_json(const viewing::RunHistory& history, std::chrono::nanoseconds step) {
+  ordered_json events = ordered_json::array();
+  for (const viewing::HistoryEvent& event : history.events)
+    events.push_back({{"tick", event.tick},
+                      {"last_tick", event.last_tick},
+                      {"count", event.count},
+                      {"kind", event.kind},
+                      {"text", event.text}});
+  ordered_json json = {{"step_ns", step.count()}, {"begin_tick", history.begin_tick}, {"events", events}};
+  if (history.keep_interval > 0)
+    json["kept"] = {{"first_tick", history.first_kept_tick},
+                    {"last_tick", history.last_kept_tick},
+                    {"interval", history.keep_interval}};
+  return json;
+}
+
+}  // namespace cohort::tool

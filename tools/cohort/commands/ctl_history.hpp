@@ -1,0 +1,20 @@
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/viewing/run_history.hpp"
+
+/// How `cohort ctl history` puts the replies to GetHistory together and shows them; `step` is that of the run.
+namespace cohort::tool {
+
+/// Puts what came later to what is known; events stay in the order of their first time.
+void add(viewing::RunHistory& history, viewing::RunHistory later);
+
+/// For people: a line for each event, by its first time, and one on how far back the run can go.
+std::string history_text(const viewing::RunHistory& history, std::chrono::nanoseconds step);
+/// For programs: docs/cli.md.
+nlohmann::ordered_json history_json(const viewing::RunHistory& history, std::chrono::nanoseconds step);
+
+}  // namespace cohort::tool

@@ -1,0 +1,111 @@
+#include "tools/cohort/commands/ctl_status.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "tools/cohort/cli/wording.hpp"
+
+namespace cohort::tool {
+namespace {
+
+double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
+double microseconds(std::int64_t nanoseconds) { return 1e-3 * static_cast<double>(nanoseconds); }
+
+std::string speed_text(double speed) { return speed == 0.0 ? "max" : fmt::format("{:g}", speed); }
+
+// `0..3,7`: in the words that select them.
+std::string ranges_of(const std::vector<std::uint32_t>& ids) {
+  std::string text;
+  for (std::size_t i = 0; i < ids.size();) {
+    std::size_t end = i + 1;
+    while (end < ids.size() && ids[end] == ids[end - 1] + 1) ++end;
+    if (!text.empty()) text += ",";
+    text += std::to_string(ids[i]);
+    if (end > i + 1) text += ".." + std::to_string(ids[end - 1]);
+    i = end;
+  }
+  return text;
+}
+
+std::string awaited_text(const wire::SimulationStatus& status) {
+  if (status.awaited.empty()) return {};
+  std::string text = "waiting for " + status.awaited.front();
+  if (status.awaited_count > 1) text += fmt::format(" and {} more", status.awaited_count - 1);
+  for (const wire::ControllerStatus& each : status.controllers)
+    if (each.awaited) return text + fmt::format(": {}, {:.1f} s", each.label, seconds(status.waiting_ns));
+  return text;
+}
+
+}  // namespace
+
+std::string word_of(wire::SimulationState state) {
+  switch (state) {
+    case wire::SimulationState::stopped: return "stopped";
+    case wire::SimulationState::playing: return "playing";
+    case wire::SimulationState::paused: return "paused";
+    case wire::SimulationState::quitting: return "quitting";
+  }
+  return "in state " + std::to_string(static_cast<std::uint32_t>(state));
+}
+
+std::string status_text(const wire::Reply& reply) {
+  if (reply.status.empty()) return "the server says nothing of its run\n";
+  const wire::SimulationStatus& status = reply.status.front();
+  std::string text = fmt::format("{}   {}   run {}, seed {}   {}\n", status.experiment, word_of(reply.state), reply.run,
+                                 status.seed, counted(status.robots, "robot"));
+  text += fmt::format("tick {}   {:.2f} of {:.2f} s simulated   {:.2f} x real time (speed {})   hash {:016x}\n",
+                      reply.tick, seconds(reply.time_ns), seconds(status.duration_ns), status.real_time_factor,
+                      speed_text(status.speed), status.state_hash);
+  if (const std::string awaited = awaited_text(status); !awaited.empty()) text += awaited + "\n";
+  if (status.controllers.empty()) return text + "no controller\n";
+  std::size_t width = 10;
+  for (const wire::ControllerStatus& each : status.controllers) width = std::max(width, each.label.size());
+  text += fmt::format("\n{:<{}}  {:<14} {:>10} {:>9} {:>7} {:>9} {:>9} {:>9} {:>7}\n", "controller", width, "robots",
+                      "due tick", "awaited", "late", "p50 us", "p99 us", "rejected", "resent");
+  for (const wire::ControllerStatus& each : status.controllers)
+    text += fmt::format("{:<{}}  {:<14} {:>10} {:>9} {:>7} {:>9.0f} {:>9.0f} {:>9} {:>7}{}\n", each.label, width,
+                        ranges_of(each.robots), each.due_tick,
+                        each.awaited ? fmt::format("{:.1f} s", seconds(each.awaited_ns)) : "-", each.late,
+                        microseconds(each.answer_p50_ns), microseconds(each.answer_p99_ns), each.rejected, each.resent,
+                        each.alive ? "" : "  gone or silent");
+  return text;
+}
+
+nlohmann::ordered_json status_json(const wire::Reply& reply) {
+  nlohmann::ordered_json json = {
+      {"state", word_of(reply.state)}, {"run", reply.run}, {"tick", reply.tick}, {"sim_time_ns", reply.time_ns}};
+  if (reply.status.empty()) return json;
+  const wire::SimulationStatus& status = reply.status.front();
+  nlohmann::ordered_json controllers = nlohmann::ordered_json::array();
+  for (const wire::ControllerStatus& each : status.controllers)
+    controllers.push_back(
+        {{"label", each.label},
+         {"client", fmt::format("{:016x}", each.client)},
+         {"robots", each.robots},
+         {"alive", each.alive},
+         {"awaited", each.awaited},
+         {"awaited_s", seconds(each.awaited_ns)},
+         {"due_tick", each.due_tick},
+         {"answers", each.answers},
+         {"late", each.late},
+         {"rejected", each.rejected},
+         {"resent", each.resent},
+         {"answer_us", {{"p50", microseconds(each.answer_p50_ns)}, {"p99", microseconds(each.answer_p99_ns)}}}});
+  json.update(nlohmann::ordered_json{{"experiment", status.experiment},
+                                     {"seed", status.seed},
+                                     {"started", status.started},
+                                     {"step_ns", status.step_ns},
+                                     {"duration_ns", status.duration_ns},
+                                     {"speed", status.speed},
+                                     {"real_time_factor", status.real_time_factor},
+                                     {"state_hash", fmt::format("{:016x}", status.state_hash)},
+                                     {"robots", status.robots},
+                                     {"awaited", status.awaited},
+                                     {"awaited_count", status.awaited_count},
+                                     {"waiting_s", seconds(status.waiting_ns)},
+                                     {"controllers", controllers}});
+  return json;
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "idl/wire.hpp"
+#include "tools/cohort/commands/command_lines.hpp"
+#include "tools/cohort/commands/doctor.hpp"
+#include "tools/cohort/cli/usage.hpp"
+
+namespace cohort::tool {
+namespace {
+
+constexpr std::uint32_t last_domain = 230;
+constexpr std::array health_names = {"ok", "warning", "problem"};
+
+const char* name_of(Health health) { return health_names.at(static_cast<std::size_t>(health)); }
+
+void print(const std::vector<Finding>& findings) {
+  for (const Finding& finding : findings) {
+    std::cout << fmt::format("{:<8} {:<10} {}\n", name_of(finding.health), finding.check, finding.found);
+    if (!finding.advice.empty()) std::cout << fmt::format("{:19} -> {}\n", "", finding.advice);
+  }
+}
+
+void print_json(const std::vector<Finding>& findings) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Finding& finding : findings)
+    list.push_back({{"check", finding.check},
+                    {"health", name_of(finding.health)},
+                    {"found", finding.found},
+                    {"advice", finding.advice}});
+  std::cout << list.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
+}
+
+// Who we are when we look for the server: the client of the folder, or an observer if it has all.
+std::optional<wire::Identity> identity_in(const std::filesystem::path& folder) {
+  if (folder.empty()) return std::nullopt;
+  const std::filesystem::path observer = folder / "clients" / "observer";
+  return wire::read_identity(std::filesystem::exists(observer) ? observer : folder);
+}
+
+std::vector<Finding> examine(const DoctorCommand& command) {
+  std::vector<Finding> findings = check_interfaces(command.network);
+  const bool has_network = findings.front().health != Health::problem;
+  std::vector<std::uint32_t> doors;
+  if (!command.secure.empty()) {
+    for (const Finding& finding : check_security(command.secure)) findings.push_back(finding);
+    if (!std::filesystem::exists(command.secure / "identity") && findings.back().health != Health::problem)
+      for (const wire::Identity& door : wire::read_doors(command.secure)) doors.push_back(door.door);
+  } else if (!command.network.starts_with("127.")) {
+    findings.push_back({"security", Health::warning, "none: whoever reaches " + command.network + " can drive robots",
+                        "'cohort security init DIR' makes identities for --secure DIR."});
+  }
+  if (doors.empty()) doors.push_back(0);
+  findings.push_back(check_ports(command.domain, command.network, doors));
+  if (has_network) findings.push_back(check_firewall(command.domain, command.network));
+  // Where a machine cannot hear itself, DDS could not end its threads.
+  if (findings.back().health == Health::problem && findings.back().check == "firewall") {
+    findings.push_back({"server", Health::ok, "not looked for, since the firewall is in the way"});
+  } else if (has_network) {
+    try {
+      findings.push_back(check_server(command, identity_in(command.secure), command.expects_server));
+    } catch (const std::exception& error) {
+      findings.push_back({"server", Health::problem, error.what(), "See what else is wrong."});
+    }
+  }
+  for (const Finding& finding : {check_buffers("/proc"), check_limits("/proc", "/sys"), check_clock("/sys"),
+                                 check_processor("/sys"), check_library()})
+    findings.push_back(finding);
+  return findings;
+}
+
+}  // namespace
+
+void add_doctor_options(CLI::App& app, DoctorCommand& command) {
+  app.add_option("--server", command.server, "Address of the server that should answer (default: any of this machine)")
+      ->envname("COHORT_SERVER")
+      ->type_name("ADDRESS");
+  app.add_option("--domain", command.domain, "Its DDS domain (default: 0)")
+      ->envname("COHORT_DOMAIN")
+      ->check(whole_number(0, last_domain))
+      ->type_name("N");
+  app.add_option("--network", command.network, "Address of the interface that this machine is to serve on")
+      ->envname("COHORT_NETWORK")
+      ->capture_default_str()
+      ->type_name("ADDRESS");
+  app.add_option("--secure", command.secure, "Folder of 'cohort security', or of one identity of it")
+      ->envname("COHORT_SECURE")
+      ->type_name("DIR");
+  app.add_flag("--json", command.json, "Print the findings as JSON");
+  app.footer("Example: cohort doctor --server 10.0.0.5 --domain 7");
+}
+
+int doctor(DoctorCommand command, Log& log) {
+  try {
+    command.expects_server = !command.server.empty();
+    if (!command.expects_server) command.server = command.network;
+    const std::vector<Finding> findings = examine(command);
+    if (command.json)
+      print_json(findings);
+    else
+      print(findings);
+    const auto is_problem = [](const Finding& finding) { return finding.health == Health::problem; };
+    return std::ranges::any_of(findings, is_problem) ? exit_failed : exit_ok;
+  } catch (const std::exception& error) {
+    log.error(error.what());
+    return exit_usage;
+  }
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "server/description/select_robots.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/commands/recording_part.hpp"
+#include "tools/cohort/cli/wording.hpp"
+#include "tools/data/csv_tables.hpp"
+#include "tools/data/hdf5_tables.hpp"
+#include "tools/data/recording_tables.hpp"
+
+namespace cohort::tool {
+namespace {
+
+// Of the recording's first world; none for no selectors.
+std::set<std::string> selected_names(const recording::Recording& recording, const std::vector<std::string>& selectors) {
+  std::set<std::string> names;
+  if (selectors.empty()) return names;
+  const description::Experiment experiment = recording.experiment(recording.worlds().front());
+  for (const std::string& selector : selectors)
+    for (const std::uint32_t robot : description::select_robots(experiment.world, selector))
+      names.insert(experiment.world.robot(robot).name);
+  return names;
+}
+
+}  // namespace
+
+int export_data(const ExportDataCommand& command, Log& log) {
+  try {
+    const recording::Recording recording(command.file);
+    if (!recording.damage().empty()) log.warning(recording.damage());
+    data::Selection selection{.robots = selected_names(recording, command.robots)};
+    selection.from = start_of(command.part);
+    selection.to = end_of(command.part);
+    if (!command.hdf5.empty()) check_writable("the tables", command.hdf5);
+    const auto sink = command.csv.empty() ? data::hdf5_tables(command.hdf5) : data::csv_tables(command.csv);
+    const std::uint64_t rows = data::write_tables(recording, selection, *sink);
+    log.notice(fmt::format("wrote {} to {}", counted(rows, "row"),
+                           (command.csv.empty() ? command.hdf5 : command.csv).string()),
+               {{"rows", rows}});
+    return exit_ok;
+  } catch (const description::InputError& error) {
+    log.problems(error);
+  } catch (const std::exception& error) {
+    log.error(error.what());
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,34 @@
+#include "tools/cohort/commands/recording_part.hpp"
+
+#include "tools/cohort/cli/replay_progress.hpp"
+
+namespace cohort::tool {
+namespace {
+
+std::chrono::nanoseconds nanoseconds(double seconds) {
+  return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+std::chrono::nanoseconds start_of(const RecordingPart& part) { return nanoseconds(part.from); }
+
+std::chrono::nanoseconds end_of(const RecordingPart& part) {
+  return part.to ? nanoseconds(*part.to) : std::chrono::nanoseconds::max();
+}
+
+bool replay_part(recording::Replay& replay, const RecordingPart& part, Log& log, const std::atomic<bool>& stop,
+                 const std::function<void()>& visit) {
+  ReplayProgress progress(log);
+  bool goes_on = replay.seek(start_of(part));
+  if (!goes_on || replay.recorded().log_time > end_of(part)) throw std::invalid_argument(nothing_in_part);
+  for (; goes_on && replay.recorded().log_time <= end_of(part); goes_on = replay.advance()) {
+    if (stop) return false;
+    progress.at(replay.recorded().log_time, "replayed");
+    visit();
+  }
+  log.clear_progress();
+  return true;
+}
+
+}  // namespace cohort::tool

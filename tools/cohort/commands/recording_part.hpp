@@ -1,0 +1,22 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+
+#include "server/recording/replay.hpp"
+#include "tools/cohort/commands/commands.hpp"
+
+namespace cohort::tool {
+
+inline constexpr const char* nothing_in_part = "the recording has nothing in the time that is asked for";
+
+std::chrono::nanoseconds start_of(const RecordingPart& part);
+std::chrono::nanoseconds end_of(const RecordingPart& part);
+
+/// Calls `visit` at each boundary of the part, and shows where it is. False if it was stopped. Throws
+/// std::invalid_argument if there is no boundary in the part.
+bool replay_part(recording::Replay& replay, const RecordingPart& part, Log& log, const std::atomic<bool>& stop,
+                 const std::function<void()>& visit);
+
+}  // namespace cohort::tool

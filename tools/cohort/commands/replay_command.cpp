@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "server/core/processors.hpp"
+#include "server/recording/replay.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/recording_part.hpp"
+#include "tools/cohort/cli/replay_progress.hpp"
+#include "tools/cohort/cli/wording.hpp"
+
+namespace cohort::tool {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+void say(bool quiet, const std::string& line) {
+  if (!quiet) std::fputs((line + "\n").c_str(), stdout);
+}
+
+// What may explain that a replay differs.
+void warn_of_other_build(const recording::Recording& recording, Log& log) {
+  const auto& facts = recording.facts();
+  const auto fact = [&](const char* name) {
+    const auto found = facts.find(name);
+    return found == facts.end() ? std::string() : found->second;
+  };
+  if (fact("version") != COHORT_VERSION)
+    log.warning(fmt::format("{} was recorded by version {} of Cohort, and this is " COHORT_VERSION
+                            ": its runs may have other bits",
+                            recording.file().string(), fact("version")));
+  if (!fact("functions_not_portable").empty())
+    log.warning(fmt::format("{} was recorded with the C library's {}: on another CPU its run may have other bits",
+                            recording.file().string(), fact("functions_not_portable")));
+}
+
+int report(const recording::Verification& found, const ReplayCommand& command, Log& log) {
+  if (found.difference) {
+    const auto& difference = *found.difference;
+    log.clear_progress();
+    say(false,
+        fmt::format("differs at tick {} ({:.3f} s): recorded {:016x}, replayed {:016x}; {} before it {} identical",
+                    difference.tick, Seconds(difference.log_time).count(), difference.recorded, difference.replayed,
+                    counted(found.boundaries, "tick"), found.boundaries == 1 ? "is" : "are"));
+    return exit_failed;
+  }
+  if (!found.problem.empty()) {
+    log.error(fmt::format("the first {} {} identical, then: {}", counted(found.boundaries, "tick"),
+                          found.boundaries == 1 ? "is" : "are", found.problem));
+    return exit_failed;
+  }
+  say(command.quiet, fmt::format("identical, {}", counted(found.boundaries, "tick")));
+  return exit_ok;
+}
+
+int verify(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
+  ReplayProgress progress(log);
+  const recording::Verification found =
+      recording::verify(replay, start_of(command.part), end_of(command.part), [&](std::chrono::nanoseconds log_time) {
+        if (!command.quiet) progress.at(log_time, "replayed");
+        return !stop;
+      });
+  log.clear_progress();
+  if (found.boundaries == 0 && !found.difference && found.problem.empty() && !stop)
+    throw std::invalid_argument(nothing_in_part);
+  return stop ? exit_interrupted : report(found, command, log);
+}
+
+// Without looking at what was recorded of the states.
+int run_again(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
+  std::uint64_t ticks = 0;
+  if (!replay_part(replay, command.part, log, stop, [&] { ++ticks; })) return exit_interrupted;
+  say(command.quiet,
+      fmt::format("replayed {}, state hash {:016x}", counted(ticks, "tick"), replay.simulation().state_hash()));
+  return exit_ok;
+}
+
+}  // namespace
+
+int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
+  try {
+    const recording::Recording recording(command.file);
+    if (!recording.damage().empty()) log.warning(recording.damage());
+    warn_of_other_build(recording, log);
+    recording::Replay replay(recording, command.threads == 0 ? available_processors() : command.threads);
+
+    const auto start = std::chrono::steady_clock::now();
+    const int code = command.verify ? verify(replay, command, log, stop) : run_again(replay, command, log, stop);
+    const double wall = Seconds(std::chrono::steady_clock::now() - start).count();
+    log.info(fmt::format("replayed in {:.2f} s", wall), {{"wall_s", wall}});
+    return stop ? exit_interrupted : code;
+  } catch (const std::exception& error) {
+    log.error(error.what());
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort::tool

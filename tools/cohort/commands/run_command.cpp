@@ -1,0 +1,291 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "client_sdk/math/portable_math.hpp"
+#include "server/core/processors.hpp"
+#include "server/description/experiment.hpp"
+#include "server/description/input_error.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/session/exchange.hpp"
+#include "server/session/in_process.hpp"
+#include "server/session/session_snapshot.hpp"
+#include "tools/cohort/cli/installed_models.hpp"
+#include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/running/one_run.hpp"
+#include "tools/cohort/running/run_recording.hpp"
+#include "tools/cohort/running/serving.hpp"
+#include "tools/cohort/running/team_controllers.hpp"
+
+namespace cohort::tool {
+namespace {
+
+using session::RunResult;
+
+double cpu_seconds() {
+  double total = 0.0;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    for (const timeval& part : {usage.ru_utime, usage.ru_stime})
+      total += static_cast<double>(part.tv_sec) + 1e-6 * static_cast<double>(part.tv_usec);
+  }
+  return total;
+}
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// People cannot follow what is faster than life, nor can hardware, which nobody waits for.
+double speed_of(const RunCommand& command, const description::Experiment& experiment) {
+  const bool has_free = std::ranges::any_of(
+      experiment.teams, [](const description::Team& team) { return team.policy.mode == description::Mode::free; });
+  return command.speed.value_or(has_keyboard(experiment) || has_free || command.view ? 1.0 : 0.0);
+}
+
+// At least one step.
+std::chrono::nanoseconds keep_interval_of(const RunCommand& command, const description::Experiment& experiment) {
+  if (command.keep_interval <= 0.0) return std::chrono::nanoseconds(0);
+  return std::max(experiment.world.step,
+                  std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(command.keep_interval)));
+}
+
+void refuse_keyboard(const description::Experiment& experiment) {
+  for (const description::Team& team : experiment.teams)
+    if (team.controller == keyboard_controller)
+      throw description::InputError({{experiment.file, team.controller_line, "team " + team.name,
+                                      "people drive over DDS: run this without --controllers inprocess"}});
+}
+
+RunResult run_here(const description::Experiment& experiment, Simulation& simulation,
+                   const std::vector<TeamController>& controllers, const session::RunOptions& options,
+                   const session::RunListener& listener, const std::atomic<bool>& stop) {
+  std::vector<ControllerKind> teams;
+  teams.reserve(controllers.size());
+  for (const TeamController& controller : controllers) teams.push_back(controller.kind());
+  return session::run_in_process(experiment, simulation, teams, options, listener, stop);
+}
+
+void warn_if_not_portable(Log& log) {
+  std::string names;
+  for (const std::string& name : functions_not_portable()) names += " " + name;
+  if (!names.empty())
+    log.warning("this run's hash may differ on another CPU: the C library's" + names + " are in use instead of ours");
+}
+
+void refuse_what_needs_a_server(const RunCommand& command) {
+  const auto refuse = [](const std::string& option) {
+    throw std::invalid_argument("nobody can reach a run whose controllers are in the server's process: " + option +
+                                " goes with other --controllers");
+  };
+  if (command.paused) refuse("--paused");
+  if (command.keep_interval > 0.0) refuse("--keep-snapshots");
+  if (command.view) refuse("--view");
+}
+
+description::Experiment read(const RunCommand& command, const std::filesystem::path& file, Log& log) {
+  std::optional<std::chrono::nanoseconds> duration;
+  if (command.duration)
+    duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
+  const Stopwatch reading;
+  description::Experiment experiment =
+      parsing::read_experiment(file, command.seed, duration, installed_model_folders());
+  set_recorded(experiment, command.record);
+  for (const description::Problem& warning : experiment.world.warnings) log.problem(LogLevel::warning, warning);
+  log.info(
+      fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", file.string(), experiment.world.file.string(),
+                  counted(experiment.world.instances.size(), "model"), counted(experiment.world.robots.size(), "robot"),
+                  counted(experiment.teams.size(), "team"), reading.seconds()),
+      {{"models", experiment.world.instances.size()},
+       {"robots", experiment.world.robots.size()},
+       {"teams", experiment.teams.size()},
+       {"seconds", reading.seconds()}});
+  return experiment;
+}
+
+std::unique_ptr<Simulation> build(const RunCommand& command, const description::Experiment& experiment, Log& log) {
+  const unsigned wanted = command.threads == 0 ? experiment.threads : command.threads;
+  const unsigned threads = wanted == 0 ? available_processors() : wanted;
+  const Stopwatch building;
+  auto simulation = std::make_unique<Simulation>(experiment, threads);
+  log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
+           {{"threads", threads}, {"seconds", building.seconds()}});
+  return simulation;
+}
+
+using Snapshot = std::shared_ptr<const session::SessionSnapshot>;
+
+struct World {
+  std::shared_ptr<const description::Experiment> experiment;
+  std::unique_ptr<Simulation> simulation;
+};
+
+// A reset is a world that is built anew.
+World build_world(const RunCommand& command, std::shared_ptr<const description::Experiment> experiment,
+                  const Snapshot& from, Log& log) {
+  World world{std::move(experiment), nullptr};
+  world.simulation = build(command, *world.experiment, log);
+  if (from) session::restore(*from, *world.simulation);
+  return world;
+}
+
+// What a run is to be followed by. Throws if there is anything wrong with it.
+World world_of(const session::NextRun& next, const RunCommand& command, const World& now, Log& log) {
+  std::shared_ptr<const description::Experiment> experiment = now.experiment;
+  if (next.seed != experiment->seed) {
+    auto other = std::make_shared<description::Experiment>(
+        parsing::read_experiment(experiment->inputs, next.seed, experiment->duration));
+    other->recorded = experiment->recorded;
+    experiment = std::move(other);
+  }
+  World world = build_world(command, std::move(experiment), next.snapshot, log);
+  if (next.snapshot) {
+    session::Exchange tried(*world.simulation);
+    session::restore(*next.snapshot, tried);
+  }
+  return world;
+}
+
+// All that runs have in common, and what they leave to the next one.
+struct Runs {
+  const RunCommand& command;
+  std::vector<std::shared_ptr<const description::Experiment>> experiments{};
+  std::vector<TeamController> controllers{};
+  Snapshot from{};
+  World first{};
+  std::optional<Serving> serving{};
+  double cpu_before = 0.0;
+};
+
+// One, and those that whoever controls it puts in its place. The exit code; `goes_on` is false if no further one is to
+// follow.
+int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log& log, const std::atomic<bool>& stop,
+            bool& goes_on) {
+  const RunCommand& command = runs.command;
+  session::RunOptions options = {
+      .speed = speed_of(command, *world.experiment),
+      .state = command.paused ? session::PlaybackState::paused : session::PlaybackState::playing,
+      .from = runs.from,
+      .keep_interval = keep_interval_of(command, *world.experiment)};
+  const std::filesystem::path file = numbered(command.record.file, number, count);
+  std::optional<recording::Recorder> recorder;
+  if (!file.empty()) {
+    using enum recording::Beginning;
+    recorder.emplace(file, *world.experiment);
+    recorder->begin(*world.experiment, *world.simulation, runs.from ? restored : first);
+  }
+  for (;;) {
+    std::optional<OneRun> one;
+    one.emplace(command, number, count, *world.experiment, *world.simulation, recorder ? &*recorder : nullptr, log);
+    std::optional<World> next;
+    options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
+    const RunResult result =
+        runs.serving
+            ? runs.serving->run(*world.experiment, *world.simulation, options, one->listener(), stop, number == count)
+            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one->listener(), stop);
+    if (!result.next) {
+      const double cpu = cpu_seconds();
+      goes_on = result.end == RunResult::End::finished;
+      const int code = one->finish(result, cpu - std::exchange(runs.cpu_before, cpu));
+      const bool is_recorded = !recorder || close_recording(*recorder, file, result, log);
+      return is_recorded || code != exit_ok ? code : exit_failed;
+    }
+    log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}",
+                           result.end == RunResult::End::reset ? "reset" : "another snapshot", result.ticks,
+                           next->simulation->tick(), next->experiment->seed));
+    if (recorder)
+      recorder->begin(
+          *next->experiment, *next->simulation,
+          result.end == RunResult::End::reset ? recording::Beginning::reset : recording::Beginning::restored);
+    one.reset();  // it looks at what goes now
+    world.simulation.reset();
+    world = std::move(*next);
+    options = {.speed = result.next->speed,
+               .state = result.next->state,
+               .from = result.next->snapshot,
+               .keep_interval = options.keep_interval};
+  }
+}
+
+// One after the other, each as often as asked for, until one does not finish. The exit code.
+int run_each(Runs& runs, Log& log, const std::atomic<bool>& stop) {
+  const std::size_t count = runs.experiments.size() * runs.command.repeat;
+  int code = exit_ok;
+  try {
+    bool goes_on = true;
+    for (std::size_t number = 1; number <= count && code == exit_ok && goes_on; ++number) {
+      const auto& experiment = runs.experiments[(number - 1) % runs.experiments.size()];
+      if (count > 1) log.notice(fmt::format("run {} of {}: {}", number, count, experiment->name));
+      World world = runs.first.simulation != nullptr ? std::exchange(runs.first, {})
+                                                     : build_world(runs.command, experiment, runs.from, log);
+      code = run_one(runs, number, count, std::move(world), log, stop, goes_on);
+    }
+  } catch (const std::exception& error) {
+    log.error(error.what());
+    return exit_failed;
+  }
+  return code;
+}
+
+// Where the runs begin, and with which seed.
+Snapshot snapshot_of(RunCommand& command) {
+  if (command.from.empty()) return nullptr;
+  auto snapshot = std::make_shared<session::SessionSnapshot>(session::read_snapshot(command.from));
+  if (command.seed && *command.seed != snapshot->seed)
+    throw std::invalid_argument(
+        fmt::format("{} has seed {}, and --seed says {}", command.from.string(), snapshot->seed, *command.seed));
+  command.seed = snapshot->seed;
+  return snapshot;
+}
+
+}  // namespace
+
+int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
+  RunCommand command = asked;
+  Runs runs{command};
+  runs.cpu_before = cpu_seconds();  // a shell that became this process may have had children
+  try {
+    const std::size_t count = command.files.size() * command.repeat;
+    for (std::size_t number = 1; number <= count; ++number) {
+      if (!command.summary.empty()) check_writable("the summary", numbered(command.summary, number, count));
+      if (!command.plot.empty()) check_writable("the plot", numbered(command.plot, number, count));
+      if (!command.record.file.empty()) check_writable("the recording", numbered(command.record.file, number, count));
+      if (!command.csv.empty()) check_writable("the table", numbered(command.csv, number, count));
+    }
+    const bool in_process = command.controllers == Controllers::in_process;
+    if (in_process) refuse_what_needs_a_server(command);
+    runs.from = snapshot_of(command);
+    for (const std::filesystem::path& file : command.files) {
+      runs.experiments.push_back(std::make_shared<description::Experiment>(read(command, file, log)));
+      if (runs.from) session::expect_same_experiment(*runs.from, *runs.experiments.back());
+    }
+    const description::Experiment& first = *runs.experiments.front();
+    if (in_process) refuse_keyboard(first);
+    if (command.controllers != Controllers::external) runs.controllers = load_controllers(first);
+    runs.first = build_world(command, runs.experiments.front(), runs.from, log);
+    if (command.controllers != Controllers::external) try_controllers(first, *runs.first.simulation, runs.controllers);
+    warn_if_not_portable(log);
+
+    if (!in_process) runs.serving.emplace(command, first, log);
+    if (runs.serving && command.view) runs.serving->start_view(first);
+    if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
+    return run_each(runs, log, stop);
+  } catch (const description::InputError& error) {
+    log.problems(error);
+  } catch (const std::exception& error) {
+    log.error(error.what());
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort::tool

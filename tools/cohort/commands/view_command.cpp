@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "server/recording/recording.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/cli/installed_page.hpp"
+#include "tools/view/admission.hpp"
+#include "tools/view/live_source.hpp"
+#include "tools/view/recording_source.hpp"
+#include "tools/view/web_server.hpp"
+
+namespace cohort::tool {
+namespace {
+
+constexpr std::uint16_t usual_port = 8080;
+
+bool is_loopback(const std::string& address) { return address.starts_with("127.") || address == "::1"; }
+
+view::WebOptions web_options(const ViewCommand& command, const std::string& name) {
+  view::WebOptions options{name, command.network, command.port.value_or(usual_port), command.token, command.origins};
+  if (options.token.empty() && !is_loopback(command.network)) options.token = view::random_token();
+  return options;
+}
+
+view::PageFiles page_or_warning(Log& log) {
+  view::PageFiles page = view::read_page(installed_page_folder());
+  if (page.empty())
+    log.warning(
+        "the page was not built, so that only other viewers can connect: it needs node 18 and npm ('tools/"
+        "install-packages tools/packages-node.txt'), then 'cmake --build build/release --target view_page'");
+  return page;
+}
+
+void say_where(const ViewCommand& command, const view::WebOptions& options, std::uint16_t port) {
+  const std::string host = command.network == "0.0.0.0" ? "127.0.0.1" : command.network;
+  const std::string token = options.token.empty() ? "" : "#token=" + options.token;
+  std::printf("http://%s:%u/%s\n", host.c_str(), static_cast<unsigned>(port), token.c_str());
+  std::fflush(stdout);
+}
+
+void serve_until(view::WebServer& server, view::Source& source, const std::atomic<bool>& stop) {
+  std::jthread watch([&](const std::stop_token& is_over) {
+    while (!stop && !is_over.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    server.stop();
+  });
+  server.run(source);
+}
+
+std::unique_ptr<view::WebServer> listen(const ViewCommand& command, view::WebOptions options, Log& log,
+                                        view::Topics& topics) {
+  view::PageFiles page = page_or_warning(log);
+  if (command.port) return std::make_unique<view::WebServer>(std::move(options), std::move(page), topics);
+  try {
+    return std::make_unique<view::WebServer>(options, page, topics);
+  } catch (const std::runtime_error&) {
+    options.port = 0;
+    return std::make_unique<view::WebServer>(std::move(options), std::move(page), topics);
+  }
+}
+
+// `make_source` makes what publishes to its topics.
+template <class MakeSource>
+int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
+          MakeSource make_source) {
+  view::WebServer* published_to = nullptr;
+  view::Topics topics([&] {
+    if (published_to != nullptr) published_to->published();
+  });
+  const view::WebOptions options = web_options(command, name);
+  const auto server = listen(command, options, log, topics);
+  published_to = server.get();
+  const auto source = make_source(topics);
+  say_where(command, options, server->port());
+  serve_until(*server, *source, stop);
+  return stop ? exit_interrupted : exit_ok;
+}
+
+int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const recording::Recording recording(command.recording);
+  if (!recording.damage().empty()) log.warning(recording.damage());
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  const unsigned threads = command.threads == 0 ? cores : command.threads;
+  return serve(command, recording.file().filename().string(), log, stop, [&](view::Topics& topics) {
+    return std::make_unique<view::RecordingSource>(recording, topics, threads);
+  });
+}
+
+int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const auto& secure_drive = command.secure_drive.empty() ? command.secure_control : command.secure_drive;
+  const view::LiveOptions live{.server = command.server,
+                               .domain = command.domains.empty() ? 0 : command.domains.front(),
+                               .secure = command.secure.string(),
+                               .secure_control = command.secure_control.string(),
+                               .secure_drive = secure_drive.string(),
+                               .may_control = command.may_control};
+  return serve(command, "Cohort at " + command.server, log, stop,
+               [&](view::Topics& topics) { return std::make_unique<view::LiveSource>(live, topics); });
+}
+
+}  // namespace
+
+int view(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
+  try {
+    return command.recording.empty() ? view_server(command, log, stop) : view_recording(command, log, stop);
+  } catch (const std::exception& error) {
+    log.error(error.what());
+  }
+  return exit_usage;
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,189 @@
+#include "tools/cohort/running/keyboard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "tools/cohort/running/team_controllers.hpp"
+
+namespace cohort::tool {
+namespace {
+
+constexpr std::array<std::string_view, 4> arrows = {"up", "down", "left", "right"};
+constexpr std::array<std::pair<const char*, const char*>, 8> letter_pairs = {
+    {{"r", "f"}, {"t", "g"}, {"y", "h"}, {"u", "j"}, {"i", "k"}, {"o", "l"}, {"a", "z"}, {"s", "x"}}};
+constexpr std::string_view reserved = "+-q ";
+constexpr double share_step = 0.1;
+constexpr double turning_share = 0.5;  // of full speed, on the spot
+
+bool is_key(const std::string& key) {
+  if (std::ranges::find(arrows, key) != arrows.end()) return true;
+  return key.size() == 1 && reserved.find(key) == std::string_view::npos && key[0] > ' ' && key[0] <= '~';
+}
+
+// An unknown channel is a mistake of the parameter that names it.
+CommandChannel command_named(const Start& start, const std::string& name, const std::string& parameter) {
+  try {
+    return start.command(name);
+  } catch (const ChannelError& error) {
+    throw ParameterError(parameter, error.what());
+  }
+}
+
+std::vector<KeyBinding> bindings_of(const Start& start) {
+  std::vector<KeyBinding> bindings;
+  for (const Parameter& parameter : start.parameters.all()) {
+    const std::string key = parameter.name.substr(0, parameter.name.find('.'));
+    if (key == parameter.name) throw ParameterError(parameter.name, "expected 'CHANNEL: VALUE' under a key");
+    if (!is_key(key))
+      throw ParameterError(parameter.name, "'" + key + "' is no key to bind: expected up, down, left, right or a " +
+                                               "character other than +, - and q");
+    const std::string name = parameter.name.substr(key.size() + 1);
+    const CommandChannel channel = command_named(start, name, parameter.name);
+    const double value = start.parameters.real(parameter.name);
+    if (value < channel.lower || value > channel.upper)
+      throw ParameterError(parameter.name, "expected at least " + std::to_string(channel.lower) + " and at most " +
+                                               std::to_string(channel.upper));
+    if (bindings.empty() || bindings.back().key != key) bindings.push_back({key, {}});
+    bindings.back().settings.push_back({name, value});
+  }
+  return bindings;
+}
+
+std::optional<std::string> channel_ending_in(const Start& start, std::string_view ending) {
+  for (const ChannelInfo& channel : start.command_channels)
+    if (channel.name.ends_with(ending)) return channel.name;
+  return std::nullopt;
+}
+
+std::vector<KeyBinding> usual_bindings(const Start& start) {
+  std::vector<KeyBinding> bindings;
+  const auto left = channel_ending_in(start, "/left/velocity");
+  const auto right = channel_ending_in(start, "/right/velocity");
+  const bool drives = left && right;
+  if (drives) {
+    const double speed = std::min(start.command(*left).upper, start.command(*right).upper);
+    const double turning = turning_share * speed;
+    bindings = {{"up", {{*left, speed}, {*right, speed}}},
+                {"down", {{*left, -speed}, {*right, -speed}}},
+                {"left", {{*left, -turning}, {*right, turning}}},
+                {"right", {{*left, turning}, {*right, -turning}}}};
+  }
+  std::size_t pair = 0;
+  for (const ChannelInfo& channel : start.command_channels) {
+    if (drives && (channel.name == *left || channel.name == *right)) continue;
+    if (!std::isfinite(channel.lower) || !std::isfinite(channel.upper) || pair == letter_pairs.size()) continue;
+    bindings.push_back({letter_pairs[pair].first, {{channel.name, channel.upper}}});
+    bindings.push_back({letter_pairs[pair].second, {{channel.name, channel.lower}}});
+    ++pair;
+  }
+  return bindings;
+}
+
+class KeyboardController final : public Controller {
+ public:
+  explicit KeyboardController(Keyboard* keyboard) : keyboard_(keyboard) {}
+
+  void start(const Start& start) override {
+    bindings_.clear();
+    std::vector<KeyBinding> bindings = key_bindings(start);
+    for (const KeyBinding& binding : bindings) {
+      Resolved& resolved = bindings_.emplace_back(Resolved{binding.key, {}});
+      for (const KeyBinding::Setting& setting : binding.settings) {
+        const auto info = std::ranges::find(start.command_channels, setting.channel, &ChannelInfo::name);
+        resolved.settings.push_back({start.command(setting.channel), info->neutral, setting.value});
+      }
+    }
+    if (keyboard_ != nullptr) keyboard_->set_bindings(std::move(bindings));
+  }
+
+  void step(const Observation& observation, Command& command) override {
+    if (keyboard_ == nullptr) return;
+    keyboard_->set_time(observation.time());
+    const Keyboard::State state = keyboard_->state();
+    for (const std::string& key : state.keys) {
+      const auto binding = std::ranges::find(bindings_, key, &Resolved::key);
+      if (binding == bindings_.end()) continue;
+      for (const Setting& setting : binding->settings)
+        for (std::size_t i = 0; i < setting.channel.size; ++i)
+          command.set(setting.channel, setting.neutral + state.share * (setting.value - setting.neutral), i);
+    }
+  }
+
+ private:
+  struct Setting {
+    CommandChannel channel;
+    double neutral;
+    double value;
+  };
+  struct Resolved {
+    std::string key;
+    std::vector<Setting> settings;
+  };
+
+  Keyboard* keyboard_;
+  std::vector<Resolved> bindings_;
+};
+
+OwnedController make_controller(Keyboard* keyboard) {
+  return {new KeyboardController(keyboard), [](Controller* controller) { delete controller; }};
+}
+
+}  // namespace
+
+std::vector<KeyBinding> key_bindings(const Start& start) {
+  const bool is_bound = start.controller == keyboard_controller && !start.parameters.all().empty();
+  if (is_bound) return bindings_of(start);
+  // Parameters are another controller's then.
+  for (const Parameter& parameter : start.parameters.all()) start.parameters.has(parameter.name);
+  return usual_bindings(start);
+}
+
+void Keyboard::press(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  if (key == "space") {
+    state_.keys.clear();
+  } else if (key == "+" || key == "-") {
+    const double tenths = std::round(state_.share / share_step) + (key == "+" ? 1.0 : -1.0);
+    state_.share = std::clamp(tenths * share_step, share_step, 1.0);
+  } else if (is_key(key)) {
+    std::erase(state_.keys, key);
+    state_.keys.push_back(key);
+  }
+}
+
+Keyboard::State Keyboard::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+void Keyboard::set_bindings(std::vector<KeyBinding> bindings) {
+  const std::lock_guard lock(mutex_);
+  bindings_ = std::move(bindings);
+}
+
+std::vector<KeyBinding> Keyboard::bindings() const {
+  const std::lock_guard lock(mutex_);
+  return bindings_;
+}
+
+void Keyboard::set_time(std::chrono::nanoseconds time) {
+  const std::lock_guard lock(mutex_);
+  time_ = time;
+}
+
+std::chrono::nanoseconds Keyboard::time() const {
+  const std::lock_guard lock(mutex_);
+  return time_;
+}
+
+ControllerKind keyboard_controllers(Keyboard& keyboard) {
+  return {keyboard_controller, [&keyboard] { return make_controller(&keyboard); }};
+}
+
+OwnedController keyboard_controller_without_keys() { return make_controller(nullptr); }
+
+}  // namespace cohort::tool

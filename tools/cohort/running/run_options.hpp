@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/drawing/run_trace.hpp"
+
+namespace cohort::tool {
+
+// docs/cli.md tells users what these mean.
+inline constexpr int exit_ok = 0;
+inline constexpr int exit_failed = 1;  // the run ended with an error, or what it found could not be written
+inline constexpr int exit_usage = 2;   // bad command line, world, experiment or set-up: nothing was started
+inline constexpr int exit_interrupted = 130;
+// Between `cohort run` and the hosts that it starts: somebody else drives its robots now.
+inline constexpr int exit_superseded = 3;
+
+enum class Controllers {
+  in_process,  ///< in the server's process
+  process,     ///< one process for each team
+  per_robot,   ///< one process for each robot
+  external,    ///< started by somebody else
+};
+
+/// What a recording holds, where the experiment says something else.
+struct RecordOptions {
+  std::filesystem::path file;                 ///< empty: no recording
+  std::optional<double> pose_rate{};          ///< [Hz]
+  std::optional<double> joint_rate{};         ///< [Hz]
+  std::optional<double> observation_rate{};   ///< [Hz]
+  std::vector<std::string> robots{};          ///< selectors: whose observations
+  std::optional<double> snapshot_interval{};  ///< [s]
+};
+
+struct RunCommand {
+  std::vector<std::filesystem::path> files;  ///< experiments, one after the other
+  std::uint64_t repeat = 1;                  ///< how often all of them are run
+  unsigned threads = 0;                      ///< 0: one for each core
+  std::optional<double> duration;
+  std::optional<std::uint64_t> seed;
+  Controllers controllers = Controllers::process;
+  std::optional<double> speed;             ///< 0: as fast as it goes; none: that, or real time if people drive
+  std::filesystem::path summary;           ///< file to write; empty: none
+  std::filesystem::path plot;              ///< the same
+  Viewpoint viewpoint = Viewpoint::above;  ///< of the plot
+  std::filesystem::path csv;               ///< the same: what the experiment prints
+  RecordOptions record;
+  bool quiet = false;
+  bool paused = false;                 ///< at first
+  bool view = false;                   ///< in a browser too
+  bool view_controls = false;          ///< which may steer it
+  double keep_interval = 0.0;          ///< [s], simulated, between snapshots to go back to; 0: none
+  std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
+  std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers
+  std::string network = "127.0.0.1";
+  std::filesystem::path secure;  ///< folder of identities; empty: without security
+};
+
+}  // namespace cohort::tool

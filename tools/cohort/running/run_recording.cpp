@@ -1,0 +1,25 @@
+#include "tools/cohort/running/run_recording.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "server/description/select_robots.hpp"
+
+namespace cohort::tool {
+
+void set_recorded(description::Experiment& experiment, const RecordOptions& options) {
+  description::Recorded& recorded = experiment.recorded;
+  recorded.pose_rate = options.pose_rate.value_or(recorded.pose_rate);
+  recorded.joint_rate = options.joint_rate.value_or(recorded.joint_rate);
+  recorded.observation_rate = options.observation_rate.value_or(recorded.observation_rate);
+  if (options.snapshot_interval)
+    recorded.snapshot_interval =
+        std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*options.snapshot_interval));
+  if (options.robots.empty()) return;
+  std::set<std::uint32_t> robots;
+  for (const std::string& selector : options.robots)
+    for (const std::uint32_t robot : description::select_robots(experiment.world, selector)) robots.insert(robot);
+  recorded.observed.assign(robots.begin(), robots.end());
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,182 @@
+#include "tools/cohort/running/serving.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <utility>
+
+#include "tools/cohort/running/controller_processes.hpp"
+#include "tools/cohort/cli/wording.hpp"
+
+namespace cohort::tool {
+namespace {
+
+// Domains that a run picks from for itself and the controllers that it starts.
+constexpr std::uint32_t first_own_domain = 1;
+constexpr std::uint32_t own_domain_count = 59;
+// The server has writers for each client of a domain, and announces all of them to all: matching takes time with the
+// square of their number.
+constexpr std::size_t processes_per_domain = 64;
+// Two for each process that is started here: its end, and what it prints.
+constexpr std::size_t files_per_process = 2;
+constexpr std::size_t files_besides = 200;
+
+std::size_t process_count(const RunCommand& command, const description::Experiment& experiment) {
+  if (command.controllers == Controllers::external) return 0;
+  return command.controllers == Controllers::per_robot ? experiment.world.robots.size() : experiment.teams.size();
+}
+
+// Without security one for all.
+std::vector<std::optional<wire::Identity>> doors_of(const RunCommand& command) {
+  if (command.secure.empty()) return {std::nullopt};
+  std::vector<std::optional<wire::Identity>> doors;
+  for (wire::Identity& door : wire::read_doors(command.secure)) doors.emplace_back(std::move(door));
+  return doors;
+}
+
+// All of its doors or none.
+void open_domain(std::uint32_t domain, const RunCommand& command,
+                 const std::vector<std::optional<wire::Identity>>& doors,
+                 std::vector<wire::Participant>& participants) {
+  std::vector<wire::Participant> opened;
+  opened.reserve(doors.size());
+  for (const auto& door : doors) opened.push_back(wire::Participant::server(domain, command.network, door));
+  std::ranges::move(opened, std::back_inserter(participants));
+}
+
+// Outsiders need to know the domains: those given, or 0. Nobody but our own children needs to know ours: they are any
+// free ones, so that several runs on one machine do not meet.
+void open_domains(const RunCommand& command, bool has_outsiders, std::size_t processes,
+                  std::vector<std::uint32_t>& domains, std::vector<wire::Participant>& participants) {
+  const std::vector<std::optional<wire::Identity>> doors = doors_of(command);
+  if (!command.domains.empty() || has_outsiders) {
+    domains = command.domains.empty() ? std::vector<std::uint32_t>{0} : command.domains;
+    for (const std::uint32_t domain : domains) open_domain(domain, command, doors, participants);
+    return;
+  }
+  const std::size_t wanted = std::max<std::size_t>(1, (processes + processes_per_domain - 1) / processes_per_domain);
+  const auto start = static_cast<std::uint32_t>(getpid());
+  for (std::uint32_t i = 0; domains.size() < wanted && i < own_domain_count; ++i) {
+    const std::uint32_t domain = first_own_domain + (start + i) % own_domain_count;
+    try {
+      open_domain(domain, command, doors, participants);
+      domains.push_back(domain);
+    } catch (const wire::DomainTaken&) {
+      if (i + 1 == own_domain_count && domains.empty()) throw;
+    } catch (const wire::WireError& error) {
+      throw wire::WireError(std::string(error.what()) + ". --controllers inprocess needs no network");
+    }
+  }
+}
+
+// As many open files as so many processes need.
+void raise_file_limit(std::size_t processes, Log& log) {
+  const rlim_t needed = files_besides + files_per_process * processes;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return;
+  const rlim_t wanted = limit.rlim_max == RLIM_INFINITY ? needed : std::min<rlim_t>(needed, limit.rlim_max);
+  limit.rlim_cur = wanted;
+  if (setrlimit(RLIMIT_NOFILE, &limit) != 0 || wanted < needed)
+    log.warning(
+        fmt::format("{} need {} open files, and {} are allowed: 'ulimit -Hn {}' in the shell that starts this, as "
+                    "root, allows more",
+                    counted(processes, "process"), needed, limit.rlim_cur, needed));
+}
+
+std::string domains_text(const std::vector<std::uint32_t>& domains) {
+  if (domains.size() == 1) return fmt::format("domain {}", domains.front());
+  return fmt::format("domains {}", fmt::join(domains, ", "));
+}
+
+// Of the view: one that looks, and if it may do more, one that controls, and one that drives what people are to drive.
+void add_identities_of_view(const RunCommand& command, const description::Experiment& experiment,
+                            std::vector<std::string>& arguments) {
+  const auto add = [&](const char* option, const std::filesystem::path& identity) {
+    arguments.insert(arguments.end(), {option, identity.string()});
+  };
+  add("--secure", command.secure / "clients" / "observer");
+  if (!command.view_controls) return;
+  const std::vector<wire::Identity> doors = wire::read_doors(command.secure);
+  const auto controls = std::ranges::find_if(doors, &wire::Identity::may_control);
+  if (controls != doors.end()) add("--secure-control", command.secure / "clients" / controls->name);
+  const auto driven = std::ranges::find(experiment.teams, keyboard_controller, &description::Team::controller);
+  if (driven != experiment.teams.end()) add("--secure-drive", identity_for(experiment, *driven, command.secure));
+}
+
+}  // namespace
+
+Serving::Serving(const RunCommand& command, const description::Experiment& experiment, Log& log)
+    : command_(command), log_(log) {
+  const std::size_t processes = process_count(command, experiment);
+  raise_file_limit(processes, log);
+  const bool external = command.controllers == Controllers::external;
+  open_domains(command, external || has_keyboard(experiment), processes, domains_, participants_);
+  server_.emplace(participants_);
+  if (command.secure.empty() && !command.network.starts_with("127.") && command.network != "localhost")
+    log.warning(fmt::format(
+        "whoever reaches {} can drive robots, control this run and end it: there is no security. 'cohort security "
+        "init DIR' makes identities for --secure DIR; without them, only use a network of your own",
+        command.network));
+  const std::string serving =
+      fmt::format("serving {} on {}, {}{}", counted(experiment.world.robots.size(), "robot"), command.network,
+                  domains_text(domains_), command.secure.empty() ? "" : ", secure");
+  const LogFields where = {{"address", command.network}, {"domain", domains_.front()}};
+  if (external)
+    log.notice(serving, where);
+  else
+    log.info(serving, where);
+}
+
+Serving::~Serving() = default;
+
+void Serving::start_controllers(const description::Experiment& experiment,
+                                const std::vector<TeamController>& controllers) {
+  if (command_.controllers == Controllers::external) return;
+  for (const description::Team& team : experiment.teams)
+    if (team.controller == keyboard_controller)
+      log_.notice(fmt::format(
+          "to drive team '{}', {}in another terminal: cohort teleop --robots {} --domain {}{}", team.name,
+          command_.view && command_.view_controls ? "choose one of its robots in the browser and press 'drive'; or "
+                                                  : "",
+          selectors_of(team.robots), domains_.front(),
+          command_.secure.empty() ? "" : " --secure " + identity_for(experiment, team, command_.secure).string()));
+  const bool per_robot = command_.controllers == Controllers::per_robot;
+  children_ = std::make_unique<Children>(
+      controller_processes(experiment, controllers, per_robot, domains_, command_.secure, log_),
+      listener_of_controllers(*server_, log_));
+}
+
+void Serving::start_view(const description::Experiment& experiment) {
+  Children::Command view;
+  view.arguments = {std::filesystem::read_symlink("/proc/self/exe"),
+                    "view",
+                    "--server",
+                    command_.network,
+                    "--domain",
+                    std::to_string(domains_.front())};
+  if (command_.view_controls) view.arguments.push_back("--control");
+  if (!command_.secure.empty()) add_identities_of_view(command_, experiment, view.arguments);
+  view.name = "the view";
+  view.restarts = false;
+  Children::Listener listener;
+  listener.gave_up = [this](const std::string& text) { log_.warning(text); };
+  view_ = std::make_unique<Children>(std::vector{std::move(view)}, std::move(listener));
+}
+
+session::RunResult Serving::run(const description::Experiment& experiment, Simulation& simulation,
+                                const session::RunOptions& options, const session::RunListener& listener,
+                                const std::atomic<bool>& stop, bool is_last) {
+  session::RunResult result = server_->run(experiment, simulation, options, listener, stop);
+  if (result.next || (!is_last && result.end == session::RunResult::End::finished)) return result;
+  if (view_) view_->stop_restarting();
+  if (children_) children_->stop_restarting();
+  server_->dismiss(result);
+  if (children_) children_->let_finish();
+  return result;
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "server/session/server/server.hpp"
+#include "tools/processes/children.hpp"
+#include "tools/cohort/cli/log.hpp"
+#include "tools/cohort/running/run_options.hpp"
+#include "tools/cohort/running/team_controllers.hpp"
+
+namespace cohort::tool {
+
+/// Serves experiments over DDS, one after the other, and answers for the controllers' processes that it starts itself.
+class Serving {
+ public:
+  /// Opens the domains. `experiment` is the first. Throws wire::WireError.
+  Serving(const RunCommand& command, const description::Experiment& experiment, Log& log);
+  ~Serving();
+
+  /// Starts the processes of the experiment's teams, unless they are started by somebody else. `controllers` and
+  /// `experiment` must outlive this call only.
+  void start_controllers(const description::Experiment& experiment, const std::vector<TeamController>& controllers);
+
+  /// Starts a process that shows the runs in a browser (`cohort view`); that it cannot is a warning.
+  void start_view(const description::Experiment& experiment);
+
+  /// `is_last`: controllers may leave afterwards.
+  session::RunResult run(const description::Experiment& experiment, Simulation& simulation,
+                         const session::RunOptions& options, const session::RunListener& listener,
+                         const std::atomic<bool>& stop, bool is_last);
+
+ private:
+  const RunCommand& command_;
+  Log& log_;
+  std::vector<std::uint32_t> domains_;
+  std::vector<wire::Participant> participants_;
+  std::optional<session::Server> server_;
+  std::unique_ptr<Children> children_;
+  std::unique_ptr<Children> view_;
+};
+
+}  // namespace cohort::tool

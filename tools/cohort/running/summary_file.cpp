@@ -1,0 +1,62 @@
+#include "tools/cohort/running/summary_file.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/wording.hpp"
+
+namespace cohort::tool {
+namespace {
+
+double seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
+double microseconds(std::chrono::nanoseconds duration) {
+  return std::chrono::duration<double, std::micro>(duration).count();
+}
+
+nlohmann::ordered_json quantiles(const lockstep::LatencyHistogram& histogram) {
+  return {{"p50", microseconds(histogram.quantile(0.5))},
+          {"p99", microseconds(histogram.quantile(0.99))},
+          {"max", microseconds(histogram.max())}};
+}
+
+}  // namespace
+
+void write_summary(const std::filesystem::path& file, const description::Experiment& experiment,
+                   const session::RunResult& result, double cpu_seconds) {
+  const double wall = seconds(result.wall_time);
+  nlohmann::ordered_json events = nlohmann::ordered_json::array();
+  for (const session::Event& event : result.events)
+    events.push_back({{"tick", event.tick}, {"kind", event.kind}, {"text", event.text}, {"count", event.count}});
+  nlohmann::ordered_json misses = nlohmann::ordered_json::array();
+  for (const session::Miss& miss : result.misses)
+    misses.push_back({{"tick", miss.tick},
+                      {"frame", miss.frame_tick},
+                      {"robot", experiment.world.robot(miss.robot).name},
+                      {"on_late", word_of(miss.consequence)},
+                      {"waited_s", seconds(miss.waited)}});
+  const nlohmann::ordered_json summary = {
+      {"ticks", result.ticks},
+      {"sim_time_ns", result.sim_time.count()},
+      {"wall_s", wall},
+      {"cpu_s", cpu_seconds},
+      {"real_time_factor", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0},
+      {"state_hash", fmt::format("{:016x}", result.state_hash)},
+      {"robots", result.robots},
+      {"barrier_us", quantiles(result.barrier)},
+      {"late", result.late},
+      {"resent", result.resent},
+      {"misses", misses},
+      {"lateness_us", quantiles(result.lateness)},
+      {"events", events},
+      {"stop_reason", result.stop_reason},
+      {"touches",
+       {{"robot_ticks", result.touches.robot_ticks},
+        {"obstacles", result.touches.obstacles},
+        {"robots", result.touches.robots}}},
+  };
+  write_file("the summary", file, summary.dump(2) + "\n");
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,93 @@
+#include "tools/cohort/running/team_controllers.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "server/description/input_error.hpp"
+#include "server/session/roster.hpp"
+#include "tools/cohort/running/keyboard.hpp"
+
+namespace cohort::tool {
+namespace {
+
+using description::Experiment;
+using description::Problem;
+using description::Team;
+
+std::string element_of(const Experiment& experiment, const Team& team, const std::string& key) {
+  return "teams[" + std::to_string(&team - experiment.teams.data()) + "]." + key;
+}
+
+Problem problem_of_controller(const Experiment& experiment, const Team& team, const std::string& message) {
+  return {experiment.file, team.controller_line, element_of(experiment, team, "controller"), message};
+}
+
+std::optional<Problem> try_controller(const Experiment& experiment, const Team& team, const ControllerKind& kind,
+                                      const wire::Admit& admit,
+                                      const std::vector<wire::RobotDescription>& descriptions) {
+  try {
+    Start start = start_of(admit, admit.robots.front(), descriptions);
+    start.reason = StartReason::check;
+    kind.create()->start(start);
+    start.parameters.check_all_were_asked_for();
+  } catch (const ParameterError& error) {
+    const auto given = std::ranges::find(team.parameters, error.name(), &description::Parameter::name);
+    if (given == team.parameters.end()) return problem_of_controller(experiment, team, error.what());
+    return Problem{experiment.file, given->line, element_of(experiment, team, "parameters"), error.what()};
+  } catch (const std::exception& error) {
+    return problem_of_controller(experiment, team, error.what());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ControllerKind TeamController::kind() const {
+  if (plugin) return kind_of(plugin->plugin());
+  return {keyboard_controller, [] { return keyboard_controller_without_keys(); }};
+}
+
+bool has_keyboard(const Experiment& experiment) {
+  return std::ranges::any_of(experiment.teams, [](const Team& team) { return team.controller == keyboard_controller; });
+}
+
+std::vector<TeamController> load_controllers(const Experiment& experiment) {
+  std::vector<TeamController> controllers;
+  std::vector<Problem> problems;
+  for (const Team& team : experiment.teams) {
+    TeamController& controller = controllers.emplace_back();
+    if (team.controller == keyboard_controller) continue;
+    std::string name = team.controller;
+    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".so");
+    if (is_path && std::filesystem::path(name).is_relative()) name = experiment.file.parent_path() / name;
+    try {
+      controller.plugin.emplace(name, default_plugin_directories());
+    } catch (const std::runtime_error& error) {
+      problems.push_back(problem_of_controller(experiment, team, error.what()));
+    }
+  }
+  if (!problems.empty()) throw description::InputError(std::move(problems));
+  return controllers;
+}
+
+void try_controllers(const Experiment& experiment, const Simulation& simulation,
+                     const std::vector<TeamController>& controllers) {
+  const std::vector<wire::RobotDescription> descriptions = session::describe_kinds(simulation);
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < experiment.teams.size(); ++i) {
+    const Team& team = experiment.teams[i];
+    std::set<std::uint32_t> kinds_tried;
+    for (const std::uint32_t robot : team.robots) {
+      if (!kinds_tried.insert(simulation.kind_of(robot)).second) continue;
+      wire::Admit admit;
+      admit.step_ns = experiment.world.step.count();
+      session::admit_robots(admit, experiment, simulation, std::vector<std::uint32_t>{robot});
+      if (auto problem = try_controller(experiment, team, controllers[i].kind(), admit, descriptions))
+        problems.push_back(std::move(*problem));
+    }
+  }
+  if (!problems.empty()) throw description::InputError(std::move(problems));
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,225 @@
+#include "tools/processes/children.hpp"
+
+#include <fcntl.h>
+#include <linux/close_range.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+namespace cohort::tool {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds patience{2};
+constexpr std::chrono::milliseconds poll_interval{100};  // where the kernel does not say when a child ends
+constexpr std::size_t longest_line = std::size_t{64} * 1024;
+
+int open_pidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
+
+void close_if_open(int& descriptor) {
+  if (descriptor >= 0) close(descriptor);
+  descriptor = -1;
+}
+
+// What strsignal says, which need not be thread-safe.
+std::string description_of(int signal_number) {
+  if (const char* description = sigdescr_np(signal_number); description != nullptr) return description;
+  if (signal_number < SIGRTMIN) return "Unknown signal " + std::to_string(signal_number);
+  return "Real-time signal " + std::to_string(signal_number - SIGRTMIN);
+}
+
+std::string end_of(pid_t pid, int status) {
+  const std::string process = "controller process " + std::to_string(pid);
+  if (!WIFSIGNALED(status)) return process + " ended with exit code " + std::to_string(WEXITSTATUS(status));
+  const int number = WTERMSIG(status);
+  return process + " was ended by signal " + std::to_string(number) + " (" + description_of(number) + ")";
+}
+
+// Between fork and exec, where only what is safe in a signal handler may be called.
+[[noreturn]] void become(char* const* arguments, pid_t parent, int standard_error) {
+  // Of the thread that forked: the watcher, which lives as long as any child.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);  // it died meanwhile
+  setpgid(0, 0);                        // Ctrl-C is for the parent, which then ends the run in order
+  // In the background a read from the terminal would stop it.
+  const int nothing = open("/dev/null", O_RDONLY);
+  if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+  if (standard_error >= 0) dup2(standard_error, STDERR_FILENO);
+  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+  execv(arguments[0], arguments);
+  _exit(127);
+}
+
+// As poll takes it: -1 is without end, 0 only when the deadline is over.
+int poll_timeout(Clock::time_point deadline, bool all_announced) {
+  if (deadline == Clock::time_point::max()) return all_announced ? -1 : static_cast<int>(poll_interval.count());
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
+  if (left.count() <= 0) return 0;
+  return static_cast<int>(all_announced ? left.count() : std::min(left, poll_interval).count());
+}
+
+}  // namespace
+
+Children::Children(std::vector<Command> commands, Listener listener) : listener_(std::move(listener)) {
+  if (pipe2(wake_pipe_, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  signal(SIGCHLD, SIG_DFL);  // whoever started us may have ignored it, and then nobody could be waited for
+  for (Command& command : commands) children_.push_back({std::move(command)});
+  watcher_ = std::thread([this] { watch(); });
+}
+
+Children::~Children() {
+  join();
+  close(wake_pipe_[0]);
+  close(wake_pipe_[1]);
+}
+
+void Children::let_finish() {
+  patient_ = true;
+  join();
+}
+
+void Children::join() {
+  if (!watcher_.joinable()) return;
+  finishing_ = true;
+  [[maybe_unused]] const auto written = write(wake_pipe_[1], "", 1);
+  watcher_.join();
+}
+
+// NOLINTNEXTLINE(readability-make-member-function-const): the child that it changes is one of ours.
+void Children::start(Child& child) {
+  std::vector<char*> arguments;
+  for (std::string& argument : child.command.arguments) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  int output[2] = {-1, -1};
+  const bool piped = listener_.wrote && pipe2(output, O_CLOEXEC | O_NONBLOCK) == 0;
+  if (piped) fcntl(output[1], F_SETFL, 0);  // that is for the reading end only
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) become(arguments.data(), parent, output[1]);
+  const int error = errno;
+  close_if_open(output[1]);
+  child.output = output[0];
+  if (pid < 0) {
+    close_if_open(child.output);
+    if (listener_.gave_up)
+      listener_.gave_up(child.command.name + ": no process can be started: " + std::generic_category().message(error));
+    return;
+  }
+  setpgid(pid, pid);  // whoever of both comes first
+  child.pid = pid;
+  child.pidfd = open_pidfd(pid);
+  if (listener_.started) listener_.started(child.command, pid);
+}
+
+void Children::watch() {
+  for (Child& child : children_) start(child);
+  while (!finishing_) reap_until(Clock::time_point::max());
+  // The run is over: they leave by themselves, or are told to, or are made to.
+  if (patient_ && reap_until(Clock::now() + patience)) return;
+  signal_all(SIGTERM);
+  if (reap_until(Clock::now() + patience)) return;
+  for (const Child& child : children_)
+    if (child.pid > 0 && listener_.killed)
+      listener_.killed(child.command, child.command.name + ": controller process " + std::to_string(child.pid) +
+                                          " does not end when it is told to, and is killed");
+  signal_all(SIGKILL);
+  reap_until(Clock::now() + patience);
+}
+
+void Children::signal_all(int number) {
+  for (const Child& child : children_)
+    if (child.pid > 0) kill(-child.pid, number);
+}
+
+// Handles ends and output of children until all are gone (true), the deadline is over, or finishing begins.
+bool Children::reap_until(Clock::time_point deadline) {
+  const bool was_finishing = finishing_;
+  for (;;) {
+    std::vector<pollfd> polled;
+    if (!was_finishing) polled.push_back({wake_pipe_[0], POLLIN, 0});
+    bool any = false;
+    bool all_announced = true;
+    for (const Child& child : children_) {
+      if (child.pid <= 0) continue;
+      any = true;
+      all_announced = all_announced && child.pidfd >= 0;
+      polled.push_back({child.pidfd, POLLIN, 0});
+      polled.push_back({child.output, POLLIN, 0});
+    }
+    if (!any && was_finishing) return true;
+    const int timeout = poll_timeout(deadline, all_announced);
+    if (timeout == 0) return !any;
+    poll(polled.data(), polled.size(), timeout);
+    for (Child& child : children_) {
+      read_output(child);
+      reap(child);
+    }
+    if (finishing_ && !was_finishing) return false;
+  }
+}
+
+void Children::reap(Child& child) {
+  if (child.pid <= 0) return;
+  siginfo_t end{};
+  if (waitid(P_PID, static_cast<id_t>(child.pid), &end, WEXITED | WNOHANG | WNOWAIT) != 0 || end.si_pid != child.pid)
+    return;
+  // Before its id can be given to others: what it started itself goes with it.
+  kill(-child.pid, SIGKILL);
+  int status = 0;
+  waitpid(child.pid, &status, 0);
+  handle_end(child, status);
+}
+
+void Children::handle_end(Child& child, int status) {
+  read_output(child);
+  if (!child.line.empty()) listener_.wrote(child.command, std::exchange(child.line, {}));
+  close_if_open(child.output);
+  close_if_open(child.pidfd);
+  if (listener_.ended) listener_.ended(child.pid);
+  const std::string text = child.command.name + ": " + end_of(std::exchange(child.pid, -1), status);
+  // Even without an error: as long as there is something to do, a controller has no reason to end.
+  if (!restarting_ || finishing_) return;
+  if (WIFEXITED(status) && listener_.may_end_with && listener_.may_end_with(WEXITSTATUS(status))) return;
+  const auto give_up = [&](const std::string& why) {
+    if (listener_.gave_up) listener_.gave_up(text + why);
+  };
+  if (!child.command.restarts) return give_up(", and the experiment says restart: never");
+  if (child.restarts == most_restarts)
+    return give_up(", and was started again " + std::to_string(most_restarts) + " times before");
+  ++child.restarts;
+  if (listener_.restarted)
+    listener_.restarted(child.command, text + "; starting it again (" + std::to_string(child.restarts) + " of " +
+                                           std::to_string(most_restarts) + ")");
+  start(child);
+}
+
+// NOLINTNEXTLINE(readability-make-member-function-const): the child that it changes is one of ours.
+void Children::read_output(Child& child) {
+  if (child.output < 0) return;
+  char buffer[4096];
+  constexpr int at_once = 16;  // as much as a pipe holds: a child that never stops must not keep us from the others
+  for (int i = 0; i < at_once; ++i) {
+    const ssize_t size = read(child.output, buffer, sizeof buffer);
+    if (size == 0) return close_if_open(child.output);
+    if (size < 0) return;
+    child.line.append(buffer, static_cast<std::size_t>(size));
+    for (std::size_t end = 0; (end = child.line.find('\n')) != std::string::npos;) {
+      listener_.wrote(child.command, child.line.substr(0, end));
+      child.line.erase(0, end + 1);
+    }
+    if (child.line.size() > longest_line) listener_.wrote(child.command, std::exchange(child.line, {}));
+  }
+}
+
+}  // namespace cohort::tool

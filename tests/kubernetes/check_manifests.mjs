@@ -21,10 +21,18 @@ async function checkValues(where, object, modules) {
 function checkKeys(where, object, modules) {
   const file = join(here, `${basename(where)}.ts`);
   const type = `I${object.kind}`;
-  writeFileSync(file, `import type { ${type} } from "${modules}";\nexport const manifest: ${type} = ${JSON.stringify(object, null, 1)};\n`);
+  writeFileSync(
+    file,
+    `import type { ${type} } from "${modules}";\nexport const manifest: ${type} = ${JSON.stringify(object, null, 1)};\n`,
+  );
   const program = ts.createProgram([file], {
-    strict: true, noEmit: true, skipLibCheck: true, types: [],
-    module: ts.ModuleKind.NodeNext, moduleResolution: ts.ModuleResolutionKind.NodeNext, target: ts.ScriptTarget.ES2022,
+    strict: true,
+    noEmit: true,
+    skipLibCheck: true,
+    types: [],
+    module: ts.ModuleKind.NodeNext,
+    moduleResolution: ts.ModuleResolutionKind.NodeNext,
+    target: ts.ScriptTarget.ES2022,
   });
   for (const found of ts.getPreEmitDiagnostics(program))
     problems.push(`${where}: ${ts.flattenDiagnosticMessageText(found.messageText, " ")}`);

@@ -2,10 +2,10 @@
 // schemas, and prints what it found as JSON.
 import { readFileSync } from "node:fs";
 import { open } from "node:fs/promises";
-import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import { crc32 } from "@foxglove/crc";
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
+import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import { decompress } from "fzstd";
 
 const file = process.argv[2];

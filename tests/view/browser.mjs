@@ -9,14 +9,17 @@ async function draws(page, file) {
   const expected = JSON.parse(readFileSync(file, "utf8"));
   await run(page, `pause; seek ${expected.time}; toggle shadows`);
   await atTick(page, expected.tick);
-  const { poses, shown } = await page.evaluate((names) => {
-    const { viewer } = window.cohort;
-    viewer.draw(performance.now() + 1000); // past the blend of the last two frames
-    return {
-      poses: names.map((name) => viewer.poseOf(viewer.find(name))),
-      shown: ["tick", "hash", "robots"].map((id) => document.getElementById(id).textContent),
-    };
-  }, expected.robots.map(({ name }) => name));
+  const { poses, shown } = await page.evaluate(
+    (names) => {
+      const { viewer } = window.cohort;
+      viewer.draw(performance.now() + 1000); // past the blend of the last two frames
+      return {
+        poses: names.map((name) => viewer.poseOf(viewer.find(name))),
+        shown: ["tick", "hash", "robots"].map((id) => document.getElementById(id).textContent),
+      };
+    },
+    expected.robots.map(({ name }) => name),
+  );
   assert.equal(poses.length, 16);
   expected.robots.forEach(({ name, x, y, heading }, i) => {
     const { position, heading: found } = poses[i];
@@ -27,8 +30,13 @@ async function draws(page, file) {
   await run(page, "home; top");
   await page.waitForTimeout(500);
   const turretHeight = 0.1; // [m]
-  const pixels = await pixelsAt(page, expected.robots.map(({ x, y }) => [x, y, turretHeight]));
-  pixels.forEach((pixel, i) => assert.ok(isOrange(pixel), `where ${expected.robots[i].name} is, the picture is ${pixel}`));
+  const pixels = await pixelsAt(
+    page,
+    expected.robots.map(({ x, y }) => [x, y, turretHeight]),
+  );
+  pixels.forEach((pixel, i) =>
+    assert.ok(isOrange(pixel), `where ${expected.robots[i].name} is, the picture is ${pixel}`),
+  );
   const [ground] = await pixelsAt(page, [[1.9, 1.9, 0]]);
   assert.ok(!isOrange(ground), `the ground is ${ground}`);
 }
@@ -40,7 +48,10 @@ async function drawsMany(page, file) {
   const { places, calls } = await page.evaluate(() => {
     const { viewer } = window.cohort;
     viewer.draw(performance.now() + 1000);
-    return { places: viewer.robotEntities().map((entity) => viewer.poseOf(entity).position), calls: viewer.stage.renderer.info.render.calls };
+    return {
+      places: viewer.robotEntities().map((entity) => viewer.poseOf(entity).position),
+      calls: viewer.stage.renderer.info.render.calls,
+    };
   });
   assert.equal(places.length, expected.robots.length);
   expected.robots.forEach(({ name, x, y }, i) => {
@@ -48,9 +59,12 @@ async function drawsMany(page, file) {
   });
   assert.ok(calls < 10, `${calls} draw calls`);
   const { x, y } = expected.robots[7];
-  await page.evaluate(([left, ahead]) => {
-    window.cohort.viewer.cameras.look({ position: [left, ahead - 0.3, 0.9], target: [left, ahead, 0.1] });
-  }, [x, y]);
+  await page.evaluate(
+    ([left, ahead]) => {
+      window.cohort.viewer.cameras.look({ position: [left, ahead - 0.3, 0.9], target: [left, ahead, 0.1] });
+    },
+    [x, y],
+  );
   const [pixel] = await pixelsAt(page, [[x, y, 0.1]]);
   assert.ok(isOrange(pixel), `where robot 7 is, the picture is ${pixel}`);
 }
@@ -60,7 +74,10 @@ async function click(page, name) {
     const { viewer } = window.cohort;
     viewer.draw(performance.now() + 1000);
     const [x, y, z] = viewer.poseOf(viewer.find(text)).position;
-    const seen = viewer.cameras.target.clone().set(x, y, z + 0.08).project(viewer.stage.camera);
+    const seen = viewer.cameras.target
+      .clone()
+      .set(x, y, z + 0.08)
+      .project(viewer.stage.camera);
     const { width, height } = document.getElementById("canvas").getBoundingClientRect();
     return { x: 0.5 * (seen.x + 1) * width, y: 0.5 * (1 - seen.y) * height };
   }, name);
@@ -149,7 +166,10 @@ async function keepsProfile(page) {
   assert.equal(await page.evaluate(() => window.cohort.commands.commandOfKey("k")), undefined);
   await page.evaluate((text) => window.cohort.commands.importProfile(text), profile);
   assert.equal(await page.evaluate(() => window.cohort.commands.commandOfKey("k")), "seek 0.2");
-  await assert.rejects(page.evaluate(() => window.cohort.commands.importProfile('{"keys": 3}')), /no profile/);
+  await assert.rejects(
+    page.evaluate(() => window.cohort.commands.importProfile('{"keys": 3}')),
+    /no profile/,
+  );
 }
 
 async function isFoundAgain(page) {
@@ -173,13 +193,18 @@ async function steersServer(page) {
     const { viewer } = window.cohort;
     const [x, y] = viewer.poseOf(viewer.find("explorers/sbot_3")).position;
     return Math.hypot(x - 0.25, y + 0.5) < 1e-3;
-  }).catch(async (error) => { throw new Error(`${error.message}\n${await run(page, "where sbot_3")}`); });
+  }).catch(async (error) => {
+    throw new Error(`${error.message}\n${await run(page, "where sbot_3")}`);
+  });
   // By the mouse.
   await run(page, "home; top; toggle shadows");
   const [from, to] = await page.evaluate(() => {
     const { viewer } = window.cohort;
     viewer.draw(performance.now() + 1000);
-    return [[0.25, -0.5], [0.25, -0.2]].map(([x, y]) => {
+    return [
+      [0.25, -0.5],
+      [0.25, -0.2],
+    ].map(([x, y]) => {
       const seen = viewer.cameras.target.clone().set(x, y, 0.05).project(viewer.stage.camera);
       const { width, height } = document.getElementById("canvas").getBoundingClientRect();
       return { x: 0.5 * (seen.x + 1) * width, y: 0.5 * (1 - seen.y) * height };
@@ -210,7 +235,8 @@ async function steersServer(page) {
 // A server that keeps a snapshot every half second.
 async function goesBack(page) {
   const events = () => page.evaluate(() => document.getElementById("events").textContent);
-  const eventsShow = (text) => until(page, (each) => document.getElementById("events").textContent.includes(each), text);
+  const eventsShow = (text) =>
+    until(page, (each) => document.getElementById("events").textContent.includes(each), text);
   await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) > 160);
   await eventsShow("joined");
   await run(page, "pause; events");
@@ -236,7 +262,10 @@ async function goesBack(page) {
   await run(page, "step 75");
   await atTick(page, 200);
   const bar = await page.locator("#track").boundingBox();
-  const { begin, end } = await page.evaluate(() => ({ begin: Number(document.getElementById("scrub").min), end: Number(document.getElementById("scrub").max) }));
+  const { begin, end } = await page.evaluate(() => ({
+    begin: Number(document.getElementById("scrub").min),
+    end: Number(document.getElementById("scrub").max),
+  }));
   const atTime = (time) => bar.x + ((time - begin) / (end - begin)) * bar.width;
   await page.waitForTimeout(500);
   await page.mouse.move(atTime(2), bar.y + 0.5 * bar.height);
@@ -252,7 +281,8 @@ async function goesBack(page) {
 
 async function onlyLooks(page) {
   await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 20);
-  for (const line of ["pause", "step", "reset", "move sbot_3 0 0", "speed 0.1"]) await assert.rejects(run(page, line), /only look/);
+  for (const line of ["pause", "step", "reset", "move sbot_3 0 0", "speed 0.1"])
+    await assert.rejects(run(page, line), /only look/);
   assert.equal(await page.locator("#play").isVisible(), false);
   const before = await tick(page);
   await until(page, (each) => Number(window.cohort.viewer.poses.frame.tick) > each + 20, before);
@@ -276,6 +306,14 @@ async function isSuspended(page) {
 }
 
 await runScenario({
-  draws, draws_many: drawsMany, steers_recording: steersRecording, keeps_profile: keepsProfile, is_found_again: isFoundAgain,
-  steers_server: steersServer, goes_back: goesBack, only_looks: onlyLooks, looks, is_suspended: isSuspended,
+  draws,
+  draws_many: drawsMany,
+  steers_recording: steersRecording,
+  keeps_profile: keepsProfile,
+  is_found_again: isFoundAgain,
+  steers_server: steersServer,
+  goes_back: goesBack,
+  only_looks: onlyLooks,
+  looks,
+  is_suspended: isSuspended,
 });

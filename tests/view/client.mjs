@@ -19,7 +19,9 @@ address.hash = "";
 
 function within(promise, what) {
   let timer;
-  const late = new Promise((_, reject) => { timer = setTimeout(() => reject(new Error(`nothing came: ${what}`)), patience); });
+  const late = new Promise((_, reject) => {
+    timer = setTimeout(() => reject(new Error(`nothing came: ${what}`)), patience);
+  });
   return Promise.race([promise, late]).finally(() => clearTimeout(timer));
 }
 
@@ -33,17 +35,32 @@ function connect() {
 async function first(client, channel) {
   const reader = new MessageReader(parse(channel.schema, { ros2: true }));
   const id = client.subscribe(channel.id);
-  return within(new Promise((resolve) => client.on("message", ({ subscriptionId, data }) => {
-    if (subscriptionId === id) resolve(reader.readMessage(data));
-  })), channel.topic);
+  return within(
+    new Promise((resolve) =>
+      client.on("message", ({ subscriptionId, data }) => {
+        if (subscriptionId === id) resolve(reader.readMessage(data));
+      }),
+    ),
+    channel.topic,
+  );
 }
 
 async function call(client, service, request) {
   const data = new TextEncoder().encode(JSON.stringify(request));
-  client.sendServiceCallRequest({ serviceId: service.id, callId: 7, encoding: "json", data: new DataView(data.buffer) });
-  return within(new Promise((resolve) => client.on("serviceCallResponse", ({ callId, data: answer }) => {
-    if (callId === 7) resolve(JSON.parse(new TextDecoder().decode(answer)));
-  })), "an answer");
+  client.sendServiceCallRequest({
+    serviceId: service.id,
+    callId: 7,
+    encoding: "json",
+    data: new DataView(data.buffer),
+  });
+  return within(
+    new Promise((resolve) =>
+      client.on("serviceCallResponse", ({ callId, data: answer }) => {
+        if (callId === 7) resolve(JSON.parse(new TextDecoder().decode(answer)));
+      }),
+    ),
+    "an answer",
+  );
 }
 
 // Every topic has its messages, as its schema says, and other viewers' too.
@@ -66,7 +83,8 @@ async function reads() {
   assert.deepEqual(await call(client, service, { operation: "watch", numbers: [3] }), { done: true, text: "watched" });
   const { robots } = await read("/cohort/robots");
   assert.ok(robots.length <= 1);
-  for (const topic of ["/cohort/signals", "/cohort/contacts", "/cohort/status", "/cohort/events"]) assert.ok(await read(topic), topic);
+  for (const topic of ["/cohort/signals", "/cohort/contacts", "/cohort/status", "/cohort/events"])
+    assert.ok(await read(topic), topic);
   client.close();
 }
 
@@ -81,18 +99,46 @@ async function sendsNonsense() {
     failures += op === "serviceCallFailure" ? 1 : 0;
   });
   await within(new Promise((resolve) => socket.on("open", resolve)), "a connection");
-  const number = (value) => { const bytes = Buffer.alloc(4); bytes.writeUInt32LE(value); return bytes; };
-  const complained = ["", "{", "[]", "null", '{"op": 3}', '{"op": "subscribe"}', '{"op": "subscribe", "subscriptions": [{}]}',
-    '{"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 0}]}', '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 999}]}',
-    '{"op": "unsubscribe", "subscriptionIds": [5]}', '{"op": "fetchAsset", "uri": "file:///etc/passwd", "requestId": 1}', "\ud800",
-    "[".repeat(5000), Buffer.alloc(0), Buffer.from([0]), Buffer.from([2]), Buffer.from([99, 1, 2]),
-    Buffer.concat([Buffer.from([2]), number(1), number(1), number(0xffffffff), Buffer.from("json{}")])];
+  const number = (value) => {
+    const bytes = Buffer.alloc(4);
+    bytes.writeUInt32LE(value);
+    return bytes;
+  };
+  const complained = [
+    "",
+    "{",
+    "[]",
+    "null",
+    '{"op": 3}',
+    '{"op": "subscribe"}',
+    '{"op": "subscribe", "subscriptions": [{}]}',
+    '{"op": "subscribe", "subscriptions": [{"id": -1, "channelId": 0}]}',
+    '{"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 999}]}',
+    '{"op": "unsubscribe", "subscriptionIds": [5]}',
+    '{"op": "fetchAsset", "uri": "file:///etc/passwd", "requestId": 1}',
+    "\ud800",
+    "[".repeat(5000),
+    Buffer.alloc(0),
+    Buffer.from([0]),
+    Buffer.from([2]),
+    Buffer.from([99, 1, 2]),
+    Buffer.concat([Buffer.from([2]), number(1), number(1), number(0xffffffff), Buffer.from("json{}")]),
+  ];
   for (const each of complained) socket.send(each);
-  const request = (text) => Buffer.concat([Buffer.from([2]), number(1), number(1), number(4), Buffer.from(`json${text}`)]);
-  const failed = ["", "{", "[]", '{"operation": 4}', '{"operation": "seek", "number": "x"}', '{"operation": "seek", "more": 1}'];
+  const request = (text) =>
+    Buffer.concat([Buffer.from([2]), number(1), number(1), number(4), Buffer.from(`json${text}`)]);
+  const failed = [
+    "",
+    "{",
+    "[]",
+    '{"operation": 4}',
+    '{"operation": "seek", "number": "x"}',
+    '{"operation": "seek", "more": 1}',
+  ];
   for (const each of failed) socket.send(request(each));
   const deadline = Date.now() + patience;
-  while ((complaints < complained.length || failures < failed.length) && Date.now() < deadline) await new Promise((resolve) => setTimeout(resolve, 20));
+  while ((complaints < complained.length || failures < failed.length) && Date.now() < deadline)
+    await new Promise((resolve) => setTimeout(resolve, 20));
   assert.equal(complaints, complained.length);
   assert.equal(failures, failed.length);
   // What is too large ends the connection.
@@ -104,14 +150,16 @@ const memoryOf = (process) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/$
 
 // Asks for everything and reads nothing: the server drops what does not fit, and serves others.
 async function readsNothing() {
-  const sockets = await Promise.all(Array.from({ length: 20 }, async () => {
-    const socket = new WebSocket(address, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
-    await within(new Promise((resolve) => socket.on("open", resolve)), "a connection");
-    const subscriptions = Array.from({ length: 60 }, (_, id) => ({ id, channelId: id % 9 }));
-    socket.send(JSON.stringify({ op: "subscribe", subscriptions }));
-    socket.pause();
-    return socket;
-  }));
+  const sockets = await Promise.all(
+    Array.from({ length: 20 }, async () => {
+      const socket = new WebSocket(address, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
+      await within(new Promise((resolve) => socket.on("open", resolve)), "a connection");
+      const subscriptions = Array.from({ length: 60 }, (_, id) => ({ id, channelId: id % 9 }));
+      socket.send(JSON.stringify({ op: "subscribe", subscriptions }));
+      socket.pause();
+      return socket;
+    }),
+  );
   await new Promise((resolve) => setTimeout(resolve, 2000));
   const before = memoryOf(argument);
   await new Promise((resolve) => setTimeout(resolve, 4000));
@@ -123,12 +171,21 @@ async function readsNothing() {
 
 // `headers`: of whoever asks; null if it is let in, otherwise the status of the answer.
 function refusal(target, headers) {
-  return within(new Promise((resolve) => {
-    const socket = new WebSocket(target, [FoxgloveClient.SUPPORTED_SUBPROTOCOL], { headers });
-    socket.on("open", () => { socket.terminate(); resolve(null); });
-    socket.on("unexpected-response", (_, response) => { socket.terminate(); resolve(response.statusCode); });
-    socket.on("error", () => undefined);
-  }), "an answer");
+  return within(
+    new Promise((resolve) => {
+      const socket = new WebSocket(target, [FoxgloveClient.SUPPORTED_SUBPROTOCOL], { headers });
+      socket.on("open", () => {
+        socket.terminate();
+        resolve(null);
+      });
+      socket.on("unexpected-response", (_, response) => {
+        socket.terminate();
+        resolve(response.statusCode);
+      });
+      socket.on("error", () => undefined);
+    }),
+    "an answer",
+  );
 }
 
 async function isRefused() {
@@ -143,7 +200,8 @@ async function isRefused() {
   wrong.search = "token=0123456789abcdee";
   assert.equal(await refusal(wrong, {}), 403);
   const http = `http://${address.host}`;
-  for (const path of ["/", "/index.html", "/page.js", "/page.css"]) assert.equal((await fetch(http + path)).status, 200);
+  for (const path of ["/", "/index.html", "/page.js", "/page.css"])
+    assert.equal((await fetch(http + path)).status, 200);
   for (const path of ["/src/main.ts", "/..%2f..%2fetc/passwd", "/page.js/", "//etc/passwd", "/run.mcap"])
     assert.equal((await fetch(http + path)).status, 404, path);
   assert.equal((await fetch(http, { method: "POST" })).status, 405);

@@ -3,20 +3,23 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { atTick, coloursIn, look, patience, pixelsAt, run, runScenario, until } from "./in_page.mjs";
 
-const near = (found, wanted, by, what) => assert.ok(Math.abs(found - wanted) <= by, `${what} is ${found}, not ${wanted}`);
-const camera = (page) => page.evaluate(() => {
-  const { cameras, stage } = window.cohort.viewer;
-  return { position: stage.camera.position.toArray(), target: cameras.target.toArray() };
-});
+const near = (found, wanted, by, what) =>
+  assert.ok(Math.abs(found - wanted) <= by, `${what} is ${found}, not ${wanted}`);
+const camera = (page) =>
+  page.evaluate(() => {
+    const { cameras, stage } = window.cohort.viewer;
+    return { position: stage.camera.position.toArray(), target: cameras.target.toArray() };
+  });
 const minus = (a, b) => a.map((each, i) => each - b[i]);
 const dot = (a, b) => a.reduce((sum, each, i) => sum + each * b[i], 0);
 const unit = (a) => a.map((each) => each / Math.hypot(...a));
 // Points of lines or dots that are drawn: x y z of each.
-const pointsOf = (page, path) => page.evaluate((names) => {
-  const { geometry } = names.reduce((from, name) => from[name], window.cohort.viewer);
-  const values = geometry.getAttribute("position").array.slice(0, 3 * geometry.drawRange.count);
-  return Array.from({ length: values.length / 3 }, (_, i) => [...values.slice(3 * i, 3 * i + 3)]);
-}, path);
+const pointsOf = (page, path) =>
+  page.evaluate((names) => {
+    const { geometry } = names.reduce((from, name) => from[name], window.cohort.viewer);
+    const values = geometry.getAttribute("position").array.slice(0, 3 * geometry.drawRange.count);
+    return Array.from({ length: values.length / 3 }, (_, i) => [...values.slice(3 * i, 3 * i + 3)]);
+  }, path);
 
 async function films(page) {
   await run(page, "pause; seek 1; film");
@@ -34,44 +37,58 @@ async function films(page) {
 }
 
 // Of each loudspeaker that sounds: what it is told, and what comes out of it, by the x of its place.
-const heard = (page) => page.evaluate(async () => {
-  const { sound } = window.cohort.viewer;
-  const found = {};
-  for (const { oscillator, panner } of sound.voices.values()) {
-    const analyser = new AnalyserNode(sound.context, { fftSize: 32768, smoothingTimeConstant: 0 });
-    panner.connect(analyser);
-    await new Promise((resolve) => setTimeout(resolve, 1500)); // so long a stretch of sound is looked at
-    const spectrum = new Float32Array(analyser.frequencyBinCount);
-    analyser.getFloatFrequencyData(spectrum);
-    const strongest = spectrum.indexOf(Math.max(...spectrum));
-    panner.disconnect(analyser);
-    found[panner.positionX.value.toFixed(1)] = {
-      told: oscillator.frequency.value,
-      frequency: (strongest * sound.context.sampleRate) / analyser.fftSize,
-      loudness: spectrum[strongest], // [dB]
-    };
-  }
-  return found;
-});
+const heard = (page) =>
+  page.evaluate(async () => {
+    const { sound } = window.cohort.viewer;
+    const found = {};
+    for (const { oscillator, panner } of sound.voices.values()) {
+      const analyser = new AnalyserNode(sound.context, { fftSize: 32768, smoothingTimeConstant: 0 });
+      panner.connect(analyser);
+      await new Promise((resolve) => setTimeout(resolve, 1500)); // so long a stretch of sound is looked at
+      const spectrum = new Float32Array(analyser.frequencyBinCount);
+      analyser.getFloatFrequencyData(spectrum);
+      const strongest = spectrum.indexOf(Math.max(...spectrum));
+      panner.disconnect(analyser);
+      found[panner.positionX.value.toFixed(1)] = {
+        told: oscillator.frequency.value,
+        frequency: (strongest * sound.context.sampleRate) / analyser.fftSize,
+        loudness: spectrum[strongest], // [dB]
+      };
+    }
+    return found;
+  });
 
 async function sounds(page) {
   await run(page, "pause; seek 1");
   await atTick(page, 100);
-  assert.equal(await page.evaluate(() => window.cohort.viewer.sound.context), undefined, "nothing sounds before it is asked for");
+  assert.equal(
+    await page.evaluate(() => window.cohort.viewer.sound.context),
+    undefined,
+    "nothing sounds before it is asked for",
+  );
   await look(page, [2, -1, 0.5], [2, 0, 0.3]);
   await page.getByRole("button", { name: "sound" }).click();
   await until(page, () => window.cohort.viewer.sound.sounding === 2);
   const beside = await heard(page);
   assert.deepEqual(Object.keys(beside).sort(), ["-2.0", "2.0"]);
-  for (const [place, wanted] of [["2.0", 880], ["-2.0", 330]]) {
+  for (const [place, wanted] of [
+    ["2.0", 880],
+    ["-2.0", 330],
+  ]) {
     near(beside[place].told, wanted, 0.5, `the frequency at x ${place}`);
     near(beside[place].frequency, wanted, 3, `what is heard from x ${place}`);
   }
   // Behind the other one.
   await look(page, [-2, -1, 0.5], [-2, 0, 0.3]);
   const across = await heard(page);
-  assert.ok(across["2.0"].loudness < beside["2.0"].loudness - 6, `${across["2.0"].loudness} and ${beside["2.0"].loudness} dB`);
-  assert.ok(across["-2.0"].loudness > beside["-2.0"].loudness + 6, `${across["-2.0"].loudness} and ${beside["-2.0"].loudness} dB`);
+  assert.ok(
+    across["2.0"].loudness < beside["2.0"].loudness - 6,
+    `${across["2.0"].loudness} and ${beside["2.0"].loudness} dB`,
+  );
+  assert.ok(
+    across["-2.0"].loudness > beside["-2.0"].loudness + 6,
+    `${across["-2.0"].loudness} and ${beside["-2.0"].loudness} dB`,
+  );
   await run(page, "toggle sound");
   assert.equal(await page.evaluate(() => window.cohort.viewer.sound.sounding), 0);
 }
@@ -80,13 +97,19 @@ async function sounds(page) {
 async function fly(page, key) {
   const from = await camera(page);
   await page.keyboard.down(key);
-  await until(page, ([x, y, z]) => {
-    const at = window.cohort.viewer.stage.camera.position;
-    return Math.hypot(at.x - x, at.y - y, at.z - z) > 0.1;
-  }, from.position);
+  await until(
+    page,
+    ([x, y, z]) => {
+      const at = window.cohort.viewer.stage.camera.position;
+      return Math.hypot(at.x - x, at.y - y, at.z - z) > 0.1;
+    },
+    from.position,
+  );
   await page.keyboard.up(key);
   const to = await camera(page);
-  minus(minus(to.target, from.target), minus(to.position, from.position)).forEach((each) => near(each, 0, 1e-3, "what the target went beside the camera"));
+  minus(minus(to.target, from.target), minus(to.position, from.position)).forEach((each) =>
+    near(each, 0, 1e-3, "what the target went beside the camera"),
+  );
   return unit(minus(to.position, from.position));
 }
 
@@ -99,13 +122,25 @@ async function movesCamera(page) {
   await page.keyboard.press("g");
   const { position, target } = await camera(page);
   const ahead = unit(minus(target, position));
-  for (const [key, direction] of [["w", ahead], ["s", ahead.map((each) => -each)], ["d", [1, 0, 0]], ["a", [-1, 0, 0]], ["q", [0, 0, 1]], ["z", [0, 0, -1]]]) {
+  for (const [key, direction] of [
+    ["w", ahead],
+    ["s", ahead.map((each) => -each)],
+    ["d", [1, 0, 0]],
+    ["a", [-1, 0, 0]],
+    ["q", [0, 0, 1]],
+    ["z", [0, 0, -1]],
+  ]) {
     const went = await fly(page, key);
     assert.ok(dot(went, direction) > 0.99, `with ${key} it went along ${went}`);
   }
   const before = await camera(page);
   await page.waitForTimeout(1500);
-  near(Math.hypot(...minus((await camera(page)).position, before.position)), 0, 1e-3, "its way after the keys were let go");
+  near(
+    Math.hypot(...minus((await camera(page)).position, before.position)),
+    0,
+    1e-3,
+    "its way after the keys were let go",
+  );
 
   await run(page, "eye lookout");
   await until(page, () => Math.abs(window.cohort.viewer.stage.camera.position.x - 0.06) < 0.01);
@@ -157,7 +192,10 @@ async function drawsOverlays(page) {
     });
     return shown.map(([name, x, y]) => {
       const [a, b, c] = viewer.poseOf(viewer.find(name)).position;
-      const at = viewer.cameras.target.clone().set(a, b, c + 0.12).project(viewer.stage.camera);
+      const at = viewer.cameras.target
+        .clone()
+        .set(a, b, c + 0.12)
+        .project(viewer.stage.camera);
       return { name, beside: Math.hypot(0.5 * (at.x + 1) * width - x, 0.5 * (1 - at.y) * height - y) };
     });
   });
@@ -165,18 +203,26 @@ async function drawsOverlays(page) {
   for (const { name, beside } of names) assert.ok(beside < 3, `the name of ${name} is ${beside} pixels beside it`);
 
   // A picture that began before its frame came.
-  assert.equal(await page.evaluate(() => {
-    const { poses } = window.cohort.viewer;
-    poses.advance(performance.now() - 1e6);
-    return poses.blend;
-  }), 0);
+  assert.equal(
+    await page.evaluate(() => {
+      const { poses } = window.cohort.viewer;
+      poses.advance(performance.now() - 1e6);
+      return poses.blend;
+    }),
+    0,
+  );
 
   // The runner goes along y = -2.
   await run(page, "play");
   await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 250);
   await run(page, "pause");
   const runner = await page.evaluate(() => window.cohort.viewer.find("runner"));
-  const trail = await pointsOf(page, ["trails", "group", "children", String(await page.evaluate((entity) => [...window.cohort.viewer.trails.trails.keys()].indexOf(entity), runner))]);
+  const trail = await pointsOf(page, [
+    "trails",
+    "group",
+    "children",
+    String(await page.evaluate((entity) => [...window.cohort.viewer.trails.trails.keys()].indexOf(entity), runner)),
+  ]);
   assert.ok(trail.length > 5, `its trail has ${trail.length} points`);
   trail.forEach(([x, y], i) => {
     near(y, -2, 0.01, "y of its trail");
@@ -185,21 +231,48 @@ async function drawsOverlays(page) {
   assert.ok(trail.at(-1)[0] - trail[0][0] > 0.2, `its trail goes from ${trail[0]} to ${trail.at(-1)}`);
   await run(page, "seek 0.5");
   await atTick(page, 50);
-  assert.ok((await page.evaluate(() => window.cohort.viewer.trails.group.children.length)) === 0
-    || (await pointsOf(page, ["trails", "group", "children", "0"])).length < 2, "before it ran there is no trail");
+  assert.ok(
+    (await page.evaluate(() => window.cohort.viewer.trails.group.children.length)) === 0 ||
+      (await pointsOf(page, ["trails", "group", "children", "0"])).length < 2,
+    "before it ran there is no trail",
+  );
 
   await run(page, "seek 2");
   await atTick(page, 200);
-  const corners = [[-0.1, 0.9], [0.1, 0.9], [0.1, 1.1], [-0.1, 1.1]];
+  const corners = [
+    [-0.1, 0.9],
+    [0.1, 0.9],
+    [0.1, 1.1],
+    [-0.1, 1.1],
+  ];
   await until(page, () => window.cohort.viewer.contacts.points.geometry.drawRange.count >= 4);
   const contacts = await pointsOf(page, ["contacts", "points"]);
   for (const [x, y] of corners)
-    assert.ok(contacts.some((each) => Math.hypot(each[0] - x, each[1] - y, each[2]) < 0.005), `no contact at ${x} ${y}: ${JSON.stringify(contacts)}`);
+    assert.ok(
+      contacts.some((each) => Math.hypot(each[0] - x, each[1] - y, each[2]) < 0.005),
+      `no contact at ${x} ${y}: ${JSON.stringify(contacts)}`,
+    );
   await look(page, [0.2, 0.3, 0.5], [0, 0.9, 0]);
-  const seen = await pixelsAt(page, [[-0.1, 0.9, 0], [-0.102, 0.9, 0], [-0.1, 0.898, 0], [-0.102, 0.898, 0]]);
-  assert.ok(seen.some(([red, green, blue]) => red > 150 && red > 1.5 * green && red > 1.5 * blue), `at the corner of the crate are ${seen}`);
+  const seen = await pixelsAt(page, [
+    [-0.1, 0.9, 0],
+    [-0.102, 0.9, 0],
+    [-0.1, 0.898, 0],
+    [-0.102, 0.898, 0],
+  ]);
+  assert.ok(
+    seen.some(([red, green, blue]) => red > 150 && red > 1.5 * green && red > 1.5 * blue),
+    `at the corner of the crate are ${seen}`,
+  );
   const forces = await pointsOf(page, ["contacts", "forces"]);
-  const weight = forces.reduce((sum, [, , z], i) => sum + (i % 2 === 1 && Math.abs(forces[i][1] - 1) < 0.15 && Math.abs(forces[i][0]) < 0.15 ? Math.abs(z - forces[i - 1][2]) : 0), 0) / 0.02;
+  const weight =
+    forces.reduce(
+      (sum, [, , z], i) =>
+        sum +
+        (i % 2 === 1 && Math.abs(forces[i][1] - 1) < 0.15 && Math.abs(forces[i][0]) < 0.15
+          ? Math.abs(z - forces[i - 1][2])
+          : 0),
+      0,
+    ) / 0.02;
   near(weight, 500 * 0.2 ** 3 * 9.81, 1, "the weight of the crate, by the lines of its forces,");
 
   const grips = await pointsOf(page, ["contacts", "grips"]);
@@ -241,7 +314,12 @@ async function drawsShapes(page) {
   assert.ok(brightness(without) > 0.95 * brightness(bright), `without shadows it is ${without}`);
 
   await look(page, [1, -0.2, 0.4], [1, 1, 0.1]);
-  const [red, blue, ...green] = await pixelsAt(page, [[0.9, 1, 0.1], [1.1, 1, 0.1], [0.9, 1, 0.35], [1.1, 1, 0.35]]);
+  const [red, blue, ...green] = await pixelsAt(page, [
+    [0.9, 1, 0.1],
+    [1.1, 1, 0.1],
+    [0.9, 1, 0.35],
+    [1.1, 1, 0.35],
+  ]);
   assert.ok(red[0] > 2 * red[1] && red[0] > 2 * red[2], `the red square is ${red}`);
   assert.ok(blue[2] > 2 * blue[0] && blue[2] > 2 * blue[1], `the blue square is ${blue}`);
   for (const each of green) assert.ok(each[1] > 2 * each[0] && each[1] > 2 * each[2], `a green square is ${each}`);
@@ -271,11 +349,19 @@ async function drawsHills(page, file) {
   expected.forEach(([x, y, z], i) => near(heights[i], z, 1e-3, `the height at ${x} ${y}`));
   const highest = expected.reduce((best, each) => (each[2] > best[2] ? each : best));
   await look(page, [highest[0], highest[1] - 1.5, 0.6], highest);
-  const [hill, sky] = await pixelsAt(page, [[highest[0], highest[1], highest[2] - 0.01], [highest[0], 300, 60]]);
+  const [hill, sky] = await pixelsAt(page, [
+    [highest[0], highest[1], highest[2] - 0.01],
+    [highest[0], 300, 60],
+  ]);
   assert.ok(Math.abs(brightness(hill) - brightness(sky)) > 60, `the hill is ${hill}, the sky ${sky}`);
 }
 
 await runScenario({
-  films, sounds, moves_camera: movesCamera, keeps_looks: keepsLooks, draws_overlays: drawsOverlays, draws_shapes: drawsShapes,
+  films,
+  sounds,
+  moves_camera: movesCamera,
+  keeps_looks: keepsLooks,
+  draws_overlays: drawsOverlays,
+  draws_shapes: drawsShapes,
   draws_hills: drawsHills,
 });

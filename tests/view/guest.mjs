@@ -24,10 +24,17 @@ export class Guest {
   ask(request) {
     const call = ++this.calls;
     const data = new TextEncoder().encode(JSON.stringify(request));
-    const answer = new Promise((resolve) => this.client.on("serviceCallResponse", ({ callId, data: payload }) => {
-      if (callId === call) resolve(JSON.parse(new TextDecoder().decode(payload)));
-    }));
-    this.client.sendServiceCallRequest({ serviceId: this.service.id, callId: call, encoding: "json", data: new DataView(data.buffer) });
+    const answer = new Promise((resolve) =>
+      this.client.on("serviceCallResponse", ({ callId, data: payload }) => {
+        if (callId === call) resolve(JSON.parse(new TextDecoder().decode(payload)));
+      }),
+    );
+    this.client.sendServiceCallRequest({
+      serviceId: this.service.id,
+      callId: call,
+      encoding: "json",
+      data: new DataView(data.buffer),
+    });
     return answer;
   }
 
@@ -36,13 +43,17 @@ export class Guest {
     const channel = this.channels.find((each) => each.topic === topic);
     const reader = new serialization.MessageReader(rosmsg.parse(channel.schema, { ros2: true }));
     const id = this.client.subscribe(channel.id);
-    const found = await new Promise((resolve) => this.client.on("message", ({ subscriptionId, data }) => {
-      const seen = subscriptionId === id && look(reader.readMessage(data));
-      if (seen) resolve(seen);
-    }));
+    const found = await new Promise((resolve) =>
+      this.client.on("message", ({ subscriptionId, data }) => {
+        const seen = subscriptionId === id && look(reader.readMessage(data));
+        if (seen) resolve(seen);
+      }),
+    );
     this.client.unsubscribe(id);
     return found;
   }
 
-  close() { this.client.close(); }
+  close() {
+    this.client.close();
+  }
 }

@@ -3,37 +3,53 @@ import assert from "node:assert/strict";
 import { Guest } from "./guest.mjs";
 import { run, runScenario, seenAt, tick, until } from "./in_page.mjs";
 
-const poseOf = (page, name) => page.evaluate((text) => {
-  const { viewer } = window.cohort;
-  const { position, heading } = viewer.poseOf(viewer.find(text));
-  return { x: position[0], y: position[1], z: position[2], heading };
-}, name);
+const poseOf = (page, name) =>
+  page.evaluate((text) => {
+    const { viewer } = window.cohort;
+    const { position, heading } = viewer.poseOf(viewer.find(text));
+    return { x: position[0], y: position[1], z: position[2], heading };
+  }, name);
 // Sees the robot go on by so much [m], and turn by so much [rad].
-const untilMoved = (page, name, from, way, turn) => until(page, ([text, before, least, angle]) => {
-  const { viewer } = window.cohort;
-  const { position, heading } = viewer.poseOf(viewer.find(text));
-  const turned = Math.atan2(Math.sin(heading - before.heading), Math.cos(heading - before.heading));
-  return Math.hypot(position[0] - before.x, position[1] - before.y) >= least && Math.sign(angle) * turned >= Math.abs(angle);
-}, [name, from, way, turn]);
+const untilMoved = (page, name, from, way, turn) =>
+  until(
+    page,
+    ([text, before, least, angle]) => {
+      const { viewer } = window.cohort;
+      const { position, heading } = viewer.poseOf(viewer.find(text));
+      const turned = Math.atan2(Math.sin(heading - before.heading), Math.cos(heading - before.heading));
+      return (
+        Math.hypot(position[0] - before.x, position[1] - before.y) >= least &&
+        Math.sign(angle) * turned >= Math.abs(angle)
+      );
+    },
+    [name, from, way, turn],
+  );
 // Sees it at rest for so many ticks.
 async function untilAtRest(page, name, ticks = 40) {
   for (;;) {
     const [before, from] = [await poseOf(page, name), await tick(page)];
     await until(page, (wanted) => Number(window.cohort.viewer.poses.frame.tick) >= wanted, from + ticks);
     const after = await poseOf(page, name);
-    if (Math.hypot(after.x - before.x, after.y - before.y) < 1e-4 && Math.abs(after.heading - before.heading) < 1e-3) return after;
+    if (Math.hypot(after.x - before.x, after.y - before.y) < 1e-4 && Math.abs(after.heading - before.heading) < 1e-3)
+      return after;
   }
 }
-const told = (page, text) => until(page, (part) => {
-  const line = document.getElementById("told");
-  return !line.hidden && line.textContent.includes(part);
-}, text);
+const told = (page, text) =>
+  until(
+    page,
+    (part) => {
+      const line = document.getElementById("told");
+      return !line.hidden && line.textContent.includes(part);
+    },
+    text,
+  );
 // A picture that is coarse enough for software to draw it often: people steer by what they see.
-const drawCoarsely = (page) => page.evaluate(() => {
-  const { stage } = window.cohort.viewer;
-  stage.renderer.setPixelRatio(0.25);
-  return window.cohort.run("toggle shadows");
-});
+const drawCoarsely = (page) =>
+  page.evaluate(() => {
+    const { stage } = window.cohort.viewer;
+    stage.renderer.setPixelRatio(0.25);
+    return window.cohort.run("toggle shadows");
+  });
 const driven = (page) => page.evaluate(() => window.cohort.driving.name);
 const drives = (page, name) => until(page, (wanted) => window.cohort.driving.name === wanted, name);
 
@@ -63,7 +79,10 @@ async function drivesByKeys(page) {
   await page.keyboard.down("ArrowLeft");
   await until(page, () => {
     const { robot: seen, poses } = window.cohort.viewer;
-    const { command } = poses.scene.models[poses.scene.entities[poses.scene.entities.findIndex(({ name }) => name === "people/keys")].model];
+    const { command } =
+      poses.scene.models[
+        poses.scene.entities[poses.scene.entities.findIndex(({ name }) => name === "people/keys")].model
+      ];
     const left = command.findIndex(({ name }) => name.endsWith("/left/velocity"));
     const half = 0.5 * command[left].upper;
     return seen && Math.abs(seen.command[left] + half) < 1e-9 && Math.abs(seen.command[left + 1] - half) < 1e-9;
@@ -92,11 +111,16 @@ async function drivesByKeys(page) {
   await assert.rejects(run(page, "steer i sideways"), /expected ahead, back, left, right/);
 
   // Another channel, by its slider and by its key.
-  const turretIs = (wanted) => until(page, (value) => {
-    const { robot: seen, poses } = window.cohort.viewer;
-    const { command } = poses.scene.models[poses.scene.entities.find(({ name }) => name === "people/keys").model];
-    return seen?.command[command.findIndex(({ name }) => name === "turret/0/velocity")] === value;
-  }, wanted);
+  const turretIs = (wanted) =>
+    until(
+      page,
+      (value) => {
+        const { robot: seen, poses } = window.cohort.viewer;
+        const { command } = poses.scene.models[poses.scene.entities.find(({ name }) => name === "people/keys").model];
+        return seen?.command[command.findIndex(({ name }) => name === "turret/0/velocity")] === value;
+      },
+      wanted,
+    );
   await turretIs(0);
   await page.locator('#sliders input[data-channel="turret/0/velocity"]').fill("0.25");
   await turretIs(0.25);
@@ -134,16 +158,35 @@ async function drivesByKeys(page) {
 async function drivesByPad(page) {
   const robot = "people/pad";
   await page.addInitScript(() => {
-    window.pad = { id: "Test pad (STANDARD GAMEPAD)", index: 0, connected: true, mapping: "standard", axes: [0, 0, 0, 0], buttons: [], timestamp: 0 };
+    window.pad = {
+      id: "Test pad (STANDARD GAMEPAD)",
+      index: 0,
+      connected: true,
+      mapping: "standard",
+      axes: [0, 0, 0, 0],
+      buttons: [],
+      timestamp: 0,
+    };
     navigator.getGamepads = () => [null, window.pad];
   });
   await page.reload();
   await until(page, () => window.cohort?.viewer.poses?.frame);
-  const stick = (x, y) => page.evaluate((axes) => { window.pad.axes = axes; }, [x, y, 0, 0]);
+  const stick = (x, y) =>
+    page.evaluate(
+      (axes) => {
+        window.pad.axes = axes;
+      },
+      [x, y, 0, 0],
+    );
   await drawCoarsely(page);
   await run(page, "drive people/pad");
   assert.match(await page.locator("#driven").textContent(), /the left stick of Test pad/);
-  await goesAhead(page, robot, () => stick(0, -1), () => stick(0.1, -0.1));
+  await goesAhead(
+    page,
+    robot,
+    () => stick(0, -1),
+    () => stick(0.1, -0.1),
+  );
   const from = await untilAtRest(page, robot);
   await stick(1, 0);
   await untilMoved(page, robot, from, 0, -0.4);
@@ -169,19 +212,31 @@ async function drivesAlone(page) {
   const { id, left, neutral } = await guest.sees("/cohort/scene", ({ entities, models }) => {
     const { model, robot: number } = entities.find(({ name }) => name === robot);
     const { command } = models[model];
-    return { id: number, left: command.findIndex(({ name }) => name.endsWith("/left/velocity")), neutral: command.flatMap((channel) => Array(channel.size).fill(channel.neutral)) };
+    return {
+      id: number,
+      left: command.findIndex(({ name }) => name.endsWith("/left/velocity")),
+      neutral: command.flatMap((channel) => Array(channel.size).fill(channel.neutral)),
+    };
   });
   await guest.ask({ operation: "watch", numbers: [id] });
-  const isTold = (speed) => guest.sees("/cohort/robots", ({ robots }) => robots[0]?.command[left] === speed && robots[0].command[left + 1] === speed);
-  await page.evaluate(() => { window.cohort.connection.ask = () => new Promise(() => undefined); });
+  const isTold = (speed) =>
+    guest.sees(
+      "/cohort/robots",
+      ({ robots }) => robots[0]?.command[left] === speed && robots[0].command[left + 1] === speed,
+    );
+  await page.evaluate(() => {
+    window.cohort.connection.ask = () => new Promise(() => undefined);
+  });
   await isTold(0);
   for (let answer = await claim(); !answer.done; answer = await claim()) {
     assert.equal(answer.text, "another page drives people/keys");
     await new Promise((resolve) => setTimeout(resolve, 200));
   }
   const slowly = neutral.map((value, i) => (i === left || i === left + 1 ? 0.05 : value));
-  assert.deepEqual(await guest.ask({ operation: "drive", name: robot, numbers: slowly.slice(1) }),
-    { done: false, text: `its command has ${slowly.length} values, not ${slowly.length - 1}` });
+  assert.deepEqual(await guest.ask({ operation: "drive", name: robot, numbers: slowly.slice(1) }), {
+    done: false,
+    text: `its command has ${slowly.length} values, not ${slowly.length - 1}`,
+  });
   const beating = setInterval(() => void guest.ask({ operation: "drive", name: robot, numbers: slowly }), 100);
   await isTold(0.05);
   clearInterval(beating);
@@ -204,10 +259,15 @@ async function drivesOn(page) {
 // The first robot of teleop.yaml, whose run waits for whoever drives it.
 async function drivesFirst(page) {
   const robot = "explorers/sbot_0";
-  const noted = (part) => until(page, (text) => {
-    const note = document.getElementById("note");
-    return !note.hidden && note.textContent.includes(text);
-  }, part);
+  const noted = (part) =>
+    until(
+      page,
+      (text) => {
+        const note = document.getElementById("note");
+        return !note.hidden && note.textContent.includes(text);
+      },
+      part,
+    );
   await noted("controllers are missing");
   await noted(robot);
   assert.equal(await tick(page), 0);
@@ -233,18 +293,25 @@ async function handlesObjects(page) {
   await run(page, "move others/driven -4 -4"); // or it comes and pushes what is put down
   assert.deepEqual(await page.locator("#adding-model option").allTextContents(), ["lamp_post", "bar"]);
   assert.equal(await page.locator("#adding-name").inputValue(), "bar_1");
-  const ghost = () => page.evaluate(() => {
-    const { group } = window.cohort.objects.ghost;
-    return group.visible ? group.position.toArray() : undefined;
-  });
+  const ghost = () =>
+    page.evaluate(() => {
+      const { group } = window.cohort.objects.ghost;
+      return group.visible ? group.position.toArray() : undefined;
+    });
   const at = await seenAt(page, [0.5, 0.3, 0]);
   await page.mouse.move(at.x, at.y);
   const shown = await ghost();
-  assert.ok(Math.hypot(shown[0] - 0.5, shown[1] - 0.3) < 0.02 && Math.abs(shown[2] - 0.05) < 1e-6, `the ghost is at ${shown}`);
+  assert.ok(
+    Math.hypot(shown[0] - 0.5, shown[1] - 0.3) < 0.02 && Math.abs(shown[2] - 0.05) < 1e-6,
+    `the ghost is at ${shown}`,
+  );
   await page.mouse.click(at.x, at.y);
   await until(page, () => window.cohort.viewer.find("bar_1") !== undefined && window.cohort.viewer.poses.frame);
   const added = await poseOf(page, "bar_1");
-  assert.ok(Math.hypot(added.x - 0.5, added.y - 0.3) < 0.02 && Math.abs(added.z - 0.05) < 5e-3, `it is at ${JSON.stringify(added)}`);
+  assert.ok(
+    Math.hypot(added.x - 0.5, added.y - 0.3) < 0.02 && Math.abs(added.z - 0.05) < 5e-3,
+    `it is at ${JSON.stringify(added)}`,
+  );
   await until(page, () => document.getElementById("adding-name").value === "bar_2");
 
   // What the server refuses is said.
@@ -300,6 +367,11 @@ async function offersNoHands(page) {
 }
 
 await runScenario({
-  drives_by_keys: drivesByKeys, drives_by_pad: drivesByPad, drives_alone: drivesAlone, drives_on: drivesOn,
-  drives_first: drivesFirst, handles_objects: handlesObjects, offers_no_hands: offersNoHands,
+  drives_by_keys: drivesByKeys,
+  drives_by_pad: drivesByPad,
+  drives_alone: drivesAlone,
+  drives_on: drivesOn,
+  drives_first: drivesFirst,
+  handles_objects: handlesObjects,
+  offers_no_hands: offersNoHands,
 });

@@ -11,69 +11,90 @@ export async function until(page, look, argument) {
 }
 export const run = (page, line) => page.evaluate((text) => window.cohort.run(text), line);
 export const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.poses.frame.tick));
-export const atTick = (page, wanted) => until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
+export const atTick = (page, wanted) =>
+  until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
 
 /** Where in the picture a place of the world is. */
-export const seenAt = (page, place) => page.evaluate(([x, y, z]) => {
-  const { viewer } = window.cohort;
-  viewer.draw(performance.now() + 1000); // past the blend of the last two frames
-  const at = viewer.cameras.target.clone().set(x, y, z).project(viewer.stage.camera);
-  const { width, height } = document.getElementById("canvas").getBoundingClientRect();
-  return { x: 0.5 * (at.x + 1) * width, y: 0.5 * (1 - at.y) * height };
-}, place);
+export const seenAt = (page, place) =>
+  page.evaluate(([x, y, z]) => {
+    const { viewer } = window.cohort;
+    viewer.draw(performance.now() + 1000); // past the blend of the last two frames
+    const at = viewer.cameras.target.clone().set(x, y, z).project(viewer.stage.camera);
+    const { width, height } = document.getElementById("canvas").getBoundingClientRect();
+    return { x: 0.5 * (at.x + 1) * width, y: 0.5 * (1 - at.y) * height };
+  }, place);
 
 /** Pixels of the picture at places of the world: red, green, blue of each. */
-export const pixelsAt = (page, places) => page.evaluate((points) => {
-  const { viewer } = window.cohort;
-  const { camera, renderer } = viewer.stage;
-  viewer.draw(performance.now());
-  const gl = renderer.getContext();
-  return points.map(([x, y, z]) => {
-    const at = viewer.cameras.target.clone().set(x, y, z).project(camera);
-    const pixel = new Uint8Array(4);
-    const column = Math.round(0.5 * (at.x + 1) * gl.drawingBufferWidth);
-    const row = Math.round(0.5 * (at.y + 1) * gl.drawingBufferHeight);
-    gl.readPixels(column, row, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-    return [...pixel.slice(0, 3)];
-  });
-}, places);
+export const pixelsAt = (page, places) =>
+  page.evaluate((points) => {
+    const { viewer } = window.cohort;
+    const { camera, renderer } = viewer.stage;
+    viewer.draw(performance.now());
+    const gl = renderer.getContext();
+    return points.map(([x, y, z]) => {
+      const at = viewer.cameras.target.clone().set(x, y, z).project(camera);
+      const pixel = new Uint8Array(4);
+      const column = Math.round(0.5 * (at.x + 1) * gl.drawingBufferWidth);
+      const row = Math.round(0.5 * (at.y + 1) * gl.drawingBufferHeight);
+      gl.readPixels(column, row, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      return [...pixel.slice(0, 3)];
+    });
+  }, places);
 
 /** Looks from a place to another one. */
-export const look = (page, position, target) => page.evaluate(([from, to]) => {
-  window.cohort.viewer.cameras.look({ position: from, target: to });
-  window.cohort.viewer.draw(performance.now() + 1000); // past the blend of the last two frames
-}, [position, target]);
+export const look = (page, position, target) =>
+  page.evaluate(
+    ([from, to]) => {
+      window.cohort.viewer.cameras.look({ position: from, target: to });
+      window.cohort.viewer.draw(performance.now() + 1000); // past the blend of the last two frames
+    },
+    [position, target],
+  );
 
 /** How large an image, or the first picture of a film, is that is given as bytes, and how many colours it has. */
-export const coloursIn = (page, bytes, type) => page.evaluate(async ([base64, kind]) => {
-  const content = new Blob([Uint8Array.from(atob(base64), (each) => each.charCodeAt(0))], { type: kind });
-  const isFilm = kind.startsWith("video/");
-  const picture = isFilm ? document.createElement("video") : new Image();
-  const loaded = new Promise((resolve, reject) => {
-    if (isFilm) picture.requestVideoFrameCallback(resolve);
-    else picture.addEventListener("load", resolve);
-    picture.addEventListener("error", () => reject(new Error(`a picture that cannot be decoded: ${picture.error?.message ?? ""}`)));
-  });
-  picture.src = URL.createObjectURL(content);
-  if (isFilm) picture.muted = true;
-  if (isFilm) await picture.play();
-  await loaded;
-  const [width, height] = isFilm ? [picture.videoWidth, picture.videoHeight] : [picture.width, picture.height];
-  const context = new OffscreenCanvas(width, height).getContext("2d");
-  context.drawImage(picture, 0, 0);
-  const { data } = context.getImageData(0, 0, width, height);
-  const found = new Set();
-  for (let i = 0; i < data.length; i += 4 * 37) found.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-  return { width, height, colours: found.size };
-}, [bytes.toString("base64"), type]);
+export const coloursIn = (page, bytes, type) =>
+  page.evaluate(
+    async ([base64, kind]) => {
+      const content = new Blob([Uint8Array.from(atob(base64), (each) => each.charCodeAt(0))], { type: kind });
+      const isFilm = kind.startsWith("video/");
+      const picture = isFilm ? document.createElement("video") : new Image();
+      const loaded = new Promise((resolve, reject) => {
+        if (isFilm) picture.requestVideoFrameCallback(resolve);
+        else picture.addEventListener("load", resolve);
+        picture.addEventListener("error", () =>
+          reject(new Error(`a picture that cannot be decoded: ${picture.error?.message ?? ""}`)),
+        );
+      });
+      picture.src = URL.createObjectURL(content);
+      if (isFilm) picture.muted = true;
+      if (isFilm) await picture.play();
+      await loaded;
+      const [width, height] = isFilm ? [picture.videoWidth, picture.videoHeight] : [picture.width, picture.height];
+      const context = new OffscreenCanvas(width, height).getContext("2d");
+      context.drawImage(picture, 0, 0);
+      const { data } = context.getImageData(0, 0, width, height);
+      const found = new Set();
+      for (let i = 0; i < data.length; i += 4 * 37) found.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+      return { width, height, colours: found.size };
+    },
+    [bytes.toString("base64"), type],
+  );
 
 /** Opens the page for the scenario that the command line names: SCENARIO ADDRESS [FILE]. */
 export async function runScenario(scenarios) {
   const [, , scenario, address, file] = process.argv;
   const browser = await chromium.launch({
     executablePath: process.env.COHORT_CHROMIUM,
-    args: ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
-      "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    args: [
+      "--no-sandbox",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+    ],
   });
   try {
     const page = await browser.newPage({ viewport: { width: 960, height: 640 } });

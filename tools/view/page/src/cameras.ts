@@ -1,9 +1,12 @@
-import { Quaternion, Vector3, type PerspectiveCamera } from "three";
+import { type PerspectiveCamera, Quaternion, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Poses } from "./poses";
 
 export type CameraMode = "orbit" | "follow" | "top" | "eye" | "fly";
-export interface Viewpoint { position: number[]; target: number[] }
+export interface Viewpoint {
+  position: number[];
+  target: number[];
+}
 
 const eyeHeight = 0.05; // [m] above the root link's origin
 const flySpeed = 1.5; // [m/s]
@@ -20,7 +23,10 @@ export class Cameras {
   private readonly turn = new Quaternion();
   private isFirst = true;
 
-  constructor(private readonly camera: PerspectiveCamera, canvas: HTMLCanvasElement) {
+  constructor(
+    private readonly camera: PerspectiveCamera,
+    canvas: HTMLCanvasElement,
+  ) {
     this.controls = new OrbitControls(camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.12;
@@ -30,8 +36,12 @@ export class Cameras {
     this.controls.zoomToCursor = true;
   }
 
-  get target(): Vector3 { return this.controls.target; }
-  get followedEntity(): number | undefined { return this.mode === "follow" || this.mode === "eye" ? this.followed : undefined; }
+  get target(): Vector3 {
+    return this.controls.target;
+  }
+  get followedEntity(): number | undefined {
+    return this.mode === "follow" || this.mode === "eye" ? this.followed : undefined;
+  }
 
   choose(mode: CameraMode, entity?: number): void {
     this.mode = mode;
@@ -53,7 +63,9 @@ export class Cameras {
     this.controls.update();
   }
 
-  viewpoint(): Viewpoint { return { position: this.camera.position.toArray(), target: this.target.toArray() }; }
+  viewpoint(): Viewpoint {
+    return { position: this.camera.position.toArray(), target: this.target.toArray() };
+  }
   look({ position, target }: Viewpoint): void {
     this.choose("orbit");
     this.camera.position.fromArray(position);
@@ -71,7 +83,10 @@ export class Cameras {
     poses.read(poses.placeOf(entity), this.at, this.turn);
     if (this.mode === "eye") {
       const forward = new Vector3(1, 0, 0).applyQuaternion(this.turn);
-      this.camera.position.copy(this.at).add(new Vector3(0, 0, eyeHeight)).addScaledVector(forward, 0.06);
+      this.camera.position
+        .copy(this.at)
+        .add(new Vector3(0, 0, eyeHeight))
+        .addScaledVector(forward, 0.06);
       this.camera.lookAt(this.camera.position.clone().add(forward));
       this.target.copy(this.at);
       return;

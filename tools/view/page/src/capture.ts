@@ -10,7 +10,8 @@ export function download(content: Blob, name: string): void {
 export function screenshot(canvas: HTMLCanvasElement, draw: () => void): Promise<Blob> {
   draw(); // the picture is there until the browser composes the page
   return new Promise((resolve, reject) =>
-    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"));
+    canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("no picture"))), "image/png"),
+  );
 }
 
 /** Records the picture as WebM while it is on. */
@@ -19,13 +20,20 @@ export class Film {
 
   constructor(private readonly canvas: HTMLCanvasElement) {}
 
-  get isOn(): boolean { return this.recorder !== undefined; }
+  get isOn(): boolean {
+    return this.recorder !== undefined;
+  }
 
   start(framesPerSecond = 30): void {
     if (this.recorder) return;
     const parts: Blob[] = [];
-    const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((each) => MediaRecorder.isTypeSupported(each));
-    this.recorder = new MediaRecorder(this.canvas.captureStream(framesPerSecond), { mimeType: type, videoBitsPerSecond: 12_000_000 });
+    const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((each) =>
+      MediaRecorder.isTypeSupported(each),
+    );
+    this.recorder = new MediaRecorder(this.canvas.captureStream(framesPerSecond), {
+      mimeType: type,
+      videoBitsPerSecond: 12_000_000,
+    });
     this.recorder.ondataavailable = ({ data }) => parts.push(data);
     this.recorder.onstop = () => download(new Blob(parts, { type: "video/webm" }), "cohort.webm");
     this.recorder.start(1000);

@@ -12,5 +12,7 @@ export function firstValue(channels: readonly SceneChannel[], name: string): num
 
 /** Each value with a name of its own: that of its channel, and its place if there are several. */
 export function valueNames(channels: readonly SceneChannel[]): string[] {
-  return channels.flatMap(({ name, size }) => (size === 1 ? [name] : Array.from({ length: size }, (_, i) => `${name}[${i}]`)));
+  return channels.flatMap(({ name, size }) =>
+    size === 1 ? [name] : Array.from({ length: size }, (_, i) => `${name}[${i}]`),
+  );
 }

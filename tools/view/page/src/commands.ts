@@ -21,9 +21,25 @@ const deepestAlias = 16;
 const mostLines = 10_000;
 
 export const defaultKeys: Record<string, string> = {
-  " ": "toggle", ".": "step", ",": "step -1", "f": "follow", "o": "orbit", "t": "top", "e": "eye", "g": "fly", "Escape": "deselect",
-  "c": "toggle contacts", "r": "toggle rays", "l": "toggle labels", "p": "screenshot", "F": "fullscreen", "Home": "home",
-  "+": "faster", "-": "slower", "`": "console", "?": "help",
+  " ": "toggle",
+  ".": "step",
+  ",": "step -1",
+  f: "follow",
+  o: "orbit",
+  t: "top",
+  e: "eye",
+  g: "fly",
+  Escape: "deselect",
+  c: "toggle contacts",
+  r: "toggle rays",
+  l: "toggle labels",
+  p: "screenshot",
+  F: "fullscreen",
+  Home: "home",
+  "+": "faster",
+  "-": "slower",
+  "`": "console",
+  "?": "help",
 };
 
 /** Splits a line into words; quotes keep spaces. */
@@ -68,12 +84,22 @@ export class Commands {
     for (const command of this.ownCommands()) this.add(command);
   }
 
-  add(command: Command): void { this.commands.set(command.name, command); }
-  names(): string[] { return [...this.commands.keys(), ...Object.keys(this.profile.aliases)].sort(); }
-  commandOfKey(key: string): string | undefined { return this.profile.keys[key]; }
-  keys(): Readonly<Record<string, string>> { return this.profile.keys; }
+  add(command: Command): void {
+    this.commands.set(command.name, command);
+  }
+  names(): string[] {
+    return [...this.commands.keys(), ...Object.keys(this.profile.aliases)].sort();
+  }
+  commandOfKey(key: string): string | undefined {
+    return this.profile.keys[key];
+  }
+  keys(): Readonly<Record<string, string>> {
+    return this.profile.keys;
+  }
   /** What a held key does to a robot that is driven. */
-  steeringOfKey(key: string): string | undefined { return this.profile.steering[key]; }
+  steeringOfKey(key: string): string | undefined {
+    return this.profile.steering[key];
+  }
 
   /** Runs a line or a script. Throws Error with a sentence for what cannot be done. */
   async run(text: string, depth = 0): Promise<string> {
@@ -90,12 +116,16 @@ export class Commands {
     const given = words(line);
     if (line === "" || line.endsWith(" ")) given.push("");
     const last = given[given.length - 1];
-    const candidates = given.length === 1 ? this.names() : this.commands.get(given[0])?.complete?.(given.length - 2) ?? [];
+    const candidates =
+      given.length === 1 ? this.names() : (this.commands.get(given[0])?.complete?.(given.length - 2) ?? []);
     return [...new Set(candidates)].filter((each) => each.startsWith(last));
   }
 
   help(name?: string): string {
-    if (!name) return [...this.commands.values()].map(({ name: word, usage, help }) => `${`${word} ${usage}`.padEnd(34)} ${help}`).join("\n");
+    if (!name)
+      return [...this.commands.values()]
+        .map(({ name: word, usage, help }) => `${`${word} ${usage}`.padEnd(34)} ${help}`)
+        .join("\n");
     const command = this.commands.get(name);
     if (command) return `${command.name} ${command.usage}\n  ${command.help}`;
     const alias = this.profile.aliases[name];
@@ -103,7 +133,9 @@ export class Commands {
     throw new Error(`there is no command '${name}'`);
   }
 
-  exportProfile(): string { return JSON.stringify(this.profile, null, 2); }
+  exportProfile(): string {
+    return JSON.stringify(this.profile, null, 2);
+  }
   importProfile(text: string): void {
     this.profile = readProfile(text);
     this.keep();
@@ -127,48 +159,108 @@ export class Commands {
   }
 
   private ownCommands(): Command[] {
-    const list = (of: Record<string, string>): string => Object.entries(of).map(([key, to]) => `${key.padEnd(10)} ${to}`).join("\n");
+    const list = (of: Record<string, string>): string =>
+      Object.entries(of)
+        .map(([key, to]) => `${key.padEnd(10)} ${to}`)
+        .join("\n");
     const need = (args: string[], count: number, usage: string): void => {
       if (args.length < count) throw new Error(`expected: ${usage}`);
     };
-    const change = (kind: keyof Profile, usage: string, check: (text: string) => unknown = () => undefined) => (args: string[]): string => {
-      if (args.length === 0) return list(this.profile[kind]);
-      need(args, 2, usage);
-      check(args.slice(1).join(" "));
-      this.profile[kind][keyName(args[0])] = args.slice(1).join(" ");
-      this.keep();
-      return "";
-    };
-    const forget = (kind: keyof Profile, usage: string) => (args: string[]): string => {
-      need(args, 1, usage);
-      delete this.profile[kind][keyName(args[0])];
-      this.keep();
-      return "";
-    };
+    const change =
+      (kind: keyof Profile, usage: string, check: (text: string) => unknown = () => undefined) =>
+      (args: string[]): string => {
+        if (args.length === 0) return list(this.profile[kind]);
+        need(args, 2, usage);
+        check(args.slice(1).join(" "));
+        this.profile[kind][keyName(args[0])] = args.slice(1).join(" ");
+        this.keep();
+        return "";
+      };
+    const forget =
+      (kind: keyof Profile, usage: string) =>
+      (args: string[]): string => {
+        need(args, 1, usage);
+        delete this.profile[kind][keyName(args[0])];
+        this.keep();
+        return "";
+      };
     return [
-      { name: "help", usage: "[COMMAND]", help: "says what there is", complete: () => this.names(), run: ([name]) => this.help(name) },
-      { name: "bind", usage: "[KEY COMMAND]", help: "a key or mouse button does a command; without arguments lists them",
-        complete: (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()), run: change("keys", "bind KEY COMMAND") },
-      { name: "unbind", usage: "KEY", help: "the key does nothing any more", complete: () => Object.keys(this.profile.keys), run: forget("keys", "unbind KEY") },
-      { name: "steer", usage: "[KEY DIRECTION | KEY CHANNEL VALUE]", help: "a key that drives while it is held: ahead, back, left, right, or a channel; without arguments lists them",
+      {
+        name: "help",
+        usage: "[COMMAND]",
+        help: "says what there is",
+        complete: () => this.names(),
+        run: ([name]) => this.help(name),
+      },
+      {
+        name: "bind",
+        usage: "[KEY COMMAND]",
+        help: "a key or mouse button does a command; without arguments lists them",
+        complete: (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()),
+        run: change("keys", "bind KEY COMMAND"),
+      },
+      {
+        name: "unbind",
+        usage: "KEY",
+        help: "the key does nothing any more",
+        complete: () => Object.keys(this.profile.keys),
+        run: forget("keys", "unbind KEY"),
+      },
+      {
+        name: "steer",
+        usage: "[KEY DIRECTION | KEY CHANNEL VALUE]",
+        help: "a key that drives while it is held: ahead, back, left, right, or a channel; without arguments lists them",
         complete: (index) => (index === 0 ? Object.keys(this.profile.steering) : ["ahead", "back", "left", "right"]),
-        run: change("steering", "steer KEY ahead|back|left|right, or steer KEY CHANNEL VALUE", readSteer) },
-      { name: "unsteer", usage: "KEY", help: "the key drives no more", complete: () => Object.keys(this.profile.steering), run: forget("steering", "unsteer KEY") },
-      { name: "alias", usage: "[NAME COMMAND]", help: "a word for a command; without arguments lists them", run: change("aliases", "alias NAME COMMAND") },
-      { name: "unalias", usage: "NAME", help: "forgets it", complete: () => Object.keys(this.profile.aliases), run: forget("aliases", "unalias NAME") },
-      { name: "script", usage: "[NAME COMMANDS]", help: "keeps a script, its commands parted by ';'", run: change("scripts", "script NAME COMMANDS") },
-      { name: "exec", usage: "NAME", help: "runs a script", complete: () => Object.keys(this.profile.scripts),
+        run: change("steering", "steer KEY ahead|back|left|right, or steer KEY CHANNEL VALUE", readSteer),
+      },
+      {
+        name: "unsteer",
+        usage: "KEY",
+        help: "the key drives no more",
+        complete: () => Object.keys(this.profile.steering),
+        run: forget("steering", "unsteer KEY"),
+      },
+      {
+        name: "alias",
+        usage: "[NAME COMMAND]",
+        help: "a word for a command; without arguments lists them",
+        run: change("aliases", "alias NAME COMMAND"),
+      },
+      {
+        name: "unalias",
+        usage: "NAME",
+        help: "forgets it",
+        complete: () => Object.keys(this.profile.aliases),
+        run: forget("aliases", "unalias NAME"),
+      },
+      {
+        name: "script",
+        usage: "[NAME COMMANDS]",
+        help: "keeps a script, its commands parted by ';'",
+        run: change("scripts", "script NAME COMMANDS"),
+      },
+      {
+        name: "exec",
+        usage: "NAME",
+        help: "runs a script",
+        complete: () => Object.keys(this.profile.scripts),
         run: ([name]) => {
           const script = this.profile.scripts[name ?? ""];
           if (script === undefined) throw new Error(`there is no script '${name ?? ""}'`);
           return this.run(script, 1);
-        } },
-      { name: "wait", usage: "SECONDS", help: "before the next command", run: async ([time]) => {
-        const seconds = Number(time);
-        if (!(seconds >= 0 && seconds <= 3600)) throw new Error("expected seconds, up to 3600");
-        await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
-        return "";
-      } },
+        },
+      },
+      {
+        name: "wait",
+        usage: "SECONDS",
+        help: "before the next command",
+        run: async ([time]) => {
+          const seconds = Number(time);
+          if (!(seconds >= 0 && seconds <= 3600)) throw new Error("expected seconds, up to 3600");
+          await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+          return "";
+        },
+      },
     ];
   }
 }

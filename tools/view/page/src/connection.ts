@@ -1,6 +1,6 @@
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
-import { FoxgloveClient, type Channel, type Service } from "@foxglove/ws-protocol";
+import { type Channel, FoxgloveClient, type Service } from "@foxglove/ws-protocol";
 import type { Messages, Topic } from "./messages";
 
 export interface Wish {
@@ -10,10 +10,16 @@ export interface Wish {
   text?: string;
   numbers?: number[];
 }
-export interface Answer { done: boolean; text: string }
+export interface Answer {
+  done: boolean;
+  text: string;
+}
 
 type Handlers = { [T in Topic]?: (message: Messages[T], bytes: number) => void };
-interface Subscribed { topic: Topic; reader: MessageReader }
+interface Subscribed {
+  topic: Topic;
+  reader: MessageReader;
+}
 
 const firstWait = 250; // [ms]
 const longestWait = 4000;
@@ -60,7 +66,12 @@ export class Connection {
     const data = new TextEncoder().encode(JSON.stringify(wish));
     return new Promise((resolve) => {
       this.calls.set(callId, { resolve });
-      client.sendServiceCallRequest({ serviceId: service.id, callId, encoding: "json", data: new DataView(data.buffer) });
+      client.sendServiceCallRequest({
+        serviceId: service.id,
+        callId,
+        encoding: "json",
+        data: new DataView(data.buffer),
+      });
     });
   }
 

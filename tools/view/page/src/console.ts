@@ -23,7 +23,9 @@ export class ConsolePanel {
     this.input.addEventListener("keydown", (event) => this.onKey(event));
   }
 
-  get isOpen(): boolean { return !this.panel.hidden; }
+  get isOpen(): boolean {
+    return !this.panel.hidden;
+  }
 
   toggle(open = this.panel.hidden): void {
     this.panel.hidden = !open;
@@ -56,7 +58,9 @@ export class ConsolePanel {
     told.textContent = text;
     told.hidden = false;
     clearTimeout(this.calling);
-    this.calling = setTimeout(() => { told.hidden = true; }, callTime);
+    this.calling = setTimeout(() => {
+      told.hidden = true;
+    }, callTime);
   }
 
   private onKey(event: KeyboardEvent): void {

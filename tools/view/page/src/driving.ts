@@ -3,13 +3,17 @@ import type { Command, Commands } from "./commands";
 import type { Connection } from "./connection";
 import type { ConsolePanel } from "./console";
 import { none, type SceneChannel } from "./messages";
-import { commandOf, neutralOf, padOf, readSteer, steerOfPad, wheelsOf, type Steer } from "./steering";
+import { commandOf, neutralOf, padOf, readSteer, type Steer, steerOfPad, wheelsOf } from "./steering";
 import type { Viewer } from "./viewer";
 
 const interval = 50; // [ms] from one wish to the next at the least
 const longestSilence = 200; // [ms]; the view lets a robot stand that it hears nothing of for half a second
 
-interface Driven { name: string; channels: SceneChannel[]; base: number[] }
+interface Driven {
+  name: string;
+  channels: SceneChannel[];
+  base: number[];
+}
 
 const element = (id: string): HTMLElement => document.getElementById(id)!;
 
@@ -23,8 +27,13 @@ export class Driving {
   private sentAt = -Infinity;
   private readonly button = element("drive") as HTMLButtonElement;
 
-  constructor(private readonly viewer: Viewer, private readonly connection: Connection, private readonly commands: Commands,
-    private readonly console: ConsolePanel, canvas: HTMLCanvasElement) {
+  constructor(
+    private readonly viewer: Viewer,
+    private readonly connection: Connection,
+    private readonly commands: Commands,
+    private readonly console: ConsolePanel,
+    canvas: HTMLCanvasElement,
+  ) {
     setInterval(() => void this.advance(), interval);
     addEventListener("blur", () => this.held.clear());
     this.button.addEventListener("click", () => {
@@ -33,13 +42,21 @@ export class Driving {
     });
   }
 
-  get name(): string | undefined { return this.driven?.name; }
+  get name(): string | undefined {
+    return this.driven?.name;
+  }
 
   words(): Command[] {
-    const robots = (): string[] => this.viewer.robotEntities().map((entity) => this.viewer.poses!.scene.entities[entity].name);
+    const robots = (): string[] =>
+      this.viewer.robotEntities().map((entity) => this.viewer.poses!.scene.entities[entity].name);
     return [
-      { name: "drive", usage: "[NAME]", help: "takes a robot of a server and drives it by keys (steer) or a game pad", complete: robots,
-        run: ([name]) => this.drive(name) },
+      {
+        name: "drive",
+        usage: "[NAME]",
+        help: "takes a robot of a server and drives it by keys (steer) or a game pad",
+        complete: robots,
+        run: ([name]) => this.drive(name),
+      },
       { name: "release", usage: "", help: "lets the robot go that is driven", run: () => this.release() },
     ];
   }
@@ -49,7 +66,8 @@ export class Driving {
     const { poses } = this.viewer;
     const entity = name === undefined ? this.viewer.selected : this.viewer.find(name);
     const robot = entity === undefined ? undefined : poses!.scene.entities[entity];
-    if (!robot || robot.robot === none) throw new Error(name === undefined ? "select a robot first" : `there is no robot '${name}'`);
+    if (!robot || robot.robot === none)
+      throw new Error(name === undefined ? "select a robot first" : `there is no robot '${name}'`);
     if (this.driven?.name === robot.name) return `drives ${robot.name}`;
     if (this.isClaiming) throw new Error("a robot is asked for already");
     if (this.driven) await this.release();
@@ -87,7 +105,9 @@ export class Driving {
     this.held.set(code, key);
     return true;
   }
-  keyUp({ code }: KeyboardEvent): void { this.held.delete(code); }
+  keyUp({ code }: KeyboardEvent): void {
+    this.held.delete(code);
+  }
 
   /** The inspector shows something else, or the same of another scene. */
   show(): void {
@@ -117,7 +137,11 @@ export class Driving {
     if (!driven || this.isAsking) return;
     const pad = padOf(navigator.getGamepads());
     const steers = [...this.held.values()].map((key) => this.steerOf(key)).concat(pad && steerOfPad(pad));
-    const values = commandOf(driven.channels, driven.base, steers.filter((each) => each !== undefined));
+    const values = commandOf(
+      driven.channels,
+      driven.base,
+      steers.filter((each) => each !== undefined),
+    );
     const now = performance.now();
     const isNews = values.some((value, i) => value !== this.sent[i]);
     if (!isNews && now - this.sentAt < longestSilence) return;
@@ -144,7 +168,11 @@ export class Driving {
     line.hidden = !this.driven;
     if (!this.driven) return;
     const by = wheelsOf(this.driven.channels) ? "arrows or w a s d" : "sliders";
-    const text = [`drives ${this.driven.name}`, pad ? `${by}, or the left stick of ${pad.id}` : by, "Escape lets go"].join(" · ");
+    const text = [
+      `drives ${this.driven.name}`,
+      pad ? `${by}, or the left stick of ${pad.id}` : by,
+      "Escape lets go",
+    ].join(" · ");
     if (line.textContent !== text) line.textContent = text;
   }
 
@@ -153,7 +181,8 @@ export class Driving {
     const wheels = wheelsOf(driven.channels);
     const owners = driven.channels.flatMap((channel) => Array.from({ length: channel.size }, () => channel));
     return valueNames(driven.channels).flatMap((name, at) =>
-      at === wheels?.left || at === wheels?.right ? [] : [this.slider(driven, name, at, owners[at])]);
+      at === wheels?.left || at === wheels?.right ? [] : [this.slider(driven, name, at, owners[at])],
+    );
   }
 
   private slider(driven: Driven, name: string, at: number, { unit, lower, upper }: SceneChannel): HTMLElement {
@@ -162,7 +191,9 @@ export class Driving {
     const output = document.createElement("output");
     const isBounded = Number.isFinite(lower) && Number.isFinite(upper);
     Object.assign(input, { type: isBounded ? "range" : "number", min: String(lower), max: String(upper), step: "any" });
-    const say = (): void => { output.textContent = `${Number(driven.base[at].toFixed(3))}${unit === "1" ? "" : ` ${unit}`}`; };
+    const say = (): void => {
+      output.textContent = `${Number(driven.base[at].toFixed(3))}${unit === "1" ? "" : ` ${unit}`}`;
+    };
     input.value = String(driven.base[at]);
     input.dataset.channel = name;
     input.addEventListener("input", () => {

@@ -1,15 +1,22 @@
 import { Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
-import { ShapeRole, type Scene } from "./messages";
+import { type Scene, ShapeRole } from "./messages";
 import { linkGeometry, matrixOf } from "./shapes";
 
 /** Where an object would stand: its model, seen through. */
 export class Ghost {
   readonly group = new Group();
-  private readonly material = new MeshStandardMaterial({ color: 0x1f8fff, transparent: true, opacity: 0.45, depthWrite: false });
+  private readonly material = new MeshStandardMaterial({
+    color: 0x1f8fff,
+    transparent: true,
+    opacity: 0.45,
+    depthWrite: false,
+  });
   private model = -1;
   private scene: Scene | undefined;
 
-  constructor() { this.hide(); }
+  constructor() {
+    this.hide();
+  }
 
   /** With the origin of its model there, turned about the vertical [rad]. */
   show(scene: Scene, model: number, place: readonly number[], heading: number): void {
@@ -18,13 +25,19 @@ export class Ghost {
     this.group.rotation.set(0, 0, heading);
     this.group.visible = true;
   }
-  hide(): void { this.group.visible = false; }
+  hide(): void {
+    this.group.visible = false;
+  }
 
   private build(scene: Scene, model: number): void {
     for (const child of this.group.children as Mesh[]) child.geometry.dispose();
     this.group.clear();
     for (const link of scene.models[model].links) {
-      const geometry = linkGeometry(scene, link.shapes.filter(({ role }) => role !== ShapeRole.collision), 1);
+      const geometry = linkGeometry(
+        scene,
+        link.shapes.filter(({ role }) => role !== ShapeRole.collision),
+        1,
+      );
       if (!geometry) continue;
       geometry.deleteAttribute("color");
       this.group.add(new Mesh(geometry.applyMatrix4(matrixOf(link.pose)), this.material));
@@ -38,7 +51,11 @@ export class Ghost {
 export function standingHeight(scene: Scene, model: number): number {
   let lowest = Infinity;
   for (const link of scene.models[model].links) {
-    const geometry = linkGeometry(scene, link.shapes.filter(({ role }) => role !== ShapeRole.visual), 1);
+    const geometry = linkGeometry(
+      scene,
+      link.shapes.filter(({ role }) => role !== ShapeRole.visual),
+      1,
+    );
     if (!geometry) continue;
     geometry.applyMatrix4(matrixOf(link.pose)).computeBoundingBox();
     lowest = Math.min(lowest, geometry.boundingBox!.min.z);
@@ -48,7 +65,12 @@ export function standingHeight(scene: Scene, model: number): number {
 }
 
 /** Where a model's origin is, and where it heads, by the pose of its root link. */
-export function originOf(scene: Scene, model: number, position: Vector3, turn: Quaternion): { place: number[]; heading: number } {
+export function originOf(
+  scene: Scene,
+  model: number,
+  position: Vector3,
+  turn: Quaternion,
+): { place: number[]; heading: number } {
   const [x, y, z, ...part] = scene.models[model].links[0].pose;
   const ofModel = turn.clone().multiply(new Quaternion(...(part as [number, number, number, number])).invert());
   const origin = position.clone().sub(new Vector3(x, y, z).applyQuaternion(ofModel));

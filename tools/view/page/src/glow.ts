@@ -1,6 +1,19 @@
 import {
-  AdditiveBlending, BufferAttribute, BufferGeometry, CanvasTexture, Color, Group, LineBasicMaterial, LineLoop, NormalBlending, Points, Quaternion,
-  ShaderMaterial, Sprite, SpriteMaterial, Vector3,
+  AdditiveBlending,
+  BufferAttribute,
+  BufferGeometry,
+  CanvasTexture,
+  Color,
+  Group,
+  LineBasicMaterial,
+  LineLoop,
+  NormalBlending,
+  Points,
+  Quaternion,
+  ShaderMaterial,
+  Sprite,
+  SpriteMaterial,
+  Vector3,
 } from "three";
 import type { SceneEmitter, SceneSignals } from "./messages";
 import type { Poses } from "./poses";
@@ -49,10 +62,16 @@ function reachCircle(radius: number, color: Color): LineLoop {
     const angle = (2 * Math.PI * i) / circlePoints;
     return new Vector3(radius * Math.cos(angle), radius * Math.sin(angle), 0);
   });
-  return new LineLoop(new BufferGeometry().setFromPoints(points), new LineBasicMaterial({ color, transparent: true, opacity: 0.5 }));
+  return new LineLoop(
+    new BufferGeometry().setFromPoints(points),
+    new LineBasicMaterial({ color, transparent: true, opacity: 0.5 }),
+  );
 }
 
-interface Lamp { glow: Sprite; circle: LineLoop | undefined }
+interface Lamp {
+  glow: Sprite;
+  circle: LineLoop | undefined;
+}
 
 /** What shines: LEDs as points with a halo, lamps as billboards with the circle that they reach. */
 export class Glow {
@@ -71,7 +90,10 @@ export class Glow {
     geometry.setAttribute("tint", new BufferAttribute(new Float32Array(3 * leds.length), 3));
     geometry.setDrawRange(0, 0);
     const uniforms = { size: { value: ledSize }, height: { value: 600 }, strength: { value: 0.55 } };
-    this.points = new Points(geometry, new ShaderMaterial({ uniforms, vertexShader, fragmentShader, transparent: true, depthWrite: false }));
+    this.points = new Points(
+      geometry,
+      new ShaderMaterial({ uniforms, vertexShader, fragmentShader, transparent: true, depthWrite: false }),
+    );
     this.points.frustumCulled = false;
     this.group.add(this.points);
     const texture = glowTexture();
@@ -104,7 +126,9 @@ export class Glow {
     });
   }
 
-  get litLamps(): number { return this.lamps.filter(({ glow }) => glow.visible).length; }
+  get litLamps(): number {
+    return this.lamps.filter(({ glow }) => glow.visible).length;
+  }
 
   draw(height: number): void {
     if (!this.signals) return;

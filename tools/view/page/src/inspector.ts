@@ -13,7 +13,11 @@ function rangeAround(low: number | null, high: number | null): uPlot.Range.MinMa
   return low === high ? [low - 1, high + 1] : uPlot.rangeNum(low, high, 0.1, true);
 }
 
-interface Plot { plot: uPlot; values: number[]; data: number[][] }
+interface Plot {
+  plot: uPlot;
+  values: number[];
+  data: number[][];
+}
 
 /** What the selected entity is, where it is, what it senses and does. */
 export class Inspector {
@@ -44,7 +48,8 @@ export class Inspector {
     if (!entity || !model) return;
     const robot = entity.robot === none ? "" : ` · robot ${entity.robot}`;
     this.title.textContent = entity.name;
-    document.getElementById("kind")!.textContent = `${model.name}${robot}${entity.team ? ` · team ${entity.team}` : ""}`;
+    document.getElementById("kind")!.textContent =
+      `${model.name}${robot}${entity.team ? ` · team ${entity.team}` : ""}`;
     const observed = valueNames(model.observation);
     this.names = [...observed, ...valueNames(model.command).map((name) => `→ ${name}`)];
     const option = (name: string): HTMLOptionElement => new Option(name, name);
@@ -61,18 +66,29 @@ export class Inspector {
     const color = palette[this.plots.size % palette.length];
     const grid = { stroke: "rgba(128,128,128,0.18)", width: 1 };
     const axis = { stroke: getComputedStyle(document.body).color, grid, ticks: grid, font: "10px system-ui", size: 38 };
-    const plot = new uPlot({
-      width: 272, height: 96, title: name, legend: { show: false }, cursor: { show: false },
-      scales: { x: { time: false }, y: { range: (_, low, high) => rangeAround(low, high) } }, axes: [{ ...axis, size: 22, gap: 2, ticks: { ...grid, size: 4 } }, axis],
-      series: [{}, { stroke: color, width: 1.5 }],
-    }, [[], []], this.plotted);
+    const plot = new uPlot(
+      {
+        width: 272,
+        height: 96,
+        title: name,
+        legend: { show: false },
+        cursor: { show: false },
+        scales: { x: { time: false }, y: { range: (_, low, high) => rangeAround(low, high) } },
+        axes: [{ ...axis, size: 22, gap: 2, ticks: { ...grid, size: 4 } }, axis],
+        series: [{}, { stroke: color, width: 1.5 }],
+      },
+      [[], []],
+      this.plotted,
+    );
     plot.root.title = "click to remove";
     plot.root.addEventListener("click", () => this.unplot(name));
     this.plots.set(name, { plot, values: [index], data: [[], []] });
     return true;
   }
 
-  showPose(text: string): void { this.pose.textContent = text; }
+  showPose(text: string): void {
+    this.pose.textContent = text;
+  }
 
   take(robot: SceneRobot, time: number): void {
     if (!this.model) return;

@@ -1,8 +1,16 @@
 import {
-  Group, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, MeshDepthMaterial, MeshStandardMaterial, RGBADepthPacking,
-  Sphere, type BufferGeometry, type Material,
+  type BufferGeometry,
+  Group,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  type Material,
+  Mesh,
+  MeshDepthMaterial,
+  MeshStandardMaterial,
+  RGBADepthPacking,
+  Sphere,
 } from "three";
-import { ShapeRole, type SceneShape } from "./messages";
+import { type SceneShape, ShapeRole } from "./messages";
 import type { Poses } from "./poses";
 import { linkGeometry } from "./shapes";
 
@@ -23,17 +31,33 @@ vec3 turned(vec3 v, vec4 q) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.
 function placeByLink(material: Material, blend: { value: number }): void {
   material.onBeforeCompile = (shader) => {
     shader.uniforms.blend = blend;
-    shader.vertexShader = declarations + shader.vertexShader
-      .replace("#include <beginnormal_vertex>", "#include <beginnormal_vertex>\nobjectNormal = turned(objectNormal, linkTurn());")
-      .replace("#include <begin_vertex>",
-        "vec3 transformed = turned(position, linkTurn()) + mix(linkPositionBefore, linkPosition, blend);");
+    shader.vertexShader =
+      declarations +
+      shader.vertexShader
+        .replace(
+          "#include <beginnormal_vertex>",
+          "#include <beginnormal_vertex>\nobjectNormal = turned(objectNormal, linkTurn());",
+        )
+        .replace(
+          "#include <begin_vertex>",
+          "vec3 transformed = turned(position, linkTurn()) + mix(linkPositionBefore, linkPosition, blend);",
+        );
   };
 }
 
-interface Drawn { geometry: InstancedBufferGeometry; first: number; count: number }
+interface Drawn {
+  geometry: InstancedBufferGeometry;
+  first: number;
+  count: number;
+}
 
 /** One link of a model, for whoever wants to know where a ray meets it. */
-export interface LinkShape { model: number; link: number; geometry: BufferGeometry; sphere: Sphere }
+export interface LinkShape {
+  model: number;
+  link: number;
+  geometry: BufferGeometry;
+  sphere: Sphere;
+}
 
 /** All links of a scene, each drawn at once for all entities that have it. */
 export class Instances {
@@ -42,15 +66,28 @@ export class Instances {
   private readonly drawn: Drawn[] = [];
   private readonly blend = { value: 1 };
 
-  constructor(private readonly poses: Poses, role: "visual" | "collision") {
+  constructor(
+    private readonly poses: Poses,
+    role: "visual" | "collision",
+  ) {
     const { scene } = poses;
     const isShown = (shape: SceneShape): boolean =>
       role === "visual" ? shape.role !== ShapeRole.collision : shape.role !== ShapeRole.visual;
-    scene.models.forEach((model, index) => model.links.forEach((link, number) => {
-      const shapes = link.shapes.filter(isShown);
-      this.add(index, number, shapes.filter(({ color }) => color[3] >= 1));
-      this.add(index, number, shapes.filter(({ color }) => color[3] > 0 && color[3] < 1));
-    }));
+    scene.models.forEach((model, index) =>
+      model.links.forEach((link, number) => {
+        const shapes = link.shapes.filter(isShown);
+        this.add(
+          index,
+          number,
+          shapes.filter(({ color }) => color[3] >= 1),
+        );
+        this.add(
+          index,
+          number,
+          shapes.filter(({ color }) => color[3] > 0 && color[3] < 1),
+        );
+      }),
+    );
   }
 
   /** The poses have a new frame. */
@@ -69,7 +106,9 @@ export class Instances {
     }
   }
 
-  draw(): void { this.blend.value = this.poses.blend; }
+  draw(): void {
+    this.blend.value = this.poses.blend;
+  }
 
   dispose(): void {
     for (const { geometry } of this.drawn) geometry.dispose();
@@ -89,7 +128,13 @@ export class Instances {
     for (const name of ["linkOrientation", "linkOrientationBefore"])
       geometry.setAttribute(name, new InstancedBufferAttribute(new Int16Array(4 * count), 4, true));
     const opacity = shapes[0].color[3];
-    const material = new MeshStandardMaterial({ vertexColors: true, roughness: 0.62, metalness: 0.05, opacity, transparent: opacity < 1 });
+    const material = new MeshStandardMaterial({
+      vertexColors: true,
+      roughness: 0.62,
+      metalness: 0.05,
+      opacity,
+      transparent: opacity < 1,
+    });
     placeByLink(material, this.blend);
     const mesh = new Mesh(geometry, material);
     mesh.customDepthMaterial = new MeshDepthMaterial({ depthPacking: RGBADepthPacking });

@@ -6,7 +6,7 @@ import { ConsolePanel } from "./console";
 import { Driving } from "./driving";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
-import { TimeBar, clockText } from "./time_bar";
+import { clockText, TimeBar } from "./time_bar";
 import { Viewer } from "./viewer";
 import { addWords, preferredTheme, showPressed } from "./words";
 
@@ -28,40 +28,46 @@ const timeBar = new TimeBar({
   play: () => void consolePanel.run("play"),
   pause: () => void consolePanel.run("pause"),
   step: (ticks) => void consolePanel.run(`step ${ticks}`),
-  seek: (time) => void (timeBar.status?.loses_what_follows
-    ? consolePanel.run(`seek ${time}`)
-    : connection.ask({ operation: "seek", number: time })),
+  seek: (time) =>
+    void (timeBar.status?.loses_what_follows
+      ? consolePanel.run(`seek ${time}`)
+      : connection.ask({ operation: "seek", number: time })),
   speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
 });
 
-const connection: Connection = new Connection(addressOfServer(location), {
-  "/cohort/scene": (scene, size) => {
-    bytes += size;
-    viewer.show(scene);
-    showPressed(viewer);
+const connection: Connection = new Connection(
+  addressOfServer(location),
+  {
+    "/cohort/scene": (scene, size) => {
+      bytes += size;
+      viewer.show(scene);
+      showPressed(viewer);
+    },
+    "/cohort/frame": (frame, size) => {
+      bytes += size;
+      viewer.take(frame);
+      element("tick").textContent = String(frame.tick);
+      element("hash").textContent = frame.state_hash === 0n ? "–" : frame.state_hash.toString(16).padStart(16, "0");
+      const robots = viewer.robotEntities().filter((entity) => !viewer.poses!.absent.has(entity)).length;
+      element("robots").textContent = String(robots);
+    },
+    "/cohort/signals": (signals, size) => {
+      bytes += size;
+      viewer.takeSignals(signals);
+      objects.showLight();
+    },
+    "/cohort/contacts": (contacts) => viewer.takeContacts(contacts),
+    "/cohort/robots": ({ robots }) => viewer.takeRobots(robots),
+    "/cohort/status": showStatus,
+    "/cohort/events": ({ events }) => showEvents(events),
   },
-  "/cohort/frame": (frame, size) => {
-    bytes += size;
-    viewer.take(frame);
-    element("tick").textContent = String(frame.tick);
-    element("hash").textContent = frame.state_hash === 0n ? "–" : frame.state_hash.toString(16).padStart(16, "0");
-    const robots = viewer.robotEntities().filter((entity) => !viewer.poses!.absent.has(entity)).length;
-    element("robots").textContent = String(robots);
+  (isConnected) => {
+    element("lost").hidden = isConnected;
+    if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
   },
-  "/cohort/signals": (signals, size) => {
-    bytes += size;
-    viewer.takeSignals(signals);
-    objects.showLight();
-  },
-  "/cohort/contacts": (contacts) => viewer.takeContacts(contacts),
-  "/cohort/robots": ({ robots }) => viewer.takeRobots(robots),
-  "/cohort/status": showStatus,
-  "/cohort/events": ({ events }) => showEvents(events),
-}, (isConnected) => {
-  element("lost").hidden = isConnected;
-  if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
-});
-for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const) connection.want(topic);
+);
+for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
+  connection.want(topic);
 addWords({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
 const objects = new Objects(viewer, connection, consolePanel, canvas);
@@ -80,14 +86,16 @@ function showStatus(status: ViewStatus): void {
 
 function showEvents(events: readonly ViewEvent[]): void {
   timeBar.mark(events);
-  element("events").replaceChildren(...events.slice(-200).map(({ time_ns, kind, text, count, last_ns }) => {
-    const line = document.createElement("p");
-    const time = document.createElement("b");
-    time.textContent = `${clockText(seconds(time_ns))} ${kind} `;
-    const again = count > 1n ? ` (${count} times, last at ${clockText(seconds(last_ns))})` : "";
-    line.append(time, text + again);
-    return line;
-  }));
+  element("events").replaceChildren(
+    ...events.slice(-200).map(({ time_ns, kind, text, count, last_ns }) => {
+      const line = document.createElement("p");
+      const time = document.createElement("b");
+      time.textContent = `${clockText(seconds(time_ns))} ${kind} `;
+      const again = count > 1n ? ` (${count} times, last at ${clockText(seconds(last_ns))})` : "";
+      line.append(time, text + again);
+      return line;
+    }),
+  );
   element("events").scrollTop = element("events").scrollHeight;
 }
 
@@ -106,8 +114,9 @@ function runBound(key: string): boolean {
 addEventListener("keydown", (event) => {
   const isTyping = event.target instanceof HTMLInputElement && event.target.type !== "range";
   if (isTyping || event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
-  if (driving.keyDown(event)) { /* drives */ }
-  else if (event.key === "Escape" && objects.isAdding) objects.close();
+  if (driving.keyDown(event)) {
+    /* drives */
+  } else if (event.key === "Escape" && objects.isAdding) objects.close();
   else if (viewer.cameras.mode === "fly" && event.key in flyKeys) viewer.cameras.held.add(flyKeys[event.key]);
   else if (!runBound(event.key)) return;
   event.preventDefault();
@@ -119,12 +128,16 @@ addEventListener("keyup", (event) => {
 addEventListener("blur", () => viewer.cameras.held.clear());
 
 let pressed = { x: 0, y: 0 };
-canvas.addEventListener("pointerdown", ({ clientX: x, clientY: y, shiftKey, pointerId }) => {
-  pressed = { x, y };
-  const isGrabbed = shiftKey && objects.grab(x, y);
-  if (isGrabbed) canvas.setPointerCapture(pointerId); // it is let go also over a card
-  viewer.cameras.controls.enabled = !isGrabbed && viewer.cameras.mode !== "eye";
-}, { capture: true });
+canvas.addEventListener(
+  "pointerdown",
+  ({ clientX: x, clientY: y, shiftKey, pointerId }) => {
+    pressed = { x, y };
+    const isGrabbed = shiftKey && objects.grab(x, y);
+    if (isGrabbed) canvas.setPointerCapture(pointerId); // it is let go also over a card
+    viewer.cameras.controls.enabled = !isGrabbed && viewer.cameras.mode !== "eye";
+  },
+  { capture: true },
+);
 canvas.addEventListener("pointermove", ({ clientX: x, clientY: y }) => objects.hover(x, y));
 canvas.addEventListener("pointerup", ({ clientX: x, clientY: y, button }) => {
   if (objects.isDragging) {
@@ -169,4 +182,6 @@ setInterval(() => {
 }, 1000);
 
 /** For tests and for whoever opens the browser's console. */
-Object.assign(window, { cohort: { viewer, commands, connection, driving, objects, run: (line: string) => commands.run(line) } });
+Object.assign(window, {
+  cohort: { viewer, commands, connection, driving, objects, run: (line: string) => commands.run(line) },
+});

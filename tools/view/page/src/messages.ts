@@ -2,8 +2,20 @@
 
 export const none = 0xffffffff;
 
-export enum ShapeKind { box, sphere, cylinder, capsule, ellipsoid, plane, mesh }
-export enum ShapeRole { visual, collision, collisionAsVisual }
+export enum ShapeKind {
+  box,
+  sphere,
+  cylinder,
+  capsule,
+  ellipsoid,
+  plane,
+  mesh,
+}
+export enum ShapeRole {
+  visual,
+  collision,
+  collisionAsVisual,
+}
 
 export interface SceneShape {
   kind: ShapeKind;
@@ -14,8 +26,16 @@ export interface SceneShape {
   color: Float32Array;
   has_mesh_colors: boolean;
 }
-export interface SceneMesh { vertices: Float32Array; triangles: Uint32Array; colors: Uint8Array }
-export interface SceneLink { name: string; pose: Float32Array; shapes: SceneShape[] }
+export interface SceneMesh {
+  vertices: Float32Array;
+  triangles: Uint32Array;
+  colors: Uint8Array;
+}
+export interface SceneLink {
+  name: string;
+  pose: Float32Array;
+  shapes: SceneShape[];
+}
 export interface SceneSensor {
   name: string;
   kind: string;
@@ -26,7 +46,14 @@ export interface SceneSensor {
   cone: number;
   channel: string;
 }
-export interface SceneChannel { name: string; unit: string; size: number; lower: number; upper: number; neutral: number }
+export interface SceneChannel {
+  name: string;
+  unit: string;
+  size: number;
+  lower: number;
+  upper: number;
+  neutral: number;
+}
 export interface SceneModel {
   name: string;
   is_static: boolean;
@@ -35,7 +62,12 @@ export interface SceneModel {
   observation: SceneChannel[];
   command: SceneChannel[];
 }
-export interface SceneEntity { name: string; model: number; robot: number; team: string }
+export interface SceneEntity {
+  name: string;
+  model: number;
+  robot: number;
+  team: string;
+}
 export interface SceneEmitter {
   entity: number;
   link: number;
@@ -65,7 +97,12 @@ export interface SceneFrame {
   positions: Float32Array;
   orientations: Int16Array;
 }
-export interface SceneSignals { revision: number; lamps: Float32Array; tones: Float32Array; leds: Uint8Array }
+export interface SceneSignals {
+  revision: number;
+  lamps: Float32Array;
+  tones: Float32Array;
+  leds: Uint8Array;
+}
 export interface SceneContacts {
   revision: number;
   positions: Float32Array;
@@ -98,7 +135,14 @@ export interface ViewStatus {
   note: string;
   awaited: string[];
 }
-export interface ViewEvent { time_ns: bigint; tick: bigint; kind: string; text: string; count: bigint; last_ns: bigint }
+export interface ViewEvent {
+  time_ns: bigint;
+  tick: bigint;
+  kind: string;
+  text: string;
+  count: bigint;
+  last_ns: bigint;
+}
 
 export interface Messages {
   "/cohort/scene": Scene;

@@ -3,12 +3,19 @@ import type { Command } from "./commands";
 import type { Connection, Wish } from "./connection";
 import type { ConsolePanel } from "./console";
 import { Ghost, originOf, standingHeight } from "./ghost";
-import { none, ShapeKind, type Scene } from "./messages";
+import { none, type Scene, ShapeKind } from "./messages";
 import type { Viewer } from "./viewer";
 
 const element = (id: string): HTMLElement => document.getElementById(id)!;
 
-interface Dragged { name: string; model: number; origin: number[]; heading: number; height: number; grabbed: [number, number] }
+interface Dragged {
+  name: string;
+  model: number;
+  origin: number[];
+  heading: number;
+  height: number;
+  grabbed: [number, number];
+}
 
 /** Objects of a server by hand: add, drag, remove, switch. */
 export class Objects {
@@ -18,8 +25,12 @@ export class Objects {
   private readonly name = element("adding-name") as HTMLInputElement;
   private dragged: Dragged | undefined;
 
-  constructor(private readonly viewer: Viewer, private readonly connection: Connection, private readonly console: ConsolePanel,
-    private readonly canvas: HTMLCanvasElement) {
+  constructor(
+    private readonly viewer: Viewer,
+    private readonly connection: Connection,
+    private readonly console: ConsolePanel,
+    private readonly canvas: HTMLCanvasElement,
+  ) {
     viewer.stage.add(this.ghost.group);
     this.models.addEventListener("change", () => this.suggestName());
     element("adding-close").addEventListener("click", () => this.close());
@@ -29,15 +40,24 @@ export class Objects {
   }
 
   words(): Command[] {
-    return [{ name: "add", usage: "[MODEL]", help: "opens or closes the card by which a click adds an object", complete: () => this.modelNames(),
-      run: ([model]) => {
-        if (this.isAdding && model === undefined) this.close();
-        else this.open(model);
-        return "";
-      } }];
+    return [
+      {
+        name: "add",
+        usage: "[MODEL]",
+        help: "opens or closes the card by which a click adds an object",
+        complete: () => this.modelNames(),
+        run: ([model]) => {
+          if (this.isAdding && model === undefined) this.close();
+          else this.open(model);
+          return "";
+        },
+      },
+    ];
   }
 
-  get isAdding(): boolean { return !this.card.hidden; }
+  get isAdding(): boolean {
+    return !this.card.hidden;
+  }
   close(): void {
     this.card.hidden = true;
     this.ghost.hide();
@@ -72,7 +92,9 @@ export class Objects {
     this.dragged = { name, model, origin: place, heading, height: position.z, grabbed };
     return true;
   }
-  get isDragging(): boolean { return this.dragged !== undefined; }
+  get isDragging(): boolean {
+    return this.dragged !== undefined;
+  }
 
   hover(x: number, y: number): void {
     const scene = this.viewer.poses?.scene;
@@ -92,7 +114,8 @@ export class Objects {
     const numbers = dragged && this.dragTo(x, y);
     this.dragged = undefined;
     this.ghost.hide();
-    if (dragged && numbers) await this.ask({ operation: "move", name: dragged.name, numbers: [...numbers, dragged.heading] });
+    if (dragged && numbers)
+      await this.ask({ operation: "move", name: dragged.name, numbers: [...numbers, dragged.heading] });
   }
 
   /** A click; false if it is for nobody here. */
@@ -109,7 +132,8 @@ export class Objects {
   private open(model = this.models.value): void {
     const names = this.modelNames();
     if (names.length === 0) throw new Error("this world has no model but those of its robots and its ground");
-    if (model !== "" && !names.includes(model)) throw new Error(`there is no model '${model}' to add: there are ${names.join(", ")}`);
+    if (model !== "" && !names.includes(model))
+      throw new Error(`there is no model '${model}' to add: there are ${names.join(", ")}`);
     this.viewer.select(undefined);
     this.card.hidden = false;
     this.offer(model);
@@ -117,7 +141,8 @@ export class Objects {
 
   private offer(chosen: string): void {
     const names = this.modelNames();
-    const isNew = names.length !== this.models.options.length || names.some((name, i) => name !== this.models.options[i].value);
+    const isNew =
+      names.length !== this.models.options.length || names.some((name, i) => name !== this.models.options[i].value);
     if (isNew) this.models.replaceChildren(...names.map((name) => new Option(name, name)));
     if (names.includes(chosen)) this.models.value = chosen;
     this.suggestName();
@@ -145,7 +170,9 @@ export class Objects {
     return [...new Set(names)];
   }
 
-  private modelIndex(scene: Scene): number { return scene.models.findIndex(({ name }) => name === this.models.value); }
+  private modelIndex(scene: Scene): number {
+    return scene.models.findIndex(({ name }) => name === this.models.value);
+  }
 
   private standingPlace(scene: Scene, x: number, y: number): number[] | undefined {
     const model = this.modelIndex(scene);
@@ -180,9 +207,13 @@ export class Objects {
 
   private lampsOfSelected(): number[] {
     const { selected, poses } = this.viewer;
-    return selected === undefined ? [] : poses!.scene.lamps.flatMap(({ entity }, lamp) => (entity === selected ? [lamp] : []));
+    return selected === undefined
+      ? []
+      : poses!.scene.lamps.flatMap(({ entity }, lamp) => (entity === selected ? [lamp] : []));
   }
-  private shines(lamp: number): boolean { return (this.viewer.signals?.lamps[4 * lamp + 3] ?? 0) > 0; }
+  private shines(lamp: number): boolean {
+    return (this.viewer.signals?.lamps[4 * lamp + 3] ?? 0) > 0;
+  }
 
   private async ask(wish: Wish): Promise<boolean> {
     const { done, text } = await this.connection.ask(wish);

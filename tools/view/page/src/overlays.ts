@@ -1,9 +1,19 @@
 import {
-  BufferAttribute, BufferGeometry, Group, Line, LineBasicMaterial, LineSegments, Points, PointsMaterial, Quaternion, Vector3, type PerspectiveCamera,
+  BufferAttribute,
+  BufferGeometry,
+  Group,
+  Line,
+  LineBasicMaterial,
+  LineSegments,
+  type PerspectiveCamera,
+  Points,
+  PointsMaterial,
+  Quaternion,
+  Vector3,
 } from "three";
+import { firstValue } from "./channels";
 import type { SceneContacts, SceneRobot, SceneSensor } from "./messages";
 import type { Poses } from "./poses";
-import { firstValue } from "./channels";
 
 const metresPerNewton = 0.02;
 const trailLength = 1500; // points
@@ -12,7 +22,10 @@ const mostLabels = 400;
 const leastHit = 0.05; // share of the range; less may be a sensor's noise
 
 function segments(color: number, opacity = 1): LineSegments<BufferGeometry, LineBasicMaterial> {
-  const lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color, transparent: opacity < 1, opacity }));
+  const lines = new LineSegments(
+    new BufferGeometry(),
+    new LineBasicMaterial({ color, transparent: opacity < 1, opacity }),
+  );
   lines.frustumCulled = false;
   return lines;
 }
@@ -53,7 +66,8 @@ export class Contacts {
     const lines = new Float32Array(2 * positions.length);
     for (let i = 0; i < positions.length; i += 3) {
       lines.set(positions.subarray(i, i + 3), 2 * i);
-      for (let axis = 0; axis < 3; ++axis) lines[2 * i + 3 + axis] = positions[i + axis] + metresPerNewton * forces[i + axis];
+      for (let axis = 0; axis < 3; ++axis)
+        lines[2 * i + 3 + axis] = positions[i + axis] + metresPerNewton * forces[i + axis];
     }
     setPoints(this.forces.geometry, lines);
     const jaws = new Float32Array((3 * grips.length) / 4);
@@ -68,7 +82,9 @@ export class Rays {
   private readonly free = segments(0x2f8f6b, 0.55);
   private readonly hit = segments(0xe5484d);
 
-  constructor() { this.group.add(this.free, this.hit); }
+  constructor() {
+    this.group.add(this.free, this.hit);
+  }
 
   draw(poses: Poses, robot: SceneRobot | undefined): void {
     const entity = poses.scene.entities.findIndex(({ robot: id }) => id === robot?.robot);
@@ -80,7 +96,14 @@ export class Rays {
     for (const sensor of model.sensors) {
       if (!(sensor.range > 0)) continue;
       const first = firstValue(model.observation, sensor.channel);
-      addRays(poses, poses.placeOf(entity, sensor.link), sensor, first === undefined ? [] : robot.observation.subarray(first), free, hit);
+      addRays(
+        poses,
+        poses.placeOf(entity, sensor.link),
+        sensor,
+        first === undefined ? [] : robot.observation.subarray(first),
+        free,
+        hit,
+      );
     }
     setPoints(this.free.geometry, free);
     setPoints(this.hit.geometry, hit);
@@ -94,13 +117,23 @@ export function rayLength({ kind, range }: Pick<SceneSensor, "kind" | "range">, 
   return range * (1 - Math.min(1, Math.max(0, reading)));
 }
 
-function addRays(poses: Poses, place: number, sensor: SceneSensor, readings: ArrayLike<number>, free: number[], hit: number[]): void {
+function addRays(
+  poses: Poses,
+  place: number,
+  sensor: SceneSensor,
+  readings: ArrayLike<number>,
+  free: number[],
+  hit: number[],
+): void {
   const origin = new Vector3();
   const turn = new Quaternion();
   poses.read(place, origin, turn);
   const count = sensor.origins.length / 3;
   for (let i = 0; i < count; ++i) {
-    const from = new Vector3().fromArray(sensor.origins, 3 * i).applyQuaternion(turn).add(origin);
+    const from = new Vector3()
+      .fromArray(sensor.origins, 3 * i)
+      .applyQuaternion(turn)
+      .add(origin);
     const direction = new Vector3().fromArray(sensor.directions, 3 * i).applyQuaternion(turn);
     const length = rayLength(sensor, readings[i]);
     const isHit = length < (1 - leastHit) * sensor.range;
@@ -153,7 +186,13 @@ export class Labels {
 
   constructor(private readonly parent: HTMLElement) {}
 
-  draw(poses: Poses | undefined, entities: readonly number[], camera: PerspectiveCamera, width: number, height: number): void {
+  draw(
+    poses: Poses | undefined,
+    entities: readonly number[],
+    camera: PerspectiveCamera,
+    width: number,
+    height: number,
+  ): void {
     const shown = poses ? entities.slice(0, mostLabels) : [];
     while (this.labels.length < shown.length) this.labels.push(this.parent.appendChild(document.createElement("span")));
     const at = new Vector3();

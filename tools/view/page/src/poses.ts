@@ -31,17 +31,23 @@ export class Poses {
     });
     let next = 0;
     scene.models.forEach((model, index) => {
-      this.firstOfLink.push(model.links.map(() => {
-        const first = next;
-        next += this.entitiesOfModel[index].length;
-        return first;
-      }));
+      this.firstOfLink.push(
+        model.links.map(() => {
+          const first = next;
+          next += this.entitiesOfModel[index].length;
+          return first;
+        }),
+      );
     });
     this.linkCount = next;
   }
 
-  entitiesOf(model: number): readonly number[] { return this.entitiesOfModel[model]; }
-  firstPlace(model: number, link: number): number { return this.firstOfLink[model][link]; }
+  entitiesOf(model: number): readonly number[] {
+    return this.entitiesOfModel[model];
+  }
+  firstPlace(model: number, link: number): number {
+    return this.firstOfLink[model][link];
+  }
   /** Of a link of an entity among all links of a frame. */
   placeOf(entity: number, link = 0): number {
     return this.firstOfLink[this.scene.entities[entity].model][link] + this.placeInModel[entity];
@@ -78,16 +84,22 @@ export class Poses {
     position.set(mix(a[p], b[p]), mix(a[p + 1], b[p + 1]), mix(a[p + 2], b[p + 2]));
     const dot = c[q] * d[q] + c[q + 1] * d[q + 1] + c[q + 2] * d[q + 2] + c[q + 3] * d[q + 3];
     const sign = dot < 0 ? -1 : 1;
-    orientation.set(
-      mix(sign * c[q], d[q]) / full, mix(sign * c[q + 1], d[q + 1]) / full,
-      mix(sign * c[q + 2], d[q + 2]) / full, mix(sign * c[q + 3], d[q + 3]) / full).normalize();
+    orientation
+      .set(
+        mix(sign * c[q], d[q]) / full,
+        mix(sign * c[q + 1], d[q + 1]) / full,
+        mix(sign * c[q + 2], d[q + 2]) / full,
+        mix(sign * c[q + 3], d[q + 3]) / full,
+      )
+      .normalize();
   }
 
   private hideAbsent(frame: SceneFrame): void {
     this.absent = new Set(frame.absent);
     for (const entity of frame.absent) {
       const links = this.scene.models[this.scene.entities[entity].model].links.length;
-      for (let link = 0; link < links; ++link) frame.positions.fill(farAway, 3 * this.placeOf(entity, link), 3 * this.placeOf(entity, link) + 3);
+      for (let link = 0; link < links; ++link)
+        frame.positions.fill(farAway, 3 * this.placeOf(entity, link), 3 * this.placeOf(entity, link) + 3);
     }
   }
 }

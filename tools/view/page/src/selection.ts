@@ -1,5 +1,15 @@
 import {
-  BackSide, Group, Mesh, MeshBasicMaterial, Quaternion, Raycaster, Ray, Sphere, Vector3, type Vector2, type Camera,
+  BackSide,
+  type Camera,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  Quaternion,
+  Ray,
+  Raycaster,
+  Sphere,
+  type Vector2,
+  Vector3,
 } from "three";
 import type { Instances, LinkShape } from "./instances";
 import type { Poses } from "./poses";

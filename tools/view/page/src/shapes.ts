@@ -1,8 +1,17 @@
 import {
-  BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Color, CylinderGeometry, Matrix4, Quaternion, SphereGeometry, Vector3,
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  CapsuleGeometry,
+  Color,
+  CylinderGeometry,
+  Matrix4,
+  Quaternion,
+  SphereGeometry,
+  Vector3,
 } from "three";
 import { mergeGeometries, toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
-import { ShapeKind, type Scene, type SceneMesh, type SceneShape } from "./messages";
+import { type Scene, type SceneMesh, type SceneShape, ShapeKind } from "./messages";
 
 /** Segments of what is round: fewer where there are many of it. */
 const segmentsOf = (instances: number): number => (instances <= 500 ? 28 : instances <= 3000 ? 16 : 10);
@@ -19,19 +28,29 @@ function plainGeometry(scene: Scene, shape: SceneShape, round: number): BufferGe
   const [a, b, c] = shape.size;
   const upright = (geometry: BufferGeometry): BufferGeometry => geometry.rotateX(Math.PI / 2); // three's axis is y
   switch (shape.kind) {
-    case ShapeKind.box: return new BoxGeometry(a, b, c);
-    case ShapeKind.sphere: return new SphereGeometry(a, round, round / 2);
-    case ShapeKind.cylinder: return upright(new CylinderGeometry(a, a, b, round));
-    case ShapeKind.capsule: return upright(new CapsuleGeometry(a, b, 8, round));
-    case ShapeKind.ellipsoid: return new SphereGeometry(1, round, round / 2).scale(a, b, c);
-    case ShapeKind.mesh: return meshGeometry(scene.meshes[shape.mesh]);
-    case ShapeKind.plane: throw new Error("a plane is drawn as ground");
+    case ShapeKind.box:
+      return new BoxGeometry(a, b, c);
+    case ShapeKind.sphere:
+      return new SphereGeometry(a, round, round / 2);
+    case ShapeKind.cylinder:
+      return upright(new CylinderGeometry(a, a, b, round));
+    case ShapeKind.capsule:
+      return upright(new CapsuleGeometry(a, b, 8, round));
+    case ShapeKind.ellipsoid:
+      return new SphereGeometry(1, round, round / 2).scale(a, b, c);
+    case ShapeKind.mesh:
+      return meshGeometry(scene.meshes[shape.mesh]);
+    case ShapeKind.plane:
+      throw new Error("a plane is drawn as ground");
   }
 }
 
 export function matrixOf(pose: ArrayLike<number>): Matrix4 {
   return new Matrix4().compose(
-    new Vector3(pose[0], pose[1], pose[2]), new Quaternion(pose[3], pose[4], pose[5], pose[6]), new Vector3(1, 1, 1));
+    new Vector3(pose[0], pose[1], pose[2]),
+    new Quaternion(pose[3], pose[4], pose[5], pose[6]),
+    new Vector3(1, 1, 1),
+  );
 }
 
 /** `geometry` has three vertices for each triangle, in their order. */
@@ -48,13 +67,19 @@ function coloured(geometry: BufferGeometry, scene: Scene, shape: SceneShape): Bu
 }
 
 /** The shapes of one link as one piece with colours, in the link's frame; nothing if there are none. */
-export function linkGeometry(scene: Scene, shapes: readonly SceneShape[], instances: number): BufferGeometry | undefined {
-  const parts = shapes.filter(({ kind }) => kind !== ShapeKind.plane).map((shape) => {
-    const geometry = plainGeometry(scene, shape, segmentsOf(instances));
-    const plain = geometry.index ? geometry.toNonIndexed() : geometry;
-    plain.deleteAttribute("uv");
-    return coloured(plain.applyMatrix4(matrixOf(shape.pose)), scene, shape);
-  });
+export function linkGeometry(
+  scene: Scene,
+  shapes: readonly SceneShape[],
+  instances: number,
+): BufferGeometry | undefined {
+  const parts = shapes
+    .filter(({ kind }) => kind !== ShapeKind.plane)
+    .map((shape) => {
+      const geometry = plainGeometry(scene, shape, segmentsOf(instances));
+      const plain = geometry.index ? geometry.toNonIndexed() : geometry;
+      plain.deleteAttribute("uv");
+      return coloured(plain.applyMatrix4(matrixOf(shape.pose)), scene, shape);
+    });
   if (parts.length === 0) return undefined;
   const merged = mergeGeometries(parts);
   merged.computeBoundingSphere();

@@ -1,10 +1,14 @@
-import { Quaternion, Vector3, type Camera } from "three";
+import { type Camera, Quaternion, Vector3 } from "three";
 import type { SceneSignals } from "./messages";
 import type { Poses } from "./poses";
 
 const mostVoices = 24;
 
-interface Voice { oscillator: OscillatorNode; gain: GainNode; panner: PannerNode }
+interface Voice {
+  oscillator: OscillatorNode;
+  gain: GainNode;
+  panner: PannerNode;
+}
 
 /** Loudspeakers in space, each with its frequency. Silent until it is switched on. */
 export class Sound {
@@ -12,8 +16,12 @@ export class Sound {
   private readonly voices = new Map<number, Voice>();
   private signals: SceneSignals | undefined;
 
-  get isOn(): boolean { return this.context !== undefined; }
-  get sounding(): number { return this.voices.size; }
+  get isOn(): boolean {
+    return this.context !== undefined;
+  }
+  get sounding(): number {
+    return this.voices.size;
+  }
 
   switch(on: boolean): void {
     if (on === this.isOn) return;
@@ -45,7 +53,8 @@ export class Sound {
       }
       poses.read(tone.link, at, turn);
       at.add(new Vector3().fromArray(tone.position).applyQuaternion(turn));
-      const voice = this.voices.get(i) ?? (this.voices.size < mostVoices ? this.begin(i, context, frequency, at) : undefined);
+      const voice =
+        this.voices.get(i) ?? (this.voices.size < mostVoices ? this.begin(i, context, frequency, at) : undefined);
       if (!voice) return;
       const now = context.currentTime + 0.03;
       voice.oscillator.frequency.linearRampToValueAtTime(frequency, now);
@@ -60,7 +69,12 @@ export class Sound {
     const oscillator = new OscillatorNode(context, { type: "triangle", frequency });
     const gain = new GainNode(context, { gain: 0 });
     const panner = new PannerNode(context, {
-      panningModel: "equalpower", distanceModel: "inverse", refDistance: 0.5, positionX: x, positionY: y, positionZ: z,
+      panningModel: "equalpower",
+      distanceModel: "inverse",
+      refDistance: 0.5,
+      positionX: x,
+      positionY: y,
+      positionZ: z,
     });
     oscillator.connect(gain).connect(panner).connect(context.destination);
     oscillator.start();
@@ -87,8 +101,15 @@ function hearFrom(listener: AudioListener, camera: Camera): void {
   const up = new Vector3(0, 1, 0).applyQuaternion(camera.quaternion);
   const { position } = camera;
   for (const [node, value] of [
-    [listener.positionX, position.x], [listener.positionY, position.y], [listener.positionZ, position.z],
-    [listener.forwardX, forward.x], [listener.forwardY, forward.y], [listener.forwardZ, forward.z],
-    [listener.upX, up.x], [listener.upY, up.y], [listener.upZ, up.z],
-  ] as const) node.value = value;
+    [listener.positionX, position.x],
+    [listener.positionY, position.y],
+    [listener.positionZ, position.z],
+    [listener.forwardX, forward.x],
+    [listener.forwardY, forward.y],
+    [listener.forwardZ, forward.z],
+    [listener.upX, up.x],
+    [listener.upY, up.y],
+    [listener.upZ, up.z],
+  ] as const)
+    node.value = value;
 }

@@ -1,8 +1,20 @@
 import {
-  Color, DirectionalLight, Fog, HemisphereLight, Mesh, MeshStandardMaterial, PCFShadowMap, PerspectiveCamera, PlaneGeometry,
-  Quaternion, Scene as ThreeScene, Vector3, WebGLRenderer, type Object3D,
+  Color,
+  DirectionalLight,
+  Fog,
+  HemisphereLight,
+  Mesh,
+  MeshStandardMaterial,
+  type Object3D,
+  PCFShadowMap,
+  PerspectiveCamera,
+  PlaneGeometry,
+  Quaternion,
+  Scene as ThreeScene,
+  Vector3,
+  WebGLRenderer,
 } from "three";
-import { ShapeKind, type Scene } from "./messages";
+import { type Scene, ShapeKind } from "./messages";
 
 export type Theme = "light" | "dark";
 
@@ -92,20 +104,36 @@ export class Stage {
     this.renderer.render(this.scene, this.camera);
   }
 
-  add(...objects: Object3D[]): void { this.scene.add(...objects); }
-  remove(...objects: Object3D[]): void { this.scene.remove(...objects); }
+  add(...objects: Object3D[]): void {
+    this.scene.add(...objects);
+  }
+  remove(...objects: Object3D[]): void {
+    this.scene.remove(...objects);
+  }
 
   private addGround(pose: Float32Array, normal: Float32Array): void {
-    const material = new MeshStandardMaterial({ roughness: 0.95, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    const material = new MeshStandardMaterial({
+      roughness: 0.95,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
     material.onBeforeCompile = (shader) => {
       shader.uniforms.lineColor = this.lineColor;
-      shader.vertexShader = "varying vec2 at;\n" + shader.vertexShader.replace("#include <begin_vertex>",
-        "#include <begin_vertex>\nat = (modelMatrix * vec4(position, 1.0)).xy;");
-      shader.fragmentShader = `varying vec2 at;\nuniform vec3 lineColor;\n${gridLines}` + shader.fragmentShader.replace(
-        "#include <color_fragment>",
-        `#include <color_fragment>
+      shader.vertexShader =
+        "varying vec2 at;\n" +
+        shader.vertexShader.replace(
+          "#include <begin_vertex>",
+          "#include <begin_vertex>\nat = (modelMatrix * vec4(position, 1.0)).xy;",
+        );
+      shader.fragmentShader =
+        `varying vec2 at;\nuniform vec3 lineColor;\n${gridLines}` +
+        shader.fragmentShader.replace(
+          "#include <color_fragment>",
+          `#include <color_fragment>
         float line = max(max(0.16 * lineOf(at, 0.1, 1.0), 0.42 * lineOf(at, 1.0, 1.2)), 0.6 * lineOf(at, 10.0, 1.5));
-        diffuseColor.rgb = mix(diffuseColor.rgb, lineColor, line);`);
+        diffuseColor.rgb = mix(diffuseColor.rgb, lineColor, line);`,
+        );
     };
     const ground = new Mesh(new PlaneGeometry(groundSize, groundSize), material);
     ground.receiveShadow = true;

@@ -7,10 +7,20 @@ import type { SceneChannel } from "./messages";
 export type Steer = { ahead: number; turn: number } | { channel: string; value: number };
 
 const directions: Record<string, { ahead: number; turn: number }> = {
-  ahead: { ahead: 1, turn: 0 }, back: { ahead: -1, turn: 0 }, left: { ahead: 0, turn: 1 }, right: { ahead: 0, turn: -1 },
+  ahead: { ahead: 1, turn: 0 },
+  back: { ahead: -1, turn: 0 },
+  left: { ahead: 0, turn: 1 },
+  right: { ahead: 0, turn: -1 },
 };
 export const defaultSteering: Readonly<Record<string, string>> = {
-  ArrowUp: "ahead", ArrowDown: "back", ArrowLeft: "left", ArrowRight: "right", w: "ahead", s: "back", a: "left", d: "right",
+  ArrowUp: "ahead",
+  ArrowDown: "back",
+  ArrowLeft: "left",
+  ArrowRight: "right",
+  w: "ahead",
+  s: "back",
+  a: "left",
+  d: "right",
 };
 const turningShare = 0.5; // of full speed, on the spot
 const deadZone = 0.15;
@@ -26,21 +36,33 @@ export function readSteer(line: string): Steer {
 }
 
 /** Two tracks or wheels: where their velocities stand in the command, and the greatest that both have. */
-export interface Wheels { left: number; right: number; speed: number }
+export interface Wheels {
+  left: number;
+  right: number;
+  speed: number;
+}
 
 export function wheelsOf(channels: readonly SceneChannel[]): Wheels | undefined {
   const ending = (end: string): SceneChannel | undefined => channels.find(({ name }) => name.endsWith(end));
   const left = ending("/left/velocity");
   const right = ending("/right/velocity");
   if (!left || !right) return undefined;
-  return { left: firstValue(channels, left.name)!, right: firstValue(channels, right.name)!, speed: Math.min(left.upper, right.upper) };
+  return {
+    left: firstValue(channels, left.name)!,
+    right: firstValue(channels, right.name)!,
+    speed: Math.min(left.upper, right.upper),
+  };
 }
 
 export const neutralOf = (channels: readonly SceneChannel[]): number[] =>
   channels.flatMap(({ size, neutral }) => Array.from({ length: size }, () => neutral));
 
 /** The command of a robot: `base` where nothing else says anything. */
-export function commandOf(channels: readonly SceneChannel[], base: readonly number[], steers: readonly Steer[]): number[] {
+export function commandOf(
+  channels: readonly SceneChannel[],
+  base: readonly number[],
+  steers: readonly Steer[],
+): number[] {
   const values = [...base];
   const names = valueNames(channels);
   let [ahead, turn] = [0, 0];
@@ -68,7 +90,8 @@ const beyondDeadZone = (axis: number | undefined): number => {
 };
 
 /** The first game pad that is there. */
-export const padOf = (pads: readonly (Gamepad | null)[]): Gamepad | undefined => pads.find((each) => each?.connected) ?? undefined;
+export const padOf = (pads: readonly (Gamepad | null)[]): Gamepad | undefined =>
+  pads.find((each) => each?.connected) ?? undefined;
 
 /** What its left stick does; nothing as long as it rests. */
 export function steerOfPad({ axes }: Pick<Gamepad, "axes">): Steer | undefined {

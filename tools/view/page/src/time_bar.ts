@@ -74,11 +74,13 @@ export class TimeBar {
     if (!this.status) return;
     const [begin, end] = [seconds(this.status.begin_ns), seconds(this.status.end_ns)];
     this.markedEnd = end;
-    this.marks.replaceChildren(...events.map(({ time_ns, kind, text }) => {
-      const mark = document.createElement("i");
-      mark.style.left = `${(100 * (seconds(time_ns) - begin)) / Math.max(1e-9, end - begin)}%`;
-      mark.title = `${kind}: ${text}`;
-      return mark;
-    }));
+    this.marks.replaceChildren(
+      ...events.map(({ time_ns, kind, text }) => {
+        const mark = document.createElement("i");
+        mark.style.left = `${(100 * (seconds(time_ns) - begin)) / Math.max(1e-9, end - begin)}%`;
+        mark.title = `${kind}: ${text}`;
+        return mark;
+      }),
+    );
   }
 }

@@ -3,7 +3,15 @@ import { Cameras } from "./cameras";
 import { Glow } from "./glow";
 import { Inspector } from "./inspector";
 import { Instances } from "./instances";
-import { none, seconds, type Scene, type SceneContacts, type SceneFrame, type SceneRobot, type SceneSignals } from "./messages";
+import {
+  none,
+  type Scene,
+  type SceneContacts,
+  type SceneFrame,
+  type SceneRobot,
+  type SceneSignals,
+  seconds,
+} from "./messages";
 import { Contacts, Labels, Rays, Trails } from "./overlays";
 import { Poses } from "./poses";
 import { Outline, pick } from "./selection";
@@ -38,7 +46,10 @@ export class Viewer {
   private lastDrawn = performance.now();
   private world = "";
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly onSelect: (robot: number | undefined) => void) {
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly onSelect: (robot: number | undefined) => void,
+  ) {
     this.stage = new Stage(canvas);
     this.cameras = new Cameras(this.stage.camera, canvas);
     this.inspector = new Inspector(() => this.select(undefined));
@@ -79,7 +90,8 @@ export class Viewer {
       this.world = this.poses.scene.world;
       this.home();
     }
-    if (this.layers.has("trails")) this.trails.add(this.poses, this.selected === undefined ? this.robotEntities() : [this.selected]);
+    if (this.layers.has("trails"))
+      this.trails.add(this.poses, this.selected === undefined ? this.robotEntities() : [this.selected]);
   }
 
   takeSignals(signals: SceneSignals): void {
@@ -192,7 +204,13 @@ export class Viewer {
     this.cameras.advance(poses, elapsed);
     stage.draw(this.cameras.target);
     const named = this.layers.has("labels") ? this.robotEntities() : this.selected === undefined ? [] : [this.selected];
-    this.labels.draw(poses?.frame ? poses : undefined, named, stage.camera, this.canvas.clientWidth, this.canvas.clientHeight);
+    this.labels.draw(
+      poses?.frame ? poses : undefined,
+      named,
+      stage.camera,
+      this.canvas.clientWidth,
+      this.canvas.clientHeight,
+    );
     ++this.framesDrawn;
   }
 

@@ -64,7 +64,7 @@ const bytes = readFileSync(file);
 const stream = new McapStreamReader({ decompressHandlers, includeChunks: true, validateCrcs: true });
 stream.append(bytes);
 found.records = {};
-for (let record; (record = stream.nextRecord()); ) {
+for (let record = stream.nextRecord(); record; record = stream.nextRecord()) {
   found.records[record.type] = (found.records[record.type] ?? 0) + 1;
   if (record.type === "DataEnd") {
     found.data_crc_is_right = record.dataSectionCrc === crc32(bytes.subarray(0, Number(reader.dataEndOffset)));

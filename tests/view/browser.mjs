@@ -34,9 +34,8 @@ async function draws(page, file) {
     page,
     expected.robots.map(({ x, y }) => [x, y, turretHeight]),
   );
-  pixels.forEach((pixel, i) =>
-    assert.ok(isOrange(pixel), `where ${expected.robots[i].name} is, the picture is ${pixel}`),
-  );
+  for (const [i, pixel] of pixels.entries())
+    assert.ok(isOrange(pixel), `where ${expected.robots[i].name} is, the picture is ${pixel}`);
   const [ground] = await pixelsAt(page, [[1.9, 1.9, 0]]);
   assert.ok(!isOrange(ground), `the ground is ${ground}`);
 }

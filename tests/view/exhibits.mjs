@@ -107,9 +107,8 @@ async function fly(page, key) {
   );
   await page.keyboard.up(key);
   const to = await camera(page);
-  minus(minus(to.target, from.target), minus(to.position, from.position)).forEach((each) =>
-    near(each, 0, 1e-3, "what the target went beside the camera"),
-  );
+  for (const each of minus(minus(to.target, from.target), minus(to.position, from.position)))
+    near(each, 0, 1e-3, "what the target went beside the camera");
   return unit(minus(to.position, from.position));
 }
 
@@ -346,7 +345,7 @@ async function drawsHills(page, file) {
     }
     return found;
   }, expected);
-  expected.forEach(([x, y, z], i) => near(heights[i], z, 1e-3, `the height at ${x} ${y}`));
+  for (const [i, [x, y, z]] of expected.entries()) near(heights[i], z, 1e-3, `the height at ${x} ${y}`);
   const highest = expected.reduce((best, each) => (each[2] > best[2] ? each : best));
   await look(page, [highest[0], highest[1] - 1.5, 0.6], highest);
   const [hill, sky] = await pixelsAt(page, [

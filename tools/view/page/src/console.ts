@@ -1,4 +1,5 @@
 import type { Commands } from "./commands";
+import { element } from "./element";
 
 const historyKey = "cohort.view.history";
 const longestHistory = 200;
@@ -6,9 +7,9 @@ const callTime = 6000; // [ms]
 
 /** Where commands are typed, with what they said, history and completion. */
 export class ConsolePanel {
-  private readonly panel = document.getElementById("console")!;
-  private readonly lines = document.getElementById("lines")!;
-  private readonly input = document.getElementById("command") as HTMLInputElement;
+  private readonly panel = element("console");
+  private readonly lines = element("lines");
+  private readonly input = element("command") as HTMLInputElement;
   private history: string[] = [];
   private place = 0;
   private calling: ReturnType<typeof setTimeout> | undefined;
@@ -40,7 +41,7 @@ export class ConsolePanel {
     line.className = kind;
     line.textContent = text;
     this.lines.append(line);
-    while (this.lines.childElementCount > 500) this.lines.firstElementChild!.remove();
+    while (this.lines.childElementCount > 500) this.lines.firstElementChild?.remove();
     this.lines.scrollTop = this.lines.scrollHeight;
   }
 
@@ -54,7 +55,7 @@ export class ConsolePanel {
 
   // What went wrong, for whoever did it without the console.
   private call(text: string): void {
-    const told = document.getElementById("told")!;
+    const told = element("told");
     told.textContent = text;
     told.hidden = false;
     clearTimeout(this.calling);

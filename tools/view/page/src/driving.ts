@@ -2,6 +2,7 @@ import { valueNames } from "./channels";
 import type { Command, Commands } from "./commands";
 import type { Connection } from "./connection";
 import type { ConsolePanel } from "./console";
+import { element } from "./element";
 import { none, type SceneChannel } from "./messages";
 import { commandOf, neutralOf, padOf, readSteer, type Steer, steerOfPad, wheelsOf } from "./steering";
 import type { Viewer } from "./viewer";
@@ -14,8 +15,6 @@ interface Driven {
   channels: SceneChannel[];
   base: number[];
 }
-
-const element = (id: string): HTMLElement => document.getElementById(id)!;
 
 /** Drives one robot of a server by keys, a game pad and sliders. */
 export class Driving {
@@ -48,7 +47,7 @@ export class Driving {
 
   words(): Command[] {
     const robots = (): string[] =>
-      this.viewer.robotEntities().map((entity) => this.viewer.poses!.scene.entities[entity].name);
+      this.viewer.poses?.scene.entities.flatMap(({ name, robot }) => (robot === none ? [] : [name])) ?? [];
     return [
       {
         name: "drive",
@@ -63,10 +62,10 @@ export class Driving {
 
   /** Throws Error with what the server says if it does not give the robot. */
   async drive(name?: string): Promise<string> {
-    const { poses } = this.viewer;
+    const scene = this.viewer.poses?.scene;
     const entity = name === undefined ? this.viewer.selected : this.viewer.find(name);
-    const robot = entity === undefined ? undefined : poses!.scene.entities[entity];
-    if (!robot || robot.robot === none)
+    const robot = entity === undefined ? undefined : scene?.entities[entity];
+    if (!scene || !robot || robot.robot === none)
       throw new Error(name === undefined ? "select a robot first" : `there is no robot '${name}'`);
     if (this.driven?.name === robot.name) return `drives ${robot.name}`;
     if (this.isClaiming) throw new Error("a robot is asked for already");
@@ -76,7 +75,7 @@ export class Driving {
     const answer = await this.connection.ask({ operation: "drive", name: robot.name, numbers: [] });
     this.isClaiming = false;
     if (answer.done) {
-      const { command } = poses!.scene.models[robot.model];
+      const { command } = scene.models[robot.model];
       this.driven = { name: robot.name, channels: command, base: neutralOf(command) };
       this.sentAt = -Infinity;
       this.viewer.select(this.viewer.find(robot.name));
@@ -112,18 +111,17 @@ export class Driving {
   /** The inspector shows something else, or the same of another scene. */
   show(): void {
     const robot = this.selectedRobot();
-    const isDriven = robot !== undefined && robot === this.driven?.name;
+    const driven = robot === this.driven?.name ? this.driven : undefined;
     this.button.hidden = robot === undefined;
-    this.button.textContent = this.isClaiming ? "asks for it …" : isDriven ? "let go" : "drive";
+    this.button.textContent = this.isClaiming ? "asks for it …" : driven ? "let go" : "drive";
     this.button.disabled = this.isClaiming;
-    this.button.classList.toggle("on", isDriven);
-    element("sliders").replaceChildren(...(isDriven ? this.sliders(this.driven!) : []));
+    this.button.classList.toggle("on", driven !== undefined);
+    element("sliders").replaceChildren(...(driven ? this.sliders(driven) : []));
     this.showDriven();
   }
 
   private selectedRobot(): string | undefined {
-    const { selected, poses } = this.viewer;
-    const entity = selected === undefined ? undefined : poses?.scene.entities[selected];
+    const entity = this.viewer.selectedEntity;
     return entity && entity.robot !== none ? entity.name : undefined;
   }
 

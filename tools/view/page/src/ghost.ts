@@ -58,7 +58,7 @@ export function standingHeight(scene: Scene, model: number): number {
     );
     if (!geometry) continue;
     geometry.applyMatrix4(matrixOf(link.pose)).computeBoundingBox();
-    lowest = Math.min(lowest, geometry.boundingBox!.min.z);
+    lowest = Math.min(lowest, geometry.boundingBox?.min.z ?? Infinity);
     geometry.dispose();
   }
   return Number.isFinite(lowest) ? -lowest : 0;

@@ -1,5 +1,6 @@
 import uPlot from "uplot";
 import { firstValue, valueNames } from "./channels";
+import { element } from "./element";
 import { none, type SceneEntity, type SceneModel, type SceneRobot } from "./messages";
 import { rayLength } from "./overlays";
 
@@ -25,15 +26,15 @@ export class Inspector {
   private names: string[] = [];
   private readonly plots = new Map<string, Plot>();
   private lastTime = -Infinity;
-  private readonly element = document.getElementById("inspector")!;
-  private readonly title = document.getElementById("inspected")!;
-  private readonly pose = document.getElementById("pose")!;
-  private readonly dial = document.getElementById("dial") as unknown as SVGSVGElement;
-  private readonly plotted = document.getElementById("plots")!;
-  private readonly chooser = document.getElementById("channel") as HTMLSelectElement;
+  private readonly panel = element("inspector");
+  private readonly title = element("inspected");
+  private readonly pose = element("pose");
+  private readonly dial = element("dial");
+  private readonly plotted = element("plots");
+  private readonly chooser = element("channel") as HTMLSelectElement;
 
   constructor(close: () => void) {
-    document.getElementById("deselect")!.addEventListener("click", close);
+    element("deselect").addEventListener("click", close);
     this.chooser.addEventListener("change", () => {
       if (this.chooser.value) this.plot(this.chooser.value);
       this.chooser.value = "";
@@ -42,14 +43,13 @@ export class Inspector {
 
   select(entity: SceneEntity | undefined, model: SceneModel | undefined): void {
     this.model = model;
-    this.element.hidden = entity === undefined;
+    this.panel.hidden = entity === undefined;
     for (const name of [...this.plots.keys()]) this.unplot(name);
     this.dial.replaceChildren();
     if (!entity || !model) return;
     const robot = entity.robot === none ? "" : ` · robot ${entity.robot}`;
     this.title.textContent = entity.name;
-    document.getElementById("kind")!.textContent =
-      `${model.name}${robot}${entity.team ? ` · team ${entity.team}` : ""}`;
+    element("kind").textContent = `${model.name}${robot}${entity.team ? ` · team ${entity.team}` : ""}`;
     const observed = valueNames(model.observation);
     this.names = [...observed, ...valueNames(model.command).map((name) => `→ ${name}`)];
     const option = (name: string): HTMLOptionElement => new Option(name, name);
@@ -107,7 +107,7 @@ export class Inspector {
       }
       each.plot.setData(each.data as uPlot.AlignedData);
     }
-    this.drawDial(robot);
+    this.drawDial(this.model, robot);
   }
 
   private unplot(name: string): void {
@@ -116,9 +116,9 @@ export class Inspector {
   }
 
   // Sensors as a ring seen from above, the robot's front upwards: the nearer something is, the longer the bar.
-  private drawDial(robot: SceneRobot): void {
-    const ring = this.model!.sensors.find(({ kind }) => kind === "proximity_ring" || kind === "lidar");
-    const first = ring && firstValue(this.model!.observation, ring.channel);
+  private drawDial(model: SceneModel, robot: SceneRobot): void {
+    const ring = model.sensors.find(({ kind }) => kind === "proximity_ring" || kind === "lidar");
+    const first = ring && firstValue(model.observation, ring.channel);
     if (!ring || first === undefined) return;
     const count = ring.directions.length / 3;
     const bars = Array.from({ length: count }, (_, i) => {

@@ -8,7 +8,7 @@ import {
   MeshDepthMaterial,
   MeshStandardMaterial,
   RGBADepthPacking,
-  Sphere,
+  type Sphere,
 } from "three";
 import { type SceneShape, ShapeRole } from "./messages";
 import type { Poses } from "./poses";
@@ -73,21 +73,15 @@ export class Instances {
     const { scene } = poses;
     const isShown = (shape: SceneShape): boolean =>
       role === "visual" ? shape.role !== ShapeRole.collision : shape.role !== ShapeRole.visual;
-    scene.models.forEach((model, index) =>
-      model.links.forEach((link, number) => {
-        const shapes = link.shapes.filter(isShown);
-        this.add(
-          index,
-          number,
-          shapes.filter(({ color }) => color[3] >= 1),
-        );
-        this.add(
-          index,
-          number,
-          shapes.filter(({ color }) => color[3] > 0 && color[3] < 1),
-        );
-      }),
-    );
+    for (const [model, { links }] of scene.models.entries()) {
+      for (const [link, { shapes }] of links.entries()) {
+        const shown = shapes.filter(isShown);
+        const opaque = shown.filter(({ color }) => color[3] >= 1);
+        const translucent = shown.filter(({ color }) => color[3] > 0 && color[3] < 1);
+        this.add(model, link, opaque);
+        this.add(model, link, translucent);
+      }
+    }
   }
 
   /** The poses have a new frame. */
@@ -118,8 +112,8 @@ export class Instances {
   private add(model: number, link: number, shapes: SceneShape[]): void {
     const count = this.poses.entitiesOf(model).length;
     const shape = count > 0 ? linkGeometry(this.poses.scene, shapes, count) : undefined;
-    if (!shape) return;
-    this.links.push({ model, link, geometry: shape, sphere: shape.boundingSphere! });
+    if (!shape?.boundingSphere) return;
+    this.links.push({ model, link, geometry: shape, sphere: shape.boundingSphere });
     const geometry = new InstancedBufferGeometry();
     for (const name of ["position", "normal", "color"]) geometry.setAttribute(name, shape.getAttribute(name));
     geometry.instanceCount = count;

@@ -4,13 +4,13 @@ import { Commands } from "./commands";
 import { addressOfServer, Connection } from "./connection";
 import { ConsolePanel } from "./console";
 import { Driving } from "./driving";
+import { element } from "./element";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
 import { clockText, TimeBar } from "./time_bar";
 import { Viewer } from "./viewer";
 import { addWords, preferredTheme, showPressed } from "./words";
 
-const element = (id: string): HTMLElement => document.getElementById(id)!;
 const canvas = element("canvas") as HTMLCanvasElement;
 const clickSlack = 4; // [pixels] that a mouse may move in a click
 
@@ -48,7 +48,7 @@ const connection: Connection = new Connection(
       viewer.take(frame);
       element("tick").textContent = String(frame.tick);
       element("hash").textContent = frame.state_hash === 0n ? "–" : frame.state_hash.toString(16).padStart(16, "0");
-      const robots = viewer.robotEntities().filter((entity) => !viewer.poses!.absent.has(entity)).length;
+      const robots = viewer.robotEntities().filter((entity) => !viewer.poses?.absent.has(entity)).length;
       element("robots").textContent = String(robots);
     },
     "/cohort/signals": (signals, size) => {

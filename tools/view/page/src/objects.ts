@@ -2,11 +2,10 @@ import { Quaternion, Vector3 } from "three";
 import type { Command } from "./commands";
 import type { Connection, Wish } from "./connection";
 import type { ConsolePanel } from "./console";
+import { element } from "./element";
 import { Ghost, originOf, standingHeight } from "./ghost";
 import { none, type Scene, ShapeKind } from "./messages";
 import type { Viewer } from "./viewer";
-
-const element = (id: string): HTMLElement => document.getElementById(id)!;
 
 interface Dragged {
   name: string;
@@ -80,12 +79,13 @@ export class Objects {
   /** Whether there is something to drag. */
   grab(x: number, y: number): boolean {
     const { viewer } = this;
+    const { poses } = viewer;
     const entity = viewer.pickAt(x, y);
-    if (entity === undefined) return false;
-    const { scene } = viewer.poses!;
+    if (entity === undefined || !poses) return false;
+    const { scene } = poses;
     const { name, model } = scene.entities[entity];
     const [position, turn] = [new Vector3(), new Quaternion()];
-    viewer.poses!.read(viewer.poses!.placeOf(entity), position, turn);
+    poses.read(poses.placeOf(entity), position, turn);
     const grabbed = viewer.placeAt(x, y, position.z);
     if (!grabbed) return false;
     const { place, heading } = originOf(scene, model, position, turn);
@@ -100,7 +100,7 @@ export class Objects {
     const scene = this.viewer.poses?.scene;
     if (!scene) return;
     if (this.dragged) {
-      const place = this.dragTo(x, y);
+      const place = this.dragTo(this.dragged, x, y);
       if (place) this.ghost.show(scene, this.dragged.model, place, this.dragged.heading);
     } else if (this.isAdding) {
       const place = this.standingPlace(scene, x, y);
@@ -111,7 +111,7 @@ export class Objects {
 
   async drop(x: number, y: number): Promise<void> {
     const { dragged } = this;
-    const numbers = dragged && this.dragTo(x, y);
+    const numbers = dragged && this.dragTo(dragged, x, y);
     this.dragged = undefined;
     this.ghost.hide();
     if (dragged && numbers)
@@ -180,8 +180,7 @@ export class Objects {
     return place && model >= 0 ? [...place, standingHeight(scene, model)] : undefined;
   }
 
-  private dragTo(x: number, y: number): number[] | undefined {
-    const { origin, grabbed, height } = this.dragged!;
+  private dragTo({ origin, grabbed, height }: Dragged, x: number, y: number): number[] | undefined {
     const place = this.viewer.placeAt(x, y, height);
     return place && [origin[0] + place[0] - grabbed[0], origin[1] + place[1] - grabbed[1], origin[2]];
   }
@@ -189,27 +188,24 @@ export class Objects {
   // What is selected.
 
   private async remove(): Promise<void> {
-    const { selected, poses } = this.viewer;
+    const { selectedEntity } = this.viewer;
     this.canvas.focus();
-    if (selected === undefined) return;
-    const { name } = poses!.scene.entities[selected];
-    const isDone = await this.ask({ operation: "remove", name });
-    if (isDone && this.viewer.find(name) === this.viewer.selected) this.viewer.select(undefined);
+    if (!selectedEntity) return;
+    const isDone = await this.ask({ operation: "remove", name: selectedEntity.name });
+    if (isDone && this.viewer.selectedEntity?.name === selectedEntity.name) this.viewer.select(undefined);
   }
 
   private async switchLight(): Promise<void> {
-    const { selected, poses } = this.viewer;
+    const { selectedEntity } = this.viewer;
     this.canvas.focus();
-    if (selected === undefined) return;
+    if (!selectedEntity) return;
     const isOn = this.lampsOfSelected().some((lamp) => this.shines(lamp));
-    await this.ask({ operation: "light", name: poses!.scene.entities[selected].name, number: isOn ? 0 : 1 });
+    await this.ask({ operation: "light", name: selectedEntity.name, number: isOn ? 0 : 1 });
   }
 
   private lampsOfSelected(): number[] {
     const { selected, poses } = this.viewer;
-    return selected === undefined
-      ? []
-      : poses!.scene.lamps.flatMap(({ entity }, lamp) => (entity === selected ? [lamp] : []));
+    return poses?.scene.lamps.flatMap(({ entity }, lamp) => (entity === selected ? [lamp] : [])) ?? [];
   }
   private shines(lamp: number): boolean {
     return (this.viewer.signals?.lamps[4 * lamp + 3] ?? 0) > 0;

@@ -199,13 +199,13 @@ export class Labels {
     const turn = new Quaternion();
     this.labels.forEach((label, i) => {
       const entity = shown[i];
-      label.hidden = entity === undefined || poses!.absent.has(entity);
-      if (label.hidden) return;
-      poses!.read(poses!.placeOf(entity), at, turn);
+      label.hidden = !poses || entity === undefined || poses.absent.has(entity);
+      if (!poses || label.hidden) return;
+      poses.read(poses.placeOf(entity), at, turn);
       at.z += 0.12;
       at.project(camera);
       label.hidden = at.z > 1;
-      const { name } = poses!.scene.entities[entity];
+      const { name } = poses.scene.entities[entity];
       if (label.textContent !== name) label.textContent = name;
       label.style.transform = `translate(${(0.5 * (at.x + 1) * width).toFixed(1)}px, ${(0.5 * (1 - at.y) * height).toFixed(1)}px) translate(-50%, -100%)`;
     });

@@ -1,4 +1,4 @@
-import { Quaternion, Vector3 } from "three";
+import type { Quaternion, Vector3 } from "three";
 import type { Scene, SceneFrame } from "./messages";
 
 const full = 32767;

@@ -5,7 +5,7 @@ import {
   Mesh,
   MeshBasicMaterial,
   Quaternion,
-  Ray,
+  type Ray,
   Raycaster,
   Sphere,
   type Vector2,

@@ -46,12 +46,9 @@ export function wheelsOf(channels: readonly SceneChannel[]): Wheels | undefined 
   const ending = (end: string): SceneChannel | undefined => channels.find(({ name }) => name.endsWith(end));
   const left = ending("/left/velocity");
   const right = ending("/right/velocity");
-  if (!left || !right) return undefined;
-  return {
-    left: firstValue(channels, left.name)!,
-    right: firstValue(channels, right.name)!,
-    speed: Math.min(left.upper, right.upper),
-  };
+  const [atLeft, atRight] = [left, right].map((each) => each && firstValue(channels, each.name));
+  if (!left || !right || atLeft === undefined || atRight === undefined) return undefined;
+  return { left: atLeft, right: atRight, speed: Math.min(left.upper, right.upper) };
 }
 
 export const neutralOf = (channels: readonly SceneChannel[]): number[] =>

@@ -1,3 +1,4 @@
+import { element } from "./element";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 
 export interface Playback {
@@ -13,10 +14,10 @@ export const clockText = (time: number): string =>
 
 /** Play, pause, step, speed, and the bar to scrub. */
 export class TimeBar {
-  private readonly bar = document.getElementById("scrub") as HTMLInputElement;
-  private readonly button = document.getElementById("play") as HTMLButtonElement;
-  private readonly speed = document.getElementById("speed") as HTMLSelectElement;
-  private readonly marks = document.getElementById("marks")!;
+  private readonly bar = element("scrub") as HTMLInputElement;
+  private readonly button = element("play") as HTMLButtonElement;
+  private readonly speed = element("speed") as HTMLSelectElement;
+  private readonly marks = element("marks");
   private isScrubbing = false;
   private marked: readonly ViewEvent[] = [];
   private markedEnd = -1;
@@ -24,21 +25,21 @@ export class TimeBar {
 
   constructor(private readonly playback: Playback) {
     this.button.addEventListener("click", () => this.toggle());
-    document.getElementById("back")!.addEventListener("click", () => playback.step(-1));
-    document.getElementById("ahead")!.addEventListener("click", () => playback.step(1));
+    element("back").addEventListener("click", () => playback.step(-1));
+    element("ahead").addEventListener("click", () => playback.step(1));
     this.speed.addEventListener("change", () => playback.speed(Number(this.speed.value)));
     this.bar.addEventListener("input", () => {
       this.isScrubbing = true;
-      if (!this.status?.loses_what_follows) playback.seek(this.chosen());
+      if (this.status && !this.status.loses_what_follows) playback.seek(this.chosen(this.status));
     });
     this.bar.addEventListener("change", () => {
       this.isScrubbing = false;
-      if (this.status?.loses_what_follows) playback.seek(this.chosen());
+      if (this.status?.loses_what_follows) playback.seek(this.chosen(this.status));
     });
   }
 
-  private chosen(): number {
-    const [from, to] = [this.status!.seekable_from_ns, this.status!.seekable_to_ns].map(seconds);
+  private chosen(status: ViewStatus): number {
+    const [from, to] = [status.seekable_from_ns, status.seekable_to_ns].map(seconds);
     return Math.min(to, Math.max(from, Number(this.bar.value)));
   }
 
@@ -61,8 +62,8 @@ export class TimeBar {
     this.bar.style.setProperty("--done", share(now));
     this.bar.style.setProperty("--from", share(status.can_seek ? seconds(status.seekable_from_ns) : begin));
     this.bar.title = status.can_seek && status.loses_what_follows ? "Going back forgets what came later" : "";
-    document.getElementById("now")!.textContent = clockText(now);
-    document.getElementById("whole")!.textContent = end > 0 ? clockText(end) : "";
+    element("now").textContent = clockText(now);
+    element("whole").textContent = end > 0 ? clockText(end) : "";
     const speed = String(status.speed);
     if (![...this.speed.options].some(({ value }) => value === speed)) this.speed.add(new Option(`${speed} ×`, speed));
     if (document.activeElement !== this.speed) this.speed.value = speed;

@@ -1,5 +1,6 @@
 import { Plane, Quaternion, Raycaster, Vector2, Vector3 } from "three";
 import { Cameras } from "./cameras";
+import { element } from "./element";
 import { Glow } from "./glow";
 import { Inspector } from "./inspector";
 import { Instances } from "./instances";
@@ -7,6 +8,7 @@ import {
   none,
   type Scene,
   type SceneContacts,
+  type SceneEntity,
   type SceneFrame,
   type SceneRobot,
   type SceneSignals,
@@ -42,7 +44,7 @@ export class Viewer {
   private readonly contacts = new Contacts();
   private readonly rays = new Rays();
   private readonly trails = new Trails();
-  private readonly labels = new Labels(document.getElementById("labels")!);
+  private readonly labels = new Labels(element("labels"));
   private lastDrawn = performance.now();
   private world = "";
 
@@ -60,7 +62,7 @@ export class Viewer {
   // What comes from the server.
 
   show(scene: Scene): void {
-    const selected = this.selected === undefined ? undefined : this.poses!.scene.entities[this.selected].name;
+    const selected = this.selectedEntity?.name;
     const followed = this.cameras.followedEntity !== undefined ? this.cameras.mode : undefined;
     if (this.instances) this.stage.remove(this.instances.group);
     if (this.glow) this.stage.remove(this.glow.group);
@@ -68,7 +70,7 @@ export class Viewer {
     this.poses = new Poses(scene);
     this.glow = new Glow(this.poses);
     this.glow.wear(this.stage.theme === "dark");
-    this.build();
+    this.build(this.poses);
     this.stage.add(this.glow.group);
     this.stage.lay(scene);
     this.trails.clear();
@@ -105,7 +107,7 @@ export class Viewer {
   }
 
   takeRobots(robots: readonly SceneRobot[]): void {
-    const id = this.selected === undefined ? none : this.poses!.scene.entities[this.selected].robot;
+    const id = this.selectedEntity?.robot ?? none;
     this.robot = robots.find(({ robot }) => robot === id);
     if (this.robot) this.inspector.take(this.robot, seconds(this.robot.time_ns));
   }
@@ -116,9 +118,13 @@ export class Viewer {
     this.selected = entity;
     this.robot = undefined;
     this.outline.select(entity, this.poses, this.instances);
-    const chosen = entity === undefined ? undefined : this.poses!.scene.entities[entity];
-    this.inspector.select(chosen, chosen && this.poses!.scene.models[chosen.model]);
+    const chosen = this.selectedEntity;
+    this.inspector.select(chosen, chosen && this.poses?.scene.models[chosen.model]);
     this.onSelect(chosen && chosen.robot !== none ? chosen.robot : undefined);
+  }
+
+  get selectedEntity(): SceneEntity | undefined {
+    return this.selected === undefined ? undefined : this.poses?.scene.entities[this.selected];
   }
 
   pickAt(x: number, y: number): number | undefined {
@@ -145,14 +151,15 @@ export class Viewer {
 
   /** All robots, or everything where there are none. */
   home(): void {
-    if (!this.poses?.frame) return;
+    const { poses } = this;
+    if (!poses?.frame) return;
     const position = new Vector3();
     const low = new Vector3(Infinity, Infinity, Infinity);
     const high = low.clone().negate();
     const robots = this.robotEntities();
-    const wanted = robots.length > 0 ? robots : this.poses.scene.entities.map((_, entity) => entity);
-    for (const entity of wanted.filter((each) => !this.poses!.absent.has(each))) {
-      this.poses.read(this.poses.placeOf(entity), position, new Quaternion());
+    const wanted = robots.length > 0 ? robots : poses.scene.entities.map((_, entity) => entity);
+    for (const entity of wanted.filter((each) => !poses.absent.has(each))) {
+      poses.read(poses.placeOf(entity), position, new Quaternion());
       low.min(position);
       high.max(position);
     }
@@ -181,9 +188,10 @@ export class Viewer {
   }
 
   poseOf(entity: number): { position: number[]; heading: number } {
+    if (!this.poses) throw new Error("there is no scene yet");
     const position = new Vector3();
     const turn = new Quaternion();
-    this.poses!.read(this.poses!.placeOf(entity), position, turn);
+    this.poses.read(this.poses.placeOf(entity), position, turn);
     const forward = new Vector3(1, 0, 0).applyQuaternion(turn);
     return { position: position.toArray(), heading: Math.atan2(forward.y, forward.x) };
   }
@@ -194,8 +202,8 @@ export class Viewer {
     const { poses, stage } = this;
     if (poses?.frame) {
       poses.advance(now);
-      this.instances!.draw();
-      this.glow!.draw(this.canvas.height);
+      this.instances?.draw();
+      this.glow?.draw(this.canvas.height);
       this.outline.draw(poses);
       this.rays.draw(poses, this.layers.has("rays") ? this.robot : undefined);
       this.sound.draw(poses, stage.camera);
@@ -221,10 +229,10 @@ export class Viewer {
     this.inspector.showPose(`x ${x}  y ${y}  z ${z} m · ${((180 * heading) / Math.PI).toFixed(0)}°`);
   }
 
-  private build(): void {
-    this.instances = new Instances(this.poses!, this.layers.has("collisions") ? "collision" : "visual");
+  private build(poses: Poses): void {
+    this.instances = new Instances(poses, this.layers.has("collisions") ? "collision" : "visual");
     this.stage.add(this.instances.group);
-    if (this.poses!.frame) this.instances.update();
+    if (poses.frame) this.instances.update();
   }
 
   private apply(changed?: Layer): void {
@@ -235,7 +243,7 @@ export class Viewer {
     if (changed === "collisions" && this.poses && this.instances) {
       this.stage.remove(this.instances.group);
       this.instances.dispose();
-      this.build();
+      this.build(this.poses);
       this.outline.select(this.selected, this.poses, this.instances);
     }
   }

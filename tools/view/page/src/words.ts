@@ -3,6 +3,7 @@ import { download, Film, screenshot } from "./capture";
 import type { Command, Commands } from "./commands";
 import type { Connection, Wish } from "./connection";
 import type { ConsolePanel } from "./console";
+import { element } from "./element";
 import type { TimeBar } from "./time_bar";
 import type { Layer, Viewer } from "./viewer";
 
@@ -130,7 +131,7 @@ function cameraWords({ viewer }: Parts): Command[] {
       complete: names,
       run: ([name]) => {
         viewer.select(entityOf(name));
-        return viewer.poses!.scene.entities[viewer.selected!].name;
+        return viewer.selectedEntity?.name ?? "";
       },
     },
     {
@@ -268,7 +269,7 @@ function pictureWords({ viewer, connection, console, timeBar, commands, canvas }
       usage: "",
       help: "shows or hides what happened",
       run: () => {
-        const panel = document.getElementById("events")!;
+        const panel = element("events");
         panel.hidden = !panel.hidden;
         return "";
       },
@@ -294,7 +295,7 @@ function worldWords({ viewer, connection }: Parts): Command[] {
   const models = (): string[] => viewer.poses?.scene.models.map(({ name }) => name) ?? [];
   const whole = (name: string | undefined): string | undefined => {
     const found = name === undefined ? undefined : viewer.find(name);
-    return found === undefined ? name : viewer.poses!.scene.entities[found].name;
+    return found === undefined ? name : viewer.poses?.scene.entities[found].name;
   };
   const numbers = (args: string[], count: number, what: string): number[] =>
     Array.from({ length: count }, (_, i) => numberOf(args[i], what));
@@ -357,7 +358,7 @@ function worldWords({ viewer, connection }: Parts): Command[] {
 /** Which of the tools are on. */
 export function showPressed(viewer: Viewer): void {
   for (const button of document.querySelectorAll<HTMLButtonElement>("#tools [data-command]")) {
-    const command = button.dataset.command!;
+    const { command = "" } = button.dataset;
     const layer = command.startsWith("toggle ") ? (command.slice(7) as Layer) : undefined;
     button.classList.toggle("on", layer ? viewer.layers.has(layer) : viewer.cameras.mode === command);
   }

@@ -1,6 +1,6 @@
 import { defaultSteering, readSteer } from "./steering";
 
-/** One word of the console. */
+/** What can be typed in the console. */
 export interface Command {
   name: string;
   usage: string; // its arguments

@@ -45,7 +45,7 @@ export class Driving {
     return this.driven?.name;
   }
 
-  words(): Command[] {
+  consoleCommands(): Command[] {
     const robots = (): string[] =>
       this.viewer.poses?.scene.entities.flatMap(({ name, robot }) => (robot === none ? [] : [name])) ?? [];
     return [

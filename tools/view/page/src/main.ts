@@ -3,13 +3,13 @@ import "./page.css";
 import { Commands } from "./commands";
 import { addressOfServer, Connection } from "./connection";
 import { ConsolePanel } from "./console";
+import { addConsoleCommands, preferredTheme, showPressed } from "./console_commands";
 import { Driving } from "./driving";
 import { element } from "./element";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
 import { clockText, TimeBar } from "./time_bar";
 import { Viewer } from "./viewer";
-import { addWords, preferredTheme, showPressed } from "./words";
 
 const canvas = element("canvas") as HTMLCanvasElement;
 const clickSlack = 4; // [pixels] that a mouse may move in a click
@@ -68,10 +68,10 @@ const connection: Connection = new Connection(
 );
 for (const topic of ["/cohort/scene", "/cohort/frame", "/cohort/signals", "/cohort/status", "/cohort/events"] as const)
   connection.want(topic);
-addWords({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
+addConsoleCommands({ viewer, connection, console: consolePanel, timeBar, commands, canvas });
 const driving = new Driving(viewer, connection, commands, consolePanel, canvas);
 const objects = new Objects(viewer, connection, consolePanel, canvas);
-for (const word of [...driving.words(), ...objects.words()]) commands.add(word);
+for (const command of [...driving.consoleCommands(), ...objects.consoleCommands()]) commands.add(command);
 
 function showStatus(status: ViewStatus): void {
   timeBar.take(status);

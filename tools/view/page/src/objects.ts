@@ -38,7 +38,7 @@ export class Objects {
     canvas.addEventListener("pointerleave", () => this.ghost.hide());
   }
 
-  words(): Command[] {
+  consoleCommands(): Command[] {
     return [
       {
         name: "add",

@@ -35,12 +35,17 @@ async function ask(connection: Connection, wish: Wish): Promise<string> {
 }
 
 /** What can be said in the console beside what Commands know themselves. */
-export function addWords(parts: Parts): void {
-  for (const command of [...playbackWords(parts), ...cameraWords(parts), ...pictureWords(parts), ...worldWords(parts)])
+export function addConsoleCommands(parts: Parts): void {
+  for (const command of [
+    ...playbackCommands(parts),
+    ...cameraCommands(parts),
+    ...pictureCommands(parts),
+    ...worldCommands(parts),
+  ])
     parts.commands.add(command);
 }
 
-function playbackWords({ connection, timeBar }: Parts): Command[] {
+function playbackCommands({ connection, timeBar }: Parts): Command[] {
   const plain = (name: string, help: string): Command => ({
     name,
     usage: "",
@@ -81,7 +86,7 @@ function playbackWords({ connection, timeBar }: Parts): Command[] {
   ];
 }
 
-function cameraWords({ viewer }: Parts): Command[] {
+function cameraCommands({ viewer }: Parts): Command[] {
   const names = (): string[] => viewer.poses?.scene.entities.map(({ name }) => name) ?? [];
   const entityOf = (name: string | undefined): number => {
     const found = name === undefined ? viewer.selected : viewer.find(name);
@@ -193,7 +198,7 @@ function viewpoint(viewer: Viewer, [first, second]: string[]): string {
   return "";
 }
 
-function pictureWords({ viewer, connection, console, timeBar, commands, canvas }: Parts): Command[] {
+function pictureCommands({ viewer, connection, console, timeBar, commands, canvas }: Parts): Command[] {
   const film = new Film(canvas);
   const toggleLayer = (name: string | undefined): string => {
     if (name === undefined) {
@@ -290,7 +295,7 @@ function pictureWords({ viewer, connection, console, timeBar, commands, canvas }
   ];
 }
 
-function worldWords({ viewer, connection }: Parts): Command[] {
+function worldCommands({ viewer, connection }: Parts): Command[] {
   const names = (): string[] => viewer.poses?.scene.entities.map(({ name }) => name) ?? [];
   const models = (): string[] => viewer.poses?.scene.models.map(({ name }) => name) ?? [];
   const whole = (name: string | undefined): string | undefined => {

@@ -15,12 +15,14 @@ using nlohmann::json;
 
 recording::Bytes some(std::size_t size) { return recording::Bytes(size); }
 
-// A session whose wishes are kept.
+// A session whose requests are kept.
 struct Visit {
   Topics topics;
-  std::vector<Wish> wishes;
-  ClientSession session{
-      topics, "test", "session", {[this](const auto&, const Wish& wish) { wishes.push_back(wish); }, [] {}}};
+  std::vector<ViewRequest> requests;
+  ClientSession session{topics,
+                        "test",
+                        "session",
+                        {[this](const auto&, const ViewRequest& request) { requests.push_back(request); }, [] {}}};
 
   Visit() {
     for (int greeting = 0; greeting < 3; ++greeting) session.next();
@@ -100,7 +102,7 @@ TEST(ViewSession, TellsWhatIsWrongWithAMessage) {
   EXPECT_EQ(visit.next_text()["message"], "there is no channel 77");
   visit.session.take_text(R"({"op": "getParameters"})");
   EXPECT_EQ(visit.next_text()["message"], "the operation 'getParameters' is not offered");
-  EXPECT_TRUE(visit.wishes.empty());
+  EXPECT_TRUE(visit.requests.empty());
 }
 
 TEST(ViewAdmission, OnlyOurPageAndProgramsMayConnect) {
@@ -127,7 +129,7 @@ TEST(ViewAdmission, ATokenIsWholeOrWrong) {
   EXPECT_NE(random_token(), random_token());
 }
 
-TEST(ViewWishes, BecomeRequestsOrAreExplained) {
+TEST(ViewRequests, BecomeRequestsOrAreExplained) {
   EXPECT_EQ(request_of({.operation = "pause"}).state, wire::SimulationState::paused);
   EXPECT_EQ(request_of({.operation = "step", .number = 3.0}).steps, 3U);
   const wire::Request move = request_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0}});

@@ -12,31 +12,31 @@ using Json = nlohmann::json;
 Topic topic_of(std::uint32_t channel) { return static_cast<Topic>(channel); }
 
 // Throws protocol::ProtocolError.
-Wish read_wish(const std::string& payload) {
+ViewRequest read_request(const std::string& payload) {
   constexpr std::size_t longest_list = 64;
   const Json json = Json::parse(payload, nullptr, false);
   if (!json.is_object()) throw protocol::ProtocolError("a request is a JSON object");
-  Wish wish;
+  ViewRequest request;
   for (const auto& [key, value] : json.items()) {
     if (key == "operation" && value.is_string()) {
-      wish.operation = value.get<std::string>();
+      request.operation = value.get<std::string>();
     } else if (key == "number" && value.is_number()) {
-      wish.number = value.get<double>();
+      request.number = value.get<double>();
     } else if (key == "name" && value.is_string()) {
-      wish.name = value.get<std::string>();
+      request.name = value.get<std::string>();
     } else if (key == "text" && value.is_string()) {
-      wish.text = value.get<std::string>();
+      request.text = value.get<std::string>();
     } else if (key == "numbers" && value.is_array() && value.size() <= longest_list &&
                std::ranges::all_of(value, [](const Json& each) { return each.is_number(); })) {
-      wish.numbers = value.get<std::vector<double>>();
+      request.numbers = value.get<std::vector<double>>();
     } else {
       throw protocol::ProtocolError(
           "a request has operation, name and text, which are strings, number, and numbers, a "
           "list of at most 64");
     }
   }
-  if (wish.operation.empty()) throw protocol::ProtocolError("a request needs an operation");
-  return wish;
+  if (request.operation.empty()) throw protocol::ProtocolError("a request needs an operation");
+  return request;
 }
 
 }  // namespace
@@ -112,24 +112,24 @@ void ClientSession::take(const protocol::ServiceCall& call) {
     return;
   }
   try {
-    const Wish wish = read_wish(call.payload);
-    if (wish.operation == "watch")
-      watch(call, wish);
+    const ViewRequest request = read_request(call.payload);
+    if (request.operation == "watch")
+      watch(call, request);
     else
-      callbacks_.ask(call, wish);
+      callbacks_.ask(call, request);
   } catch (const protocol::ProtocolError& error) {
     reply(Text{protocol::service_failure(call, error.what())});
   }
 }
 
-void ClientSession::watch(const protocol::ServiceCall& call, const Wish& wish) {
+void ClientSession::watch(const protocol::ServiceCall& call, const ViewRequest& request) {
   const auto is_id = [](double number) { return number >= 0.0 && number < 4294967295.0; };
-  if (wish.numbers.size() > most_watched || !std::ranges::all_of(wish.numbers, is_id)) {
+  if (request.numbers.size() > most_watched || !std::ranges::all_of(request.numbers, is_id)) {
     respond(call, {false, "at most " + std::to_string(most_watched) + " robots can be watched, by their ids"});
     return;
   }
-  watched_.assign(wish.numbers.size(), 0);
-  std::ranges::transform(wish.numbers, watched_.begin(),
+  watched_.assign(request.numbers.size(), 0);
+  std::ranges::transform(request.numbers, watched_.begin(),
                          [](double number) { return static_cast<std::uint32_t>(number); });
   callbacks_.watched_changed();
   respond(call, {true, "watched"});

@@ -34,7 +34,7 @@ class ClientSession {
 
   struct Callbacks {
     /// Somebody asks for something; `respond` of this session answers.
-    std::function<void(const protocol::ServiceCall&, const Wish&)> ask;
+    std::function<void(const protocol::ServiceCall&, const ViewRequest&)> ask;
     std::function<void()> watched_changed;
   };
   ClientSession(Topics& topics, const std::string& name, const std::string& session, Callbacks callbacks);
@@ -61,7 +61,7 @@ class ClientSession {
   void take(const protocol::NotOffered& refused);
   void reply(Outgoing outgoing);
   void complain(const std::string& text);
-  void watch(const protocol::ServiceCall& call, const Wish& wish);
+  void watch(const protocol::ServiceCall& call, const ViewRequest& request);
   std::optional<Outgoing> next_of(std::map<std::uint32_t, Slot>::iterator begin,
                                   std::map<std::uint32_t, Slot>::iterator end);
 

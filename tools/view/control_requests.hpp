@@ -7,7 +7,7 @@
 
 namespace cohort::view {
 
-/// What a server is asked for a wish. Throws std::invalid_argument, with a sentence, if the wish makes no sense.
-wire::Request request_of(const Wish& wish);
+/// What a server is asked for a viewer. Throws std::invalid_argument, with a sentence, if what it asks makes no sense.
+wire::Request request_of(const ViewRequest& asked);
 
 }  // namespace cohort::view

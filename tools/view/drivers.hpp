@@ -32,11 +32,11 @@ class Drivers {
   Drivers(const Drivers&) = delete;
   Drivers& operator=(const Drivers&) = delete;
 
-  /// Without numbers claims the robot that `wish` names, or keeps it at its neutral values; otherwise tells it these.
-  /// Answered at once, but for a claim.
-  void drive(const Wish& wish, std::function<void(const Answer&)> answer);
+  /// Without numbers claims the robot that `request` names, or keeps it at its neutral values; otherwise tells it
+  /// these. Answered at once, but for a claim.
+  void drive(const ViewRequest& request, std::function<void(const Answer&)> answer);
   /// Lets it go.
-  Answer release(const Wish& wish);
+  Answer release(const ViewRequest& request);
   /// Lets all go that this visitor drives.
   void leave(std::uint64_t visitor);
 
@@ -46,8 +46,8 @@ class Drivers {
     std::unique_ptr<Driver> driver;
   };
 
-  Answer tell(const Wish& wish, Driven& driven);
-  void claim(const Wish& wish, std::function<void(const Answer&)> answer);
+  Answer tell(const ViewRequest& request, Driven& driven);
+  void claim(const ViewRequest& request, std::function<void(const Answer&)> answer);
   void let_go(std::map<std::string, Driven>::iterator place);
   void forget_the_gone();
 

@@ -19,7 +19,7 @@ constexpr auto for_a_server = 1s;
 constexpr auto for_a_reply = 5s;
 constexpr auto status_interval = 250ms;
 constexpr auto newcomer_interval = 100ms;
-constexpr std::size_t most_wishes = 64;
+constexpr std::size_t most_requests = 64;
 constexpr const char* no_server = "there is no server that can be controlled";
 
 recording::Bytes copied(std::span<const std::uint8_t> bytes) {
@@ -53,16 +53,16 @@ LiveSource::LiveSource(const LiveOptions& options, Topics& topics)
                "view") {
   show_status(blank_status());
   shower_ = std::thread([this] { show_what_arrives(); });
-  steward_ = std::thread([this] { serve_wishes(); });
+  steward_ = std::thread([this] { serve_requests(); });
 }
 
 LiveSource::~LiveSource() {
   {
-    const std::scoped_lock lock(mutex_, wishes_mutex_);
+    const std::scoped_lock lock(mutex_, requests_mutex_);
     is_stopping_ = true;
   }
   arrived_changed_.notify_all();
-  wishes_changed_.notify_all();
+  requests_changed_.notify_all();
   shower_.join();
   steward_.join();
 }
@@ -150,32 +150,32 @@ void LiveSource::watch(const std::vector<std::uint32_t>& robots) {
   arrived_changed_.notify_all();
 }
 
-void LiveSource::ask(const Wish& wish, std::function<void(const Answer&)> answer) {
+void LiveSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
   if (!options_.may_control) return answer({false, "this view may only look: 'cohort view --control' may do more"});
-  if (wish.operation == "drive") return drive(wish, std::move(answer));
-  if (wish.operation == "release") return answer(drivers_.release(wish));
+  if (request.operation == "drive") return drive(request, std::move(answer));
+  if (request.operation == "release") return answer(drivers_.release(request));
   {
-    const std::lock_guard lock(wishes_mutex_);
-    if (wishes_.size() < most_wishes) {
-      wishes_.push_back({wish, std::move(answer)});
-      wishes_changed_.notify_all();
+    const std::lock_guard lock(requests_mutex_);
+    if (requests_.size() < most_requests) {
+      requests_.push_back({request, std::move(answer)});
+      requests_changed_.notify_all();
       return;
     }
   }
   answer({false, "the server has not yet done what was asked for before"});
 }
 
-void LiveSource::drive(const Wish& wish, std::function<void(const Answer&)> answer) {
+void LiveSource::drive(const ViewRequest& request, std::function<void(const Answer&)> answer) {
   if (!options_.secure.empty() && options_.secure_drive.empty())
     return answer({false, "this server knows who drives: 'cohort view --secure-drive DIR' names an identity that may"});
   if (!has_server_) return answer({false, no_server});
-  drivers_.drive(wish, std::move(answer));
+  drivers_.drive(request, std::move(answer));
 }
 
 void LiveSource::leave(std::uint64_t visitor) { drivers_.leave(visitor); }
 
 // Asks for one thing after the other, and in between how the run is.
-void LiveSource::serve_wishes() {
+void LiveSource::serve_requests() {
   while (!is_stopping_) {
     try {
       ControlClient client({.server = options_.server,
@@ -192,14 +192,14 @@ void LiveSource::serve_wishes() {
         }
         std::optional<ReceivedRequest> asked;
         {
-          std::unique_lock lock(wishes_mutex_);
-          wishes_changed_.wait_for(lock, status_interval, [&] { return is_stopping_ || !wishes_.empty(); });
-          if (!wishes_.empty()) {
-            asked = std::move(wishes_.front());
-            wishes_.pop_front();
+          std::unique_lock lock(requests_mutex_);
+          requests_changed_.wait_for(lock, status_interval, [&] { return is_stopping_ || !requests_.empty(); });
+          if (!requests_.empty()) {
+            asked = std::move(requests_.front());
+            requests_.pop_front();
           }
         }
-        if (asked) asked->answer(done(client, asked->wish));
+        if (asked) asked->answer(done(client, asked->request));
         if (!is_stopping_) ask_status(client);
         if (!is_stopping_) ask_history(client);
       }
@@ -208,19 +208,20 @@ void LiveSource::serve_wishes() {
       ViewStatus status = blank_status();
       status.note = error.what();
       show_status(status);
-      std::unique_lock lock(wishes_mutex_);
-      wishes_changed_.wait_for(lock, for_a_server, [&] { return is_stopping_.load(); });
+      std::unique_lock lock(requests_mutex_);
+      requests_changed_.wait_for(lock, for_a_server, [&] { return is_stopping_.load(); });
     }
   }
   answer_all("the view is closing");
 }
 
-Answer LiveSource::done(ControlClient& client, const Wish& wish) {
+Answer LiveSource::done(ControlClient& client, const ViewRequest& asked) {
   try {
-    if (wish.operation == "seek") return gone_back(client, time_of(wish.number));
-    if (wish.operation == "step" && wish.number < 0.0 && history_.can_go_back())
-      return gone_back(client, run_time_ + time_of(std::trunc(wish.number) * 1e-9 * static_cast<double>(run_.step_ns)));
-    wire::Request request = request_of(wish);
+    if (asked.operation == "seek") return gone_back(client, time_of(asked.number));
+    if (asked.operation == "step" && asked.number < 0.0 && history_.can_go_back())
+      return gone_back(client,
+                       run_time_ + time_of(std::trunc(asked.number) * 1e-9 * static_cast<double>(run_.step_ns)));
+    wire::Request request = request_of(asked);
     const bool is_state = request.operation == wire::Operation::set_simulation_state;
     const auto reply = client.ask(std::move(request), for_a_reply, is_stopping_);
     if (!reply) return no_answer;
@@ -259,8 +260,8 @@ void LiveSource::ask_history(ControlClient& client) {
 void LiveSource::answer_all(const std::string& text) {
   std::deque<ReceivedRequest> asked;
   {
-    const std::lock_guard lock(wishes_mutex_);
-    asked.swap(wishes_);
+    const std::lock_guard lock(requests_mutex_);
+    asked.swap(requests_);
   }
   for (const ReceivedRequest& each : asked) each.answer({false, text});
 }

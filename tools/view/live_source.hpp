@@ -27,7 +27,7 @@ struct LiveOptions {
   bool may_control = false;
 };
 
-/// Shows a running server, as any observer may. Wishes, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
+/// Shows a running server, as any observer may. Requests, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
 /// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done. Where it keeps snapshots also
 /// `seek` and steps back: to the last snapshot before, and if the run is paused on from there to the very tick. And
 /// `drive` and `release`, by which whoever looks is the controller of a robot (Drivers).
@@ -38,7 +38,7 @@ class LiveSource final : public Source {
   LiveSource(const LiveOptions& options, Topics& topics);
   ~LiveSource() override;
 
-  void ask(const Wish& wish, std::function<void(const Answer&)> answer) override;
+  void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
   void leave(std::uint64_t visitor) override;
 
@@ -46,7 +46,7 @@ class LiveSource final : public Source {
   using Bytes = recording::Bytes;
 
   struct ReceivedRequest {
-    Wish wish;
+    ViewRequest request;
     std::function<void(const Answer&)> answer;
   };
   // What came from the server since it was looked at last. Under the lock.
@@ -63,13 +63,13 @@ class LiveSource final : public Source {
   void show(Arrived& arrived);
   void show_extras();
   void show_robots();
-  void serve_wishes();
-  Answer done(ControlClient& client, const Wish& wish);
+  void serve_requests();
+  Answer done(ControlClient& client, const ViewRequest& asked);
   Answer gone_back(ControlClient& client, std::chrono::nanoseconds time);
   void ask_status(ControlClient& client);
   void ask_history(ControlClient& client);
   void answer_all(const std::string& text);
-  void drive(const Wish& wish, std::function<void(const Answer&)> answer);
+  void drive(const ViewRequest& request, std::function<void(const Answer&)> answer);
   void show_status(const ViewStatus& status);
   ViewStatus blank_status() const;
 
@@ -86,9 +86,9 @@ class LiveSource final : public Source {
   std::vector<std::uint32_t> watched_;
   std::chrono::nanoseconds time_{0};  // simulated
 
-  std::mutex wishes_mutex_;
-  std::condition_variable wishes_changed_;
-  std::deque<ReceivedRequest> wishes_;
+  std::mutex requests_mutex_;
+  std::condition_variable requests_changed_;
+  std::deque<ReceivedRequest> requests_;
 
   wire::Participant participant_;
   wire::Reader<wire::SceneDescription> descriptions_;
@@ -99,7 +99,7 @@ class LiveSource final : public Source {
   std::uint64_t arrivals_ = 0;
   std::uint32_t revision_ = 0;  // of the scene that is shown, and how many links it has
   std::size_t links_ = 0;
-  // Of the thread that serves wishes: what the server said last.
+  // Of the thread that serves requests: what the server said last.
   LiveHistory history_;
   wire::SimulationStatus run_;
   std::chrono::nanoseconds run_time_{0};

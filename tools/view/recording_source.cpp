@@ -36,60 +36,63 @@ RecordingSource::~RecordingSource() {
   is_stopping_ = true;
   {
     const std::lock_guard lock(mutex_);
-    ++wishes_;
+    ++requests_;
   }
   changed_.notify_all();
   thread_.join();
 }
 
-void RecordingSource::ask(const Wish& wish, std::function<void(const Answer&)> answer) { answer(take(wish)); }
+void RecordingSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
+  answer(take(request));
+}
 
-Answer RecordingSource::take(const Wish& wish) {
+Answer RecordingSource::take(const ViewRequest& request) {
   const std::lock_guard lock(mutex_);
   const auto done = [&](std::string text) {
-    ++wishes_;
+    ++requests_;
     changed_.notify_all();
     return Answer{true, std::move(text)};
   };
-  if (wish.operation == "play") {
+  if (request.operation == "play") {
     wanted_.is_playing = true;
     wanted_.plays_again = true;
     return done("playing");
   }
-  if (wish.operation == "pause") {
+  if (request.operation == "pause") {
     wanted_.is_playing = false;
     ++interruptions_;
     return done("paused");
   }
-  if (wish.operation == "step") {
+  if (request.operation == "step") {
     constexpr double most_steps = 1e6;
-    if (!(std::abs(wish.number) <= most_steps)) return {false, "a step is of at most a million ticks"};
+    if (!(std::abs(request.number) <= most_steps)) return {false, "a step is of at most a million ticks"};
     wanted_.is_playing = false;
-    wanted_.steps += static_cast<std::int64_t>(std::trunc(wish.number));
+    wanted_.steps += static_cast<std::int64_t>(std::trunc(request.number));
     return done("stepped");
   }
-  if (wish.operation == "speed") {
-    if (!(wish.number >= 0.0 && wish.number <= greatest_speed))
+  if (request.operation == "speed") {
+    if (!(request.number >= 0.0 && request.number <= greatest_speed))
       return {false, "a speed is from 0, which is as fast as it goes, to a million"};
-    wanted_.speed = wish.number;
-    return done(wish.number > 0.0 ? fmt::format("at {:g} times real time", wish.number) : "as fast as it goes");
+    wanted_.speed = request.number;
+    return done(request.number > 0.0 ? fmt::format("at {:g} times real time", request.number) : "as fast as it goes");
   }
-  if (wish.operation == "seek") {
-    if (!(wish.number >= 0.0 && wish.number <= longest_recording)) return {false, "a time is in seconds, from 0 on"};
-    wanted_.seek = nanoseconds_of(wish.number);
+  if (request.operation == "seek") {
+    if (!(request.number >= 0.0 && request.number <= longest_recording))
+      return {false, "a time is in seconds, from 0 on"};
+    wanted_.seek = nanoseconds_of(request.number);
     ++interruptions_;
     wanted_.steps = 0;
-    return done(fmt::format("at {:.3f} s", wish.number));
+    return done(fmt::format("at {:.3f} s", request.number));
   }
   return {false, fmt::format("'{}' is nothing that a recording can do: it can play, pause, step, seek and change its "
                              "speed",
-                             wish.operation)};
+                             request.operation)};
 }
 
 void RecordingSource::watch(const std::vector<std::uint32_t>& robots) {
   const std::lock_guard lock(mutex_);
   wanted_.watched = robots;
-  ++wishes_;
+  ++requests_;
   changed_.notify_all();
 }
 
@@ -105,18 +108,18 @@ void RecordingSource::run() {
       wanted = wanted_;
       wanted_.seek.reset();
       wanted_.steps = 0;
-      wishes_taken_ = wishes_;
+      requests_taken_ = requests_;
       interruptions_taken_ = interruptions_;
     }
-    const bool has_wishes = wanted.seek || wanted.plays_again || wanted.steps != 0 || wanted.watched != watched_;
+    const bool has_requests = wanted.seek || wanted.plays_again || wanted.steps != 0 || wanted.watched != watched_;
     watched_ = wanted.watched;
     const bool is_moving = wanted.is_playing && !is_at_end_;
     act(wanted);
-    if (has_wishes || is_moving || arrivals != topics_.arrivals()) show();
+    if (has_requests || is_moving || arrivals != topics_.arrivals()) show();
     arrivals = topics_.arrivals();
     show_status(wanted);
     std::unique_lock lock(mutex_);
-    changed_.wait_until(lock, next, [&] { return has_newer_wish() && !is_moving; });
+    changed_.wait_until(lock, next, [&] { return has_newer_request() && !is_moving; });
   }
 }
 
@@ -146,7 +149,7 @@ RecordingSource::Nanoseconds RecordingSource::start_before(Nanoseconds log_time)
   return start;
 }
 
-// In small steps, so that a newer wish takes the place of this one.
+// In small steps, so that a newer request takes the place of this one.
 void RecordingSource::go_to(Nanoseconds log_time) {
   const Nanoseconds target = std::min(log_time, end_);
   const Nanoseconds start = start_before(target);
@@ -186,7 +189,7 @@ void RecordingSource::play(const Wanted& wanted) {
   const double elapsed = Seconds(begin - pace_->wall).count();
   const Nanoseconds target =
       wanted.speed > 0.0 ? pace_->time + nanoseconds_of(elapsed * wanted.speed) : Nanoseconds::max();
-  while (log_time_ < target && Clock::now() - begin < frame_interval && !has_newer_wish())
+  while (log_time_ < target && Clock::now() - begin < frame_interval && !has_newer_request())
     if (!advance()) break;
   // What could not be kept up with is not made up for.
   if (wanted.speed > 0.0 && log_time_ < target) pace_ = {Clock::now(), log_time_, wanted.speed};

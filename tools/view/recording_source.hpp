@@ -14,7 +14,7 @@
 
 namespace cohort::view {
 
-/// Shows a recording: runs its world again, at any speed, from any time. Everybody who looks sees the same. Wishes:
+/// Shows a recording: runs its world again, at any speed, from any time. Everybody who looks sees the same. Requests:
 /// `play`, `pause`, `step` (a number of ticks, also backwards), `speed` (0: as fast as it goes) and `seek` (log time
 /// [s]).
 class RecordingSource final : public Source {
@@ -23,7 +23,7 @@ class RecordingSource final : public Source {
   RecordingSource(const recording::Recording& recording, Topics& topics, unsigned threads);
   ~RecordingSource() override;
 
-  void ask(const Wish& wish, std::function<void(const Answer&)> answer) override;
+  void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
 
  private:
@@ -40,10 +40,10 @@ class RecordingSource final : public Source {
     std::vector<std::uint32_t> watched{};
   };
 
-  Answer take(const Wish& wish);
+  Answer take(const ViewRequest& request);
   void run();
   void act(const Wanted& wanted);
-  bool has_newer_wish() const { return wishes_ != wishes_taken_ || is_stopping_; }
+  bool has_newer_request() const { return requests_ != requests_taken_ || is_stopping_; }
   bool is_interrupted() const { return interruptions_ != interruptions_taken_ || is_stopping_; }
   void go_to(Nanoseconds log_time);
   void step_back(std::int64_t ticks);
@@ -63,12 +63,12 @@ class RecordingSource final : public Source {
   std::mutex mutex_;
   std::condition_variable changed_;
   Wanted wanted_;
-  std::atomic<std::uint64_t> wishes_{0};
+  std::atomic<std::uint64_t> requests_{0};
   std::atomic<std::uint64_t> interruptions_{0};  // of them those that end what is under way
   std::atomic<bool> is_stopping_{false};
 
   // Of the thread.
-  std::uint64_t wishes_taken_ = 0;
+  std::uint64_t requests_taken_ = 0;
   std::uint64_t interruptions_taken_ = 0;
   std::optional<viewing::SceneMaker> maker_;
   bool is_new_world_ = false;

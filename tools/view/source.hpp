@@ -7,8 +7,8 @@
 
 namespace cohort::view {
 
-/// What a viewer asks for: a word, and what it needs. Which words there are is in docs/view.md.
-struct Wish {
+/// What a viewer asks for: an operation, and what it needs. Which operations there are is in docs/view.md.
+struct ViewRequest {
   std::string operation;
   double number = 0.0;
   std::string name{};  ///< of an object
@@ -31,7 +31,7 @@ class Source {
   Source& operator=(const Source&) = delete;
 
   /// `answer` is called once, on any thread, perhaps before this returns. Any thread.
-  virtual void ask(const Wish& wish, std::function<void(const Answer&)> answer) = 0;
+  virtual void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) = 0;
   /// Whose channels are to be published from now on: ids. Any thread.
   virtual void watch(const std::vector<std::uint32_t>& robots) = 0;
   /// This visitor asks for nothing any more. Any thread.

@@ -87,7 +87,7 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
       : state_(state),
         stream_(std::move(socket)),
         session_(state.topics, state.options.name, state.session,
-                 {[this](const protocol::ServiceCall& call, const Wish& wish) { ask(call, wish); },
+                 {[this](const protocol::ServiceCall& call, const ViewRequest& request) { ask(call, request); },
                   [this] { state_.watch(); }}) {
     ++state_.connections;
     state_.clients.insert(this);
@@ -157,8 +157,8 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
     });
   }
   // The answer may come from any thread, and when this has gone.
-  void ask(const protocol::ServiceCall& call, const Wish& wish) {
-    Wish theirs = wish;
+  void ask(const protocol::ServiceCall& call, const ViewRequest& request) {
+    ViewRequest theirs = request;
     theirs.visitor = visitor_;
     state_.source->ask(theirs, [&state = state_, weak = weak_from_this(), call](const Answer& answer) {
       asio::post(state.context, [weak, call, answer] {

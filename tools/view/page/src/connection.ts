@@ -3,7 +3,7 @@ import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import { type Channel, FoxgloveClient, type Service } from "@foxglove/ws-protocol";
 import type { Messages, Topic } from "./messages";
 
-export interface Wish {
+export interface ViewRequest {
   operation: string;
   number?: number;
   name?: string;
@@ -59,11 +59,11 @@ export class Connection {
     }
   }
 
-  ask(wish: Wish): Promise<Answer> {
+  ask(request: ViewRequest): Promise<Answer> {
     const { client, service } = this;
     if (!client || !service) return Promise.resolve({ done: false, text: "there is no connection" });
     const callId = this.nextCall++;
-    const data = new TextEncoder().encode(JSON.stringify(wish));
+    const data = new TextEncoder().encode(JSON.stringify(request));
     return new Promise((resolve) => {
       this.calls.set(callId, { resolve });
       client.sendServiceCallRequest({

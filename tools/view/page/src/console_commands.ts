@@ -1,7 +1,7 @@
 import type { CameraMode, Viewpoint } from "./cameras";
 import { download, Film, screenshot } from "./capture";
 import type { Command, Commands } from "./commands";
-import type { Connection, Wish } from "./connection";
+import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
 import type { TimeBar } from "./time_bar";
@@ -28,8 +28,8 @@ function numberOf(text: string | undefined, what: string): number {
 }
 
 /** Asks the server. Throws Error with what it said if it could not be done. */
-async function ask(connection: Connection, wish: Wish): Promise<string> {
-  const { done, text } = await connection.ask(wish);
+async function ask(connection: Connection, request: ViewRequest): Promise<string> {
+  const { done, text } = await connection.ask(request);
   if (!done) throw new Error(text);
   return text;
 }

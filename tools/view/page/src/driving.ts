@@ -7,7 +7,7 @@ import { none, type SceneChannel } from "./messages";
 import { commandOf, neutralOf, padOf, readSteer, type Steer, steerOfPad, wheelsOf } from "./steering";
 import type { Viewer } from "./viewer";
 
-const interval = 50; // [ms] from one wish to the next at the least
+const interval = 50; // [ms] from one request to the next at the least
 const longestSilence = 200; // [ms]; the view lets a robot stand that it hears nothing of for half a second
 
 interface Driven {

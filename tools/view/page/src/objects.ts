@@ -1,6 +1,6 @@
 import { Quaternion, Vector3 } from "three";
 import type { Command } from "./commands";
-import type { Connection, Wish } from "./connection";
+import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
 import { Ghost, originOf, standingHeight } from "./ghost";
@@ -211,8 +211,8 @@ export class Objects {
     return (this.viewer.signals?.lamps[4 * lamp + 3] ?? 0) > 0;
   }
 
-  private async ask(wish: Wish): Promise<boolean> {
-    const { done, text } = await this.connection.ask(wish);
+  private async ask(request: ViewRequest): Promise<boolean> {
+    const { done, text } = await this.connection.ask(request);
     this.console.say(text, done ? "said" : "wrong");
     return done;
   }

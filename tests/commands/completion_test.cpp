@@ -30,9 +30,11 @@ const std::vector<Case> cases = {
     {"cohort serve x.yaml --secure " COHORT_SOURCE_DIR "/to", COHORT_SOURCE_DIR "/tools", COHORT_SOURCE_DIR "/tests"},
 };
 
+constexpr const char* install_shells = ": tools/install-packages tools/packages-shells.txt";
+
 // `asked` prints what a shell offers for $WRITTEN, a line each.
 void expect_completions(const std::string& shell, const std::string& asked) {
-  if (!is_installed(shell)) GTEST_SKIP() << shell << " is not installed";
+  if (!is_installed(shell)) GTEST_SKIP() << "there is no " << shell << install_shells;
   const ScratchFolder folder;
   write_file(folder / "completion", script_for(shell));
   for (const Case& each : cases) {
@@ -82,7 +84,7 @@ TEST(ManPage, HasEveryCommandAndIsWithoutMistakes) {
   ASSERT_EQ(page.exit_code, 0) << page.err;
   for (const char* text : {".TH COHORT 1", "cohort run", "cohort ctl set\\-velocity", "\\-\\-record", "COHORT_SERVER"})
     EXPECT_NE(page.out.find(text), std::string::npos) << text;
-  if (!is_installed("groff")) GTEST_SKIP() << "groff is not installed";
+  if (!is_installed("groff")) GTEST_SKIP() << "there is no groff" << install_shells;
   const ScratchFolder folder;
   write_file(folder / "cohort.1", page.out);
   const Ended shown = run_to_end({"/usr/bin/env", "groff", "-man", "-Tutf8", "-ww", folder / "cohort.1"});

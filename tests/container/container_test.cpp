@@ -15,13 +15,15 @@ const std::string demo = "/usr/share/cohort/worlds/experiments/obstacle_avoidanc
 const std::string image = "localhost/cohort:" COHORT_VERSION;
 const std::string sdk_image = "localhost/cohort-sdk:" COHORT_VERSION;
 
+constexpr const char* install_list = ": tools/install-packages tools/packages-container.txt";
+
 // The images of docker/, built of these sources.
 class Container : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     const fs::path folder = COHORT_CONTAINER_DIR;
     if (!is_installed("podman")) {
-      missing = "there is no podman: tools/install-packages tools/packages-container.txt";
+      missing = std::string("there is no podman") + install_list;
       return;
     }
     missing = make_base(folder);
@@ -166,7 +168,7 @@ TEST_F(Container, OfTheSdkBuildsAControllerThatTheServersRuns) {
 class ComposeFiles : public Container, public ::testing::WithParamInterface<const char*> {};
 
 TEST_P(ComposeFiles, RunServerControllersAndRecorderToTheBitsOfOneProcess) {
-  if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose";
+  if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose" << install_list;
   const std::string project = fmt::format("cohort-test-{}", getpid());
   std::vector<std::string> arguments = {"--project-name", project, "--file", COHORT_SOURCE_DIR "/docker/compose.yaml"};
   if (*GetParam() != '\0') arguments.insert(arguments.end(), {"--file", GetParam()});
@@ -177,7 +179,8 @@ TEST_P(ComposeFiles, RunServerControllersAndRecorderToTheBitsOfOneProcess) {
       {"run", "--rm", "--volume", project + "_state:/var/lib/cohort:ro", image, "replay", "run.mcap", "--verify"});
   podman->remove(project);
   if (!has_names)
-    GTEST_SKIP() << "podman knows no names of containers: golang-github-containernetworking-plugin-dnsname";
+    GTEST_SKIP() << "podman knows no names of containers: golang-github-containernetworking-plugin-dnsname"
+                 << install_list;
   const auto summary = run_demo({"--controllers", "inprocess"});
   EXPECT_NE(run.out.find(summary.value("state_hash", "no summary")), std::string::npos) << run.out;
   EXPECT_EQ(replayed.exit_code, 0) << replayed.out << run.out;
@@ -188,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, ComposeFiles, ::testing::Values("", COHORT_SO
                          [](const auto& variant) { return *variant.param == '\0' ? "Open" : "Secure"; });
 
 TEST_F(Container, OfAViewShowsTheRunOfTheComposeFilesInTheHostsBrowser) {
-  if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose";
+  if (!is_installed("podman-compose")) GTEST_SKIP() << "there is no podman-compose" << install_list;
   const std::string project = fmt::format("cohort-test-view-{}", getpid());
   const std::string port = free_port();
   const Ended started =

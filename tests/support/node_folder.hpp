@@ -21,8 +21,8 @@ class NodeFolder {
 
   /// Installs the packages, once, by whoever comes first. Why it cannot, or nothing.
   std::optional<std::string> prepare(const std::string& script) const {
-    if (node_.empty()) return "there is no node: Debian's packages nodejs and npm";
-    if (npm_.empty()) return "there is no npm: Debian's package npm";
+    if (node_.empty()) return "there is no node: tools/install-packages tools/packages-node.txt";
+    if (npm_.empty()) return "there is no npm: tools/install-packages tools/packages-node.txt";
     std::filesystem::create_directories(folder_);
     const FileLock lock(folder_ / "lock");
     install(script);

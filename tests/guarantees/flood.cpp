@@ -1,5 +1,6 @@
 // A stranger that floods one of two servers: flood DOMAIN DOMAIN RATE. Sends RATE commands a second in nobody's name to
-// the first, after SIGUSR1 to the other one, and so on, until it is killed. So its own share of the machine stays.
+// the first, after SIGUSR1 to the other one, and so on, until it is killed; prints each turn's number once it has sent
+// some. So its own share of the machine stays.
 
 #include <array>
 #include <chrono>
@@ -14,7 +15,7 @@
 namespace {
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): a signal handler reaches nothing but globals.
-volatile std::sig_atomic_t target = 0;
+volatile std::sig_atomic_t turns = 0;
 
 struct Target {
   explicit Target(const char* domain)
@@ -31,18 +32,22 @@ struct Target {
 int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;
   if (argc != 4) return 2;
-  std::signal(SIGUSR1, [](int) { target = 1 - target; });
+  std::signal(SIGUSR1, [](int) { turns = turns + 1; });
   std::array<Target, 2> targets = {Target(argv[1]), Target(argv[2])};
   const double rate = std::stod(argv[3]);
-  std::puts("flooding");
-  std::fflush(stdout);
   const std::vector<std::uint32_t> robots = {0};
   const std::vector<double> values(8, 0.1);
-  for (;;) {
+  for (int said = -1;;) {
     // In bursts of a millisecond; one that took longer is not made up for.
     const auto begin = Clock::now();
-    auto& commands = targets.at(static_cast<std::size_t>(target)).commands;
+    const int turn = turns;
+    auto& commands = targets.at(static_cast<std::size_t>(turn % 2)).commands;
     for (int i = 0; i < static_cast<int>(rate / 1000.0); ++i) commands.write({1, 1, 1, 0, robots, values});
+    if (turn != said) {
+      std::printf("turn %d.\n", turn);
+      std::fflush(stdout);
+      said = turn;
+    }
     std::this_thread::sleep_until(begin + std::chrono::milliseconds(1));
   }
 }

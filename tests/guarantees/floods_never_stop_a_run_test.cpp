@@ -56,15 +56,14 @@ TEST(FloodsNeverStopARun, OfCommandsSlowOthersByLessThanHalf) {
   const Ticks ticks(domain.number());
   ASSERT_TRUE(ticks.have_begun()) << server.output();
   Process flood({COHORT_BUILD_DIR "/bin/flood", domain.text(), elsewhere.text(), "100000"});
-  ASSERT_TRUE(flood.wait_for_output("flooding")) << flood.output();
   std::vector<double> here, there;
   for (int round = 0; round < 10; ++round) {
-    std::this_thread::sleep_for(100ms);
+    ASSERT_TRUE(flood.wait_for_output("turn " + std::to_string(round) + ".")) << flood.output();
     (round % 2 == 0 ? here : there).push_back(ticks.per_second(400ms));
     flood.signal(SIGUSR1);
   }
   flood.signal(SIGKILL);
-  std::this_thread::sleep_for(200ms);
+  flood.wait_for_exit();
   const double quiet = ticks.per_second(400ms);
   RecordProperty("ticks_per_second", std::to_string(median(here)) + " flooded, " + std::to_string(median(there)) +
                                          " beside a flood, " + std::to_string(quiet) + " without");

@@ -7,6 +7,7 @@
 #include "server/recording/mcap/mcap_writer.hpp"
 #include "server/recording/replay.hpp"
 #include "tests/support/controlled_run.hpp"
+#include "tests/support/free_domain.hpp"
 
 namespace cohort::testing {
 namespace {
@@ -198,6 +199,19 @@ TEST(SameHashOnReplayOf, ARecordingFindsOneBitOfACommandThatWasChanged) {
   EXPECT_EQ(whole.out, "identical, 301 ticks\n");
 }
 
+// Of a recording that is being written.
+std::uint64_t boundaries_on_disk(const std::filesystem::path& file) {
+  try {
+    const Recording so_far(file);
+    auto ticks = so_far.ticks();
+    std::uint64_t count = 0;
+    while (ticks.next()) ++count;
+    return count;
+  } catch (const std::exception&) {
+    return 0;  // its beginning is not yet there
+  }
+}
+
 // What was recorded before a server is killed can be replayed.
 TEST(SameHashOnReplayOf, AServerThatWasKilled) {
   const FieldOfRobots field(4, 100.0);
@@ -206,7 +220,7 @@ TEST(SameHashOnReplayOf, AServerThatWasKilled) {
   Process server(field.serve(domain, {"--speed", "2", "--record", file}));
   Process controllers(FieldOfRobots::host(domain, "all"));
   ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
-  std::this_thread::sleep_for(3s);
+  ASSERT_TRUE(test::eventually([&] { return boundaries_on_disk(file) > 200; })) << server.output();
   server.signal(SIGKILL);
   server.wait_for_exit();
   const Recording recorded(file);

@@ -1,7 +1,7 @@
 // Drives the page in a browser without a window: node browser.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { atTick, coloursIn, patience, pixelsAt, run, runScenario, tick, until } from "./in_page.mjs";
+import { atTick, coloursIn, drawn, patience, pausedTick, pixelsAt, run, runScenario, tick, until } from "./in_page.mjs";
 
 const isOrange = ([red, green, blue]) => red > 120 && red > 1.5 * green && green > blue;
 
@@ -28,7 +28,7 @@ async function draws(page, file) {
   });
   assert.deepEqual(shown, [String(expected.tick), expected.hash, "16"]);
   await run(page, "home; top");
-  await page.waitForTimeout(500);
+  await drawn(page, 2);
   const turretHeight = 0.1; // [m]
   const pixels = await pixelsAt(
     page,
@@ -183,8 +183,7 @@ async function isFoundAgain(page) {
 async function steersServer(page) {
   await until(page, () => Number(window.cohort.viewer.poses.frame.tick) > 20);
   await run(page, "pause");
-  await page.waitForTimeout(500);
-  const before = await tick(page);
+  const before = await pausedTick(page);
   await run(page, "step 5");
   await atTick(page, before + 5);
   await run(page, "move sbot_3 0.25 -0.5");
@@ -242,8 +241,7 @@ async function goesBack(page) {
   await eventsShow("SetSimulationState");
   await run(page, "speed 0.5; speed 0.5");
   await eventsShow("(2 times, last at");
-  await page.waitForTimeout(500);
-  const before = await tick(page);
+  const before = await pausedTick(page);
   await run(page, "seek 1.23");
   await atTick(page, 123);
   await eventsShow("joined");
@@ -266,11 +264,13 @@ async function goesBack(page) {
     end: Number(document.getElementById("scrub").max),
   }));
   const atTime = (time) => bar.x + ((time - begin) / (end - begin)) * bar.width;
-  await page.waitForTimeout(500);
+  assert.equal(await pausedTick(page), 200);
+  const asked = () => page.evaluate(() => window.cohort.connection.nextCall);
+  const askedBefore = await asked();
   await page.mouse.move(atTime(2), bar.y + 0.5 * bar.height);
   await page.mouse.down();
   await page.mouse.move(atTime(0.75), bar.y + 0.5 * bar.height, { steps: 4 });
-  await page.waitForTimeout(500);
+  assert.equal(await asked(), askedBefore, "nothing is asked for while the mouse holds it");
   assert.equal(await tick(page), 200);
   await page.mouse.up();
   await until(page, () => Number(window.cohort.viewer.poses.frame?.tick) < 120);

@@ -1,7 +1,7 @@
 // Tries what the page shows of tests/view/exhibits: node exhibits.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { atTick, coloursIn, look, patience, pixelsAt, run, runScenario, until } from "./in_page.mjs";
+import { atTick, coloursIn, drawn, look, patience, pixelsAt, run, runScenario, until } from "./in_page.mjs";
 
 const near = (found, wanted, by, what) =>
   assert.ok(Math.abs(found - wanted) <= by, `${what} is ${found}, not ${wanted}`);
@@ -24,9 +24,9 @@ const pointsOf = (page, path) =>
 async function films(page) {
   await run(page, "pause; seek 1; film");
   await run(page, "play; theme dark");
-  await page.waitForTimeout(3000); // the film's own time
+  await drawn(page, 30);
   await run(page, "theme light; top");
-  await page.waitForTimeout(2000);
+  await drawn(page, 20);
   const [film] = await Promise.all([page.waitForEvent("download", { timeout: patience }), run(page, "film")]);
   const bytes = readFileSync(await film.path());
   assert.equal(film.suggestedFilename(), "cohort.webm");
@@ -44,7 +44,8 @@ const heard = (page) =>
     for (const { oscillator, panner } of sound.voices.values()) {
       const analyser = new AnalyserNode(sound.context, { fftSize: 32768, smoothingTimeConstant: 0 });
       panner.connect(analyser);
-      await new Promise((resolve) => setTimeout(resolve, 1500)); // so long a stretch of sound is looked at
+      const end = sound.context.currentTime + (2 * analyser.fftSize) / sound.context.sampleRate;
+      while (sound.context.currentTime < end) await new Promise((resolve) => setTimeout(resolve, 50));
       const spectrum = new Float32Array(analyser.frequencyBinCount);
       analyser.getFloatFrequencyData(spectrum);
       const strongest = spectrum.indexOf(Math.max(...spectrum));
@@ -133,7 +134,7 @@ async function movesCamera(page) {
     assert.ok(dot(went, direction) > 0.99, `with ${key} it went along ${went}`);
   }
   const before = await camera(page);
-  await page.waitForTimeout(1500);
+  await drawn(page, 10);
   near(
     Math.hypot(...minus((await camera(page)).position, before.position)),
     0,
@@ -305,7 +306,7 @@ async function drawsShapes(page) {
   await look(page, [-0.5, -2.2, 1.6], [-0.8, -0.9, 0]);
   const shadow = [-0.8, -0.845, 0];
   const lit = [-1.2, -1.155, 0];
-  await page.waitForTimeout(1500);
+  await drawn(page, 2);
   const [dark, bright] = await pixelsAt(page, [shadow, lit]);
   assert.ok(brightness(dark) < 0.85 * brightness(bright), `the shadow is ${dark}, beside it is ${bright}`);
   await run(page, "toggle shadows");

@@ -14,6 +14,25 @@ export const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.po
 export const atTick = (page, wanted) =>
   until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
 
+/** The next pictures are drawn, so many of them. */
+export const drawn = (page, count) =>
+  page.evaluate(
+    (wanted) =>
+      new Promise((resolve) => {
+        let left = wanted;
+        const next = () => (left-- > 0 ? requestAnimationFrame(next) : resolve());
+        next();
+      }),
+    count,
+  );
+/** The server says that the run is paused, and the page shows where: the tick. Ticks are of 10 ms. */
+export const pausedTick = (page) =>
+  until(page, () => {
+    const shown = Number(window.cohort.viewer.poses?.frame?.tick);
+    const said = Math.round(100 * Number(document.getElementById("scrub").value));
+    return document.getElementById("factor").textContent === "paused" && shown === said && shown;
+  });
+
 /** Where in the picture a place of the world is. */
 export const seenAt = (page, place) =>
   page.evaluate(([x, y, z]) => {

@@ -324,8 +324,27 @@ async function handlesObjects(page) {
   assert.equal(await page.locator("#adding").isVisible(), false);
   assert.equal(await ghost(), undefined);
 
+  // Grabbed while the picture is still on the way there, it keeps the heading that it has.
+  const grabbing = page.evaluate(
+    ({ x, y }) =>
+      new Promise((resolve) => {
+        const { viewer, objects } = window.cohort;
+        viewer.take = (frame) => {
+          Object.getPrototypeOf(viewer).take.call(viewer, frame);
+          if (Math.abs(viewer.poseOf(viewer.find("bar_1")).heading - 1) > 0.01) return;
+          viewer.poses.advance(0);
+          objects.grab(x, y);
+          resolve(objects.dragged?.heading);
+          objects.dragged = undefined;
+          delete viewer.take;
+        };
+      }),
+    await seenAt(page, [0.5, 0.3, 0.1]),
+  );
+
   // Dragged, it is shown where it goes, and keeps its heading.
   await run(page, "move bar_1 0.5 0.3 0.05 1.0");
+  assert.ok(Math.abs((await grabbing) - 1) < 0.01, `it would be put down with a heading of ${await grabbing}`);
   await until(page, () => Math.abs(window.cohort.viewer.poseOf(window.cohort.viewer.find("bar_1")).heading - 1) < 0.01);
   const [from, to] = [await seenAt(page, [0.5, 0.3, 0.1]), await seenAt(page, [0.5, -0.4, 0.1])];
   await page.keyboard.down("Shift");

@@ -85,7 +85,7 @@ export class Objects {
     const { scene } = poses;
     const { name, model } = scene.entities[entity];
     const [position, turn] = [new Vector3(), new Quaternion()];
-    poses.read(poses.placeOf(entity), position, turn);
+    poses.read(poses.placeOf(entity), position, turn, 1); // the picture may still be on its way there
     const grabbed = viewer.placeAt(x, y, position.z);
     if (!grabbed) return false;
     const { place, heading } = originOf(scene, model, position, turn);

@@ -75,11 +75,11 @@ export class Poses {
     this.blend = Math.min(1, Math.max(0, now - this.arrival) / Math.max(1, this.interval));
   }
 
-  /** Of a link by its place. */
-  read(place: number, position: Vector3, orientation: Quaternion): void {
+  /** Of a link by its place, as it is drawn; with a `blend` of 1 as the server has it. */
+  read(place: number, position: Vector3, orientation: Quaternion, blend = this.blend): void {
     const p = 3 * place;
     const q = 4 * place;
-    const { positions: a, positionsBefore: b, orientations: c, orientationsBefore: d, blend } = this;
+    const { positions: a, positionsBefore: b, orientations: c, orientationsBefore: d } = this;
     const mix = (now: number, before: number): number => before + blend * (now - before);
     position.set(mix(a[p], b[p]), mix(a[p + 1], b[p + 1]), mix(a[p + 2], b[p + 2]));
     const dot = c[q] * d[q] + c[q + 1] * d[q + 1] + c[q + 2] * d[q + 2] + c[q + 3] * d[q + 3];

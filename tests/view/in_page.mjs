@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { chromium } from "playwright-core";
 
-export const patience = 60_000; // [ms]; a browser that draws in software is slow
+export const patience = Number(process.env.COHORT_PATIENCE ?? 60_000); // [ms]; a browser that draws in software is slow
 
 /** Runs `look` in the page until it gives something that is true, and gives that back. */
 export async function until(page, look, argument) {

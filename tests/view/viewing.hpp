@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,11 @@ class Viewing : public ::testing::Test {
   };
 
  private:
-  static testing::Process::Environment environment() { return {{"COHORT_CHROMIUM", COHORT_CHROMIUM}}; }
+  // A script is less patient than we are, to say itself what did not come.
+  static testing::Process::Environment environment() {
+    const auto theirs = std::chrono::milliseconds(testing::patience) / 2;
+    return {{"COHORT_CHROMIUM", COHORT_CHROMIUM}, {"COHORT_PATIENCE", std::to_string(theirs.count())}};
+  }
 
   inline static const testing::NodeFolder scripts{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/view",
                                                   COHORT_NODE_FOLDER};

@@ -1,7 +1,19 @@
 // Drives the page in a browser without a window: node browser.mjs SCENARIO ADDRESS [FILE]. Ends with 0 if all is right.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { atTick, coloursIn, drawn, patience, pausedTick, pixelsAt, run, runScenario, tick, until } from "./in_page.mjs";
+import {
+  atTick,
+  coloursIn,
+  drawCoarsely,
+  drawn,
+  patience,
+  pausedTick,
+  pixelsAt,
+  run,
+  runScenario,
+  tick,
+  until,
+} from "./in_page.mjs";
 
 const isOrange = ([red, green, blue]) => red > 120 && red > 1.5 * green && green > blue;
 
@@ -84,6 +96,7 @@ async function click(page, name) {
 }
 
 async function steersRecording(page) {
+  await drawCoarsely(page);
   await run(page, "pause; seek 1");
   await atTick(page, 100);
   await run(page, "step 3");

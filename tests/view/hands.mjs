@@ -1,7 +1,7 @@
 // In these scenarios a person drives robots, and adds, drags and removes objects.
 import assert from "node:assert/strict";
 import { Guest } from "./guest.mjs";
-import { run, runScenario, seenAt, tick, until } from "./in_page.mjs";
+import { drawCoarsely, run, runScenario, seenAt, tick, until } from "./in_page.mjs";
 
 const poseOf = (page, name) =>
   page.evaluate((text) => {
@@ -43,13 +43,6 @@ const told = (page, text) =>
     },
     text,
   );
-// A picture that is coarse enough for software to draw it often: people steer by what they see.
-const drawCoarsely = (page) =>
-  page.evaluate(() => {
-    const { stage } = window.cohort.viewer;
-    stage.renderer.setPixelRatio(0.25);
-    return window.cohort.run("toggle shadows");
-  });
 const driven = (page) => page.evaluate(() => window.cohort.driving.name);
 const drives = (page, name) => until(page, (wanted) => window.cohort.driving.name === wanted, name);
 

@@ -14,6 +14,13 @@ export const tick = (page) => page.evaluate(() => Number(window.cohort.viewer.po
 export const atTick = (page, wanted) =>
   until(page, (each) => Number(window.cohort.viewer.poses?.frame?.tick) === each, wanted);
 
+/** A picture that is coarse enough for software to draw it often: people steer by what they see. */
+export const drawCoarsely = (page) =>
+  page.evaluate(() => {
+    const { stage } = window.cohort.viewer;
+    stage.renderer.setPixelRatio(0.25);
+    return window.cohort.run("toggle shadows");
+  });
 /** The next pictures are drawn, so many of them. */
 export const drawn = (page, count) =>
   page.evaluate(

@@ -100,7 +100,7 @@ TEST_F(InTheBrowser, ARunningServerIsSeenAndSteered) {
 TEST_F(InTheBrowser, ARunningServerGoesBackInTimeAndTellsWhatHappens) {
   const testing::ReservedDomain domain;
   Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",
-               "--duration", "6", "--keep-snapshots", "0.5"});
+               "--duration", "60", "--keep-snapshots", "0.5"});
   const View view({"--domain", domain.text(), "--control"});
   run_script("browser.mjs", {"goes_back", view.address()});
 }

@@ -8,6 +8,7 @@
 
 #include "server/session/exchange.hpp"
 #include "server/session/roster.hpp"
+#include "server/session/run_monitor.hpp"
 
 namespace cohort::session {
 

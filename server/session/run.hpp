@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "server/lockstep/barrier.hpp"
+#include "server/description/experiment.hpp"
 #include "server/lockstep/latency_histogram.hpp"
-#include "server/session/events.hpp"
 #include "server/session/playback.hpp"
+#include "server/session/run_events.hpp"
 #include "server/session/session_snapshot.hpp"
 #include "server/simulation/simulation.hpp"
 
@@ -28,7 +28,7 @@ struct NextRun {
 };
 
 struct RunOptions {
-  double speed = 0.0;                    ///< simulated seconds per wall second at the most; 0: as fast as it goes
+  double speed = 0.0;  ///< simulated seconds per wall second at the most; 0: as fast as it goes
   PlaybackState state = PlaybackState::playing;  ///< at first
   /// The simulation was restored from it, and the exchange has to be too; none: the run begins at the beginning.
   std::shared_ptr<const SessionSnapshot> from{};
@@ -72,8 +72,8 @@ struct Miss {
 /// Told what happens, on the thread that runs. Each may be empty.
 struct RunListener {
   std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
-  std::function<void(const Event&)> event{};        ///< each time; its count is that of this time
-  std::function<void(const Event&)> news{};         ///< the first event of its kind and text
+  std::function<void(const RunEvent&)> event{};     ///< each time; its count is that of this time
+  std::function<void(const RunEvent&)> news{};      ///< the first event of its kind and text
   std::function<void(const Miss&)> miss{};
   /// A step is done, or the run begins: no frame of this tick is out.
   std::function<void()> stepped{};
@@ -110,84 +110,7 @@ struct RunResult {
   std::vector<Miss> misses;             ///< of these the first million, in order
   lockstep::LatencyHistogram lateness;  ///< at the asked speed, how late each tick began; empty if none is asked
   TouchCounts touches;
-  std::vector<Event> events;
-};
-
-/// Keeps the books of one run: wall time, pace, progress reports, events.
-class RunMonitor {
- public:
-  using Clock = std::chrono::steady_clock;
-
-  RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
-          RunListener listener);
-
-  /// The whole duration is simulated, or a stop condition holds.
-  bool is_over() const { return simulation_.tick() >= total_ticks_ || simulation_.stop_reason(); }
-  void start();  ///< the first frame is about to go out
-  void stop();   ///< the last step is done, or there will be none
-  /// A step is done.
-  void stepped();
-  /// The frames of this tick are out.
-  void at_boundary();
-  void commanded(std::span<const std::uint32_t> changed) const {
-    if (listener_.commands) listener_.commands(changed);
-  }
-  /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
-  template <class Complete>
-  void report(bool now_anyway, Complete&& complete) {
-    const Clock::time_point now = Clock::now();
-    if (!listener_.progress || (!now_anyway && now - last_report_ < report_interval)) return;
-    Progress progress = progress_at(now);
-    complete(progress);
-    listener_.progress(progress);
-  }
-  Clock::time_point next_report() const { return last_report_ + report_interval; }
-  /// When the next tick may begin at the asked speed; nothing if none is asked. From the run's beginning or its last
-  /// change of pace, so that simulated and wall time never drift apart.
-  std::optional<Clock::time_point> due_time() const;
-  /// A change of pace, without a gap where the run was at its pace before.
-  void set_speed(double speed);
-  /// The wall time until now does not count for the pace.
-  void resume();
-  double speed() const { return options_.speed; }
-  const RunOptions& options() const { return options_; }
-  std::chrono::nanoseconds duration() const { return step_ * static_cast<std::int64_t>(total_ticks_); }
-  void controlled(const ControlEvent& event) {
-    add_event("control", event.operation + ": " + event.text);
-    if (listener_.control) listener_.control(event);
-  }
-  const EventLog& events() const { return log_; }
-  void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
-  void add_barrier(std::chrono::nanoseconds latency) {
-    result_.barrier.add(latency);
-    if (listener_.barrier) listener_.barrier(latency);
-  }
-  void add_resent(std::uint64_t frames) { result_.resent += frames; }
-  void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
-  void add_miss(const lockstep::Barrier::Miss& miss);
-  /// Closes the books.
-  RunResult finish(RunResult::End end, std::string error = {});
-
- private:
-  static constexpr std::chrono::milliseconds report_interval{200};
-  Progress progress_at(Clock::time_point now);
-
-  const Simulation& simulation_;
-  RunOptions options_;
-  RunListener listener_;
-  std::chrono::nanoseconds step_;
-  std::uint64_t total_ticks_;
-  bool started_ = false;
-  bool stopped_ = false;
-  std::optional<std::uint64_t> last_boundary_;  // that the listener was told of
-  Clock::time_point start_;
-  // The pace is counted from here.
-  Clock::time_point pace_start_;
-  std::chrono::nanoseconds pace_start_time_{0};  // simulated
-  Clock::time_point last_report_;
-  std::chrono::nanoseconds last_report_time_{0};  // simulated
-  EventLog log_;
-  RunResult result_;
+  std::vector<RunEvent> events;
 };
 
 }  // namespace cohort::session

@@ -5,7 +5,7 @@ namespace cohort::session {
 using recording::Recorder;
 
 void add_recorders(RunListener& listener, const std::vector<Recorder*>& recorders) {
-  listener.event = [&recorders, next = listener.event](const Event& event) {
+  listener.event = [&recorders, next = listener.event](const RunEvent& event) {
     for (Recorder* recorder : recorders) recorder->event(event.kind, event.text, event.count);
     if (next) next(event);
   };

@@ -172,8 +172,8 @@ TEST(ShippedExperiments, TheArmComesToItsAngles) {
 TEST(ShippedExperiments, ThePorterOpensTheGateSwitchesTheLampOffAndPushesTheBarOff) {
   const Shipped run("gate");
   EXPECT_EQ(run.result.stop_reason, "beyond: 'porter'");
-  std::vector<session::Event> events;
-  for (const session::Event& event : run.result.events)
+  std::vector<session::RunEvent> events;
+  for (const session::RunEvent& event : run.result.events)
     if (event.kind == "event") events.push_back(event);
   ASSERT_EQ(events.size(), 3u);
   EXPECT_EQ(events[0].text, "open_gate of 'porter': disable 'gate'");

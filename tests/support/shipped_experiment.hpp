@@ -48,7 +48,7 @@ class ShippedExperiment {
   Pose pose(const std::string& object) const { return simulation.object_pose(*simulation.objects().find(object)); }
   bool has_quarantined() const {
     return std::any_of(result.events.begin(), result.events.end(),
-                       [](const session::Event& event) { return event.kind == "quarantined"; });
+                       [](const session::RunEvent& event) { return event.kind == "quarantined"; });
   }
   /// What a robot last observed; the first value of the channel.
   double reading(std::uint32_t robot, const std::string& channel) const {

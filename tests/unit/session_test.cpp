@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "server/session/events.hpp"
 #include "server/session/exchange.hpp"
 #include "server/session/in_process.hpp"
 #include "server/session/roster.hpp"
+#include "server/session/run_events.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::session {
@@ -165,10 +165,10 @@ TEST(EventLog, TellsWhatHasChangedSince) {
   EXPECT_TRUE(log.changed_since(revision, 10).empty());
   log.add(7, "joined", "c");
   log.add(8, "joined", "a");
-  const std::vector<Event> first = log.changed_since(revision, 1);
+  const std::vector<RunEvent> first = log.changed_since(revision, 1);
   ASSERT_EQ(first.size(), 1u);
   EXPECT_EQ(first[0].text, "c");
-  const std::vector<Event> second = log.changed_since(revision, 1);
+  const std::vector<RunEvent> second = log.changed_since(revision, 1);
   ASSERT_EQ(second.size(), 1u);
   EXPECT_EQ(second[0].text, "a");
   EXPECT_EQ(second[0].tick, 1u);

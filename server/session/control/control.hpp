@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "idl/control_messages.hpp"
-#include "server/session/control/request_ledger.hpp"
 #include "server/session/control/kept_snapshots.hpp"
 #include "server/session/control/live_recordings.hpp"
+#include "server/session/control/request_ledger.hpp"
 #include "server/session/playback.hpp"
-#include "server/session/run.hpp"
+#include "server/session/run_monitor.hpp"
 
 namespace cohort::session {
 

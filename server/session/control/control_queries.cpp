@@ -5,8 +5,8 @@
 #include <chrono>
 #include <memory>
 
-#include "server/viewing/run_history.hpp"
 #include "server/session/control/control.hpp"
+#include "server/viewing/run_history.hpp"
 
 // What is only asked: answered at once.
 namespace cohort::session {
@@ -200,9 +200,9 @@ void Control::fill_history(Reply& reply, const Request& request) const {
     history.last_kept_tick = kept_.last_tick();
   }
   std::uint64_t revision = request.offset;
-  const std::vector<Event> events = monitor.events().changed_since(revision, most_events);
+  const std::vector<RunEvent> events = monitor.events().changed_since(revision, most_events);
   history.events.reserve(events.size());
-  for (const Event& event : events)
+  for (const RunEvent& event : events)
     history.events.push_back({event.tick, event.last_tick, event.count, event.kind, event.text});
   put(recording::encode(history), reply);
   reply.offset = revision;

@@ -21,9 +21,9 @@
 #include "server/lockstep/leases.hpp"
 #include "server/lockstep/resend_timer.hpp"
 #include "server/session/control/control.hpp"
-#include "server/session/exchange.hpp"
 #include "server/session/control/live_recordings.hpp"
-#include "server/session/run.hpp"
+#include "server/session/exchange.hpp"
+#include "server/session/run_monitor.hpp"
 #include "server/session/server/scene_broadcast.hpp"
 
 namespace cohort::session {

@@ -62,13 +62,13 @@ void Terminal::progress(const session::Progress& progress) {
   log_.progress(line, fields);
 }
 
-void Terminal::event(const session::Event& event) {
+void Terminal::event(const session::RunEvent& event) {
   log_.write(level_of(event), fmt::format("tick {}: {}: {}", event.tick, event.kind, event.text),
              {{"tick", event.tick}, {"kind", event.kind}});
 }
 
 // What an error at the end says again, or what is in the nature of things, need not be read.
-LogLevel Terminal::level_of(const session::Event& event) {
+LogLevel Terminal::level_of(const session::RunEvent& event) {
   const std::string& kind = event.kind;
   if (kind == "event" || kind == "joined" || kind == "back" || kind == "superseded" || kind == "failed" ||
       kind == "control" || kind == "stopped")

@@ -19,11 +19,11 @@ class Terminal {
   Terminal(Log& log, Options options) : log_(log), options_(options) {}
 
   void progress(const session::Progress& progress);
-  void event(const session::Event& event);
+  void event(const session::RunEvent& event);
   void summary(const session::RunResult& result, double cpu_seconds);
 
  private:
-  LogLevel level_of(const session::Event& event);
+  LogLevel level_of(const session::RunEvent& event);
 
   Log& log_;
   Options options_;

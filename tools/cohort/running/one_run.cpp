@@ -4,9 +4,9 @@
 
 #include "server/session/run_recorder.hpp"
 #include "tools/cohort/cli/output_file.hpp"
-#include "tools/drawing/plot.hpp"
 #include "tools/cohort/running/summary_file.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
+#include "tools/drawing/plot.hpp"
 
 namespace cohort::tool {
 
@@ -35,7 +35,7 @@ OneRun::OneRun(const RunCommand& command, std::size_t number, std::size_t count,
 session::RunListener OneRun::listener() {
   session::RunListener listener = {
       .progress = [&](const session::Progress& progress) { terminal_.progress(progress); },
-      .news = [&](const session::Event& event) { terminal_.event(event); },
+      .news = [&](const session::RunEvent& event) { terminal_.event(event); },
       .boundary =
           [&] {
             if (trace_) trace_->boundary();

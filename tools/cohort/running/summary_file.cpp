@@ -27,7 +27,7 @@ void write_summary(const std::filesystem::path& file, const description::Experim
                    const session::RunResult& result, double cpu_seconds) {
   const double wall = seconds(result.wall_time);
   nlohmann::ordered_json events = nlohmann::ordered_json::array();
-  for (const session::Event& event : result.events)
+  for (const session::RunEvent& event : result.events)
     events.push_back({{"tick", event.tick}, {"kind", event.kind}, {"text", event.text}, {"count", event.count}});
   nlohmann::ordered_json misses = nlohmann::ordered_json::array();
   for (const session::Miss& miss : result.misses)

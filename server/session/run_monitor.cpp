@@ -1,11 +1,11 @@
-#include "server/session/run.hpp"
+#include "server/session/run_monitor.hpp"
 
 #include <algorithm>
 
 namespace cohort::session {
 
 RunMonitor::RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
-                 RunListener listener)
+                       RunListener listener)
     : simulation_(simulation),
       options_(std::move(options)),
       listener_(std::move(listener)),
@@ -79,7 +79,7 @@ Progress RunMonitor::progress_at(Clock::time_point now) {
 }
 
 void RunMonitor::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
-  const Event event{simulation_.tick(), kind, text, count};
+  const RunEvent event{simulation_.tick(), kind, text, count};
   const bool is_news = log_.add(event.tick, kind, text, count);
   if (listener_.event) listener_.event(event);
   if (is_news && listener_.news) listener_.news(event);
@@ -88,9 +88,9 @@ void RunMonitor::add_event(const std::string& kind, const std::string& text, std
 void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
   constexpr std::size_t most_misses = 1'000'000;
   ++result_.late;
-  const Miss booked{simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited};
-  if (result_.misses.size() < most_misses) result_.misses.push_back(booked);
-  if (listener_.miss) listener_.miss(booked);
+  const Miss noted{simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited};
+  if (result_.misses.size() < most_misses) result_.misses.push_back(noted);
+  if (listener_.miss) listener_.miss(noted);
   add_event("missed", simulation_.robot_name(miss.robot) + " did not answer in time");
 }
 

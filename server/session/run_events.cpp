@@ -1,4 +1,4 @@
-#include "server/session/events.hpp"
+#include "server/session/run_events.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@ namespace cohort::session {
 bool EventLog::add(std::uint64_t tick, const std::string& kind, const std::string& text, std::uint64_t count) {
   std::size_t of_kind = 0;
   for (std::size_t i = 0; i < events_.size(); ++i) {
-    Event& event = events_[i];
+    RunEvent& event = events_[i];
     if (event.kind != kind) continue;
     if (event.text == text) {
       event.count += count;
@@ -26,14 +26,14 @@ bool EventLog::add(std::uint64_t tick, const std::string& kind, const std::strin
   return true;
 }
 
-std::vector<Event> EventLog::changed_since(std::uint64_t& revision, std::size_t most) const {
+std::vector<RunEvent> EventLog::changed_since(std::uint64_t& revision, std::size_t most) const {
   std::vector<std::size_t> changed;
   changed.reserve(events_.size());
   for (std::size_t i = 0; i < events_.size(); ++i)
     if (changed_at_[i] > revision) changed.push_back(i);
   std::ranges::sort(changed, {}, [&](std::size_t i) { return changed_at_[i]; });
   if (changed.size() > most) changed.resize(most);
-  std::vector<Event> events;
+  std::vector<RunEvent> events;
   events.reserve(changed.size());
   for (const std::size_t i : changed) events.push_back(events_[i]);
   if (!changed.empty()) revision = changed_at_[changed.back()];

@@ -21,31 +21,31 @@ using Receipt = RequestLedger::Receipt;
 using namespace std::chrono_literals;
 
 TEST(Playback, MakesTheStepsOfSeveralOneAfterTheOther) {
-  Playback play(PlaybackState::paused);
-  EXPECT_TRUE(play.holds());
-  play.step(7, 3, 0xa, 1);
-  play.step(7, 2, 0xb, 5);
-  EXPECT_EQ(play.state(), PlaybackState::playing);
-  EXPECT_TRUE(play.reached(9).empty());
-  const auto first = play.reached(10);
+  Playback playback(PlaybackState::paused);
+  EXPECT_TRUE(playback.holds());
+  playback.step(7, 3, 0xa, 1);
+  playback.step(7, 2, 0xb, 5);
+  EXPECT_EQ(playback.state(), PlaybackState::playing);
+  EXPECT_TRUE(playback.reached(9).empty());
+  const auto first = playback.reached(10);
   ASSERT_EQ(first.size(), 1u);
   EXPECT_EQ(first[0].client, 0xau);
-  EXPECT_FALSE(play.holds());
-  const auto second = play.reached(12);
+  EXPECT_FALSE(playback.holds());
+  const auto second = playback.reached(12);
   ASSERT_EQ(second.size(), 1u);
   EXPECT_EQ(second[0].number, 5u);
-  EXPECT_EQ(play.state(), PlaybackState::paused);
-  EXPECT_TRUE(play.holds());
+  EXPECT_EQ(playback.state(), PlaybackState::paused);
+  EXPECT_TRUE(playback.holds());
 }
 
 TEST(Playback, GivesUpStepsThatAreLeftWhenItIsPausedOrGoesOn) {
-  Playback play(PlaybackState::paused);
-  play.step(0, 100, 0xa, 1);
-  const auto given_up = play.set(PlaybackState::playing);
+  Playback playback(PlaybackState::paused);
+  playback.step(0, 100, 0xa, 1);
+  const auto given_up = playback.set(PlaybackState::playing);
   ASSERT_EQ(given_up.size(), 1u);
   EXPECT_EQ(given_up[0].until, 100u);
-  EXPECT_FALSE(play.holds());
-  EXPECT_TRUE(play.reached(100).empty());
+  EXPECT_FALSE(playback.holds());
+  EXPECT_TRUE(playback.reached(100).empty());
 }
 
 wire::Reply reply_to(std::uint64_t client, std::uint64_t number, const std::string& text) {
@@ -57,47 +57,47 @@ wire::Reply reply_to(std::uint64_t client, std::uint64_t number, const std::stri
 }
 
 TEST(RequestLedger, DoesNoRequestTwiceAndRemembersItsReply) {
-  RequestLedger desk;
-  ASSERT_TRUE(desk.is_in_own_name(1, 0xaa));
-  EXPECT_EQ(desk.receive(1, 1), Receipt::fresh);
-  EXPECT_EQ(desk.receive(1, 1), Receipt::under_way);
-  desk.keep(reply_to(1, 1, "done"));
-  EXPECT_EQ(desk.receive(1, 1), Receipt::answered);
-  EXPECT_EQ(desk.remembered(1, 1).error_message, "done");
+  RequestLedger ledger;
+  ASSERT_TRUE(ledger.is_in_own_name(1, 0xaa));
+  EXPECT_EQ(ledger.receive(1, 1), Receipt::fresh);
+  EXPECT_EQ(ledger.receive(1, 1), Receipt::under_way);
+  ledger.keep(reply_to(1, 1, "done"));
+  EXPECT_EQ(ledger.receive(1, 1), Receipt::answered);
+  EXPECT_EQ(ledger.remembered(1, 1).error_message, "done");
   // The one before is lost, and comes after its successor.
-  EXPECT_EQ(desk.receive(1, 3), Receipt::fresh);
-  EXPECT_EQ(desk.receive(1, 2), Receipt::fresh);
+  EXPECT_EQ(ledger.receive(1, 3), Receipt::fresh);
+  EXPECT_EQ(ledger.receive(1, 2), Receipt::fresh);
 }
 
 TEST(RequestLedger, ForgetsOnlyWhatCanNoLongerBeAskedAgain) {
-  RequestLedger desk;
-  ASSERT_TRUE(desk.is_in_own_name(1, 0xaa));
+  RequestLedger ledger;
+  ASSERT_TRUE(ledger.is_in_own_name(1, 0xaa));
   for (std::uint64_t number = 1; number <= 40; ++number) {
-    ASSERT_EQ(desk.receive(1, number), Receipt::fresh) << number;
-    desk.keep(reply_to(1, number, std::to_string(number)));
+    ASSERT_EQ(ledger.receive(1, number), Receipt::fresh) << number;
+    ledger.keep(reply_to(1, number, std::to_string(number)));
   }
-  EXPECT_EQ(desk.receive(1, 24), Receipt::forgotten);
-  EXPECT_EQ(desk.receive(1, 1), Receipt::forgotten) << "and is not done again";
-  EXPECT_EQ(desk.receive(1, 25), Receipt::answered);
+  EXPECT_EQ(ledger.receive(1, 24), Receipt::forgotten);
+  EXPECT_EQ(ledger.receive(1, 1), Receipt::forgotten) << "and is not done again";
+  EXPECT_EQ(ledger.receive(1, 25), Receipt::answered);
 }
 
 TEST(RequestLedger, BoundsWhatOneClientHasUnderWay) {
-  RequestLedger desk;
-  ASSERT_TRUE(desk.is_in_own_name(1, 0xaa));
+  RequestLedger ledger;
+  ASSERT_TRUE(ledger.is_in_own_name(1, 0xaa));
   for (std::uint64_t number = 1; number <= wire::requests_under_way; ++number)
-    ASSERT_EQ(desk.receive(1, number), Receipt::fresh);
-  EXPECT_EQ(desk.receive(1, 17), Receipt::too_many);
-  desk.keep(reply_to(1, 1, "done"));
-  EXPECT_EQ(desk.receive(1, 17), Receipt::fresh);
+    ASSERT_EQ(ledger.receive(1, number), Receipt::fresh);
+  EXPECT_EQ(ledger.receive(1, 17), Receipt::too_many);
+  ledger.keep(reply_to(1, 1, "done"));
+  EXPECT_EQ(ledger.receive(1, 17), Receipt::fresh);
 }
 
 TEST(RequestLedger, KnowsWhoItSpeaksWith) {
-  RequestLedger desk;
-  EXPECT_TRUE(desk.is_in_own_name(1, 0xaa));
-  EXPECT_FALSE(desk.is_in_own_name(1, 0xbb)) << "another's name";
-  EXPECT_FALSE(desk.is_in_own_name(2, 0xaa)) << "a second name";
-  for (std::uint64_t client = 10; client < 10'000; ++client) desk.is_in_own_name(client, 0x1000 + client);
-  EXPECT_TRUE(desk.is_in_own_name(9'999, 0x1000 + 9'999));
+  RequestLedger ledger;
+  EXPECT_TRUE(ledger.is_in_own_name(1, 0xaa));
+  EXPECT_FALSE(ledger.is_in_own_name(1, 0xbb)) << "another's name";
+  EXPECT_FALSE(ledger.is_in_own_name(2, 0xaa)) << "a second name";
+  for (std::uint64_t client = 10; client < 10'000; ++client) ledger.is_in_own_name(client, 0x1000 + client);
+  EXPECT_TRUE(ledger.is_in_own_name(9'999, 0x1000 + 9'999));
 }
 
 std::vector<std::uint8_t> numbered(std::size_t count, std::uint8_t first) {
@@ -107,44 +107,44 @@ std::vector<std::uint8_t> numbered(std::size_t count, std::uint8_t first) {
 }
 
 TEST(RequestLedger, PutsPartsTogetherWhateverIsRepeated) {
-  RequestLedger desk;
-  EXPECT_FALSE(desk.take_part(1, 250, 0, numbered(100, 0)));
-  EXPECT_FALSE(desk.take_all(1)) << "not yet";
-  EXPECT_FALSE(desk.take_part(1, 250, 100, numbered(100, 100)));
-  EXPECT_FALSE(desk.take_part(1, 250, 100, numbered(100, 100))) << "again";
-  EXPECT_TRUE(desk.take_part(1, 250, 240, numbered(10, 0))) << "a gap";
-  EXPECT_FALSE(desk.take_part(1, 250, 200, numbered(50, 200)));
-  const auto all = desk.take_all(1);
+  RequestLedger ledger;
+  EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0)));
+  EXPECT_FALSE(ledger.take_all(1)) << "not yet";
+  EXPECT_FALSE(ledger.take_part(1, 250, 100, numbered(100, 100)));
+  EXPECT_FALSE(ledger.take_part(1, 250, 100, numbered(100, 100))) << "again";
+  EXPECT_TRUE(ledger.take_part(1, 250, 240, numbered(10, 0))) << "a gap";
+  EXPECT_FALSE(ledger.take_part(1, 250, 200, numbered(50, 200)));
+  const auto all = ledger.take_all(1);
   ASSERT_TRUE(all);
   const auto expected = numbered(250, 0);
   EXPECT_TRUE(std::ranges::equal(*all, std::as_bytes(std::span(expected))));
-  EXPECT_FALSE(desk.take_all(1)) << "it is gone";
+  EXPECT_FALSE(ledger.take_all(1)) << "it is gone";
 }
 
 TEST(RequestLedger, RefusesPartsThatCannotBe) {
-  RequestLedger desk;
-  EXPECT_TRUE(desk.take_part(1, wire::largest_data + 1, 0, {}));
-  EXPECT_TRUE(desk.take_part(1, wire::largest_data, 0, numbered(wire::largest_part + 1, 0)));
-  EXPECT_TRUE(desk.take_part(1, 10, 0, numbered(11, 0)));
-  EXPECT_TRUE(desk.take_part(1, 10, 5, numbered(5, 0))) << "it has not begun";
-  EXPECT_TRUE(desk.take_part(1, 10, ~std::uint64_t{0}, numbered(5, 0)));
-  EXPECT_FALSE(desk.take_part(1, 10, 0, numbered(5, 0)));
-  EXPECT_TRUE(desk.take_part(1, 11, 5, numbered(5, 0))) << "another size";
+  RequestLedger ledger;
+  EXPECT_TRUE(ledger.take_part(1, wire::largest_data + 1, 0, {}));
+  EXPECT_TRUE(ledger.take_part(1, wire::largest_data, 0, numbered(wire::largest_part + 1, 0)));
+  EXPECT_TRUE(ledger.take_part(1, 10, 0, numbered(11, 0)));
+  EXPECT_TRUE(ledger.take_part(1, 10, 5, numbered(5, 0))) << "it has not begun";
+  EXPECT_TRUE(ledger.take_part(1, 10, ~std::uint64_t{0}, numbered(5, 0)));
+  EXPECT_FALSE(ledger.take_part(1, 10, 0, numbered(5, 0)));
+  EXPECT_TRUE(ledger.take_part(1, 11, 5, numbered(5, 0))) << "another size";
 }
 
 TEST(RequestLedger, GivesDataInPartsToWhoAskedForItAndKeepsThatOfTwo) {
-  RequestLedger desk;
+  RequestLedger ledger;
   const std::vector<std::byte> data(wire::largest_part + 10, std::byte{7});
-  desk.offer(1, data);
-  desk.offer(2, {std::byte{1}});
-  EXPECT_EQ(desk.part(1, 0)->bytes.size(), wire::largest_part);
-  EXPECT_EQ(desk.part(1, wire::largest_part)->bytes.size(), 10u);
-  EXPECT_EQ(desk.part(1, wire::largest_part)->size, data.size());
-  EXPECT_TRUE(desk.part(1, ~std::uint64_t{0})->bytes.empty());
-  EXPECT_FALSE(desk.part(3, 0));
-  desk.offer(3, {});
-  EXPECT_FALSE(desk.part(1, 0)) << "the oldest is gone";
-  EXPECT_TRUE(desk.part(2, 0));
+  ledger.offer(1, data);
+  ledger.offer(2, {std::byte{1}});
+  EXPECT_EQ(ledger.part(1, 0)->bytes.size(), wire::largest_part);
+  EXPECT_EQ(ledger.part(1, wire::largest_part)->bytes.size(), 10u);
+  EXPECT_EQ(ledger.part(1, wire::largest_part)->size, data.size());
+  EXPECT_TRUE(ledger.part(1, ~std::uint64_t{0})->bytes.empty());
+  EXPECT_FALSE(ledger.part(3, 0));
+  ledger.offer(3, {});
+  EXPECT_FALSE(ledger.part(1, 0)) << "the oldest is gone";
+  EXPECT_TRUE(ledger.part(2, 0));
 }
 
 TEST(AnswerTimes, CountFromTheFirstSendingOfEachFrame) {
@@ -189,10 +189,10 @@ class Answers {
         const std::uint64_t tick = simulation.tick();
         const std::uint64_t frame = robot == 0 || tick == 0 ? tick : tick - 1;
         const std::vector<std::uint32_t> one = {robot};
-        Exchange::Frame asked;
-        exchange.fill_frame(asked, one, frame);
-        if (asked.robots.empty()) continue;
-        const double speed = 0.1 + 0.01 * static_cast<double>(frame % 7) + 0.001 * asked.values[2];
+        Exchange::Frame due;
+        exchange.fill_frame(due, one, frame);
+        if (due.robots.empty()) continue;
+        const double speed = 0.1 + 0.01 * static_cast<double>(frame % 7) + 0.001 * due.values[2];
         exchange.take(one, frame, one, std::vector<double>{speed, -0.5 * speed, 0.1});
       }
       exchange.barrier().expire(10s);

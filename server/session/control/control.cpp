@@ -40,11 +40,6 @@ std::string speed_text(double speed) {
   return speed == 0.0 ? "as fast as it goes" : std::to_string(speed) + " simulated seconds per second at the most";
 }
 
-std::size_t size_of(const Request& request) {
-  return sizeof request + request.resource_string.size() + request.uri.size() + request.entity.size() +
-         request.link.size() + request.data.size();
-}
-
 bool may_ask(const wire::Identity& identity, Operation operation) {
   return identity.may_control || (identity.door == wire::observers_door && wire::is_looking_on(operation));
 }
@@ -91,8 +86,9 @@ void Control::begin(ControlledRun run) {
   playback_ = Playback(run_->monitor.options().state);
   older_ = newer_ = {Clock::now(), run_->simulation.time()};
   if (!std::exchange(goes_back_, false))
-    kept_ = KeptSnapshots(static_cast<std::uint64_t>(run_->monitor.options().keep_interval / run_->experiment.world.step),
-                          most_kept_bytes);
+    kept_ =
+        KeptSnapshots(static_cast<std::uint64_t>(run_->monitor.options().keep_interval / run_->experiment.world.step),
+                      most_kept_bytes);
   for (const Request& request : std::exchange(answered_by_next_run_, {}))
     answer(request, ResultCode::ok,
            "run " + std::to_string(run_->number) + " stands at tick " + std::to_string(run_->simulation.tick()) +
@@ -117,31 +113,32 @@ wire::Reply Control::reply_to(const Request& request) {
   return reply;
 }
 
-Control::Requester* Control::requester_of(const ReceivedRequest& asked) {
-  const std::uint64_t client = asked.request.client;
-  client_of_writer_[asked.sender.writer] = client;
+Control::Requester* Control::requester_of(const ReceivedRequest& received) {
+  const std::uint64_t client = received.request.client;
+  client_of_writer_[received.sender.writer] = client;
   if (const auto known = requesters_.find(client); known != requesters_.end()) {
-    known->second.writer = asked.sender.writer;
+    known->second.writer = received.sender.writer;
     return &known->second;
   }
   if (requesters_.size() >= most_requesters) return nullptr;
-  const auto& identity = asked.door->identity();
+  const auto& identity = received.participant->identity();
   return &requesters_
-              .emplace(client, Requester{.label = printable(asked.request.label) +
-                                                  (identity ? " ('" + identity->name + "')" : std::string()),
-                                         .writer = asked.sender.writer,
-                                         .replies = wire::Writer<Reply>(*asked.door, wire::partition_of(client))})
+              .emplace(client,
+                       Requester{.label = printable(received.request.label) +
+                                          (identity ? " ('" + identity->name + "')" : std::string()),
+                                 .writer = received.sender.writer,
+                                 .replies = wire::Writer<Reply>(*received.participant, wire::partition_of(client))})
               .first->second;
 }
 
-void Control::take(const ReceivedRequest& asked) {
-  const Request& request = asked.request;
+void Control::take(const ReceivedRequest& received) {
+  const Request& request = received.request;
   const auto reject = [&](const std::string& text) { run_->monitor.add_event("rejected", text); };
-  if (request.client == 0 || !ledger_.is_in_own_name(request.client, asked.sender.participant))
+  if (request.client == 0 || !ledger_.is_in_own_name(request.client, received.sender.participant))
     return reject("foreign: a Request comes in another's name, or in nobody's");
-  if (requester_of(asked) == nullptr)
+  if (requester_of(received) == nullptr)
     return reject("flood: " + std::to_string(most_requesters) + " clients control this run already");
-  if (const auto& identity = asked.door->identity(); identity && !may_ask(*identity, request.operation)) {
+  if (const auto& identity = received.participant->identity(); identity && !may_ask(*identity, request.operation)) {
     reject("forbidden: " + label_of(request.client) + " may not control the run");
     Reply reply = reply_to(request);
     reply.result = ResultCode::not_permitted;
@@ -233,7 +230,7 @@ std::string Control::label_of(std::uint64_t client) const {
 
 void Control::tell(const Request& request, const std::string& text, std::vector<std::byte> action) {
   run_->monitor.controlled({run_->simulation.tick(), wire::name_of(request.operation),
-                         text + ", says " + label_of(request.client), std::move(action)});
+                            text + ", says " + label_of(request.client), std::move(action)});
 }
 
 void Control::note_progress(Clock::time_point now) {

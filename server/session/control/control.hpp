@@ -12,18 +12,12 @@
 #include "idl/control_messages.hpp"
 #include "server/session/control/kept_snapshots.hpp"
 #include "server/session/control/live_recordings.hpp"
+#include "server/session/control/received_request.hpp"
 #include "server/session/control/request_ledger.hpp"
 #include "server/session/playback.hpp"
 #include "server/session/run_monitor.hpp"
 
 namespace cohort::session {
-
-/// A request, and where it came in.
-struct ReceivedRequest {
-  wire::Request request;
-  wire::Sender sender;
-  wire::Participant* door = nullptr;
-};
 
 /// What those who control it see and change of a run. All of it is good until the end of the run.
 struct ControlledRun {
@@ -48,7 +42,7 @@ class Control {
   /// Tells those who wait for something that it will not come, unless the next run brings it.
   void end(RunResult::End how);
 
-  void take(const ReceivedRequest& asked);
+  void take(const ReceivedRequest& received);
   /// The writer of somebody's requests has gone.
   void lose(const wire::Sender& sender);
 
@@ -75,7 +69,7 @@ class Control {
   };
   // A reply to a request, not filled in yet.
   static wire::Reply reply_to(const wire::Request& request);
-  Requester* requester_of(const ReceivedRequest& asked);
+  Requester* requester_of(const ReceivedRequest& received);
   void receive(const wire::Request& request);
   void send(wire::Reply reply, bool is_kept);
   void answer(const wire::Request& request, wire::ResultCode result, const std::string& text);

@@ -1,154 +1,249 @@
 #include "server/session/server/server.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <numeric>
+#include <set>
 
+#include "server/session/printable.hpp"
 #include "server/session/roster.hpp"
 
-// One run, tick by tick.
 namespace cohort::session {
 namespace {
 
 constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by a signal, which wakes nobody
-constexpr std::chrono::milliseconds observer_count_interval{100};
+constexpr std::chrono::seconds farewell{2};
 const std::string view_partition = "view";
+std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::to_string(tick); }
 
 }  // namespace
 
-Server::Run::Run(const description::Experiment& its_experiment, Simulation& its_simulation, const RunOptions& options,
-                 const RunListener& listener, std::uint64_t first_epoch)
-    : experiment(its_experiment),
-      simulation(its_simulation),
-      monitor(its_experiment, its_simulation, options, listener),
-      exchange(its_simulation),
-      leases(its_simulation.robot_count(), first_epoch),
-      all_robots(its_simulation.robot_count()),
-      was_driven(its_simulation.robot_count()) {
-  std::iota(all_robots.begin(), all_robots.end(), 0u);
-  std::ranges::copy_if(all_robots, std::back_inserter(undemanding),
-                       [&](std::uint32_t robot) { return !its_simulation.policy(robot).required; });
-}
-
 Server::Server(std::span<wire::Participant> participants)
     : world_state_(participants.front(), view_partition), scenes_(participants.front(), view_partition) {
-  for (wire::Participant& participant : participants) doors_.emplace_back(*this, participant);
+  for (wire::Participant& participant : participants) endpoints_.emplace_back(participant, callbacks(participant));
 }
 
 Server::~Server() = default;
 
-std::string Server::error() {
+// `add` is true if the thread of the run has to look.
+template <class Add>
+void Server::put_aside(const Add& add) {
   const std::lock_guard lock(mutex_);
-  return run_->error;
+  if (add()) wake_.notify_all();
+}
+
+Endpoints::Callbacks Server::callbacks(wire::Participant& participant) {
+  return {
+      .joins = {[this, &participant](const wire::Join& join, const wire::Sender& sender) {
+                  put_aside([&] { return inbox_.add_arrival(join, sender, &participant); });
+                },
+                [this](const wire::Sender& sender, bool alive) {
+                  put_aside([&] { return inbox_.add_liveliness(sender, alive); });
+                }},
+      .commands = {[this](const wire::Command& command, const wire::Sender& sender) { on_command(command, sender); },
+                   {}},
+      .reports = {[this](const wire::Report& report, const wire::Sender& sender) { on_report(report, sender); }, {}},
+      .requests = {[this, &participant](const wire::Request& request, const wire::Sender& sender) {
+                     put_aside([&] { return inbox_.add_request(request, sender, &participant); });
+                   },
+                   [this](const wire::Sender& sender, bool alive) {
+                     if (!alive) put_aside([&] { return inbox_.add_gone_requester(sender); });
+                   }},
+      .foreign_version = [this](std::uint32_t major) { put_aside([&] { return inbox_.add_foreign_version(major); }); }};
+}
+
+void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
+  if (report.kind != wire::ReportKind::failed) return;  // a client has nothing else to report
+  put_aside([&] {
+    if (clients_.is_in_own_name(report.client, sender)) return inbox_.add_report(report, sender);
+    inbox_.reject(sender.participant, "foreign", "a Report comes in the name of " + wire::partition_of(report.client));
+    return false;
+  });
+}
+
+void Server::on_command(const wire::Command& command, const wire::Sender& sender) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!take_answer(command, sender)) return;
+  }
+  wake_.notify_all();  // without the lock, which the one who wakes up needs
+}
+
+// Under the lock. True if the run's thread has to go on.
+bool Server::take_answer(const wire::Command& command, const wire::Sender& sender) {
+  const auto reject = [&](std::uint64_t who, const char* reason, std::string_view text) {
+    inbox_.reject(who, reason, text);
+    return false;
+  };
+  // By who sent it, not by whose name it has: strangers may have as many names as they like.
+  if (!clients_.is_in_own_name(command.client, sender))
+    return reject(sender.participant, "foreign",
+                  "commands come from a client that has not joined, or in another's name");
+  const lockstep::Leases::Lease* lease = run_ == nullptr ? nullptr : run_->leases.lease(command.client);
+  if (lease == nullptr) return reject(command.client, "foreign", "commands come from a client that drives no robot");
+  ServedRun& run = *run_;
+  if (command.run != run.number) return reject(command.client, "stale", answer_to(command.tick) + " of another run");
+  if (command.epoch != lease->epoch)
+    return reject(command.client, "stale", answer_to(command.tick) + " of another lease");
+
+  const lockstep::Time now = Clock::now().time_since_epoch();
+  const Exchange::Taken taken = run.exchange.take(lease->robots, command.tick, command.robots, command.values, now);
+  if (taken.accepted > 0) run.leases.note_answer(command.client, now, command.tick, command.resent);
+  if (taken.rejection) inbox_.reject(command.client, taken.rejection->reason.c_str(), taken.rejection->text);
+  if (taken.ends_run) run.fail(taken.rejection->text);
+  return run.exchange.barrier().complete() || !run.error.empty();
+}
+
+void Server::fail(const std::string& error) {
+  put_aside([&] { return inbox_.add_failure(error); });
+}
+
+void Server::note_process_end(std::uint32_t process) {
+  put_aside([&] { return inbox_.add_ended_process(process); });
 }
 
 RunResult Server::run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
                       const RunListener& listener, const std::atomic<bool>& stop) {
-  using End = RunResult::End;
-  {
-    auto next = std::make_unique<Run>(experiment, simulation, options, recordings_.listening(listener), next_epoch_);
-    const std::lock_guard lock(mutex_);
-    ++run_number_;
-    if (options.from) restore(*options.from, next->exchange);
-    run_ = std::move(next);
-  }
-  Run& run = *run_;
-  recordings_.begin(experiment, simulation, options.from != nullptr);
-  control_.begin({experiment, simulation, run.monitor, run_number_,
-                  [this](wire::SimulationStatus& status) { fill_status(status); }, [this] { return take_snapshot(); }});
-  publish_descriptions();
-  claim_anew();
-
-  const auto end = [&](End how, const std::string& error = {}) {
-    run.monitor.stop();
-    handle_inbox();
-    report_progress(true);
-    const bool goes_on = how == End::reset || how == End::restored;
-    if (!goes_on) {
-      recordings_.end(how, how == End::finished ? simulation.stop_reason().value_or("") : error);
-      let_recordings_be_fetched();
-    }
-    control_.end(how);
-    RunResult result = run.monitor.finish(how, error);
-    const std::lock_guard lock(mutex_);
-    next_epoch_ = run.leases.next_epoch();
-    for (auto& [id, client] : clients_) client.drove = run.leases.lease(id) != nullptr;
-    run_.reset();
-    return result;
-  };
-  const auto end_early = [&] {
-    const std::string error = this->error();
-    if (!error.empty()) return end(End::failed, error);
-    if (!control_.ending()) return end(End::interrupted);
-    const Control::Ending ending = *control_.ending();
-    if (run.started) run.monitor.at_boundary();
-    RunResult result = end(ending.how);
-    result.next = ending.next;
-    return result;
-  };
+  begin_run(experiment, simulation, options, listener);
   if (!wait_for_controllers(stop)) return end_early();
-  run.monitor.start();
-  run.started = true;
+  RunMonitor& monitor = run_->monitor;
+  monitor.start();
+  run_->started = true;
   for (;;) {
     if (!stand_at_boundary(stop)) return end_early();
-    if (run.monitor.is_over()) break;
+    if (monitor.is_over()) break;
     if (!run_tick(stop)) return end_early();
     try {
       simulation.step();
     } catch (const std::runtime_error& error) {
-      run.monitor.add_event("stopped", error.what());
-      return end(End::failed, error.what());
+      monitor.add_event("stopped", error.what());
+      return end_run(RunResult::End::failed, error.what());
     }
-    run.monitor.stepped();
+    monitor.stepped();
   }
   publish_world_state();
   publish_scene(SceneBroadcast::When::at_once);
-  return end(End::finished);
+  return end_run(RunResult::End::finished);
+}
+
+void Server::begin_run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
+                       const RunListener& listener) {
+  auto next = std::make_unique<ServedRun>(experiment, simulation, options, recordings_.listening(listener),
+                                          ++run_number_, next_epoch_);
+  if (options.from) restore(*options.from, next->exchange);
+  {
+    const std::lock_guard lock(mutex_);
+    run_ = std::move(next);
+  }
+  recordings_.begin(experiment, simulation, options.from != nullptr);
+  control_.begin({experiment, simulation, run_->monitor, run_number_,
+                  [this](wire::SimulationStatus& status) { fill_status(status); }, [this] { return take_snapshot(); }});
+  publish_descriptions();
+  clients_.begin(*run_);
+}
+
+RunResult Server::end_run(RunResult::End how, const std::string& error) {
+  ServedRun& run = *run_;
+  run.monitor.stop();
+  handle_inbox();
+  report_progress(true);
+  const bool goes_on = how == RunResult::End::reset || how == RunResult::End::restored;
+  if (!goes_on) {
+    recordings_.end(how, how == RunResult::End::finished ? run.simulation.stop_reason().value_or("") : error);
+    let_recordings_be_fetched();
+  }
+  control_.end(how);
+  RunResult result = run.monitor.finish(how, error);
+  const std::lock_guard lock(mutex_);
+  next_epoch_ = run.leases.next_epoch();
+  clients_.end();
+  run_.reset();
+  return result;
+}
+
+RunResult Server::end_early() {
+  std::string error;
+  {
+    const std::lock_guard lock(mutex_);
+    error = run_->error;
+  }
+  if (!error.empty()) return end_run(RunResult::End::failed, error);
+  if (!control_.ending()) return end_run(RunResult::End::interrupted);
+  const Control::Ending ending = *control_.ending();
+  if (run_->started) run_->monitor.at_boundary();
+  RunResult result = end_run(ending.how);
+  result.next = ending.next;
+  return result;
 }
 
 bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
-  const auto is_ready = [&](std::uint32_t robot) {
-    return run_->leases.holder(robot).has_value() || !run_->simulation.policy(robot).required ||
-           run_->exchange.barrier().is_detached(robot);
-  };
   for (bool is_new = true;; is_new = false) {
     handle_inbox();
     const bool had_work = control_.has_work();
     if (!control_.perform(Control::Moment::boundary)) return false;
     publish_scene(is_new || had_work ? SceneBroadcast::When::at_once : SceneBroadcast::When::for_newcomers);
-    decide_claims();
+    clients_.decide_claims();
     report_progress(false);
     std::unique_lock lock(mutex_);
     if (!run_->error.empty() || stop) return false;
-    if (std::ranges::all_of(run_->all_robots, is_ready)) return true;
-    wake_.wait_for(lock, longest_sleep, [&] { return attention_; });
-    attention_ = false;
+    if (run_->is_ready()) return true;
+    wake_.wait_for(lock, longest_sleep, [&] { return inbox_.has_news(); });
+  }
+}
+
+// At the boundary before a tick: does what was requested, and waits while the run is paused or ahead of its pace. False
+// if the run has to end.
+bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
+  RunMonitor& monitor = run_->monitor;
+  control_.reach_boundary();
+  const auto due = [&] {
+    return control_.holds() ? std::nullopt : std::optional(monitor.due_time().value_or(Clock::time_point::min()));
+  };
+  bool was_held = false;
+  for (;;) {
+    handle_inbox();
+    const bool had_work = control_.has_work();
+    if (!control_.perform(Control::Moment::boundary)) return false;
+    if (monitor.is_over()) return true;
+    const auto go_on_at = due();
+    if (go_on_at && Clock::now() >= *go_on_at) {
+      if (monitor.speed() > 0.0 && run_->simulation.tick() > 0) monitor.add_lateness(Clock::now() - *go_on_at);
+      return true;
+    }
+    if (control_.holds()) {
+      if (!was_held || had_work) publish_world_state();  // no tick is about to
+      publish_scene(was_held && !had_work ? SceneBroadcast::When::for_newcomers : SceneBroadcast::When::at_once);
+      was_held = true;
+      clients_.decide_claims();
+      report_progress(false);
+    }
+    std::unique_lock lock(mutex_);
+    if (!run_->error.empty() || stop) return false;
+    const Clock::time_point until = Clock::now() + longest_sleep;
+    wake_.wait_until(lock, go_on_at ? std::min(*go_on_at, until) : until, [&] { return inbox_.has_news(); });
   }
 }
 
 // From boundary k to the complete set of commands for it. False if the run has to end.
 bool Server::run_tick(const std::atomic<bool>& stop) {
-  decide_claims();
-  see_who_drives();
-  const Clock::time_point begin = Clock::now();
+  clients_.decide_claims();
+  const Clock::time_point opened_at = Clock::now();
   {
     const std::lock_guard lock(mutex_);
-    run_->exchange.open(begin.time_since_epoch());
+    run_->see_who_drives();
+    run_->exchange.open(opened_at.time_since_epoch());
   }
-  send_frames();
+  clients_.send_frames();
   run_->monitor.at_boundary();
   publish_world_state();
   publish_scene(SceneBroadcast::When::due);
-  if (!handle_misses(begin)) return false;
+  if (!handle_misses(opened_at)) return false;
   std::span<const std::uint32_t> changed;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_until(lock, next_wake(), [&] { return run_->exchange.barrier().complete() || attention_; });
-      attention_ = false;
+      wake_.wait_until(lock, next_wake(), [&] { return run_->exchange.barrier().complete() || inbox_.has_news(); });
       if (!run_->error.empty() || stop) return false;
       if (run_->exchange.barrier().complete()) {
-        run_->monitor.add_barrier(Clock::now() - begin);
+        run_->monitor.add_barrier(Clock::now() - opened_at);
         changed = run_->exchange.apply();
         break;
       }
@@ -156,9 +251,9 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     const Clock::time_point now = Clock::now();
     handle_inbox();
     if (!control_.perform(Control::Moment::midst)) return false;
-    decide_claims();
+    clients_.decide_claims();
     if (!handle_misses(now)) return false;
-    resend_frames(now);
+    clients_.resend_frames(now);
     report_progress(false);
   }
   run_->monitor.commanded(changed);
@@ -166,161 +261,137 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
   return true;
 }
 
+// Under the lock.
 Server::Clock::time_point Server::next_wake() const {
   Clock::time_point wake = std::min(Clock::now() + longest_sleep, run_->monitor.next_report());
   if (const auto deadline = run_->exchange.barrier().next_deadline())
     wake = std::min(wake, Clock::time_point(*deadline));
-  for (const auto& [id, client] : clients_)
-    if (is_awaited(id)) wake = std::min(wake, Clock::time_point(client.resend.due()));
-  return wake;
+  return clients_.next_resend(wake);
 }
 
-// Under the lock.
-bool Server::is_awaited(std::uint64_t client) const {
-  const lockstep::Leases::Lease* lease = run_->leases.lease(client);
-  return lease != nullptr &&
-         std::ranges::any_of(lease->robots, [&](auto robot) { return run_->exchange.barrier().is_awaited(robot); });
-}
-
-// Under the lock: the client's frame of this tick. Whether there is one.
-bool Server::fill_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
-  client.frame.robots.clear();
-  const lockstep::Leases::Lease* lease = run_->leases.lease(client_id);
-  if (lease == nullptr) return false;
-  if (!resent) {
-    client.resend.note_answer(lease->answered_tick, lease->answered_copy, lease->answered_at);
-    note_answers(client_id, client);
-  }
-  run_->exchange.fill_frame(client.frame, lease->robots, tick);
-  client.epoch = lease->epoch;
-  return !client.frame.robots.empty();
-}
-
-void Server::write_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
-  wire::Observation observation;
-  observation.client = client_id;
-  observation.run = run_number_;
-  observation.resent = resent ? client.times_resent : 0;
-  observation.epoch = client.epoch;
-  observation.tick = tick;
-  observation.time_ns = (run_->experiment.world.step * static_cast<std::int64_t>(tick)).count();
-  observation.robots = client.frame.robots;
-  observation.values = client.frame.values;
-  if (!resent) {
-    const lockstep::Time now = Clock::now().time_since_epoch();
-    client.resend.start(tick, now);
-    client.answer_times.sent(tick, now);
-  }
-  client.observation.write(observation);  // lost if DDS cannot take it: sent again then
-}
-
-void Server::send_frame(std::uint64_t client_id, Client& client, std::uint64_t tick, bool resent) {
+void Server::handle_inbox() {
+  Inbox::Contents inbox;
   {
     const std::lock_guard lock(mutex_);
-    if (!fill_frame(client_id, client, tick, resent)) return;
+    inbox = inbox_.take();
   }
-  write_frame(client_id, client, tick, resent);
-}
-
-// All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
-void Server::send_frames() {
-  const std::uint64_t tick = run_->simulation.tick();
-  {
+  for (const Inbox::Arrival& arrival : inbox.arrivals) clients_.join(arrival);
+  for (const Inbox::Liveliness& change : inbox.liveliness) clients_.note_liveliness(change);
+  for (const std::uint32_t process : inbox.ended_processes) clients_.note_process_end(process);
+  for (const wire::Report& report : inbox.reports) {
     const std::lock_guard lock(mutex_);
-    for (auto& [id, client] : clients_) fill_frame(id, client, tick, false);
+    if (run_->leases.lease(report.client) == nullptr) continue;  // it drives nothing: its troubles are its own
+    run_->monitor.add_event("failed", clients_.label_of(report.client) + ": " + printable(report.text));
+    run_->fail(report.text);
   }
-  for (auto& [id, client] : clients_) {
-    if (client.frame.robots.empty()) continue;
-    write_frame(id, client, tick, false);
-    client.times_resent = 0;
+  if (!inbox.failure.empty()) {
+    const std::lock_guard lock(mutex_);
+    run_->fail(inbox.failure);
   }
-}
-
-void Server::resend_frames(Clock::time_point now) {
-  for (auto& [id, client] : clients_) {
-    if (!client.resend.is_due(now.time_since_epoch())) continue;
-    std::vector<std::uint64_t> ticks;
-    {
-      const std::lock_guard lock(mutex_);
-      if (!is_awaited(id)) continue;
-      ticks = frames_under_way(run_->leases.lease(id)->robots);
-    }
-    ++client.times_resent;
-    for (const std::uint64_t tick : ticks) send_frame(id, client, tick, true);
-    run_->monitor.add_resent(ticks.size());
-    client.resent_count += ticks.size();
-    client.resend.resent(now.time_since_epoch());
-  }
+  for (const std::uint32_t major : inbox.foreign_versions)
+    run_->monitor.add_event("version", "a client speaks version " + std::to_string(major) +
+                                           " of the protocol, and this server version 1: they never meet. Install the "
+                                           "same major version of Cohort on both sides");
+  clients_.note_rejections(inbox.rejected);
+  for (const wire::Sender& sender : inbox.gone_requesters) control_.lose(sender);
+  for (const ReceivedRequest& received : inbox.requests) control_.take(received);
 }
 
 bool Server::handle_misses(Clock::time_point now) {
+  using std::chrono::milliseconds;
   std::set<std::uint64_t> detached;
   {
     const std::lock_guard lock(mutex_);
     for (const lockstep::Barrier::Miss& miss : run_->exchange.barrier().expire(now.time_since_epoch())) {
       run_->monitor.add_miss(miss);
-      if (const auto holder = run_->leases.holder(miss.robot)) ++clients_.at(*holder).late;
-      if (miss.consequence == description::OnLate::stop && run_->error.empty())
-        run_->error = run_->simulation.robot_name(miss.robot) + " did not answer tick " +
-                      std::to_string(miss.frame_tick) + " within " +
-                      std::to_string(std::chrono::duration_cast<std::chrono::milliseconds>(miss.waited).count()) +
-                      " ms";
-      if (const auto holder = run_->leases.holder(miss.robot);
-          miss.consequence == description::OnLate::detach && holder) {
+      const auto holder = run_->leases.holder(miss.robot);
+      if (holder) clients_.note_miss(*holder);
+      if (miss.consequence == description::OnLate::stop)
+        run_->fail(run_->simulation.robot_name(miss.robot) + " did not answer tick " + std::to_string(miss.frame_tick) +
+                   " within " + std::to_string(std::chrono::duration_cast<milliseconds>(miss.waited).count()) + " ms");
+      if (holder && miss.consequence == description::OnLate::detach) {
         run_->leases.release(*holder);
         detached.insert(*holder);
       }
     }
     if (!run_->error.empty()) return false;
   }
-  for (const std::uint64_t client : detached)
-    clients_.at(client).report.write({client, run_number_, wire::ReportKind::superseded, run_->simulation.tick(),
-                                      "detached", "it missed a deadline, and its policy is to detach it"});
+  for (const std::uint64_t client : detached) clients_.tell_detached(client);
   return true;
 }
 
 void Server::report_progress(bool now_anyway) {
   run_->monitor.report(now_anyway, [&](Progress& progress) {
     const std::lock_guard lock(mutex_);
-    std::vector<std::uint32_t> awaited;
     progress.paused = control_.holds();
-    if (run_->started && !progress.paused) {
-      awaited = run_->exchange.barrier().awaited();
-      progress.waiting = Clock::now().time_since_epoch() - run_->exchange.barrier().opened_at();
-    } else if (!run_->started) {
-      for (const std::uint32_t robot : run_->all_robots)
-        if (!run_->leases.holder(robot) && run_->simulation.policy(robot).required) awaited.push_back(robot);
-    }
+    if (!progress.paused) progress.waiting = run_->waiting();
+    const std::vector<std::uint32_t> awaited = run_->awaited(progress.paused);
     for (const std::uint32_t robot : awaited) progress.awaited.push_back(run_->simulation.robot_name(robot));
     if (!awaited.empty())
-      if (const auto holder = run_->leases.holder(awaited.front())) progress.awaited_from = label_of(*holder);
+      if (const auto holder = run_->leases.holder(awaited.front())) progress.awaited_from = clients_.label_of(*holder);
   });
 }
 
-void Server::publish_world_state() {
-  const Clock::time_point now = Clock::now();
-  if (now - observers_counted_at_ > observer_count_interval) {
-    observers_counted_at_ = now;
-    observed_ = world_state_.matched() > 0;
+// Tells of the robots' kinds. An id is never used for two things, since clients keep what they were told in earlier
+// runs.
+void Server::publish_descriptions() {
+  for (wire::RobotDescription& kind : describe_kinds(run_->simulation)) {
+    const auto known = std::ranges::find_if(descriptions_, [&](const wire::RobotDescription& other) {
+      return other.model == kind.model && other.observation == kind.observation && other.command == kind.command;
+    });
+    kind.description = static_cast<std::uint32_t>(known - descriptions_.begin());
+    run_->descriptions.push_back(kind.description);
+    if (known != descriptions_.end()) continue;
+    for (Endpoints& endpoints : endpoints_) endpoints.descriptions.write(kind);
+    descriptions_.push_back(std::move(kind));
   }
-  if (!observed_) return;
-  const Simulation& simulation = run_->simulation;
-  poses_.clear();
-  std::vector<std::uint32_t> present;
-  for (const std::uint32_t robot : run_->all_robots) {
-    if (!simulation.is_present(robot)) continue;
-    present.push_back(robot);
-    const Pose X_WL = simulation.robot_pose(robot);
-    const auto& p = X_WL.position;
-    const auto& q = X_WL.orientation;
-    poses_.insert(poses_.end(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
-  }
-  world_state_.write(
-      {run_number_, simulation.tick(), simulation.time().count(), simulation.state_hash(), present, poses_});
 }
 
 void Server::publish_scene(SceneBroadcast::When when) {
-  scenes_.publish({run_->experiment, run_->simulation, run_number_}, when);
+  scenes_.publish({run_->experiment, run_->simulation, run_->number}, when);
+}
+
+// The run has ended. Whoever fetches nothing is not waited for.
+void Server::let_recordings_be_fetched() {
+  constexpr std::chrono::seconds longest_idle{2};
+  std::uint64_t fetched = recordings_.fetched();
+  for (Clock::time_point since = Clock::now(); !recordings_.are_fetched() && Clock::now() - since < longest_idle;) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, longest_sleep, [&] { return inbox_.has_news(); });
+    }
+    handle_inbox();
+    if (std::exchange(fetched, recordings_.fetched()) != fetched) since = Clock::now();
+  }
+}
+
+SessionSnapshot Server::take_snapshot() {
+  const std::lock_guard lock(mutex_);
+  return session::take_snapshot(run_->experiment, run_->simulation, run_->exchange);
+}
+
+void Server::fill_status(wire::SimulationStatus& status) {
+  constexpr std::size_t most_names = 20;
+  const std::lock_guard lock(mutex_);
+  status.started = run_->started;
+  const std::vector<std::uint32_t> awaited = run_->awaited(control_.holds());
+  status.awaited_count = static_cast<std::uint32_t>(awaited.size());
+  for (std::size_t i = 0; i < std::min(awaited.size(), most_names); ++i)
+    status.awaited.push_back(run_->simulation.robot_name(awaited[i]));
+  if (!awaited.empty()) status.waiting_ns = run_->waiting().count();
+  status.controllers = clients_.status();
+}
+
+// What is not delivered when the participant goes is lost: hence the wait.
+void Server::dismiss(const RunResult& last) {
+  std::set<std::uint64_t> staying = clients_.dismiss(last, run_number_);
+  const Clock::time_point until = Clock::now() + farewell;
+  std::unique_lock lock(mutex_);
+  while (!staying.empty() && Clock::now() < until) {
+    wake_.wait_until(lock, until, [&] { return inbox_.has_liveliness(); });
+    for (const Inbox::Liveliness& change : inbox_.take_liveliness())
+      if (const auto client = clients_.client_of(change.sender); client && !change.alive) staying.erase(*client);
+  }
 }
 
 }  // namespace cohort::session

@@ -1,0 +1,328 @@
+#include "server/session/server/clients.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "server/description/select_robots.hpp"
+#include "server/session/roster.hpp"
+
+namespace cohort::session {
+namespace {
+
+// What a client may ask for and how many there may be, so that no stranger fills the memory or costs a tick's time.
+constexpr std::size_t most_selectors = 4096;
+constexpr std::size_t most_clients = 8192;
+
+std::string host_name() {
+  char name[256] = {};
+  ::gethostname(name, sizeof(name) - 1);
+  return name;
+}
+
+}  // namespace
+
+void Clients::begin(ServedRun& run) {
+  run_ = &run;
+  std::vector<AttachedClient*> staying;
+  std::vector<std::uint64_t> gone;
+  for (auto& [id, client] : clients_) {
+    if (!client.alive)
+      gone.push_back(id);
+    else if (client.drove || client.claims)
+      staying.push_back(&client);
+    client.begin_run();
+  }
+  for (const std::uint64_t id : gone) forget(id);
+  std::ranges::sort(staying, {}, &AttachedClient::place);
+  for (AttachedClient* client : staying) claim(*client);
+}
+
+void Clients::end() {
+  for (auto& [id, client] : clients_) client.drove = run_->leases.lease(id) != nullptr;
+  run_ = nullptr;
+}
+
+std::set<std::uint64_t> Clients::dismiss(const RunResult& last, std::uint32_t run) {
+  const bool failed = last.end == RunResult::End::failed;
+  const wire::ReportKind kind = failed ? wire::ReportKind::failed : wire::ReportKind::finished;
+  const std::string reason = failed ? "failed" : last.end == RunResult::End::finished ? "complete" : "interrupted";
+  std::set<std::uint64_t> hearing;
+  for (auto& [id, client] : clients_) {
+    if (!client.drove) continue;
+    client.report.write({id, run, kind, last.ticks, reason, last.error});
+    if (client.alive) hearing.insert(id);
+  }
+  return hearing;
+}
+
+void Clients::join(const Inbox::Arrival& arrival) {
+  AttachedClient* client = attach(arrival);
+  if (client == nullptr) return;
+  const bool is_news = !client->is_known || client->join.robots != arrival.join.robots;
+  client->is_known = true;
+  client->join = arrival.join;
+  client->writer = arrival.sender.writer;
+  set_alive(*client, true);
+  // Clients join once a second, which only says that they live.
+  if (is_news) claim(*client);
+}
+
+// The client of this Join, with its writers. Null if somebody else has that id.
+AttachedClient* Clients::attach(const Inbox::Arrival& arrival) {
+  const std::uint64_t id = arrival.join.client;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto [known, is_new] = participant_of_client_.emplace(id, arrival.sender.participant);
+    if (!is_new && known->second != arrival.sender.participant) {
+      run_->monitor.add_event("rejected", "foreign: a Join comes in the name of " + label_of(id));
+      return nullptr;
+    }
+    if (is_new && clients_.size() >= most_clients) {
+      participant_of_client_.erase(known);
+      run_->monitor.add_event("rejected", "flood: there are " + std::to_string(most_clients) + " clients already");
+      return nullptr;
+    }
+  }
+  client_of_writer_[arrival.sender.writer] = id;
+  const auto [client, is_new] = clients_.try_emplace(id, arrival, arrivals_);
+  if (is_new) ++arrivals_;
+  return &client->second;
+}
+
+void Clients::note_liveliness(const Inbox::Liveliness& change) {
+  const auto id = client_of(change.sender);
+  if (!id) return;
+  AttachedClient& client = clients_.at(*id);
+  // Of the writer of its last Join: one that was lost and found again has another, and the end of the former comes
+  // late.
+  if (client.writer == change.sender.writer) set_alive(client, change.alive);
+}
+
+void Clients::note_process_end(std::uint32_t process) {
+  static const std::string here = host_name();
+  for (auto next = clients_.begin(); next != clients_.end();) {
+    AttachedClient& client = (next++)->second;  // which may be forgotten
+    if (client.join.process == process && client.join.host == here) set_alive(client, false);
+  }
+}
+
+void Clients::set_alive(AttachedClient& client, bool alive) {
+  client.alive = alive;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const lockstep::Leases::Lease* lease = run_->leases.lease(client.id())) {
+      if (lease->alive == alive) return;
+      run_->leases.set_alive(client.id(), alive);
+      run_->monitor.add_event(alive ? "back" : "lost", client.label + " with " + run_->robots_text(lease->robots) +
+                                                           (alive ? " is back" : " is gone or does not respond"));
+      // Nobody waits for a robot that does not need its controller.
+      for (const std::uint32_t robot : lease->robots)
+        if (!alive && !run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);
+      return;
+    }
+    if (client.claims) {
+      // A claim counts only while its client lives; a stopped process that goes on has it back.
+      if (alive) run_->leases.claim(client.id(), client.robots);
+      if (!alive) run_->leases.release(client.id());
+      return;
+    }
+  }
+  if (!alive) forget(client.id());
+}
+
+void Clients::forget(std::uint64_t client) {
+  clients_.erase(client);
+  std::erase_if(client_of_writer_, [&](const auto& writer) { return writer.second == client; });
+  const std::lock_guard lock(mutex_);
+  participant_of_client_.erase(client);
+}
+
+void Clients::note_rejections(const Inbox::Rejected& rejected) {
+  for (const auto& [key, rejections] : rejected) {
+    const auto& [id, reason] = key;
+    run_->monitor.add_event("rejected", reason + " from " + label_of(id) + ": " + rejections.text, rejections.count);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) continue;
+    AttachedClient& client = found->second;
+    client.rejected += rejections.count;
+    if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
+    if (client.reported_rejections.insert(reason).second)
+      client.report.write(
+          {id, run_->number, wire::ReportKind::rejected, run_->simulation.tick(), reason, rejections.text});
+  }
+}
+
+// What a client's selectors select in this run.
+void Clients::claim(AttachedClient& client) {
+  std::set<std::uint32_t> robots;
+  std::string refusal;
+  if (client.join.robots.size() > most_selectors)
+    refusal = "it asks with more than " + std::to_string(most_selectors) + " selectors: ranges say more in one";
+  for (const std::string& selector : client.join.robots) {
+    if (!refusal.empty()) break;
+    try {
+      const auto selected = description::select_robots(run_->experiment.world, selector);
+      robots.insert(selected.begin(), selected.end());
+    } catch (const std::invalid_argument& error) {
+      refusal = error.what();
+    }
+  }
+  if (robots.empty() && refusal.empty()) refusal = "it asks for no robot";
+  if (refusal.empty()) refusal = why_forbidden(client, robots);
+  if (!refusal.empty()) return client.refuse(*run_, refusal);
+  client.robots.assign(robots.begin(), robots.end());
+  client.claims = true;
+  const std::lock_guard lock(mutex_);
+  run_->leases.claim(client.id(), client.robots);
+}
+
+// Empty if its identity may drive them all, or if there is no security.
+std::string Clients::why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const {
+  if (!client.identity) return {};
+  const std::vector<std::string>& selectors = client.identity->robots;
+  const std::string who = "its identity '" + client.identity->name + "' may ";
+  if (selectors.empty()) return who + "look on, and drive no robot";
+  // The same identities may serve several experiments, of which this one need not have all their robots.
+  const auto allowed = description::select_robots_of_any(run_->experiment.world, selectors);
+  const auto forbidden =
+      std::ranges::find_if(robots, [&](std::uint32_t robot) { return !std::ranges::binary_search(allowed, robot); });
+  if (forbidden == robots.end()) return {};
+  std::string list;
+  for (const std::string& selector : selectors) list += (list.empty() ? "" : ",") + selector;
+  return who + "drive " + list + ", not " + run_->simulation.robot_name(*forbidden);
+}
+
+void Clients::decide_claims() {
+  lockstep::Leases::Decisions decisions;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!run_->leases.has_claims()) return;
+    const lockstep::Barrier& barrier = run_->exchange.barrier();
+    const bool at_boundary = barrier.complete();
+    decisions =
+        run_->leases.decide(RunMonitor::Clock::now().time_since_epoch(), [&](const std::vector<std::uint32_t>& robots) {
+          return at_boundary || std::ranges::any_of(robots, [&](auto robot) { return barrier.is_awaited(robot); });
+        });
+  }
+  for (const auto& refused : decisions.refused)
+    clients_.at(refused.client)
+        .refuse(*run_, run_->simulation.robot_name(refused.robot) + " is driven by " + label_of(refused.holder));
+  for (const auto& granted : decisions.granted) admit(granted);
+}
+
+void Clients::admit(const lockstep::Leases::Granted& granted) {
+  AttachedClient& client = clients_.at(granted.client);
+  for (const std::uint64_t loser : granted.superseded) {
+    const std::string text = client.label + " has taken its robots over";
+    clients_.at(loser).report.write(
+        {loser, run_->number, wire::ReportKind::superseded, run_->simulation.tick(), "superseded", text});
+    run_->monitor.add_event("superseded", label_of(loser) + ": " + text);
+  }
+
+  std::vector<std::uint64_t> frames;  // under way: asked of whoever had the robots before, and not answered
+  wire::Admit answer;
+  {
+    const std::lock_guard lock(mutex_);
+    const lockstep::Leases::Lease& lease = *run_->leases.lease(granted.client);
+    // Of a restored run there are some before its first tick.
+    if (run_->started || run_->monitor.options().from) frames = run_->frames_under_way(lease.robots);
+    answer.client = granted.client;
+    answer.run = run_->number;
+    answer.epoch = lease.epoch;
+    answer.start_reason = why_it_starts(lease.robots, client);
+    for (const std::uint32_t robot : lease.robots) run_->was_driven[robot] = true;
+    answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
+    answer.step_ns = run_->experiment.world.step.count();
+    admit_robots(answer, run_->experiment, run_->simulation, lease.robots);
+    for (wire::AdmittedRobot& robot : answer.robots) robot.description = run_->descriptions[robot.description];
+    if (!granted.again) run_->monitor.add_event("joined", client.label + " drives " + run_->robots_text(lease.robots));
+  }
+  client.claims = false;
+  client.admit.write(answer);
+  for (const std::uint64_t tick : frames) send_frame(client, tick, false);
+  client.times_resent = 0;
+}
+
+// Under the lock.
+wire::StartReason Clients::why_it_starts(const std::vector<std::uint32_t>& robots, const AttachedClient& client) const {
+  const bool takes_over = std::ranges::any_of(robots, [&](auto robot) { return run_->was_driven[robot]; });
+  if (run_->started && takes_over) return wire::StartReason::takeover;
+  if (!run_->started && run_->monitor.options().from) return wire::StartReason::restored;
+  return client.drove ? wire::StartReason::reset : wire::StartReason::first;
+}
+
+// All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
+void Clients::send_frames() {
+  const std::uint64_t tick = run_->simulation.tick();
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, client] : clients_) client.fill_frame(*run_, tick, false);
+  }
+  for (auto& [id, client] : clients_) {
+    if (client.frame.robots.empty()) continue;
+    client.write_frame(*run_, tick, false);
+    client.times_resent = 0;
+  }
+}
+
+void Clients::send_frame(AttachedClient& client, std::uint64_t tick, bool resent) {
+  {
+    const std::lock_guard lock(mutex_);
+    client.fill_frame(*run_, tick, resent);
+  }
+  if (!client.frame.robots.empty()) client.write_frame(*run_, tick, resent);
+}
+
+void Clients::resend_frames(RunMonitor::Clock::time_point now) {
+  for (auto& [id, client] : clients_) {
+    if (!client.resend.is_due(now.time_since_epoch())) continue;
+    std::vector<std::uint64_t> ticks;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!run_->is_awaited(id)) continue;
+      ticks = run_->frames_under_way(run_->leases.lease(id)->robots);
+    }
+    ++client.times_resent;
+    for (const std::uint64_t tick : ticks) send_frame(client, tick, true);
+    run_->monitor.add_resent(ticks.size());
+    client.resent_count += ticks.size();
+    client.resend.resent(now.time_since_epoch());
+  }
+}
+
+RunMonitor::Clock::time_point Clients::next_resend(RunMonitor::Clock::time_point latest) const {
+  for (const auto& [id, client] : clients_)
+    if (run_->is_awaited(id)) latest = std::min(latest, RunMonitor::Clock::time_point(client.resend.due()));
+  return latest;
+}
+
+void Clients::tell_detached(std::uint64_t client) {
+  clients_.at(client).report.write({client, run_->number, wire::ReportKind::superseded, run_->simulation.tick(),
+                                    "detached", "it missed a deadline, and its policy is to detach it"});
+}
+
+std::vector<wire::ControllerStatus> Clients::status() {
+  std::vector<wire::ControllerStatus> all;
+  for (auto& [id, client] : clients_)
+    if (run_->leases.lease(id) != nullptr) all.push_back(client.status(*run_));
+  return all;
+}
+
+std::string Clients::label_of(std::uint64_t client) const {
+  const auto found = clients_.find(client);
+  return found == clients_.end() ? "an unknown client" : found->second.label;
+}
+
+std::optional<std::uint64_t> Clients::client_of(const wire::Sender& sender) const {
+  const auto found = client_of_writer_.find(sender.writer);
+  return found == client_of_writer_.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool Clients::is_in_own_name(std::uint64_t client, const wire::Sender& sender) const {
+  const auto joined = participant_of_client_.find(client);
+  return joined != participant_of_client_.end() && joined->second == sender.participant;
+}
+
+}  // namespace cohort::session

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "server/session/server/attached_client.hpp"
+
+namespace cohort::session {
+
+/// Who is attached, from one run to the next: joining, leaving, taking over, who may drive what, and what each client
+/// is told. On the thread of the run; functions take the server's lock themselves, and must not be called with it, but
+/// for those that say that they are called under it.
+class Clients {
+ public:
+  /// `mutex`: the server's lock, which must outlive this.
+  explicit Clients(std::mutex& mutex) : mutex_(mutex) {}
+
+  /// A run begins: those who drove or waited claim what they asked for when they came, in the order of their coming.
+  void begin(ServedRun& run);
+  /// It ends. Under the lock.
+  void end();
+  /// There will be no further run after the one of this number: tells all who drive how it ended. Those of them who can
+  /// hear it.
+  std::set<std::uint64_t> dismiss(const RunResult& last, std::uint32_t run);
+
+  // What came in.
+  void join(const Inbox::Arrival& arrival);
+  void note_liveliness(const Inbox::Liveliness& change);
+  void note_process_end(std::uint32_t process);  ///< of this machine
+  void note_rejections(const Inbox::Rejected& rejected);
+
+  /// Claims are granted at boundaries, and in the midst of a tick to whoever takes over a robot that it waits for.
+  void decide_claims();
+  /// The frames of the current tick.
+  void send_frames();
+  /// Those that are unanswered for long.
+  void resend_frames(RunMonitor::Clock::time_point now);
+  /// When `resend_frames` is due for somebody who is awaited, at the latest `latest`. Under the lock.
+  RunMonitor::Clock::time_point next_resend(RunMonitor::Clock::time_point latest) const;
+  /// An answer of the client has missed its deadline.
+  void note_miss(std::uint64_t client) { ++clients_.at(client).late; }
+  /// Its policy has ended the client's lease.
+  void tell_detached(std::uint64_t client);
+
+  /// Of those who drive. Under the lock.
+  std::vector<wire::ControllerStatus> status();
+  std::string label_of(std::uint64_t client) const;
+  /// The client whose Join came from this writer, if there is one.
+  std::optional<std::uint64_t> client_of(const wire::Sender& sender) const;
+  /// Whether DDS says that this comes from the process that joined under that id, so that nobody can speak in another's
+  /// name. Any thread, under the lock.
+  bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
+
+ private:
+  AttachedClient* attach(const Inbox::Arrival& arrival);
+  void set_alive(AttachedClient& client, bool alive);
+  void forget(std::uint64_t client);
+  void claim(AttachedClient& client);
+  std::string why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const;
+  void admit(const lockstep::Leases::Granted& granted);
+  wire::StartReason why_it_starts(const std::vector<std::uint32_t>& robots, const AttachedClient& client) const;
+  void send_frame(AttachedClient& client, std::uint64_t tick, bool resent);
+
+  std::mutex& mutex_;
+  ServedRun* run_ = nullptr;  // null between runs
+  std::uint64_t arrivals_ = 0;
+  std::map<std::uint64_t, AttachedClient> clients_;               // by id
+  std::map<std::uint64_t, std::uint64_t> client_of_writer_;       // of Join
+  std::map<std::uint64_t, std::uint64_t> participant_of_client_;  // who joined under an id; under the lock
+};
+
+}  // namespace cohort::session

@@ -1,0 +1,79 @@
+#include "server/session/server/inbox.hpp"
+
+namespace cohort::session {
+
+bool Inbox::add_arrival(const wire::Join& join, const wire::Sender& sender, wire::Participant* participant) {
+  if (contents_.arrivals.size() >= most_arrivals) {
+    reject(sender.participant, "flood", "more Joins than can be read");
+    return false;
+  }
+  contents_.arrivals.push_back({join, sender, participant});
+  return has_news_ = true;
+}
+
+bool Inbox::add_liveliness(const wire::Sender& sender, bool alive) {
+  contents_.liveliness.push_back({sender, alive});
+  return has_news_ = true;
+}
+
+bool Inbox::add_report(const wire::Report& report, const wire::Sender& sender) {
+  if (contents_.reports.size() >= most_reports) {
+    reject(sender.participant, "flood", "more Reports than can be read");
+    return false;
+  }
+  contents_.reports.push_back(report);
+  return has_news_ = true;
+}
+
+bool Inbox::add_ended_process(std::uint32_t process) {
+  contents_.ended_processes.push_back(process);
+  return has_news_ = true;
+}
+
+bool Inbox::add_request(const wire::Request& request, const wire::Sender& sender, wire::Participant* participant) {
+  const std::size_t bytes = size_of(request);
+  if (bytes > largest_request) {
+    reject(sender.participant, "malformed", "a Request is larger than 4 MiB");
+    return false;
+  }
+  std::size_t& of_sender = requests_of_[sender.participant];
+  if (of_sender >= wire::requests_under_way || contents_.requests.size() >= most_requests ||
+      request_bytes_ + bytes > most_request_bytes) {
+    reject(sender.participant, "flood", "more Requests than can be read");
+    return false;
+  }
+  ++of_sender;
+  request_bytes_ += bytes;
+  contents_.requests.push_back({request, sender, participant});
+  return has_news_ = true;
+}
+
+bool Inbox::add_gone_requester(const wire::Sender& sender) {
+  contents_.gone_requesters.push_back(sender);
+  return has_news_ = true;
+}
+
+bool Inbox::add_failure(const std::string& error) {
+  if (contents_.failure.empty()) contents_.failure = error;
+  return has_news_ = true;
+}
+
+bool Inbox::add_foreign_version(std::uint32_t major) {
+  if (contents_.foreign_versions.size() >= most_foreign_versions || !contents_.foreign_versions.insert(major).second)
+    return false;
+  return has_news_ = true;
+}
+
+void Inbox::reject(std::uint64_t who, const char* reason, std::string_view text) {
+  Rejections& rejections = contents_.rejected[{who, reason}];
+  if (rejections.count++ == 0) rejections.text = text;
+}
+
+Inbox::Contents Inbox::take() {
+  requests_of_.clear();
+  request_bytes_ = 0;
+  has_news_ = false;
+  return std::exchange(contents_, {});
+}
+
+}  // namespace cohort::session

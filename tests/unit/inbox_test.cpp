@@ -1,0 +1,98 @@
+#include "server/session/server/inbox.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cohort::session {
+namespace {
+
+wire::Sender sender_of(std::uint64_t participant) { return {.writer = 10 * participant, .participant = participant}; }
+
+wire::Request request_of(std::uint64_t number, std::size_t bytes = 0) {
+  wire::Request request;
+  request.number = number;
+  request.data.resize(bytes);
+  return request;
+}
+
+bool add_request(Inbox& inbox, std::uint64_t number, std::uint64_t participant = 1, std::size_t bytes = 0) {
+  return inbox.add_request(request_of(number, bytes), sender_of(participant), nullptr);
+}
+
+TEST(Inbox, KeepsTheOrderAndIsEmptyOnceTaken) {
+  Inbox inbox;
+  for (std::uint64_t number = 1; number <= 3; ++number) EXPECT_TRUE(add_request(inbox, number, number));
+  for (std::uint32_t process = 5; process > 2; --process) EXPECT_TRUE(inbox.add_ended_process(process));
+  EXPECT_TRUE(inbox.add_failure("first"));
+  EXPECT_TRUE(inbox.add_failure("second"));
+  EXPECT_TRUE(inbox.has_news());
+  const Inbox::Contents contents = inbox.take();
+  ASSERT_EQ(contents.requests.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(contents.requests[i].request.number, i + 1);
+  EXPECT_EQ(contents.ended_processes, (std::vector<std::uint32_t>{5, 4, 3}));
+  EXPECT_EQ(contents.failure, "first");
+  EXPECT_FALSE(inbox.has_news());
+  EXPECT_TRUE(inbox.take().requests.empty());
+}
+
+TEST(Inbox, TakesAsManyRequestsOfOneParticipantAsItMayHaveUnderWay) {
+  Inbox inbox;
+  for (std::uint64_t number = 1; number <= wire::requests_under_way; ++number) EXPECT_TRUE(add_request(inbox, number));
+  EXPECT_FALSE(add_request(inbox, wire::requests_under_way + 1));
+  EXPECT_TRUE(add_request(inbox, 1, 2)) << "another has room of its own";
+  EXPECT_EQ(inbox.take().rejected.at({1, "flood"}).count, 1u);
+  EXPECT_TRUE(add_request(inbox, 1)) << "there is room again";
+}
+
+TEST(Inbox, BoundsAllRequestsInNumberAndInBytes) {
+  Inbox inbox;
+  std::uint64_t taken = 0;
+  for (std::uint64_t participant = 1; participant <= 2 * Inbox::most_requests; ++participant)
+    if (add_request(inbox, 1, participant)) ++taken;
+  EXPECT_EQ(taken, Inbox::most_requests);
+  inbox.take();
+
+  EXPECT_FALSE(add_request(inbox, 1, 1, Inbox::largest_request)) << "with the rest of it, it is larger";
+  constexpr std::size_t large = Inbox::largest_request / 2;
+  taken = 0;
+  for (std::uint64_t participant = 1; participant <= 64; ++participant)
+    if (add_request(inbox, 1, participant, large)) ++taken;
+  EXPECT_EQ(taken, Inbox::most_request_bytes / large - 1) << "of which each is a little more than its data";
+}
+
+TEST(Inbox, BoundsJoinsReportsAndForeignVersions) {
+  Inbox inbox;
+  for (std::size_t i = 0; i < Inbox::most_arrivals; ++i) EXPECT_TRUE(inbox.add_arrival({}, sender_of(1), nullptr));
+  EXPECT_FALSE(inbox.add_arrival({}, sender_of(2), nullptr));
+  for (std::size_t i = 0; i < Inbox::most_reports; ++i) EXPECT_TRUE(inbox.add_report({}, sender_of(1)));
+  EXPECT_FALSE(inbox.add_report({}, sender_of(2)));
+  for (std::uint32_t major = 2; major < 2 + Inbox::most_foreign_versions; ++major)
+    EXPECT_TRUE(inbox.add_foreign_version(major));
+  EXPECT_FALSE(inbox.add_foreign_version(2)) << "known already";
+  EXPECT_FALSE(inbox.add_foreign_version(1000));
+  EXPECT_EQ(inbox.take().rejected.at({2, "flood"}).count, 2u);
+}
+
+TEST(Inbox, CountsRejectionsAndWakesNobodyForThem) {
+  Inbox inbox;
+  inbox.reject(7, "stale", "the first");
+  inbox.reject(7, "stale", "the second");
+  inbox.reject(8, "stale", "of another");
+  EXPECT_FALSE(inbox.has_news());
+  const Inbox::Rejected rejected = inbox.take().rejected;
+  ASSERT_EQ(rejected.size(), 2u);
+  EXPECT_EQ(rejected.at({7, "stale"}).count, 2u);
+  EXPECT_EQ(rejected.at({7, "stale"}).text, "the first");
+}
+
+TEST(Inbox, LivelinessCanBeTakenAlone) {
+  Inbox inbox;
+  inbox.add_liveliness(sender_of(1), false);
+  inbox.add_ended_process(1);
+  EXPECT_TRUE(inbox.has_liveliness());
+  EXPECT_EQ(inbox.take_liveliness().size(), 1u);
+  EXPECT_FALSE(inbox.has_liveliness());
+  EXPECT_EQ(inbox.take().ended_processes.size(), 1u);
+}
+
+}  // namespace
+}  // namespace cohort::session

@@ -1,10 +1,10 @@
 #include "server/session/control/control.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <utility>
 
+#include "server/session/control/control_actions.hpp"
+#include "server/session/control/request_checks.hpp"
 #include "server/session/printable.hpp"
 
 namespace cohort::session {
@@ -18,11 +18,9 @@ using wire::SimulationState;
 
 constexpr std::size_t most_requesters = 64;
 constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
-constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
 constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;
 constexpr std::uint32_t scope_default = 0;
 constexpr std::uint32_t scope_all = 255;
-constexpr std::chrono::milliseconds sample_interval{500};
 constexpr std::chrono::milliseconds last_reply{500};
 
 SimulationState on_wire(PlaybackState state) {
@@ -55,36 +53,13 @@ bool ends_the_run(const Request& request) {
   }
 }
 
-// What can be seen without the world; empty if nothing is wrong.
-std::string what_is_wrong(const Request& request) {
-  const auto finite = [](std::initializer_list<double> numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
-  };
-  const auto finite_vector = [&](const wire::Vector3& v) { return finite({v.x, v.y, v.z}); };
-  if (wire::name_of(request.operation).empty())
-    return "there is no operation " + std::to_string(static_cast<std::uint32_t>(request.operation));
-  if (request.operation == Operation::step_simulation && (request.steps == 0 || request.steps > most_steps))
-    return "expected at least 1 step, and at most 2^62, not " + std::to_string(request.steps);
-  if (request.operation == Operation::set_speed && !(request.speed >= 0.0 && request.speed <= 1e9))
-    return "expected a speed from 0 (as fast as it goes) to 1e9, not " + std::to_string(request.speed);
-  if (request.operation == Operation::set_simulation_state && request.state > SimulationState::quitting)
-    return "there is no state " + std::to_string(static_cast<std::uint32_t>(request.state)) +
-           " to set: 0 stopped, 1 playing, 2 paused, 3 quitting";
-  const wire::Quaternion& q = request.pose.orientation;
-  const bool numbers_fit = finite_vector(request.pose.position) && finite({q.x, q.y, q.z, q.w}) &&
-                           finite_vector(request.twist.linear) && finite_vector(request.twist.angular) &&
-                           finite_vector(request.force) && finite_vector(request.torque) &&
-                           finite_vector(request.color) && finite({request.intensity});
-  return numbers_fit ? std::string() : "a number is not finite";
-}
-
 }  // namespace
 
 void Control::begin(ControlledRun run) {
   run_.emplace(std::move(run));
   ending_.reset();
   playback_ = Playback(run_->monitor.options().state);
-  older_ = newer_ = {Clock::now(), run_->simulation.time()};
+  queries_.begin(*run_);
   if (!std::exchange(goes_back_, false))
     kept_ =
         KeptSnapshots(static_cast<std::uint64_t>(run_->monitor.options().keep_interval / run_->experiment.world.step),
@@ -160,7 +135,11 @@ void Control::receive(const Request& request) {
   if (const std::string wrong = what_is_wrong(request); !wrong.empty())
     return refuse(wire::name_of(request.operation).empty() ? ResultCode::feature_unsupported : ResultCode::malformed,
                   wrong);
-  if (wire::is_query(request.operation)) return answer_query(request);
+  if (wire::is_query(request.operation)) {
+    Reply reply = reply_to(request);
+    queries_.answer(reply, request);
+    return send(std::move(reply), false);
+  }
   switch (ledger_.receive(request.client, request.number)) {
     case RequestLedger::Receipt::under_way: return;  // its reply comes
     case RequestLedger::Receipt::answered: return send(ledger_.remembered(request.client, request.number), false);
@@ -233,14 +212,8 @@ void Control::tell(const Request& request, const std::string& text, std::vector<
                             text + ", says " + label_of(request.client), std::move(action)});
 }
 
-void Control::note_progress(Clock::time_point now) {
-  if (now - newer_.wall < sample_interval) return;
-  older_ = newer_;
-  newer_ = {now, run_->simulation.time()};
-}
-
 void Control::reach_boundary() {
-  note_progress(Clock::now());
+  queries_.note_progress(Clock::now());
   if (kept_.wants(run_->simulation.tick())) kept_.keep(run_->take_snapshot());
   if (!playback_.has_steps()) return;
   const auto done = playback_.reached(run_->simulation.tick());
@@ -261,7 +234,7 @@ bool Control::perform(Moment moment) {
       waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
     } while (i < waiting.size() && is_action(now.back()) && is_action(waiting[i]));
     if (is_action(now.front()))
-      act(now);
+      do_actions(now);
     else
       do_one(now.front());
   }
@@ -337,6 +310,84 @@ void Control::quit(const Request& request) {
   tell(request, "the end");
   ending_ = Ending{};
   answer(request, ResultCode::ok, "the run ends at tick " + std::to_string(run_->simulation.tick()));
+}
+
+void Control::begin_anew(const Request& request, NextRun next, const std::string& text) {
+  if (!run_->monitor.options().prepare)
+    return answer(request, ResultCode::feature_unsupported, "this server cannot begin another run");
+  run_->monitor.options().prepare(next);
+  tell(request, text);
+  answered_by_next_run_.push_back(request);
+  const RunResult::End how = next.snapshot == nullptr ? RunResult::End::reset : RunResult::End::restored;
+  ending_ = Ending{how, std::move(next)};
+}
+
+void Control::save(const Request& request) {
+  const SessionSnapshot snapshot = run_->take_snapshot();
+  std::vector<std::byte> bytes = to_bytes(snapshot);
+  if (bytes.size() > wire::largest_data)
+    return answer(request, ResultCode::operation_failed,
+                  "the snapshot has " + std::to_string(bytes.size()) + " bytes, and " +
+                      std::to_string(wire::largest_data) + " can be sent at the most");
+  tell(request, "saved at tick " + std::to_string(snapshot.tick));
+  Reply reply = reply_to(request);
+  reply.size = bytes.size();
+  reply.error_message = "saved at tick " + std::to_string(snapshot.tick);
+  ledger_.offer(request.client, std::move(bytes));
+  send(std::move(reply), true);
+}
+
+void Control::start_recording(const Request& request) {
+  if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
+  const std::string text = "recorded from tick " + std::to_string(run_->simulation.tick()) + " on";
+  recordings_.start(request.client, request.resource_string);
+  tell(request, text);
+  answer(request, ResultCode::ok, text);
+}
+
+void Control::load(const Request& request) {
+  const auto bytes = ledger_.take_all(request.client);
+  if (!bytes)
+    return answer(request, ResultCode::incorrect_state, "there is no snapshot to load: PutData brings it, whole");
+  auto snapshot = std::make_shared<SessionSnapshot>(snapshot_from_bytes(*bytes));
+  expect_same_experiment(*snapshot, run_->experiment);
+  go_on_from(request, std::move(snapshot));
+}
+
+void Control::go_back(const Request& request) {
+  if (kept_.size() == 0)
+    return answer(request, ResultCode::not_found, "this server keeps no snapshots; --keep-snapshots lets it");
+  const std::int64_t tick = request.duration_ns / run_->experiment.world.step.count();
+  auto snapshot = tick < 0 ? nullptr : kept_.last_until(static_cast<std::uint64_t>(tick));
+  if (snapshot == nullptr)
+    return answer(request, ResultCode::not_found,
+                  "the first snapshot that is kept is of tick " + std::to_string(kept_.first_tick()) +
+                      ", the last of tick " + std::to_string(kept_.last_tick()) + "; none is at or before tick " +
+                      std::to_string(tick));
+  const std::uint64_t at = snapshot->tick;
+  go_on_from(request, std::move(snapshot));
+  if (!ending_) return;
+  kept_.forget_after(at);
+  goes_back_ = true;
+}
+
+void Control::go_on_from(const Request& request, std::shared_ptr<const SessionSnapshot> snapshot) {
+  const std::string text = "from tick " + std::to_string(snapshot->tick) + " on";
+  NextRun next{.seed = snapshot->seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()};
+  if (next.state == PlaybackState::stopped) next.state = PlaybackState::paused;
+  next.snapshot = std::move(snapshot);
+  begin_anew(request, std::move(next), text);
+}
+
+void Control::do_actions(std::span<const Request> requests) {
+  for (ActionOutcome& outcome : act(run_->simulation, requests)) {
+    for (ActionOutcome::Done& done : outcome.done) tell(*outcome.request, done.text, std::move(done.action));
+    Reply reply = reply_to(*outcome.request);
+    reply.result = outcome.result;
+    reply.error_message = std::move(outcome.text);
+    reply.entity = std::move(outcome.entity);
+    send(std::move(reply), true);
+  }
 }
 
 }  // namespace cohort::session

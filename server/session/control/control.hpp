@@ -1,8 +1,6 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -10,6 +8,8 @@
 #include <vector>
 
 #include "idl/control_messages.hpp"
+#include "server/session/control/control_queries.hpp"
+#include "server/session/control/controlled_run.hpp"
 #include "server/session/control/kept_snapshots.hpp"
 #include "server/session/control/live_recordings.hpp"
 #include "server/session/control/received_request.hpp"
@@ -18,16 +18,6 @@
 #include "server/session/run_monitor.hpp"
 
 namespace cohort::session {
-
-/// What those who control it see and change of a run. All of it is good until the end of the run.
-struct ControlledRun {
-  const description::Experiment& experiment;
-  Simulation& simulation;
-  RunMonitor& monitor;
-  std::uint32_t number = 0;
-  std::function<void(wire::SimulationStatus&)> fill_status;  ///< what control does not know itself
-  std::function<SessionSnapshot()> take_snapshot;            ///< at a boundary
-};
 
 /// Control of a session over DDS: docs/protocol.md, "Control", the server's side. Questions are answered at once; what
 /// changes something waits for a boundary, and is done in the order of arrival. All on the thread of the run.
@@ -77,36 +67,20 @@ class Control {
   void tell(const wire::Request& request, const std::string& text, std::vector<std::byte> action = {});
   std::string label_of(std::uint64_t client) const;
 
-  // Queries (control_queries.cpp).
-  void answer_query(const wire::Request& request);
-  void fill_features(wire::Reply& reply) const;
-  void fill_entities(wire::Reply& reply, const wire::Request& request) const;
-  void fill_entity_state(wire::Reply& reply, const wire::Request& request) const;
-  void fill_status(wire::Reply& reply);
-  void fill_data(wire::Reply& reply, const wire::Request& request) const;
-  void take_data(wire::Reply& reply, const wire::Request& request);
-  void fill_recording(wire::Reply& reply, const wire::Request& request);
-  void stop_recording(wire::Reply& reply, const wire::Request& request);
-  void fill_history(wire::Reply& reply, const wire::Request& request) const;
-  std::optional<std::uint32_t> find_entity(wire::Reply& reply, const std::string& name) const;
-
   // Operations: done or refused with a reply, or begun.
   void do_one(const wire::Request& request);
   void set_state(const wire::Request& request);
   void step(const wire::Request& request);
   void set_speed(const wire::Request& request);
   void quit(const wire::Request& request);
-  // What begins a run anew, and what is kept of one (control_snapshots.cpp).
+  // What begins a run anew, and what is kept of one.
   void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
   void save(const wire::Request& request);
   void load(const wire::Request& request);
   void go_back(const wire::Request& request);
   void go_on_from(const wire::Request& request, std::shared_ptr<const SessionSnapshot> snapshot);
   void start_recording(const wire::Request& request);
-  // Actions on the world (control_actions.cpp).
-  static bool is_action(const wire::Request& request);
-  void act(std::span<const wire::Request> requests);
-  wire::ResultCode code_of_failure(const wire::Request& request) const;
+  void do_actions(std::span<const wire::Request> requests);
 
   LiveRecordings& recordings_;
   std::optional<ControlledRun> run_;
@@ -118,13 +92,7 @@ class Control {
   RequestLedger ledger_;
   std::map<std::uint64_t, Requester> requesters_;            // by client
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of requests
-  // Of the real-time factor, half a second and more apart.
-  struct Sample {
-    Clock::time_point wall{};
-    std::chrono::nanoseconds time{0};  // simulated
-  };
-  void note_progress(Clock::time_point now);
-  Sample older_, newer_;
+  ControlQueries queries_{ledger_, recordings_, kept_};
 };
 
 }  // namespace cohort::session

@@ -1,13 +1,12 @@
+#include "server/session/control/control_actions.hpp"
+
 #include <cmath>
+#include <optional>
 
-#include "server/session/control/control.hpp"
-
-// What changes the world: Simulation::act.
 namespace cohort::session {
 namespace {
 
 using wire::Operation;
-using wire::Reply;
 using wire::Request;
 using wire::ResultCode;
 
@@ -71,9 +70,17 @@ std::optional<Refusal> refusal_of(const Request& request) {
   return std::nullopt;
 }
 
+// Why it could not be done, in simulation_interfaces's numbers.
+ResultCode code_of_failure(const Request& request, const Objects& objects) {
+  const bool is_known = objects.find(request.entity).has_value();
+  if (request.operation == Operation::spawn_entity)
+    return is_known && !request.allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
+  return is_known || request.operation == Operation::set_light ? ResultCode::operation_failed : ResultCode::not_found;
+}
+
 }  // namespace
 
-bool Control::is_action(const Request& request) {
+bool is_action(const Request& request) {
   switch (request.operation) {
     case Operation::spawn_entity:
     case Operation::delete_entity:
@@ -84,21 +91,13 @@ bool Control::is_action(const Request& request) {
   }
 }
 
-// Why it could not be done, in simulation_interfaces's numbers.
-wire::ResultCode Control::code_of_failure(const Request& request) const {
-  const bool is_known = run_->simulation.objects().find(request.entity).has_value();
-  if (request.operation == Operation::spawn_entity)
-    return is_known && !request.allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
-  return is_known || request.operation == Operation::set_light ? ResultCode::operation_failed : ResultCode::not_found;
-}
-
-// All at once, since the robots sense again after them.
-void Control::act(std::span<const Request> requests) {
+std::vector<ActionOutcome> act(Simulation& simulation, std::span<const Request> requests) {
+  std::vector<ActionOutcome> outcomes;
   std::vector<Action> actions;
   std::vector<const Request*> origins;  // of each action
   for (const Request& request : requests) {
     if (const auto refusal = refusal_of(request)) {
-      answer(request, refusal->result, refusal->text);
+      outcomes.push_back({&request, refusal->result, refusal->text});
       continue;
     }
     for (Action& action : actions_of(request)) {
@@ -106,29 +105,29 @@ void Control::act(std::span<const Request> requests) {
       origins.push_back(&request);
     }
   }
-  const Objects& objects = run_->simulation.objects();
+  const Objects& objects = simulation.objects();
   std::uint32_t spawned = objects.size();
   std::vector<ActionResult> results;
   try {
-    results = run_->simulation.act(actions);
+    results = simulation.act(actions);
   } catch (const std::exception& error) {
     results.assign(actions.size(), {false, error.what()});
   }
   for (std::size_t i = 0; i < actions.size();) {
     const Request& request = *origins[i];
-    Reply reply = reply_to(request);
+    ActionOutcome& outcome = outcomes.emplace_back(ActionOutcome{&request});
     for (; i < actions.size() && origins[i] == &request; ++i) {
-      reply.error_message += (reply.error_message.empty() ? "" : "; ") + results[i].text;
+      outcome.text += (outcome.text.empty() ? "" : "; ") + results[i].text;
       if (results[i].is_done)
-        tell(request, results[i].text, to_bytes(actions[i]));
+        outcome.done.push_back({results[i].text, to_bytes(actions[i])});
       else
-        reply.result = code_of_failure(request);
+        outcome.result = code_of_failure(request, objects);
     }
-    reply.entity = request.entity;
-    if (request.operation == Operation::spawn_entity && reply.result == ResultCode::ok)
-      reply.entity = objects.name(spawned++);
-    send(std::move(reply), true);
+    outcome.entity = request.entity;
+    if (request.operation == Operation::spawn_entity && outcome.result == ResultCode::ok)
+      outcome.entity = objects.name(spawned++);
   }
+  return outcomes;
 }
 
 }  // namespace cohort::session

@@ -1,3 +1,5 @@
+#include "server/session/control/control_queries.hpp"
+
 #include <regex.h>
 
 #include <algorithm>
@@ -5,10 +7,8 @@
 #include <chrono>
 #include <memory>
 
-#include "server/session/control/control.hpp"
 #include "server/viewing/run_history.hpp"
 
-// What is only asked: answered at once.
 namespace cohort::session {
 namespace {
 
@@ -16,6 +16,8 @@ using wire::Operation;
 using wire::Reply;
 using wire::Request;
 using wire::ResultCode;
+
+constexpr std::chrono::milliseconds sample_interval{500};
 
 // Of simulation_interfaces/msg/SimulatorFeatures.
 enum Feature : std::uint32_t {
@@ -76,8 +78,18 @@ wire::Vector3 on_wire(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; 
 
 }  // namespace
 
-void Control::answer_query(const Request& request) {
-  Reply reply = reply_to(request);
+void ControlQueries::begin(const ControlledRun& run) {
+  run_ = &run;
+  older_ = newer_ = {Clock::now(), run.simulation.time()};
+}
+
+void ControlQueries::note_progress(Clock::time_point now) {
+  if (now - newer_.wall < sample_interval) return;
+  older_ = newer_;
+  newer_ = {now, run_->simulation.time()};
+}
+
+void ControlQueries::answer(Reply& reply, const Request& request) {
   try {
     switch (request.operation) {
       case Operation::get_simulator_features: fill_features(reply); break;
@@ -95,10 +107,9 @@ void Control::answer_query(const Request& request) {
     reply.result = ResultCode::malformed;
     reply.error_message = error.what();
   }
-  send(std::move(reply), false);
 }
 
-void Control::fill_features(Reply& reply) const {
+void ControlQueries::fill_features(Reply& reply) const {
   reply.features = {spawning,
                     deleting,
                     spawning_resource_string,
@@ -114,14 +125,14 @@ void Control::fill_features(Reply& reply) const {
   std::ranges::sort(reply.features);
 }
 
-void Control::fill_entities(Reply& reply, const Request& request) const {
+void ControlQueries::fill_entities(Reply& reply, const Request& request) const {
   const Filter filter(request.filter);
   const Objects& objects = run_->simulation.objects();
   for (std::uint32_t object = 0; object < objects.size(); ++object)
     if (objects.is_present(object) && filter.fits(objects.name(object))) reply.entities.push_back(objects.name(object));
 }
 
-std::optional<std::uint32_t> Control::find_entity(Reply& reply, const std::string& name) const {
+std::optional<std::uint32_t> ControlQueries::find_entity(Reply& reply, const std::string& name) const {
   const Objects& objects = run_->simulation.objects();
   const auto found = objects.find(name);
   if (found && objects.is_present(*found)) return found;
@@ -130,7 +141,7 @@ std::optional<std::uint32_t> Control::find_entity(Reply& reply, const std::strin
   return std::nullopt;
 }
 
-void Control::fill_entity_state(Reply& reply, const Request& request) const {
+void ControlQueries::fill_entity_state(Reply& reply, const Request& request) const {
   const auto object = find_entity(reply, request.entity);
   if (!object) return;
   const Pose X_WL = run_->simulation.object_pose(*object);
@@ -142,7 +153,7 @@ void Control::fill_entity_state(Reply& reply, const Request& request) const {
                           {on_wire(twist.linear_W), on_wire(twist.angular_W)}});
 }
 
-void Control::fill_status(Reply& reply) {
+void ControlQueries::fill_status(Reply& reply) {
   wire::SimulationStatus& status = reply.status.emplace_back();
   status.experiment = run_->experiment.name;
   status.seed = run_->experiment.seed;
@@ -159,7 +170,7 @@ void Control::fill_status(Reply& reply) {
   run_->fill_status(status);
 }
 
-void Control::fill_data(Reply& reply, const Request& request) const {
+void ControlQueries::fill_data(Reply& reply, const Request& request) const {
   const auto part = ledger_.part(request.client, request.offset);
   if (!part) {
     reply.result = ResultCode::not_found;
@@ -171,7 +182,7 @@ void Control::fill_data(Reply& reply, const Request& request) const {
   put(part->bytes, reply);
 }
 
-void Control::fill_recording(Reply& reply, const Request& request) {
+void ControlQueries::fill_recording(Reply& reply, const Request& request) {
   const auto part = recordings_.fetch(request.client, request.offset);
   if (!part) {
     reply.result = ResultCode::not_found;
@@ -184,12 +195,12 @@ void Control::fill_recording(Reply& reply, const Request& request) {
   reply.error_message = part->problem;
 }
 
-void Control::stop_recording(Reply& reply, const Request& request) {
+void ControlQueries::stop_recording(Reply& reply, const Request& request) {
   recordings_.stop(request.client);
   reply.error_message = "recorded up to tick " + std::to_string(run_->simulation.tick());
 }
 
-void Control::fill_history(Reply& reply, const Request& request) const {
+void ControlQueries::fill_history(Reply& reply, const Request& request) const {
   constexpr std::size_t most_events = 250;
   viewing::RunHistory history;
   const RunMonitor& monitor = run_->monitor;
@@ -209,7 +220,7 @@ void Control::fill_history(Reply& reply, const Request& request) const {
   reply.size = monitor.events().revision();
 }
 
-void Control::take_data(Reply& reply, const Request& request) {
+void ControlQueries::take_data(Reply& reply, const Request& request) {
   reply.size = request.size;
   reply.offset = request.offset;
   const auto wrong = ledger_.take_part(request.client, request.size, request.offset, request.data);

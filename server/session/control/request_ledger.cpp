@@ -80,7 +80,7 @@ std::optional<RequestLedger::Part> RequestLedger::part(std::uint64_t client, std
 }
 
 std::optional<std::string> RequestLedger::take_part(std::uint64_t client, std::uint64_t size, std::uint64_t offset,
-                                                  std::span<const std::uint8_t> bytes) {
+                                                    std::span<const std::uint8_t> bytes) {
   if (size > wire::largest_data)
     return "data of " + std::to_string(size) + " bytes is more than " + std::to_string(wire::largest_data);
   if (bytes.size() > wire::largest_part)

@@ -238,9 +238,9 @@ struct Battery {
 /// Command `NAME/0/opening`, from 0, closed, to 1; observations `NAME/0/opening` as it is, `NAME/0/gripping` and
 /// `NAME/0/grippable` (0 or 1), `NAME/0/force` [N].
 struct Gripper {
-  /// How it is found out that there is something between the sides: a ray from one to the other, or whether something
-  /// could be grasped.
-  enum class LightBarrier { beam, simple };
+  /// How it is found out that there is something between the sides: whether something could be grasped, or by a ray
+  /// from one to the other.
+  enum class LightBarrier { simple, beam };
 
   std::string name;
   std::size_t link = 0;
@@ -280,12 +280,12 @@ struct UserAction {
   std::string name;
 };
 
-using Device =
-    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, JointEncoder, TreelEncoder, ProximityRing,
-                 GroundSensors, LightSensors, Microphones, LedRing, Loudspeaker, RangeAndBearing, ClimateSensor,
-                 Battery, Accelerometer, Imu, ForceTorqueSensor, Inclinometer, Lidar, ContactSensor, Altimeter,
-                 Magnetometer, LogicalCamera, AirPressureSensor, OmnidirectionalCamera, PanoramicCamera, Gripper,
-                 TorqueSensor, TractionSensor, UserAction>;
+/// The register: a new kind is one more here. In the order in which manuals have them, SDF's own ones last.
+using Device = std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, LedRing, Loudspeaker, JointEncoder,
+                            TreelEncoder, ProximityRing, GroundSensors, LightSensors, Microphones, Accelerometer,
+                            Inclinometer, RangeAndBearing, OmnidirectionalCamera, PanoramicCamera, ClimateSensor,
+                            Battery, Gripper, TorqueSensor, TractionSensor, UserAction, Imu, ForceTorqueSensor, Lidar,
+                            ContactSensor, Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

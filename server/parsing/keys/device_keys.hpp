@@ -2,292 +2,368 @@
 
 #include <array>
 #include <cstddef>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <variant>
 
-#include "server/parsing/keys/extensions.hpp"
+#include "server/description/model.hpp"
+#include "server/parsing/keys/key_table.hpp"
+#include "server/parsing/parsing.hpp"
 
-/// The part of the table of extensions that is about what models do, measure and emit.
-namespace cohort::parsing {
-
-template <class Item, std::size_t first, std::size_t second>
-constexpr std::array<Item, first + second> joined(const Item (&a)[first], const Item (&b)[second]) {
-  std::array<Item, first + second> all{};
-  for (std::size_t i = 0; i < first; ++i) all[i] = a[i];
-  for (std::size_t i = 0; i < second; ++i) all[first + i] = b[i];
-  return all;
-}
-
-namespace keys {
+/// The tables of what models do, measure and emit.
+namespace cohort::parsing::keys {
 
 using enum ExtensionValue;
+using enum Referent;
+using enum Written;
 
-/// Of every sensor.
-inline constexpr ExtensionKey readout[] = {
-    {"noise", non_negative, "the reading's", "0", "standard deviation of the Gaussian noise on each reading"},
-    {"uniform_noise", non_negative, "the reading's", "0", "greatest size of the uniform noise on each reading"},
-    {"bias", real, "the reading's", "0", "added to each reading"},
-    {"bias_noise", non_negative, "the reading's", "0",
-     "standard deviation of a bias that each reading draws once in a run"},
-    {"precision", non_negative, "the reading's", "0", "readings are whole multiples of it; 0: they have any value"},
-    {"drop_out", fraction, "1", "0", "probability that a report does not come; the one before it then holds"},
-    {"rate", positive, "Hz", no_value, "how often it measures, to the nearest tick; every tick if absent"},
-    {"latency", non_negative, "s", "0", "from measurement to report, to the nearest tick"},
+template <>
+inline constexpr auto table_of<TreelDrive> = KeyTable{
+    actuator("treel_drive", "Two tracks that share one rigid body, as of the s-bot."),
+    reference("link", &TreelDrive::link, root_link, "", "the body of the tracks; the root link"),
+    key("half_gauge", &TreelDrive::half_gauge, positive, "m", "",
+        "distance of the ground points from the x axis of the link"),
+    key("half_contact_length", &TreelDrive::half_contact_length, positive, "m", "",
+        "distance of the ground points from the y axis of the link"),
+    key("ground_height", &TreelDrive::ground_height, real, "m", "", "z of the ground points in the link"),
+    key("wheel_radius", &TreelDrive::wheel_radius, positive, "m", "", "from the torque of a motor to traction"),
+    key("max_torque", &TreelDrive::max_torque, positive, "N m", "", "of each side's motor"),
+    key("max_velocity", &TreelDrive::max_velocity, positive, "m/s", "", "of each track along the ground"),
+    key("friction", &TreelDrive::friction, non_negative, "1", "",
+        "Coulomb coefficient of the tracks; a pair of surfaces has the smaller one"),
+    reference("left_wheel", &TreelDrive::left_wheels, wheel_joint, no_value,
+              "joint of a wheel that the left track stands for; any number"),
+    reference("right_wheel", &TreelDrive::right_wheels, wheel_joint, no_value,
+              "joint of a wheel that the right track stands for; any number"),
 };
 
-template <std::size_t count>
-constexpr auto sensor(const ExtensionKey (&own)[count]) {
-  return joined(own, readout);
+template <class Motor>
+constexpr auto velocity_motor(std::string_view element, std::string_view about) {
+  return KeyTable{
+      actuator(element, about),
+      reference("joint", &Motor::joint, driven_joint, "", "the joint that it turns or slides; at most one motor each"),
+      key("max_velocity", &Motor::max_velocity, positive, "rad/s or m/s", "", "greatest velocity"),
+      key("max_effort", &Motor::max_effort, positive, "N m or N", "", "greatest torque or force"),
+      key("rotor_inertia", &Motor::rotor_inertia, non_negative, "kg m^2 or kg", "0",
+          "of what turns in the motor, as the joint feels it", unless_default),
+  };
 }
+template <>
+inline constexpr auto table_of<VelocityMotor> =
+    velocity_motor<VelocityMotor>("velocity_motor", "A motor with a velocity loop on one joint.");
 
-inline constexpr ExtensionKey treel_drive[] = {
-    {"link", name, "", "", "the body of the tracks; the root link"},
-    {"half_gauge", positive, "m", "", "distance of the ground points from the x axis of the link"},
-    {"half_contact_length", positive, "m", "", "distance of the ground points from the y axis of the link"},
-    {"ground_height", real, "m", "", "z of the ground points in the link"},
-    {"wheel_radius", positive, "m", "", "from the torque of a motor to traction"},
-    {"max_torque", positive, "N m", "", "of each side's motor"},
-    {"max_velocity", positive, "m/s", "", "of each track along the ground"},
-    {"friction", non_negative, "1", "", "Coulomb coefficient of the tracks; a pair of surfaces has the smaller one"},
-    {"left_wheel", name, "", no_value, "joint of a wheel that the left track stands for; any number", true},
-    {"right_wheel", name, "", no_value, "joint of a wheel that the right track stands for; any number", true},
+template <>
+inline constexpr auto table_of<PositionMotor> =
+    velocity_motor<PositionMotor>("position_motor", "A motor that takes one joint to a position and holds it there.");
+
+template <>
+inline constexpr auto table_of<EffortMotor> = KeyTable{
+    actuator("effort_motor", "A motor that gives a torque or a force on one joint."),
+    reference("joint", &EffortMotor::joint, driven_joint, "",
+              "the joint that it turns or slides; at most one motor each"),
+    key("max_effort", &EffortMotor::max_effort, positive, "N m or N", "", "greatest torque or force"),
+    key("rotor_inertia", &EffortMotor::rotor_inertia, non_negative, "kg m^2 or kg", "0",
+        "of what turns in the motor, as the joint feels it", unless_default),
 };
 
-/// Also of a position_motor.
-inline constexpr ExtensionKey velocity_motor[] = {
-    {"joint", name, "", "", "the joint that it turns or slides; at most one motor each"},
-    {"max_velocity", positive, "rad/s or m/s", "", "greatest velocity"},
-    {"max_effort", positive, "N m or N", "", "greatest torque or force"},
-    {"rotor_inertia", non_negative, "kg m^2 or kg", "0", "of what turns in the motor, as the joint feels it"},
+template <>
+inline constexpr auto table_of<LedRing> = KeyTable{
+    actuator("led_ring", "LEDs of any colour around a link."),
+    link_key(&LedRing::link, "the link that carries it"),
+    pose_key(&LedRing::X_LS, "of the ring in the link; the LEDs stand in its xy plane"),
+    key("count", &LedRing::count, count, "1", "", "number of LEDs, numbered counter-clockwise"),
+    key("first_bearing", &LedRing::first_bearing, real, "rad", "0", "of LED 0, from the ring's x axis"),
+    key("spacing", &LedRing::spacing, real, "rad", "", "from one LED to the next"),
+    key("ring_radius", &LedRing::ring_radius, non_negative, "m", "", "where the LEDs are"),
+    key("intensity", &LedRing::intensity, non_negative, "1", "0",
+        "what arrives of a white one at 1 m, for light sensors; 0: cameras alone see it"),
 };
 
-inline constexpr ExtensionKey effort_motor[] = {
-    {"joint", name, "", "", "the joint that it turns or slides; at most one motor each"},
-    {"max_effort", positive, "N m or N", "", "greatest torque or force"},
-    {"rotor_inertia", non_negative, "kg m^2 or kg", "0", "of what turns in the motor, as the joint feels it"},
+template <>
+inline constexpr auto table_of<Loudspeaker> = KeyTable{
+    actuator("loudspeaker", "A tone of any frequency and intensity."),
+    link_key(&Loudspeaker::link, "the link that carries it"),
+    pose_key(&Loudspeaker::X_LE, "in the link"),
+    key("max_frequency", &Loudspeaker::max_frequency, positive, "Hz", "20000",
+        "greatest frequency that can be commanded"),
+    key("max_intensity", &Loudspeaker::max_intensity, positive, "1", "1",
+        "greatest intensity that can be commanded: what arrives at 1 m"),
 };
 
-inline constexpr ExtensionKey led_ring[] = {
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the LEDs stand in its xy plane"},
-    {"count", count, "1", "", "number of LEDs, numbered counter-clockwise"},
-    {"first_bearing", real, "rad", "0", "of LED 0, from the ring's x axis"},
-    {"spacing", real, "rad", "", "from one LED to the next"},
-    {"ring_radius", non_negative, "m", "", "where the LEDs are"},
-    {"intensity", non_negative, "1", "0",
-     "what arrives of a white one at 1 m, for light sensors; 0: cameras alone see it"},
+template <>
+inline constexpr auto table_of<JointEncoder> = KeyTable{
+    sensor("joint_encoder", "Measures position and velocity of one joint."),
+    reference("joint", &JointEncoder::joint, moving_joint, "", "the joint that is measured"),
 };
 
-inline constexpr ExtensionKey loudspeaker[] = {
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
-    {"max_frequency", positive, "Hz", "20000", "greatest frequency that can be commanded"},
-    {"max_intensity", positive, "1", "1", "greatest intensity that can be commanded: what arrives at 1 m"},
+template <>
+inline constexpr auto table_of<TreelEncoder> = KeyTable{
+    sensor("treel_encoder", "Measures way and velocity of each track relative to the hull."),
+    reference("drive", &TreelEncoder::drive, drive, "", "the treel_drive that is measured"),
 };
-
-inline constexpr auto joint_encoder = sensor({
-    {"joint", name, "", "", "the joint that is measured"},
-});
-
-inline constexpr auto treel_encoder = sensor({
-    {"drive", name, "", "", "the treel_drive that is measured"},
-});
 
 /// In the order of ProximityTechnique.
 inline constexpr std::string_view proximity_techniques[] = {"ray", "random_ray", "five_rays", "shadow", "samples"};
 
-inline constexpr auto proximity_ring = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the sensors look outwards in its xy plane"},
-    {"count", count, "1", "", "number of sensors, numbered counter-clockwise"},
-    {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
-    {"spacing", real, "rad", "", "from one sensor to the next"},
-    {"ring_radius", non_negative, "m", "", "where the rays start"},
-    {"range", positive, "m", "", "length of the rays"},
-    {"technique", choice, "", "ray", "`ray`, `random_ray`, `five_rays`, `shadow` or `samples`", false,
-     proximity_techniques},
-    {"cone", positive, "rad", "0.6981317007977318",
-     "full angle that a sensor sees, less than half a turn; of `random_ray`, `five_rays` and `shadow`"},
-    {"samples", uri, "", no_value, "file of the technique `samples`: a reading for each sensor"},
-});
+constexpr bool is_not_of_rays(const ProximityRing& ring) { return ring.technique != ProximityTechnique::ray; }
 
-inline constexpr auto ground_sensors = sensor({
-    {"link", name, "", "", "the link that carries them; the rays go along its -z axis"},
-    {"place", vector, "m", "", "where a ray starts, in the link; any number", true},
-    {"range", positive, "m", "", "length of the rays"},
-});
+template <>
+inline constexpr auto table_of<ProximityRing> = KeyTable{
+    sensor("proximity_ring", "A ring of infrared proximity sensors that look outwards."),
+    link_key(&ProximityRing::link, "the link that carries it"),
+    pose_key(&ProximityRing::X_LS, "of the ring in the link; the sensors look outwards in its xy plane"),
+    key("count", &ProximityRing::count, count, "1", "", "number of sensors, numbered counter-clockwise"),
+    key("first_bearing", &ProximityRing::first_bearing, real, "rad", "", "of sensor 0, from the ring's x axis"),
+    key("spacing", &ProximityRing::spacing, real, "rad", "", "from one sensor to the next"),
+    key("ring_radius", &ProximityRing::ring_radius, non_negative, "m", "", "where the rays start"),
+    key("range", &ProximityRing::range, positive, "m", "", "length of the rays"),
+    choice_key("technique", &ProximityRing::technique, proximity_techniques, "ray",
+               "`ray`, `random_ray`, `five_rays`, `shadow` or `samples`")
+        .only_if(&is_not_of_rays),
+    key("cone", &ProximityRing::cone, positive, "rad", "0.6981317007977318",
+        "full angle that a sensor sees, less than half a turn; of `random_ray`, `five_rays` and `shadow`")
+        .only_if(&is_not_of_rays),
+    reference("samples", &ProximityRing::samples, samples, no_value,
+              "file of the technique `samples`: a reading for each sensor"),
+};
 
-inline constexpr auto light_sensors = sensor({
-    {"link", name, "", "", "the link that carries them"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the ring in the link; the sensors look outwards in its xy plane"},
-    {"count", count, "1", "", "number of sensors, numbered counter-clockwise"},
-    {"first_bearing", real, "rad", "", "of sensor 0, from the ring's x axis"},
-    {"spacing", real, "rad", "", "from one sensor to the next"},
-    {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
-    {"samples", uri, "", no_value, "file of what each sensor reads of a lamp that gives 1 at 1 m"},
-});
+template <>
+inline constexpr auto table_of<GroundSensors> = KeyTable{
+    sensor("ground_sensors", "Infrared sensors that look down."),
+    link_key(&GroundSensors::link, "the link that carries them; the rays go along its -z axis"),
+    key("place", &GroundSensors::places_L, vector, "m", "", "where a ray starts, in the link; any number"),
+    key("range", &GroundSensors::range, positive, "m", "", "length of the rays"),
+};
 
-inline constexpr auto microphones = sensor({
-    {"link", name, "", "", "the link that carries them"},
-    {"place", vector, "m", "", "of a microphone in the link; any number", true},
-    {"band", point, "Hz", "0 20000", "lowest and highest frequency of a band; any number", true},
-    {"gain", positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"},
-    {"samples", uri, "", no_value, "file of what each microphone reads of a sound that gives 1 at 1 m"},
-});
+template <>
+inline constexpr auto table_of<LightSensors> = KeyTable{
+    sensor("light_sensors", "A ring of light sensors that look outwards."),
+    link_key(&LightSensors::link, "the link that carries them"),
+    pose_key(&LightSensors::X_LS, "of the ring in the link; the sensors look outwards in its xy plane"),
+    key("count", &LightSensors::count, count, "1", "", "number of sensors, numbered counter-clockwise"),
+    key("first_bearing", &LightSensors::first_bearing, real, "rad", "", "of sensor 0, from the ring's x axis"),
+    key("spacing", &LightSensors::spacing, real, "rad", "", "from one sensor to the next"),
+    key("gain", &LightSensors::gain, positive, "1", "1",
+        "from the sum of what arrives to what the sigmoid is taken of"),
+    reference("samples", &LightSensors::samples, samples, no_value,
+              "file of what each sensor reads of a lamp that gives 1 at 1 m"),
+};
 
-inline constexpr auto accelerometer = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; it measures along its axes"},
-});
+template <>
+inline constexpr auto table_of<Microphones> = KeyTable{
+    sensor("microphones", "Hear sounds within bands of frequency."),
+    link_key(&Microphones::link, "the link that carries them"),
+    key("place", &Microphones::places_L, vector, "m", "", "of a microphone in the link; any number"),
+    key("band", &Microphones::bands, point, "Hz", "0 20000", "lowest and highest frequency of a band; any number"),
+    key("gain", &Microphones::gain, positive, "1", "1", "from the sum of what arrives to what the sigmoid is taken of"),
+    reference("samples", &Microphones::samples, samples, no_value,
+              "file of what each microphone reads of a sound that gives 1 at 1 m"),
+};
 
-inline constexpr auto inclinometer = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link; level when its z axis points up"},
-});
+template <>
+inline constexpr auto table_of<Accelerometer> = KeyTable{
+    sensor("accelerometer", "Measures acceleration less gravity."),
+    link_key(&Accelerometer::link, "the link that carries it"),
+    pose_key(&Accelerometer::X_LS, "in the link; it measures along its axes"),
+};
 
-inline constexpr auto range_and_bearing = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: bearings are from its x axis, elevations from its xy plane"},
-    {"range", positive, "m", "", "how far its messages reach"},
-    {"message_size", count, "1", "", "values of a message"},
-    {"capacity", count, "1", "16", "messages that are reported at a time, at the most"},
-    {"range_noise", non_negative, "m", "0", "standard deviation of the Gaussian noise on ranges"},
-    {"bearing_noise", non_negative, "rad", "0", "the same on bearings and elevations"},
-});
+template <>
+inline constexpr auto table_of<Inclinometer> = KeyTable{
+    sensor("inclinometer", "Measures roll and pitch against gravity."),
+    link_key(&Inclinometer::link, "the link that carries it"),
+    pose_key(&Inclinometer::X_LS, "in the link; level when its z axis points up"),
+};
 
-inline constexpr auto climate_sensor = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"place", vector, "m", "0 0 0", "in the link"},
-    {"temperature_noise", non_negative, "K", "0", "standard deviation of the Gaussian noise on temperatures"},
-    {"humidity_noise", non_negative, "1", "0", "the same on humidities"},
-});
+template <>
+inline constexpr auto table_of<RangeAndBearing> = KeyTable{
+    sensor("range_and_bearing", "Messages to the robots around, which know where they come from."),
+    link_key(&RangeAndBearing::link, "the link that carries it"),
+    pose_key(&RangeAndBearing::X_LS, "in the link: bearings are from its x axis, elevations from its xy plane"),
+    key("range", &RangeAndBearing::range, positive, "m", "", "how far its messages reach"),
+    key("message_size", &RangeAndBearing::message_size, count, "1", "", "values of a message"),
+    key("capacity", &RangeAndBearing::capacity, count, "1", "16", "messages that are reported at a time, at the most"),
+    noise_key("range_noise", &RangeAndBearing::readout, {"range"}, "m",
+              "standard deviation of the Gaussian noise on ranges"),
+    noise_key("bearing_noise", &RangeAndBearing::readout, {"bearing", "elevation"}, "rad",
+              "the same on bearings and elevations"),
+};
 
-inline constexpr auto omnidirectional_camera = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: bearings are from its x axis, elevations from its xy plane"},
-    {"range", positive, "m", "", "how far it sees"},
-    {"min_elevation", real, "rad", "-1.5707963267948966", "lowest elevation that it sees"},
-    {"max_elevation", real, "rad", "1.5707963267948966", "highest elevation that it sees"},
-    {"capacity", count, "1", "32", "spots that are reported at a time, at the most"},
-    {"distance_noise", non_negative, "m", "0", "standard deviation of the Gaussian noise on distances"},
-    {"bearing_noise", non_negative, "rad", "0", "the same on bearings and elevations"},
-});
+template <>
+inline constexpr auto table_of<OmnidirectionalCamera> = KeyTable{
+    sensor("omnidirectional_camera", "A camera that looks all round and reports coloured spots."),
+    link_key(&OmnidirectionalCamera::link, "the link that carries it"),
+    pose_key(&OmnidirectionalCamera::X_LS, "in the link: bearings are from its x axis, elevations from its xy plane"),
+    key("range", &OmnidirectionalCamera::range, positive, "m", "", "how far it sees"),
+    key("min_elevation", &OmnidirectionalCamera::min_elevation, real, "rad", "-1.5707963267948966",
+        "lowest elevation that it sees"),
+    key("max_elevation", &OmnidirectionalCamera::max_elevation, real, "rad", "1.5707963267948966",
+        "highest elevation that it sees"),
+    key("capacity", &OmnidirectionalCamera::capacity, count, "1", "32",
+        "spots that are reported at a time, at the most"),
+    noise_key("distance_noise", &OmnidirectionalCamera::readout, {"distance"}, "m",
+              "standard deviation of the Gaussian noise on distances"),
+    noise_key("bearing_noise", &OmnidirectionalCamera::readout, {"bearing", "elevation"}, "rad",
+              "the same on bearings and elevations"),
+};
 
-inline constexpr auto panorama = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link: columns start at its x axis, elevations at its xy plane"},
-    {"width", count, "1", "", "columns, evenly all round; at least 4"},
-    {"height", count, "1", "", "rows, evenly from one elevation to the other"},
-    {"min_elevation", real, "rad", "-0.7853981633974483", "lower edge of the image"},
-    {"max_elevation", real, "rad", "0.7853981633974483", "upper edge of the image"},
-    {"range", positive, "m", no_value, "nothing is seen beyond; without end if absent"},
-    {"sky", vector, "1", "0.6 0.75 0.95", "colour where nothing is seen"},
-});
+template <>
+inline constexpr auto table_of<PanoramicCamera> = KeyTable{
+    sensor("panorama", "A camera that looks all round and gives an image."),
+    link_key(&PanoramicCamera::link, "the link that carries it"),
+    pose_key(&PanoramicCamera::X_LS, "in the link: columns start at its x axis, elevations at its xy plane"),
+    key("width", &PanoramicCamera::width, count, "1", "", "columns, evenly all round; at least 4"),
+    key("height", &PanoramicCamera::height, count, "1", "", "rows, evenly from one elevation to the other"),
+    key("min_elevation", &PanoramicCamera::min_elevation, real, "rad", "-0.7853981633974483",
+        "lower edge of the image"),
+    key("max_elevation", &PanoramicCamera::max_elevation, real, "rad", "0.7853981633974483", "upper edge of the image"),
+    key("range", &PanoramicCamera::range, positive, "m", no_value, "nothing is seen beyond; without end if absent"),
+    key("sky", &PanoramicCamera::sky, vector, "1", "0.6 0.75 0.95", "colour where nothing is seen"),
+};
 
-inline constexpr auto battery = sensor({
-    {"capacity", positive, "J", "", "energy of a full one"},
-    {"charge", fraction, "1", "1", "at first, of the capacity"},
-    {"idle_power", non_negative, "W", "0", "of all that is not a motor"},
-    {"motor_efficiency", positive, "1", "1", "mechanical power to what motors take; at most 1"},
-});
+template <>
+inline constexpr auto table_of<ClimateSensor> = KeyTable{
+    sensor("climate_sensor", "Temperature and humidity of the air."),
+    link_key(&ClimateSensor::link, "the link that carries it"),
+    key("place", &ClimateSensor::p_LS, vector, "m", "0 0 0", "in the link"),
+    noise_key("temperature_noise", &ClimateSensor::readout, {"temperature"}, "K",
+              "standard deviation of the Gaussian noise on temperatures"),
+    noise_key("humidity_noise", &ClimateSensor::readout, {"humidity"}, "1", "the same on humidities"),
+};
 
+template <>
+inline constexpr auto table_of<Battery> = KeyTable{
+    sensor("battery", "Feeds the robot, which stops when it is empty."),
+    key("capacity", &Battery::capacity, positive, "J", "", "energy of a full one"),
+    key("charge", &Battery::charge, fraction, "1", "1", "at first, of the capacity"),
+    key("idle_power", &Battery::idle_power, non_negative, "W", "0", "of all that is not a motor"),
+    key("motor_efficiency", &Battery::motor_efficiency, positive, "1", "1",
+        "mechanical power to what motors take; at most 1"),
+};
+
+/// In the order of Gripper::LightBarrier.
 inline constexpr std::string_view light_barriers[] = {"simple", "beam"};
 
-inline constexpr auto gripper = sensor({
-    {"link", name, "", "", "the link that carries it"},
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the jaw in the link; x outwards, its sides open along y"},
-    {"depth", positive, "m", "", "how far from there something may be to be grasped"},
-    {"half_angle", positive, "rad", "", "how far aside of x"},
-    {"height", positive, "m", "", "how far above or below"},
-    {"closing_time", positive, "s", "0.5", "from open to closed"},
-    {"holding_force", positive, "N", "60", "along each axis; above it slips"},
-    {"holding_torque", positive, "N m", "3", "the same about each axis"},
-    {"breaking_force", positive, "N", no_value, "above it lets go; never if absent"},
-    {"breaking_torque", positive, "N m", no_value, "above it lets go; never if absent"},
-    {"light_barrier", choice, "", "simple",
-     "`simple`: whether something could be grasped; `beam`: whether a ray between the sides meets anything", false,
-     light_barriers},
-    {"jaw_width", positive, "m", "0.03", "length of the beam, through the middle of the depth"},
-});
-
-inline constexpr auto torque_sensor = sensor({
-    {"joint", name, "", "", "the joint whose motor is measured"},
-});
-
-inline constexpr auto traction_sensor = sensor({
-    {"joint", name, "", "", "the joint between the two links"},
-});
-
-inline constexpr ExtensionKey grip_ring[] = {
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "of the circle in the link; it lies in its xy plane"},
-    {"radius", positive, "m", "", "of the circle"},
+template <>
+inline constexpr auto table_of<Gripper> = KeyTable{
+    actuator("gripper", "Grasps what is grippable, and holds it."),
+    link_key(&Gripper::link, "the link that carries it"),
+    pose_key(&Gripper::X_LG, "of the jaw in the link; x outwards, its sides open along y"),
+    key("depth", &Gripper::depth, positive, "m", "", "how far from there something may be to be grasped"),
+    key("half_angle", &Gripper::half_angle, positive, "rad", "", "how far aside of x"),
+    key("height", &Gripper::height, positive, "m", "", "how far above or below"),
+    key("closing_time", &Gripper::closing_time, positive, "s", "0.5", "from open to closed"),
+    key("holding_force", &Gripper::holding_force, positive, "N", "60", "along each axis; above it slips"),
+    key("holding_torque", &Gripper::holding_torque, positive, "N m", "3", "the same about each axis"),
+    key("breaking_force", &Gripper::breaking_force, positive, "N", no_value, "above it lets go; never if absent"),
+    key("breaking_torque", &Gripper::breaking_torque, positive, "N m", no_value, "above it lets go; never if absent"),
+    choice_key("light_barrier", &Gripper::light_barrier, light_barriers, "simple",
+               "`simple`: whether something could be grasped; `beam`: whether a ray between the sides meets anything"),
+    key("jaw_width", &Gripper::jaw_width, positive, "m", "0.03", "length of the beam, through the middle of the depth"),
 };
 
-inline constexpr ExtensionKey sound[] = {
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
-    {"frequency", positive, "Hz", "", "of the tone"},
-    {"intensity", positive, "1", "", "what arrives at 1 m; it falls off with the square of the distance"},
-    {"range", positive, "m", no_value, "nothing is heard beyond; without end if absent"},
-    {"on", flag, "", "true", "whether it sounds at first"},
+template <>
+inline constexpr auto table_of<TorqueSensor> = KeyTable{
+    sensor("torque_sensor", "Measures what a joint's motor gives."),
+    reference("joint", &TorqueSensor::joint, moving_joint, "", "the joint whose motor is measured"),
 };
 
-inline constexpr ExtensionKey marker[] = {
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
-    {"color", vector, "1", "", "red, green and blue, from 0 to 1"},
-    {"on", flag, "", "true", "whether it can be seen at first"},
+template <>
+inline constexpr auto table_of<TractionSensor> = KeyTable{
+    sensor("traction_sensor", "Measures the force between two links, in the plane of the parent."),
+    reference("joint", &TractionSensor::joint, joint, "", "the joint between the two links"),
 };
 
-inline constexpr ExtensionKey climate_source[] = {
-    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the link"},
-    {"temperature", real, "K", "0", "added in its middle"},
-    {"humidity", real, "1", "0", "relative, added in its middle"},
-    {"spread", positive, "m", "", "at a distance d it adds exp(-d^2 / (2 spread^2)) of that"},
-    {"on", flag, "", "true", "whether it acts at first"},
+template <>
+inline constexpr auto table_of<UserAction> = KeyTable{
+    actuator("action", "Something that a robot does and no joint stands for."),
 };
 
-}  // namespace keys
-
-inline constexpr Extension device_extensions[] = {
-    {"treel_drive", "model", true, "Two tracks that share one rigid body, as of the s-bot.", keys::treel_drive,
-     "actuators"},
-    {"velocity_motor", "model", true, "A motor with a velocity loop on one joint.", keys::velocity_motor, "actuators"},
-    {"position_motor", "model", true, "A motor that takes one joint to a position and holds it there.",
-     keys::velocity_motor, "actuators"},
-    {"effort_motor", "model", true, "A motor that gives a torque or a force on one joint.", keys::effort_motor,
-     "actuators"},
-    {"led_ring", "model", true, "LEDs of any colour around a link.", keys::led_ring, "actuators"},
-    {"loudspeaker", "model", true, "A tone of any frequency and intensity.", keys::loudspeaker, "actuators"},
-    {"joint_encoder", "model", true, "Measures position and velocity of one joint.", keys::joint_encoder, "sensors"},
-    {"treel_encoder", "model", true, "Measures way and velocity of each track relative to the hull.",
-     keys::treel_encoder, "sensors"},
-    {"proximity_ring", "model", true, "A ring of infrared proximity sensors that look outwards.", keys::proximity_ring,
-     "sensors"},
-    {"ground_sensors", "model", true, "Infrared sensors that look down.", keys::ground_sensors, "sensors"},
-    {"light_sensors", "model", true, "A ring of light sensors that look outwards.", keys::light_sensors, "sensors"},
-    {"microphones", "model", true, "Hear sounds within bands of frequency.", keys::microphones, "sensors"},
-    {"accelerometer", "model", true, "Measures acceleration less gravity.", keys::accelerometer, "sensors"},
-    {"inclinometer", "model", true, "Measures roll and pitch against gravity.", keys::inclinometer, "sensors"},
-    {"range_and_bearing", "model", true, "Messages to the robots around, which know where they come from.",
-     keys::range_and_bearing, "sensors"},
-    {"omnidirectional_camera", "model", true, "A camera that looks all round and reports coloured spots.",
-     keys::omnidirectional_camera, "sensors"},
-    {"panorama", "model", true, "A camera that looks all round and gives an image.", keys::panorama, "sensors"},
-    {"climate_sensor", "model", true, "Temperature and humidity of the air.", keys::climate_sensor, "sensors"},
-    {"battery", "model", true, "Feeds the robot, which stops when it is empty.", keys::battery, "sensors"},
-    {"gripper", "model", true, "Grasps what is grippable, and holds it.", keys::gripper, "actuators"},
-    {"torque_sensor", "model", true, "Measures what a joint's motor gives.", keys::torque_sensor, "sensors"},
-    {"traction_sensor", "model", true, "Measures the force between two links, in the plane of the parent.",
-     keys::traction_sensor, "sensors"},
-    {"action", "model", true, "Something that a robot does and no joint stands for.", {}, "actuators"},
-    {"grip_ring", "link", true, "A circle that grippers hold on to.", keys::grip_ring, "actuators"},
-    {"grippable",
-     "collision",
-     false,
-     "Whether grippers can hold on to it, anywhere.",
-     {},
-     "actuators",
-     ExtensionValue::flag},
-    {"sound", "link", true, "A tone that microphones hear.", keys::sound, "emitters"},
-    {"marker", "link", true, "A coloured spot that cameras see.", keys::marker, "emitters"},
-    {"climate_source", "link", true, "Warmth or moisture around a point.", keys::climate_source, "emitters"},
+template <>
+inline constexpr auto table_of<GripRing> = KeyTable{
+    Extension{"grip_ring", "link", true, "A circle that grippers hold on to.", {}, "actuators"},
+    pose_key(&GripRing::X_LR, "of the circle in the link; it lies in its xy plane"),
+    key("radius", &GripRing::radius, positive, "m", "", "of the circle"),
 };
 
-}  // namespace cohort::parsing
+template <>
+inline constexpr auto table_of<Sound> = KeyTable{
+    emitter("sound", "A tone that microphones hear."),
+    pose_key(&Emitter::X_LE, "in the link"),
+    key("frequency", &Sound::frequency, positive, "Hz", "", "of the tone"),
+    key("intensity", &Sound::intensity, positive, "1", "",
+        "what arrives at 1 m; it falls off with the square of the distance"),
+    key("range", &Sound::range, positive, "m", no_value, "nothing is heard beyond; without end if absent"),
+    key("on", &Emitter::is_on, flag, "", "true", "whether it sounds at first"),
+};
+
+template <>
+inline constexpr auto table_of<Marker> = KeyTable{
+    emitter("marker", "A coloured spot that cameras see."),
+    pose_key(&Emitter::X_LE, "in the link"),
+    key("color", &Marker::color, vector, "1", "", "red, green and blue, from 0 to 1"),
+    key("on", &Emitter::is_on, flag, "", "true", "whether it can be seen at first"),
+};
+
+template <>
+inline constexpr auto table_of<ClimateSource> = KeyTable{
+    emitter("climate_source", "Warmth or moisture around a point."),
+    pose_key(&Emitter::X_LE, "in the link"),
+    key("temperature", &ClimateSource::temperature, real, "K", "0", "added in its middle"),
+    key("humidity", &ClimateSource::humidity, real, "1", "0", "relative, added in its middle"),
+    key("spread", &ClimateSource::spread, positive, "m", "",
+        "at a distance d it adds exp(-d^2 / (2 spread^2)) of that"),
+    key("on", &Emitter::is_on, flag, "", "true", "whether it acts at first"),
+};
+
+/// Of every sensor.
+inline constexpr auto readout_keys = std::tuple{
+    key("noise", &Noise::deviation, non_negative, "the reading's", "0",
+        "standard deviation of the Gaussian noise on each reading", unless_default),
+    key("uniform_noise", &Noise::uniform, non_negative, "the reading's", "0",
+        "greatest size of the uniform noise on each reading", unless_default),
+    key("bias", &Noise::bias, real, "the reading's", "0", "added to each reading", unless_default),
+    key("bias_noise", &Noise::bias_deviation, non_negative, "the reading's", "0",
+        "standard deviation of a bias that each reading draws once in a run", unless_default),
+    key("precision", &Noise::precision, non_negative, "the reading's", "0",
+        "readings are whole multiples of it; 0: they have any value", unless_default),
+    key("drop_out", &Readout::drop_out, fraction, "1", "0",
+        "probability that a report does not come; the one before it then holds", unless_default),
+    key("rate", &Readout::period, positive, "Hz", no_value,
+        "how often it measures, to the nearest tick; every tick if absent"),
+    key("latency", &Readout::latency, non_negative, "s", "0", "from measurement to report, to the nearest tick",
+        unless_default),
+};
+
+/// All that the element of a kind may hold.
+template <class Kind>
+inline constexpr auto keys_of = [] {
+  if constexpr (Senses<Kind>)
+    return std::tuple_cat(table_of<Kind>.keys, readout_keys);
+  else
+    return table_of<Kind>.keys;
+}();
+
+template <class Kind>
+inline constexpr auto extension_keys =
+    std::apply([](const auto&... each) { return std::array<ExtensionKey, sizeof...(each)>{each...}; }, keys_of<Kind>);
+
+template <class Kind>
+inline constexpr Extension extension_of = [] {
+  Extension extension = table_of<Kind>.head;
+  extension.keys = extension_keys<Kind>;
+  return extension;
+}();
+
+/// Calls `visit` with the type of each kind in a variant that has a table, in its order.
+template <class Visit, class... Kinds>
+void for_kinds_in(std::type_identity<std::variant<Kinds...>>, const Visit& visit) {
+  const auto visit_kind = [&]<class Kind>(std::type_identity<Kind> kind) {
+    if constexpr (HasTable<Kind>) visit(kind);
+  };
+  (visit_kind(std::type_identity<Kinds>{}), ...);
+}
+inline constexpr std::type_identity<Device> devices;
+inline constexpr std::type_identity<decltype(Emitter::what)> emitters;
+
+}  // namespace cohort::parsing::keys

@@ -1,6 +1,7 @@
 #include "server/parsing/keys/extensions.hpp"
 
-#include <algorithm>
+#include <iterator>
+#include <vector>
 
 #include "server/parsing/keys/device_keys.hpp"
 
@@ -148,17 +149,29 @@ constexpr Extension of_worlds[] = {
     {"formation", "placement", false, "In a pattern, or at places given one by one.", formation, "placement"},
 };
 
-constexpr auto table = joined(device_extensions, of_worlds);
+std::vector<Extension> all_extensions() {
+  std::vector<Extension> all;
+  const auto add = [&]<class Kind>(std::type_identity<Kind>) { all.push_back(keys::extension_of<Kind>); };
+  keys::for_kinds_in(keys::devices, add);
+  all.push_back(keys::extension_of<GripRing>);
+  all.push_back(
+      {"grippable", "collision", false, "Whether grippers can hold on to it, anywhere.", {}, "actuators", flag});
+  keys::for_kinds_in(keys::emitters, add);
+  all.insert(all.end(), std::begin(of_worlds), std::end(of_worlds));
+  return all;
+}
 
 }  // namespace
 
-std::span<const Extension> extensions() { return table; }
+std::span<const Extension> extensions() {
+  static const std::vector<Extension> table = all_extensions();
+  return table;
+}
 
 const Extension* find_extension(std::string_view extension_name, std::string_view parent) {
-  const auto found = std::find_if(table.begin(), table.end(), [&](const Extension& extension) {
-    return extension.name == extension_name && extension.parent == parent;
-  });
-  return found == table.end() ? nullptr : found;
+  for (const Extension& extension : extensions())
+    if (extension.name == extension_name && extension.parent == parent) return &extension;
+  return nullptr;
 }
 
 }  // namespace cohort::parsing

@@ -29,17 +29,17 @@ class KeyValues {
   const Eigen::Vector2d& point(std::string_view key) const { return std::get<Eigen::Vector2d>(first(key)); }
   const Eigen::Vector3d& vector(std::string_view key) const { return std::get<Eigen::Vector3d>(first(key)); }
   const Pose& pose(std::string_view key) const { return std::get<Pose>(first(key)); }
+  template <class Type>
+  const Type& get(std::string_view key) const {
+    return std::get<Type>(first(key));
+  }
 
   /// Puts `prefix` before each text of the key.
   void prefix_texts(std::string_view key, const std::string& prefix);
 
   /// Of a key that repeats; none if it is absent.
   std::vector<std::string> texts(std::string_view key) const { return all<std::string>(key); }
-  std::vector<Eigen::Vector2d> points(std::string_view key) const { return all<Eigen::Vector2d>(key); }
   std::vector<Eigen::Vector3d> vectors(std::string_view key) const { return all<Eigen::Vector3d>(key); }
-
- private:
-  const Value& first(std::string_view key) const { return values_.find(key)->second.front(); }
   template <class Type>
   std::vector<Type> all(std::string_view key) const {
     std::vector<Type> found;
@@ -47,6 +47,9 @@ class KeyValues {
       for (const Value& value : values->second) found.push_back(std::get<Type>(value));
     return found;
   }
+
+ private:
+  const Value& first(std::string_view key) const { return values_.find(key)->second.front(); }
 
   std::map<std::string, std::vector<Value>, std::less<>> values_;
 };

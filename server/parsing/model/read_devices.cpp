@@ -1,82 +1,240 @@
-#include <algorithm>
+#include <map>
+#include <numbers>
+#include <set>
 #include <stdexcept>
 
-#include "server/parsing/model/device_reader.hpp"
+#include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
+#include "server/parsing/model/read_values.hpp"
 
 namespace cohort::parsing {
+namespace {
 
-std::optional<std::size_t> DeviceReader::find_moving_joint(const ExtensionValues& values) {
-  const std::optional<std::size_t> joint = find(values, "joint", model_.joints);
-  if (!joint) return std::nullopt;
-  const JointType type = model_.joints[*joint].type;
-  if (type != JointType::fixed && type != JointType::ball) return joint;
-  report_.problem(values.where("joint"),
-                  "the joint '" + values.text("joint") + "' " +
-                      (type == JointType::fixed ? "is fixed" : "is a ball: it has no single axis"));
-  return std::nullopt;
-}
+using keys::Referent;
 
-std::shared_ptr<const Samples> DeviceReader::find_samples(const ExtensionValues& values, std::size_t count) {
-  if (!values.has("samples")) return nullptr;
-  const sdf::ElementPtr where = values.where("samples");
+// Finds what devices refer to, and reports what is not there or is taken.
+class References {
+ public:
+  /// `drives` are the treel drives of the model: name and index among the devices.
+  References(const Model& model, std::map<std::string, std::size_t> drives, const SdfReport& report, ShapeFiles& files)
+      : model_(model), drives_(std::move(drives)), report_(report), files_(files) {}
+
+  /// Whether each was found.
+  template <class Kind>
+  bool find_all(const ExtensionValues& values, Kind& device) {
+    bool found = true;
+    keys::for_keys_of<Kind>(keys::keys_of<Kind>, [&]<class Key>(const Key& key) {
+      if constexpr (std::is_base_of_v<keys::Reference, Key>) found &= find(values, key, device.*key.member);
+    });
+    return found;
+  }
+
+ private:
+  bool find(const ExtensionValues& values, const keys::Reference& key, std::size_t& index) {
+    const std::optional<std::size_t> found = find_index(key.to, values.text(key.name), values.where(key.name));
+    index = found.value_or(0);
+    return found.has_value();
+  }
+  bool find(const ExtensionValues& values, const keys::Reference& key, std::vector<std::size_t>& indices) {
+    const std::vector<std::string> names = values.texts(key.name);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (const auto found = find_index(key.to, names[i], values.where(key.name, i))) indices.push_back(*found);
+    return indices.size() == names.size();
+  }
+  bool find(const ExtensionValues& values, const keys::Reference& key, std::shared_ptr<const Samples>& samples);
+
+  std::optional<std::size_t> find_index(Referent to, const std::string& name, const sdf::ElementPtr& where);
+  template <class Named>
+  std::optional<std::size_t> find_named(const char* kind, const std::vector<Named>& named, const std::string& name,
+                                        const sdf::ElementPtr& where) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      if (named[i].name == name) return i;
+      names.push_back(named[i].name);
+    }
+    report_missing(kind, names, name, where);
+    return std::nullopt;
+  }
+  void report_missing(const char* kind, const std::vector<std::string>& names, const std::string& name,
+                      const sdf::ElementPtr& where) const {
+    report_.problem(where, "the model has no " + std::string(kind) + " '" + name + "'" + suggestion(name, names));
+  }
+  std::string flaw_of_joint(Referent to, std::size_t index);
+
+  const Model& model_;
+  std::map<std::string, std::size_t> drives_;
+  const SdfReport& report_;
+  ShapeFiles& files_;
+  std::set<std::size_t> motorised_;  // joints
+  std::set<std::size_t> wheels_;     // joints
+};
+
+bool References::find(const ExtensionValues& values, const keys::Reference& key,
+                      std::shared_ptr<const Samples>& samples) {
+  if (!values.has(key.name)) return true;
   try {
-    std::shared_ptr<const Samples> samples = files_.samples(where);
-    if (samples->count() == count) return samples;
-    report_.problem(where, "'" + values.text("samples") + "' has " + std::to_string(samples->count()) +
-                               " readings at each place, the device has " + std::to_string(count));
+    samples = files_.samples(values.where(key.name));
+    return true;
   } catch (const InputError& error) {
     for (const Problem& problem : error.problems()) report_.problem(problem);
   } catch (const std::runtime_error& error) {
-    report_.problem(where, error.what());
+    report_.problem(values.where(key.name), error.what());
   }
-  return nullptr;
-}
-
-bool DeviceReader::takes_motor(std::size_t joint, const ExtensionValues& values) {
-  const bool is_wheel = wheels_.contains(joint);
-  if (!is_wheel && motorised_.insert(joint).second) return true;
-  report_.problem(values.where("joint"),
-                  "the joint '" + values.text("joint") + "' " +
-                      (is_wheel ? "is a wheel's of a treel_drive, which moves it" : "has a motor already"));
   return false;
 }
 
-std::vector<std::size_t> DeviceReader::take_wheels(const ExtensionValues& values, const char* key, std::size_t hull) {
-  std::vector<std::size_t> wheels;
-  const std::vector<std::string> names = values.texts(key);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const sdf::ElementPtr where = values.where(key, i);
-    const std::optional<std::size_t> found = find(names[i], where, "joint", model_.joints);
-    if (!found) continue;
-    const Joint& joint = model_.joints[*found];
-    const auto problem = [&](const std::string& what) {
-      report_.problem(where, "the joint '" + joint.name + "' " + what);
-    };
-    if (joint.type != JointType::revolute)
-      problem("is not revolute, as that of a wheel is");
-    else if (joint.parent != hull)
-      problem("is not between '" + model_.links[hull].name + "' and a wheel");
-    else if (motorised_.contains(*found))
-      problem("has a motor already");
-    else if (!wheels_.insert(*found).second)
-      problem("is a wheel's already");
-    else
-      wheels.push_back(*found);
+std::optional<std::size_t> References::find_index(Referent to, const std::string& name, const sdf::ElementPtr& where) {
+  if (to == Referent::drive) {
+    if (const auto found = drives_.find(name); found != drives_.end()) return found->second;
+    std::vector<std::string> names;
+    for (const auto& [drive, index] : drives_) names.push_back(drive);
+    report_missing("treel_drive", names, name, where);
+    return std::nullopt;
   }
-  return wheels;
+  if (to == Referent::link || to == Referent::root_link) {
+    const std::optional<std::size_t> link = find_named("link", model_.links, name, where);
+    if (to == Referent::link || !link || *link == 0) return link;
+    report_.problem(where, "expected the root link, '" + model_.links[0].name + "'");
+    return std::nullopt;
+  }
+  const std::optional<std::size_t> joint = find_named("joint", model_.joints, name, where);
+  if (!joint) return std::nullopt;
+  const std::string flaw = flaw_of_joint(to, *joint);
+  if (flaw.empty()) return joint;
+  report_.problem(where, "the joint '" + name + "' " + flaw);
+  return std::nullopt;
 }
 
-namespace {
+// Empty if it can be what is asked for; then it is taken.
+std::string References::flaw_of_joint(Referent to, std::size_t index) {
+  const Joint& joint = model_.joints[index];
+  if (to == Referent::wheel_joint) {
+    if (joint.type != JointType::revolute) return "is not revolute, as that of a wheel is";
+    if (joint.parent != 0) return "is not between '" + model_.links[0].name + "' and a wheel";
+    if (motorised_.contains(index)) return "has a motor already";
+    return wheels_.insert(index).second ? "" : "is a wheel's already";
+  }
+  if (to == Referent::joint) return "";
+  if (joint.type == JointType::fixed) return "is fixed";
+  if (joint.type == JointType::ball) return "is a ball: it has no single axis";
+  if (to == Referent::moving_joint) return "";
+  if (wheels_.contains(index)) return "is a wheel's of a treel_drive, which moves it";
+  return motorised_.insert(index).second ? "" : "has a motor already";
+}
 
-const DeviceKind& kind_of(const Extension& extension) {
-  for (const std::span<const DeviceKind> kinds : {actuator_kinds(), sensor_kinds()})
-    for (const DeviceKind& kind : kinds)
-      if (kind.name == extension.name) return kind;
-  throw std::logic_error("no reader for the device " + std::string(extension.name));
+// What keys must be together: an overload for each kind where there is anything.
+template <class Kind>
+void check(const Kind&, const ExtensionValues&, const SdfReport&) {}
+
+void check_samples(const std::shared_ptr<const Samples>& samples, std::size_t count, const ExtensionValues& values,
+                   const SdfReport& report) {
+  if (samples && samples->count() != count)
+    report.problem(values.where("samples"), "'" + values.text("samples") + "' has " + std::to_string(samples->count()) +
+                                                " readings at each place, the device has " + std::to_string(count));
+}
+
+void check(const ProximityRing& ring, const ExtensionValues& values, const SdfReport& report) {
+  if (ring.cone >= std::numbers::pi)
+    report.problem(values.where("cone"), "expected a cone of less than half a turn, pi");
+  check_samples(ring.samples, ring.count, values, report);
+  const bool takes_samples = ring.technique == ProximityTechnique::samples;
+  if (takes_samples != values.has("samples"))
+    report.problem(values.where("samples"), takes_samples ? "the technique 'samples' needs a file <cohort:samples>"
+                                                          : "only the technique 'samples' has a file");
+}
+
+void check(const LightSensors& sensors, const ExtensionValues& values, const SdfReport& report) {
+  check_samples(sensors.samples, sensors.count, values, report);
+}
+
+void check(const Microphones& microphones, const ExtensionValues& values, const SdfReport& report) {
+  for (std::size_t i = 0; i < microphones.bands.size(); ++i)
+    if (microphones.bands[i].x() > microphones.bands[i].y())
+      report.problem(values.where("band", i), "the lowest frequency of the band exceeds the highest");
+  check_samples(microphones.samples, microphones.places_L.size(), values, report);
+}
+
+void check_elevations(const ExtensionValues& values, const SdfReport& report) {
+  constexpr double quarter_turn = 0.5 * std::numbers::pi;
+  for (const char* const key : {"min_elevation", "max_elevation"})
+    if (std::abs(values.real(key)) > quarter_turn)
+      report.problem(values.where(key), "expected an elevation from -pi/2 to pi/2");
+  if (!(values.real("min_elevation") < values.real("max_elevation")))
+    report.problem(values.where("max_elevation"), "expected more than the lowest elevation");
+}
+
+void check(const OmnidirectionalCamera&, const ExtensionValues& values, const SdfReport& report) {
+  check_elevations(values, report);
+}
+
+void check(const PanoramicCamera& camera, const ExtensionValues& values, const SdfReport& report) {
+  check_elevations(values, report);
+  constexpr std::size_t least_width = 4;
+  constexpr std::size_t most_pixels = 1'000'000;
+  if (camera.width < least_width) report.problem(values.where("width"), "expected at least 4 columns");
+  if (camera.width * camera.height > most_pixels)
+    report.problem(values.where("height"), "expected at most 1 000 000 pixels");
+  check_color(values, "sky", report);
+}
+
+void check(const Battery& battery, const ExtensionValues& values, const SdfReport& report) {
+  if (battery.motor_efficiency > 1.0) report.problem(values.where("motor_efficiency"), "expected at most 1");
+}
+
+// The keys that every sensor has.
+template <class Kind>
+Readout read_readout(const ExtensionValues& values) {
+  Noise noise;
+  read_values<Kind>(values, noise);
+  Readout readout;
+  if (!is_exact(noise)) readout.noises.push_back(noise);
+  read_values<Kind>(values, readout);
+  return readout;
+}
+
+template <class Kind>
+std::optional<Device> read_device(const ExtensionValues& values, References& references, const SdfReport& report) {
+  Kind device;
+  device.name = values.name();
+  // What is said of a single quantity holds before what is said of all: its noise comes later.
+  if constexpr (keys::Senses<Kind>) device.readout = read_readout<Kind>(values);
+  read_values<Kind>(values, device);
+  const bool is_whole = references.find_all(values, device);
+  check(device, values, report);
+  if (!is_whole) return std::nullopt;
+  return device;
+}
+
+struct DeviceKind {
+  std::optional<Device> (*read)(const ExtensionValues& values, References& references, const SdfReport& report);
+  bool commands = false;  // its channels are commands
+  bool observes = false;  // its channels are observations
+};
+
+// By the name of its element.
+std::map<std::string_view, DeviceKind> device_kinds() {
+  std::map<std::string_view, DeviceKind> kinds;
+  keys::for_kinds_in(keys::devices, [&]<class Kind>(std::type_identity<Kind>) {
+    const Extension& head = keys::table_of<Kind>.head;
+    const bool commands = head.topic == "actuators" || std::is_same_v<Kind, RangeAndBearing>;  // which sends, too
+    kinds[head.name] = {&read_device<Kind>, commands, keys::Senses<Kind>};
+  });
+  return kinds;
 }
 
 }  // namespace
+
+std::chrono::nanoseconds to_time(double seconds) {
+  constexpr double nanoseconds = 1e9;
+  constexpr double longest = 9e9;  // 285 years, which fits into nanoseconds [s]
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(std::round(std::min(seconds, longest) * nanoseconds)));
+}
+
+void check_color(const ExtensionValues& values, std::string_view key, const SdfReport& report) {
+  const Eigen::Vector3d& color = values.vector(key);
+  if (color.minCoeff() < 0.0 || color.maxCoeff() > 1.0)
+    report.problem(values.where(key), "expected red, green and blue from 0 to 1");
+}
 
 std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report,
                                  ShapeFiles& files) {
@@ -95,7 +253,8 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const M
     if (found[i].extension->name == "treel_drive" && found[i].element->HasAttribute("name"))
       drives.emplace(found[i].prefix + found[i].element->GetAttribute("name")->GetAsString(), i);
 
-  DeviceReader reader(model, std::move(drives), report, files);
+  static const std::map<std::string_view, DeviceKind> kinds = device_kinds();
+  References references(model, std::move(drives), report, files);
   std::vector<Device> devices;
   // Commands and observations are named after their device: two devices that command, or two that observe, cannot
   // share a name.
@@ -104,19 +263,11 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const M
     std::optional<ExtensionValues> values = ExtensionValues::read(element, *extension, report);
     if (!values) continue;
     values->put_in_scope(prefix, *extension);
-    const DeviceKind& kind = kind_of(*extension);
+    const DeviceKind& kind = kinds.at(extension->name);
     const bool is_new = (!kind.commands || names.emplace(true, values->name()).second) &&
                         (!kind.observes || names.emplace(false, values->name()).second);
     if (!is_new) report.problem(element, "another device of the model has the name '" + values->name() + "'");
-    std::optional<Device> device = kind.read(*values, reader);
-    if (!device) continue;
-    if (Readout* const readout = readout_of(*device)) {
-      // What is said of a single quantity holds before what is said of all.
-      Readout common = read_readout(*values);
-      common.noises.insert(common.noises.end(), readout->noises.begin(), readout->noises.end());
-      *readout = std::move(common);
-    }
-    devices.push_back(*std::move(device));
+    if (std::optional<Device> device = kind.read(*values, references, report)) devices.push_back(*std::move(device));
   }
   return devices;
 }

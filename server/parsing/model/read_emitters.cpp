@@ -2,9 +2,9 @@
 #include <sdf/Light.hh>
 #include <sdf/Link.hh>
 
-#include "server/parsing/sdf/extension_values.hpp"
-#include "server/parsing/model/read_model.hpp"
 #include "server/core/text.hpp"
+#include "server/parsing/model/read_model.hpp"
+#include "server/parsing/model/read_values.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -59,26 +59,13 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
   return light;
 }
 
-std::optional<Emitter> read_extension(const sdf::ElementPtr& element, const Extension& extension,
-                                      const SdfReport& report) {
-  const auto values = ExtensionValues::read(element, extension, report);
-  if (!values) return std::nullopt;
+template <class Kind>
+Emitter read_emitter(const ExtensionValues& values, const SdfReport& report) {
   Emitter emitter;
-  emitter.name = values->name();
-  emitter.X_LE = values->pose("pose");
-  emitter.is_on = values->flag("on");
-  if (extension.name == "sound") {
-    Sound sound{values->real("frequency"), values->real("intensity")};
-    if (values->has("range")) sound.range = values->real("range");
-    emitter.what = sound;
-  } else if (extension.name == "marker") {
-    const Eigen::Vector3d color = values->vector("color");
-    if ((color.array() < 0.0).any() || (color.array() > 1.0).any())
-      report.problem(values->where("color"), "expected red, green and blue from 0 to 1");
-    emitter.what = Marker{color};
-  } else {
-    emitter.what = ClimateSource{values->real("temperature"), values->real("humidity"), values->real("spread")};
-  }
+  emitter.name = values.name();
+  read_values<Kind>(values, emitter);
+  read_values<Kind>(values, emitter.what.emplace<Kind>());
+  if constexpr (std::is_same_v<Kind, Marker>) check_color(values, "color", report);
   return emitter;
 }
 
@@ -98,10 +85,10 @@ std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading
     emitters.push_back(read_light(*sdf_link.LightByIndex(i), reading));
   const sdf::ElementPtr link = sdf_link.Element();
   for (sdf::ElementPtr child = link->GetFirstElement(); child; child = child->GetNextElement())
-    for (const std::string_view name : {"sound", "marker", "climate_source"})
-      if (child->GetName() == std::string(extension_prefix) + ":" + std::string(name))
-        if (auto emitter = read_extension(child, *find_extension(name, "link"), reading.report))
-          emitters.push_back(*std::move(emitter));
+    keys::for_kinds_in(keys::emitters, [&]<class Kind>(std::type_identity<Kind>) {
+      if (const auto values = read_as<Kind>(child, reading.report))
+        emitters.push_back(read_emitter<Kind>(*values, reading.report));
+    });
   return emitters;
 }
 

@@ -3,9 +3,11 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
+#include <set>
 
-#include "server/parsing/model/device_reader.hpp"
+#include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
+#include "server/parsing/model/read_values.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <type_traits>
+
+#include "server/parsing/keys/device_keys.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
+
+/// From the values of an element to the members that they are for.
+namespace cohort::parsing {
+
+/// To the nearest nanosecond; what is too long for those is 285 years.
+std::chrono::nanoseconds to_time(double seconds);
+
+/// Reports a colour that is not red, green and blue from 0 to 1.
+void check_color(const ExtensionValues& values, std::string_view key, const SdfReport& report);
+
+/// A member stays as it is if its key has no value.
+template <class Struct, class Member>
+void read_value(const KeyValues& values, const keys::MemberKey<Struct, Member>& key, Struct& into) {
+  if (!values.has(key.name)) return;
+  Member& member = into.*key.member;
+  if constexpr (keys::List<Member>)
+    member = values.all<typename Member::value_type>(key.name);
+  else if constexpr (std::is_enum_v<Member>)
+    member = static_cast<Member>(std::ranges::find(key.choices, values.text(key.name)) - key.choices.begin());
+  else if constexpr (std::is_same_v<Member, std::chrono::nanoseconds>)
+    member = to_time(key.unit == "Hz" ? 1.0 / values.real(key.name) : values.real(key.name));
+  else
+    member = values.get<Member>(key.name);
+}
+
+template <class Struct>
+void read_value(const KeyValues& values, const keys::NoiseKey<Struct>& key, Struct& into) {
+  if (values.real(key.name) == 0.0) return;
+  for (const std::string_view quantity : key.quantities) {
+    if (quantity.empty()) continue;
+    Noise& noise = into.readout.noises.emplace_back();
+    noise.quantity = quantity;
+    noise.deviation = values.real(key.name);
+  }
+}
+
+/// What a reference names is found by who knows the model.
+template <class Struct, class Member>
+void read_value(const KeyValues&, const keys::ReferenceKey<Struct, Member>&, Struct&) {}
+
+/// Fills what a struct has of the keys of a kind.
+template <class Kind, class Struct>
+void read_values(const KeyValues& values, Struct& into) {
+  keys::for_keys_of<Struct>(keys::keys_of<Kind>, [&](const auto& key) { read_value(values, key, into); });
+}
+
+/// Of a child of a link; nothing if it is of another kind, or if anything is wrong, and reported then.
+template <class Kind>
+std::optional<ExtensionValues> read_as(const sdf::ElementPtr& child, const SdfReport& report) {
+  const Extension& extension = keys::extension_of<Kind>;
+  if (child->GetName() != std::string(extension_prefix) + ":" + std::string(extension.name)) return std::nullopt;
+  return ExtensionValues::read(child, extension, report);
+}
+
+}  // namespace cohort::parsing

@@ -1,15 +1,31 @@
-#include "server/sensing/accelerometer.hpp"
-
 #include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-std::vector<Channel> Accelerometer::channels() const {
-  return {{sensor_.name + "/0/acceleration", "m/s^2", 3, -infinity, infinity, 0.0}};
-}
+/// What a mass on springs measures along the axes of S: the acceleration of its origin, the mean over the last step,
+/// less gravity. At rest it is g upwards, in free fall 0.
+class Accelerometer final : public Sensor {
+ public:
+  Accelerometer(const description::Accelerometer& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    return {{sensor_.name + "/0/acceleration", "m/s^2", 3, -infinity, infinity, 0.0}};
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    write(proper_acceleration_of(sensor_, mount_), values);
+  }
+  bool needs_record() const override { return true; }
 
-void Accelerometer::sense(std::uint64_t, std::span<double> values) const {
-  write(proper_acceleration_of(sensor_, mount_), values);
+ private:
+  description::Accelerometer sensor_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::Accelerometer& sensor, const Mount& mount) {
+  return std::make_unique<Accelerometer>(sensor, mount);
 }
 
 }  // namespace cohort::sensing

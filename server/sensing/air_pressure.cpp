@@ -1,11 +1,12 @@
-#include "server/sensing/air_pressure.hpp"
-
 #include <cmath>
 
 #include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
+// In Pa at `height` above the sea [m]; 0 where the formula has no air.
 double standard_pressure(double height) {
   constexpr double at_sea = 101325.0;       // p0 [Pa]
   constexpr double temperature = 288.15;    // T0 [K]
@@ -18,12 +19,28 @@ double standard_pressure(double height) {
   return at_sea * std::exp(gravity * molar_mass / (gas_constant * lapse_rate) * std::log(base));
 }
 
-std::vector<Channel> AirPressureSensor::channels() const {
-  return {{sensor_.name + "/0/pressure", "Pa", 1, 0.0, infinity, 0.0}};
-}
+/// The pressure of the air at the height of S above the sea, as of the International Standard Atmosphere (ICAO Doc
+/// 7488, its lowest layer, continued above and below): p = p0 (1 - L h / T0)^(g M / (R L)).
+class AirPressureSensor final : public Sensor {
+ public:
+  AirPressureSensor(const description::AirPressureSensor& sensor, const Mount& mount)
+      : sensor_(sensor), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    return {{sensor_.name + "/0/pressure", "Pa", 1, 0.0, infinity, 0.0}};
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    values[0] = standard_pressure(sensor_.reference_altitude + pose_of(sensor_, mount_).position.z());
+  }
 
-void AirPressureSensor::sense(std::uint64_t, std::span<double> values) const {
-  values[0] = standard_pressure(sensor_.reference_altitude + pose_of(sensor_, mount_).position.z());
+ private:
+  description::AirPressureSensor sensor_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::AirPressureSensor& sensor, const Mount& mount) {
+  return std::make_unique<AirPressureSensor>(sensor, mount);
 }
 
 }  // namespace cohort::sensing

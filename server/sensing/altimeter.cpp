@@ -1,20 +1,34 @@
-#include "server/sensing/altimeter.hpp"
-
 #include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-Altimeter::Altimeter(const description::Altimeter& altimeter, Mount mount)
-    : altimeter_(altimeter), mount_(std::move(mount)), first_height_(pose_of(altimeter, mount_).position.z()) {}
+/// Height of the origin of S above where it was at first, and its velocity upwards, both along the world's z axis.
+/// "At first" is when this is made: before the first step of a run, also of one that is then restored.
+class Altimeter final : public Sensor {
+ public:
+  Altimeter(const description::Altimeter& altimeter, const Mount& mount)
+      : altimeter_(altimeter), mount_(mount), first_height_(pose_of(altimeter, mount).position.z()) {}
+  std::vector<Channel> channels() const override {
+    return {{altimeter_.name + "/0/vertical_position", "m", 1, -infinity, infinity, 0.0},
+            {altimeter_.name + "/0/vertical_velocity", "m/s", 1, -infinity, infinity, 0.0}};
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    values[0] = pose_of(altimeter_, mount_).position.z() - first_height_;
+    values[1] = velocity_of(altimeter_, mount_).z();
+  }
 
-std::vector<Channel> Altimeter::channels() const {
-  return {{altimeter_.name + "/0/vertical_position", "m", 1, -infinity, infinity, 0.0},
-          {altimeter_.name + "/0/vertical_velocity", "m/s", 1, -infinity, infinity, 0.0}};
-}
+ private:
+  description::Altimeter altimeter_;
+  Mount mount_;
+  double first_height_;  // [m]
+};
 
-void Altimeter::sense(std::uint64_t, std::span<double> values) const {
-  values[0] = pose_of(altimeter_, mount_).position.z() - first_height_;
-  values[1] = velocity_of(altimeter_, mount_).z();
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::Altimeter& altimeter, const Mount& mount) {
+  return std::make_unique<Altimeter>(altimeter, mount);
 }
 
 }  // namespace cohort::sensing

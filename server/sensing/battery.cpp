@@ -1,26 +1,62 @@
-#include "server/sensing/battery.hpp"
-
 #include <algorithm>
-#include <limits>
+
+#include "server/core/state_visitors.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-Battery::Battery(const description::Battery& battery, const description::Model& model, Mount mount)
+/// Charge and power of a robot's battery (description::Battery). Over each step it gives its idle power and, for every
+/// motor and track that moves its load, force times velocity / efficiency; a motor that brakes gives nothing back.
+class Battery final : public Sensor {
+ public:
+  Battery(const description::Battery& battery, const Mount& mount);
+  std::vector<Channel> channels() const override;
+  void sense(std::uint64_t tick, std::span<double> values) const override;
+
+  bool has_memory() const override { return true; }
+  void remember(std::uint64_t tick, bool was_delivered) override;
+  bool is_exhausted() const override { return energy_ <= 0.0; }
+  void hash(StateHash& hash) const override { hash.add(energy_); }
+  void save(SnapshotWriter& writer) const override { visit_memory(*this, StateSaver{writer}); }
+  void restore(SnapshotReader& reader) override { visit_memory(*this, StateRestorer{reader}); }
+
+ private:
+  double mechanical_power() const;
+  template <class Self, class Visit>
+  static void visit_memory(Self& self, Visit&& visit) {
+    visit(self.energy_);
+    visit(self.power_);
+    visit(self.noted_tick_);
+  }
+
+  description::Battery battery_;
+  Mount mount_;
+  std::vector<std::size_t> motor_joints_;
+  std::vector<std::size_t> drives_;  // devices of the model
+  double step_ = 0.0;                // [s]
+  double energy_ = 0.0;              // that is left [J]
+  double power_ = 0.0;               // over the last step [W]
+  std::uint64_t noted_tick_ = 0;
+};
+
+Battery::Battery(const description::Battery& battery, const Mount& mount)
     : battery_(battery),
-      mount_(std::move(mount)),
-      step_(std::chrono::duration<double>(mount_.description.step).count()),
+      mount_(mount),
+      step_(std::chrono::duration<double>(mount.description.step).count()),
       energy_(battery.capacity * battery.charge) {
-  for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    if (const auto motor = description::motor_limits(model.devices[device]))
+  const std::vector<description::Device>& devices = mount.model().devices;
+  for (std::size_t device = 0; device < devices.size(); ++device) {
+    if (const auto motor = description::motor_limits(devices[device]))
       motor_joints_.push_back(motor->joint);
-    else if (std::holds_alternative<description::TreelDrive>(model.devices[device]))
+    else if (std::holds_alternative<description::TreelDrive>(devices[device]))
       drives_.push_back(device);
   }
 }
 
 std::vector<Channel> Battery::channels() const {
   return {{battery_.name + "/0/charge", "1", 1, 0.0, 1.0, 0.0},
-          {battery_.name + "/0/power", "W", 1, 0.0, std::numeric_limits<double>::infinity(), 0.0}};
+          {battery_.name + "/0/power", "W", 1, 0.0, infinity, 0.0}};
 }
 
 double Battery::mechanical_power() const {
@@ -47,6 +83,12 @@ void Battery::remember(std::uint64_t tick, bool) {
 void Battery::sense(std::uint64_t, std::span<double> values) const {
   values[0] = energy_ / battery_.capacity;
   values[1] = power_;
+}
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::Battery& battery, const Mount& mount) {
+  return std::make_unique<Battery>(battery, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,30 +1,44 @@
-#include "server/sensing/contact_sensor.hpp"
-
-#include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-std::vector<Channel> ContactSensor::channels() const {
-  return {{sensor_.name + "/0/touching", "1", 1, 0.0, 1.0, 0.0, false},
-          {sensor_.name + "/0/force", "N", 1, 0.0, infinity, 0.0}};
-}
-
-bool ContactSensor::is_own(std::uint32_t solid) const {
-  const geometry::Solid& own = mount_.world.scene().solid(solid);
-  return own.link == sensor_.link && own.collision == sensor_.collision;
-}
-
-void ContactSensor::sense(std::uint64_t, std::span<double> values) const {
-  double impulse = 0.0;
-  values[0] = 0.0;
-  for (const physics::Contact& contact : mount_.world.contacts()) {
-    const bool is_touched = (contact.body_a == mount_.body && is_own(contact.solid_a)) ||
-                            (contact.body_b == mount_.body && is_own(contact.solid_b));
-    if (!is_touched) continue;
-    values[0] = 1.0;
-    impulse += contact.impulse;
+/// Whether one collision touched anything in the last step, and how hard it was pressed: the sum of the normal impulses
+/// of its contact points, over the duration of the step.
+class ContactSensor final : public Sensor {
+ public:
+  ContactSensor(const description::ContactSensor& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    return {{sensor_.name + "/0/touching", "1", 1, 0.0, 1.0, 0.0, false},
+            {sensor_.name + "/0/force", "N", 1, 0.0, infinity, 0.0}};
   }
-  values[1] = impulse / std::chrono::duration<double>(mount_.description.step).count();
+  void sense(std::uint64_t, std::span<double> values) const override {
+    double impulse = 0.0;
+    values[0] = 0.0;
+    for (const physics::Contact& contact : mount_.world.contacts()) {
+      const bool is_touched = (contact.body_a == mount_.body && is_own(contact.solid_a)) ||
+                              (contact.body_b == mount_.body && is_own(contact.solid_b));
+      if (!is_touched) continue;
+      values[0] = 1.0;
+      impulse += contact.impulse;
+    }
+    values[1] = impulse / std::chrono::duration<double>(mount_.description.step).count();
+  }
+
+ private:
+  bool is_own(std::uint32_t solid) const {
+    const geometry::Solid& own = mount_.world.scene().solid(solid);
+    return own.link == sensor_.link && own.collision == sensor_.collision;
+  }
+
+  description::ContactSensor sensor_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::ContactSensor& sensor, const Mount& mount) {
+  return std::make_unique<ContactSensor>(sensor, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,21 +1,37 @@
-#include "server/sensing/ground_sensors.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-std::vector<Channel> GroundSensors::channels() const {
-  std::vector<Channel> channels;
-  for (std::size_t i = 0; i < sensors_.places_L.size(); ++i)
-    channels.push_back({sensors_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
-  return channels;
-}
-
-void GroundSensors::sense(std::uint64_t, std::span<double> values) const {
-  const Pose X_WL = mount_.world.link_pose(mount_.body, sensors_.link);
-  const Eigen::Vector3d down_W = X_WL.orientation * -Eigen::Vector3d::UnitZ();
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto hit = mount_.world.scene().cast_ray(X_WL * sensors_.places_L[i], down_W, sensors_.range, mount_.body);
-    values[i] = hit ? 1.0 - hit->distance / sensors_.range : 0.0;
+/// Infrared sensors under a robot, each a ray along -z of the link. The reading is 1 - d / range for a surface at
+/// distance d, 0 if there is none within range, as over a hole (thesis, section 3.2.2).
+class GroundSensors final : public Sensor {
+ public:
+  GroundSensors(const description::GroundSensors& sensors, const Mount& mount) : sensors_(sensors), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; i < sensors_.places_L.size(); ++i)
+      channels.push_back({sensors_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
+    return channels;
   }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    const Pose X_WL = mount_.world.link_pose(mount_.body, sensors_.link);
+    const Eigen::Vector3d down_W = X_WL.orientation * -Eigen::Vector3d::UnitZ();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto hit = mount_.world.scene().cast_ray(X_WL * sensors_.places_L[i], down_W, sensors_.range, mount_.body);
+      values[i] = hit ? 1.0 - hit->distance / sensors_.range : 0.0;
+    }
+  }
+
+ private:
+  description::GroundSensors sensors_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::GroundSensors& sensors, const Mount& mount) {
+  return std::make_unique<GroundSensors>(sensors, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,34 +1,50 @@
-#include "server/sensing/imu.hpp"
-
 #include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-Imu::Imu(const description::Imu& imu, Mount mount) : imu_(imu), mount_(std::move(mount)) {
-  const Eigen::Vector3d& rpy = imu.reference_rpy;
-  const Eigen::Quaterniond turned = Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                                    Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                                    Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX());
-  R_RW_ = turned.conjugate();
-  if (!imu.is_relative_to_world) R_RW_ = R_RW_ * pose_of(imu, mount_).orientation.conjugate();
-}
-
-std::vector<Channel> Imu::channels() const {
-  std::vector<Channel> channels;
-  if (imu_.has_orientation) channels.push_back({imu_.name + "/0/orientation", "1", 4, -1.0, 1.0, 0.0, false});
-  channels.push_back({imu_.name + "/0/angular_velocity", "rad/s", 3, -infinity, infinity, 0.0});
-  channels.push_back({imu_.name + "/0/linear_acceleration", "m/s^2", 3, -infinity, infinity, 0.0});
-  return channels;
-}
-
-void Imu::sense(std::uint64_t, std::span<double> values) const {
-  const Eigen::Quaterniond R_WS = pose_of(imu_, mount_).orientation;
-  if (imu_.has_orientation) {
-    write(Eigen::Quaterniond(R_RW_ * R_WS), values);
-    values = values.subspan(4);
+/// Orientation and angular velocity of S, and the acceleration that a mass on springs in it measures: that of its
+/// origin, the mean over the last step, less gravity; at rest it is g upwards. The orientation is the rotation of S in
+/// its frame of reference (REP 145; SDF 1.9, <orientation_reference_frame>).
+class Imu final : public Sensor {
+ public:
+  Imu(const description::Imu& imu, const Mount& mount) : imu_(imu), mount_(mount) {
+    const Eigen::Vector3d& rpy = imu.reference_rpy;
+    const Eigen::Quaterniond turned = Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+                                      Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                                      Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX());
+    R_RW_ = turned.conjugate();
+    if (!imu.is_relative_to_world) R_RW_ = R_RW_ * pose_of(imu, mount).orientation.conjugate();
   }
-  write(Eigen::Vector3d(R_WS.conjugate() * mount_.world.link_twist(mount_.body, imu_.link).angular_W), values);
-  write(proper_acceleration_of(imu_, mount_), values.subspan(3));
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels;
+    if (imu_.has_orientation) channels.push_back({imu_.name + "/0/orientation", "1", 4, -1.0, 1.0, 0.0, false});
+    channels.push_back({imu_.name + "/0/angular_velocity", "rad/s", 3, -infinity, infinity, 0.0});
+    channels.push_back({imu_.name + "/0/linear_acceleration", "m/s^2", 3, -infinity, infinity, 0.0});
+    return channels;
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    const Eigen::Quaterniond R_WS = pose_of(imu_, mount_).orientation;
+    if (imu_.has_orientation) {
+      write(Eigen::Quaterniond(R_RW_ * R_WS), values);
+      values = values.subspan(4);
+    }
+    write(Eigen::Vector3d(R_WS.conjugate() * mount_.world.link_twist(mount_.body, imu_.link).angular_W), values);
+    write(proper_acceleration_of(imu_, mount_), values.subspan(3));
+  }
+  bool needs_record() const override { return true; }
+
+ private:
+  description::Imu imu_;
+  Mount mount_;
+  Eigen::Quaterniond R_RW_;  // R: the frame of reference
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::Imu& imu, const Mount& mount) {
+  return std::make_unique<Imu>(imu, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,19 +1,32 @@
-#include "server/sensing/joint_encoder.hpp"
-
-#include <limits>
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-std::vector<Channel> JointEncoder::channels() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string unit = joint_.type == description::JointType::prismatic ? "m" : "rad";
-  return {{encoder_.name + "/0/position", unit, 1, joint_.axis.lower, joint_.axis.upper, 0.0},
-          {encoder_.name + "/0/velocity", unit + "/s", 1, -infinity, infinity, 0.0}};
-}
+/// Position and velocity of one joint, exact.
+class JointEncoder final : public Sensor {
+ public:
+  JointEncoder(const description::JointEncoder& encoder, const Mount& mount) : encoder_(encoder), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    const description::Joint& joint = mount_.joint(encoder_.joint);
+    const std::string unit = joint.type == description::JointType::prismatic ? "m" : "rad";
+    return {{encoder_.name + "/0/position", unit, 1, joint.axis.lower, joint.axis.upper, 0.0},
+            {encoder_.name + "/0/velocity", unit + "/s", 1, -infinity, infinity, 0.0}};
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    values[0] = mount_.world.joint_position(mount_.body, encoder_.joint);
+    values[1] = mount_.world.joint_velocity(mount_.body, encoder_.joint);
+  }
 
-void JointEncoder::sense(std::uint64_t, std::span<double> values) const {
-  values[0] = mount_.world.joint_position(mount_.body, encoder_.joint);
-  values[1] = mount_.world.joint_velocity(mount_.body, encoder_.joint);
+ private:
+  description::JointEncoder encoder_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::JointEncoder& encoder, const Mount& mount) {
+  return std::make_unique<JointEncoder>(encoder, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,13 +1,11 @@
-#include "server/sensing/lidar.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "server/geometry/ray_fan.hpp"
 #include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
-
 namespace {
 
 // The i-th of n.
@@ -16,40 +14,56 @@ double angle(double least, double greatest, std::size_t i, std::size_t n) {
   return least + static_cast<double>(i) * (greatest - least) / static_cast<double>(n - 1);
 }
 
-}  // namespace
-
-Lidar::Lidar(const description::Lidar& lidar, Mount mount)
-    : lidar_(lidar),
-      mount_(std::move(mount)),
-      // Noise leaves the infinite as it is, and the readout then brings it into the range of the channel.
-      nothing_(lidar.readout.noises.empty() ? lidar.max_range : infinity) {
-  for (std::size_t row = 0; row < lidar.rows; ++row) {
-    const double elevation = angle(lidar.min_elevation, lidar.max_elevation, row, lidar.rows);
-    const double level = std::cos(elevation);
-    const double up = std::sin(elevation);
-    is_flat_ = is_flat_ && up == 0.0;
-    for (std::size_t column = 0; column < lidar.columns; ++column) {
-      const double bearing = angle(lidar.min_bearing, lidar.max_bearing, column, lidar.columns);
-      directions_S_.emplace_back(level * std::cos(bearing), level * std::sin(bearing), up);
+/// Ranges by one ray each, from the origin of S through what is the robot's own. The ray of bearing b and elevation e
+/// goes along (cos e cos b, cos e sin b, sin e) in S; in n columns or rows the i-th is at
+/// min + i (max - min) / (n - 1). What is nearer than the least range reads as that, and nothing within the greatest
+/// one as the greatest, which noise leaves as it is.
+class Lidar final : public Sensor {
+ public:
+  Lidar(const description::Lidar& lidar, const Mount& mount)
+      : lidar_(lidar),
+        mount_(mount),
+        // Noise leaves the infinite as it is, and the signal chain then brings it into the range of the channel.
+        nothing_(lidar.readout.noises.empty() ? lidar.max_range : infinity) {
+    for (std::size_t row = 0; row < lidar.rows; ++row) {
+      const double elevation = angle(lidar.min_elevation, lidar.max_elevation, row, lidar.rows);
+      const double level = std::cos(elevation);
+      const double up = std::sin(elevation);
+      is_flat_ = is_flat_ && up == 0.0;
+      for (std::size_t column = 0; column < lidar.columns; ++column) {
+        const double bearing = angle(lidar.min_bearing, lidar.max_bearing, column, lidar.columns);
+        directions_S_.emplace_back(level * std::cos(bearing), level * std::sin(bearing), up);
+      }
     }
   }
-}
-
-std::vector<Channel> Lidar::channels() const {
-  const auto rays = static_cast<std::uint32_t>(directions_S_.size());
-  return {{lidar_.name + "/0/ranges", "m", rays, lidar_.min_range, lidar_.max_range, lidar_.max_range}};
-}
-
-void Lidar::sense(std::uint64_t, std::span<double> values) const {
-  const Pose X_WS = pose_of(lidar_, mount_);
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(lidar_.max_range);
-  const geometry::Bounds region = is_flat_ ? geometry::bounds_of_disc(X_WS, lidar_.max_range)
-                                           : geometry::Bounds{X_WS.position - reach, X_WS.position + reach};
-  const geometry::RayFan fan(mount_.world.scene(), X_WS.position, region, mount_.body);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto hit = fan.cast(X_WS.position, X_WS.orientation * directions_S_[i], lidar_.max_range);
-    values[i] = hit ? std::max(hit->distance, lidar_.min_range) : nothing_;
+  std::vector<Channel> channels() const override {
+    const auto rays = static_cast<std::uint32_t>(directions_S_.size());
+    return {{lidar_.name + "/0/ranges", "m", rays, lidar_.min_range, lidar_.max_range, lidar_.max_range}};
   }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    const Pose X_WS = pose_of(lidar_, mount_);
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(lidar_.max_range);
+    const geometry::Bounds region = is_flat_ ? geometry::bounds_of_disc(X_WS, lidar_.max_range)
+                                             : geometry::Bounds{X_WS.position - reach, X_WS.position + reach};
+    const geometry::RayFan fan(mount_.world.scene(), X_WS.position, region, mount_.body);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto hit = fan.cast(X_WS.position, X_WS.orientation * directions_S_[i], lidar_.max_range);
+      values[i] = hit ? std::max(hit->distance, lidar_.min_range) : nothing_;
+    }
+  }
+
+ private:
+  description::Lidar lidar_;
+  Mount mount_;
+  std::vector<Eigen::Vector3d> directions_S_;
+  bool is_flat_ = true;  // all in the xy plane of S
+  double nothing_;       // what is measured where nothing is
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::Lidar& lidar, const Mount& mount) {
+  return std::make_unique<Lidar>(lidar, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,10 +1,12 @@
-#include "server/sensing/light_sensors.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
+#include "server/sensing/lamp_view.hpp"
+#include "server/sensing/placed.hpp"
+#include "server/sensing/sample_table.hpp"
 #include "server/sensing/saturation.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
 namespace {
@@ -14,7 +16,7 @@ using description::Light;
 // A lamp is no nearer than this [m]: at no distance it would be infinitely bright.
 constexpr double least_distance = 1e-3;
 // From where a directional light comes [m].
-constexpr double far_away = std::numeric_limits<double>::infinity();
+constexpr double far_away = infinity;
 
 double brightness(const emission::Lamp& lamp) { return lamp.light.intensity * lamp.light.color.sum() / 3.0; }
 
@@ -29,8 +31,7 @@ double within_cone(const emission::Lamp& lamp, const Eigen::Vector3d& direction_
   return std::exp(lamp.light.falloff * std::log((along - outer) / (inner - outer)));
 }
 
-}  // namespace
-
+// What arrives at a place of a lamp in sight [1]; `direction_W`: from there to the lamp, unit.
 double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& direction_W, double distance) {
   const Light& light = lamp.light;
   if (light.kind == Light::Kind::directional) return brightness(lamp);
@@ -40,52 +41,74 @@ double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& directi
   return arriving * within_cone(lamp, direction_W);
 }
 
-LightSensors::LightSensors(const description::LightSensors& sensors, Mount mount)
-    : sensors_(sensors),
-      mount_(std::move(mount)),
-      ring_(mount_.lamp_view.add_ring(mount_.body, sensors.link, sensors.X_LS.position)) {
-  if (sensors.samples) table_.emplace(sensors.samples);
-  for (std::size_t i = 0; i < sensors.count; ++i) {
-    const double bearing = sensors.first_bearing + static_cast<double>(i) * sensors.spacing;
-    directions_S_.emplace_back(std::cos(bearing), std::sin(bearing), 0.0);
-  }
-}
-
-std::vector<Channel> LightSensors::channels() const {
-  std::vector<Channel> channels;
-  for (std::size_t i = 0; i < sensors_.count; ++i)
-    channels.push_back({sensors_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
-  return channels;
-}
-
-void LightSensors::sense(std::uint64_t, std::span<double> values) const {
-  const Pose X_WS = mount_.world.link_pose(mount_.body, sensors_.link) * sensors_.X_LS;
-  std::ranges::fill(values, 0.0);
-  const std::span<const std::uint32_t> lamps = mount_.emitters.lit_lamps();
-  for (std::uint32_t place = 0; place < lamps.size(); ++place) {
-    const emission::Lamp& lamp = mount_.emitters.lamp(lamps[place]);
-    if (lamp.mount.body == mount_.body) continue;
-    const bool is_far_away = lamp.light.kind == Light::Kind::directional;
-    const Eigen::Vector3d offset_W =
-        is_far_away ? Eigen::Vector3d(-lamp.direction_W) : Eigen::Vector3d(lamp.p_W - X_WS.position);
-    const double distance = offset_W.norm();
-    if (!(distance > 0.0)) continue;
-    const Eigen::Vector3d direction_W = offset_W / distance;
-    const double arriving = arriving_light(lamp, direction_W, distance);
-    if (!(arriving > 0.0)) continue;
-    if (is_far_away ? !mount_.world.scene().is_free(X_WS.position, direction_W, far_away, mount_.body)
-                    : !mount_.lamp_view.is_in_sight(place, ring_))
-      continue;
-    const Eigen::Vector3d direction_S = X_WS.orientation.conjugate() * direction_W;
-    if (table_ && !is_far_away) {
-      const double bearing = std::atan2(direction_S.y(), direction_S.x());
-      table_->add(distance, bearing, brightness(lamp) * within_cone(lamp, direction_W), values);
-      continue;
+/// Light from all lamps that are on and in sight, as one ray between the lamp and the middle of the ring decides
+/// (LampView; thesis, section 3.2.3). Of what arrives there (description::Light; a colour counts by the mean of its
+/// three parts) a sensor gets the share of the cosine of the angle between its axis and the lamp (Lambert's law),
+/// nothing from behind. The reading is the sum over the lamps times the gain, saturated. With samples, the table's
+/// readings for the lamp's distance and bearing, times what a lamp as bright gives at 1 m, take the place of distance
+/// and cosine.
+class LightSensors final : public Sensor {
+ public:
+  LightSensors(const description::LightSensors& sensors, const Mount& mount)
+      : sensors_(sensors),
+        mount_(mount),
+        lamp_view_(mount.lamp_view),
+        ring_(lamp_view_.add_ring(mount.body, sensors.link, sensors.X_LS.position)) {
+    if (sensors.samples) table_.emplace(sensors.samples);
+    for (std::size_t i = 0; i < sensors.count; ++i) {
+      const double bearing = sensors.first_bearing + static_cast<double>(i) * sensors.spacing;
+      directions_S_.emplace_back(std::cos(bearing), std::sin(bearing), 0.0);
     }
-    for (std::size_t i = 0; i < values.size(); ++i)
-      values[i] += arriving * std::max(0.0, direction_S.dot(directions_S_[i]));
   }
-  for (double& value : values) value = saturated(sensors_.gain * value);
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; i < sensors_.count; ++i)
+      channels.push_back({sensors_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
+    return channels;
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    const Pose X_WS = pose_of(sensors_, mount_);
+    std::ranges::fill(values, 0.0);
+    const std::span<const std::uint32_t> lamps = mount_.emitters.lit_lamps();
+    for (std::uint32_t place = 0; place < lamps.size(); ++place) {
+      const emission::Lamp& lamp = mount_.emitters.lamp(lamps[place]);
+      if (lamp.mount.body == mount_.body) continue;
+      const bool is_far_away = lamp.light.kind == Light::Kind::directional;
+      const Eigen::Vector3d offset_W =
+          is_far_away ? Eigen::Vector3d(-lamp.direction_W) : Eigen::Vector3d(lamp.p_W - X_WS.position);
+      const double distance = offset_W.norm();
+      if (!(distance > 0.0)) continue;
+      const Eigen::Vector3d direction_W = offset_W / distance;
+      const double arriving = arriving_light(lamp, direction_W, distance);
+      if (!(arriving > 0.0)) continue;
+      if (is_far_away ? !mount_.world.scene().is_free(X_WS.position, direction_W, far_away, mount_.body)
+                      : !lamp_view_.is_in_sight(place, ring_))
+        continue;
+      const Eigen::Vector3d direction_S = X_WS.orientation.conjugate() * direction_W;
+      if (table_ && !is_far_away) {
+        const double bearing = std::atan2(direction_S.y(), direction_S.x());
+        table_->add(distance, bearing, brightness(lamp) * within_cone(lamp, direction_W), values);
+        continue;
+      }
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] += arriving * std::max(0.0, direction_S.dot(directions_S_[i]));
+    }
+    for (double& value : values) value = saturated(sensors_.gain * value);
+  }
+
+ private:
+  description::LightSensors sensors_;
+  Mount mount_;
+  LampView& lamp_view_;
+  std::uint32_t ring_;  // number in the lamp view
+  std::vector<Eigen::Vector3d> directions_S_;
+  std::optional<SampleTable> table_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::LightSensors& sensors, const Mount& mount) {
+  return std::make_unique<LightSensors>(sensors, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,15 +1,30 @@
-#include "server/sensing/magnetometer.hpp"
-
 #include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-std::vector<Channel> Magnetometer::channels() const {
-  return {{sensor_.name + "/0/magnetic_field", "T", 3, -infinity, infinity, 0.0}};
-}
+/// The magnetic field of the world, which is the same everywhere, in S.
+class Magnetometer final : public Sensor {
+ public:
+  Magnetometer(const description::Magnetometer& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    return {{sensor_.name + "/0/magnetic_field", "T", 3, -infinity, infinity, 0.0}};
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    write(Eigen::Vector3d(pose_of(sensor_, mount_).orientation.conjugate() * mount_.description.magnetic_field),
+          values);
+  }
 
-void Magnetometer::sense(std::uint64_t, std::span<double> values) const {
-  write(Eigen::Vector3d(pose_of(sensor_, mount_).orientation.conjugate() * mount_.description.magnetic_field), values);
+ private:
+  description::Magnetometer sensor_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::Magnetometer& sensor, const Mount& mount) {
+  return std::make_unique<Magnetometer>(sensor, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,14 +1,40 @@
-#include "server/sensing/message_receiver.hpp"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
+
 namespace cohort::sensing {
+namespace {
+
+/// Messages of the robots around (description::RangeAndBearing) and where they came from. A message is heard if its
+/// sender's range reaches here and a ray to the sender meets nothing but the two robots themselves. What is heard
+/// between two deliveries adds up, the newest tick first; of one tick the nearest first, and of two at the same
+/// distance the one with the lower beacon. What exceeds the capacity is lost.
+class MessageReceiver final : public Sensor {
+ public:
+  MessageReceiver(const description::RangeAndBearing& device, const Mount& mount) : device_(device), mount_(mount) {}
+  std::vector<Channel> channels() const override;
+  void sense(std::uint64_t tick, std::span<double> values) const override;
+
+  bool has_memory() const override { return true; }
+  void remember(std::uint64_t tick, bool was_delivered) override;
+  void hash(StateHash& hash) const override;
+  void save(SnapshotWriter& writer) const override;
+  void restore(SnapshotReader& reader) override;
+
+ private:
+  std::size_t size_of_one() const { return 3 + device_.message_size; }
+
+  description::RangeAndBearing device_;
+  Mount mount_;
+  std::vector<double> heard_;   // range, bearing, elevation and message of each, in the order of the report
+  std::vector<double> before_;  // of these, those of ticks before `noted_tick_`
+  std::uint64_t noted_tick_ = ~std::uint64_t{0};
+};
 
 std::vector<Channel> MessageReceiver::channels() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double pi = std::numbers::pi;
   const auto size = static_cast<std::uint32_t>(device_.message_size);
   const auto most = static_cast<double>(device_.capacity);
@@ -29,7 +55,7 @@ void MessageReceiver::remember(std::uint64_t tick, bool was_delivered) {
     before_ = std::move(heard_);
     if (was_delivered) before_.clear();
   }
-  const Pose X_WS = mount_.world.link_pose(mount_.body, device_.link) * device_.X_LS;
+  const Pose X_WS = pose_of(device_, mount_);
   struct Near {
     double distance;
     std::uint32_t beacon;
@@ -88,6 +114,12 @@ void MessageReceiver::restore(SnapshotReader& reader) {
       throw SnapshotError("the snapshot has more messages than a robot hears");
     reader.read_all(messages->data(), messages->size());
   }
+}
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::RangeAndBearing& device, const Mount& mount) {
+  return std::make_unique<MessageReceiver>(device, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,12 +1,13 @@
-#include "server/sensing/panoramic_camera.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "server/core/integer_floor.hpp"
+#include "server/geometry/panorama.hpp"
 #include "server/sensing/markers_in_sight.hpp"
+#include "server/sensing/placed.hpp"
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
 namespace {
@@ -33,10 +34,28 @@ void paint(std::span<double> image, std::size_t pixel, const Eigen::Vector3d& co
   std::copy(color.begin(), color.end(), image.begin() + static_cast<std::ptrdiff_t>(3 * pixel));
 }
 
-}  // namespace
+/// An image of all round (description::PanoramicCamera), one ray for each pixel, through its middle. A surface has the
+/// colour of its link times 0.4 + 0.6 max(0, n . l), where n is its normal and l the direction (2, 1, 3) / sqrt(14) of
+/// a light that is always the same and throws no shadows (Lambert's law). Markers that are in sight (markers_in_sight)
+/// are drawn over it as spots with a radius of 5 mm and their own colour, at least the pixel that they are in, the
+/// nearest last. Lamps light nothing up.
+class PanoramicCamera final : public Sensor {
+ public:
+  PanoramicCamera(const description::PanoramicCamera& camera, const Mount& mount);
+  std::vector<Channel> channels() const override;
+  void sense(std::uint64_t tick, std::span<double> values) const override;
 
-PanoramicCamera::PanoramicCamera(const description::PanoramicCamera& camera, Mount mount)
-    : camera_(camera), mount_(std::move(mount)), panorama_(camera.width, elevations_of(camera)) {}
+ private:
+  void draw_surfaces(const Pose& X_WS, std::span<double> image) const;
+  void draw_markers(const Pose& X_WS, std::span<double> image) const;
+
+  description::PanoramicCamera camera_;
+  Mount mount_;
+  geometry::Panorama panorama_;
+};
+
+PanoramicCamera::PanoramicCamera(const description::PanoramicCamera& camera, const Mount& mount)
+    : camera_(camera), mount_(mount), panorama_(camera.width, elevations_of(camera)) {}
 
 std::vector<Channel> PanoramicCamera::channels() const {
   const auto size = static_cast<std::uint32_t>(3 * camera_.width * camera_.height);
@@ -44,7 +63,7 @@ std::vector<Channel> PanoramicCamera::channels() const {
 }
 
 void PanoramicCamera::sense(std::uint64_t, std::span<double> values) const {
-  const Pose X_WS = mount_.world.link_pose(mount_.body, camera_.link) * camera_.X_LS;
+  const Pose X_WS = pose_of(camera_, mount_);
   draw_surfaces(X_WS, values);
   draw_markers(X_WS, values);
 }
@@ -89,6 +108,12 @@ void PanoramicCamera::draw_markers(const Pose& X_WS, std::span<double> image) co
         if (is_middle || panorama_.direction(pixel).dot(direction_S) >= cosine) paint(image, pixel, color);
       }
   }
+}
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::PanoramicCamera& camera, const Mount& mount) {
+  return std::make_unique<PanoramicCamera>(camera, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <limits>
-
 #include "server/sensing/sensor.hpp"
 
 /// What sensors that have a place S on a link share.
 namespace cohort::sensing {
-
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <class Posed>
 Pose pose_of(const Posed& sensor, const Mount& mount) {

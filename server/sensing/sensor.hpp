@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -18,16 +19,23 @@
 
 namespace cohort::sensing {
 
-/// Where a sensor is mounted.
+/// As a bound: a channel has none.
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Where a sensor is mounted, and what it senses. All that it refers to must outlive the sensor.
 struct Mount {
   const physics::World& world;
   const emission::Emitters& emitters;
   const description::World& description;
   const gripping::Grippers& grippers;
   LampView& lamp_view;  ///< light sensors make themselves known to it
-  std::uint32_t body;   ///< the robot's
-  std::string robot;    ///< scoped name; with the seed it fixes the noise
-  std::uint64_t seed;   ///< of the experiment
+  std::uint32_t body;   ///< the robot's, which is its index among the description's instances
+  std::size_t device;   ///< index in the robot's model
+  std::uint64_t seed;   ///< of the experiment; with the robot's name it fixes what is random
+
+  const std::string& robot_name() const { return description.instances[body].name; }
+  const description::Model& model() const { return description.models[description.instances[body].model]; }
+  const description::Joint& joint(std::size_t index) const { return model().joints[index]; }
 };
 
 /// Reads the world. One object for each device of each robot.
@@ -36,7 +44,7 @@ class Sensor {
   virtual ~Sensor() = default;
   /// The channels that `sense` fills, in order.
   virtual std::vector<Channel> channels() const = 0;
-  /// Writes one value for each float64 of the channels, as they are: what disturbs them comes after (readout.hpp). A
+  /// Writes one value for each float64 of the channels, as they are: what disturbs them comes after (SignalChain). A
   /// pure function of the state of the world and of the sensor, and of the tick; runs at once with other sensors, from
   /// any thread.
   virtual void sense(std::uint64_t tick, std::span<double> values) const = 0;
@@ -57,8 +65,7 @@ class Sensor {
   virtual void restore(SnapshotReader& /*reader*/) {}
 };
 
-/// The sensor of a device (`device`: its index in `model`), or null if it senses nothing. What `mount` refers to must
-/// outlive it.
-std::unique_ptr<Sensor> make_sensor(const description::Model& model, std::size_t device, Mount mount);
+/// The sensor of the device at `mount`, or null if it senses nothing.
+std::unique_ptr<Sensor> make_sensor(const Mount& mount);
 
 }  // namespace cohort::sensing

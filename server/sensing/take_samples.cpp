@@ -32,7 +32,7 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   const emission::Emitters emitters(description, *world);
   LampView lamp_view(*world, emitters);
   const gripping::Grippers grippers(description, *world);
-  const auto sensor = make_sensor(model, device, {*world, emitters, description, grippers, lamp_view, 0, "robot", 1});
+  const auto sensor = make_sensor({*world, emitters, description, grippers, lamp_view, 0, device, 1});
   const std::uint64_t ticks = ring.technique == description::ProximityTechnique::random_ray ? random_ticks : 1;
 
   description::Samples samples;

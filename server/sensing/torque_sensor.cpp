@@ -1,13 +1,29 @@
-#include "server/sensing/torque_sensor.hpp"
-
-#include <limits>
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-std::vector<Channel> TorqueSensor::channels() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const bool slides = joint_.type == description::JointType::prismatic;
-  return {{sensor_.name + (slides ? "/0/force" : "/0/torque"), slides ? "N" : "N m", 1, -infinity, infinity, 0.0}};
+/// What the motor of a joint gave over the last step.
+class TorqueSensor final : public Sensor {
+ public:
+  TorqueSensor(const description::TorqueSensor& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    const bool slides = mount_.joint(sensor_.joint).type == description::JointType::prismatic;
+    return {{sensor_.name + (slides ? "/0/force" : "/0/torque"), slides ? "N" : "N m", 1, -infinity, infinity, 0.0}};
+  }
+  void sense(std::uint64_t, std::span<double> values) const override {
+    values[0] = mount_.world.joint_effort(mount_.body, sensor_.joint);
+  }
+
+ private:
+  description::TorqueSensor sensor_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::TorqueSensor& sensor, const Mount& mount) {
+  return std::make_unique<TorqueSensor>(sensor, mount);
 }
 
 }  // namespace cohort::sensing

@@ -1,26 +1,39 @@
-#include "server/sensing/treel_encoder.hpp"
-
-#include <limits>
+#include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
+namespace {
 
-std::vector<Channel> TreelEncoder::channels() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::vector<Channel> channels;
-  for (const char* side : {"/left", "/right"}) {
-    channels.push_back({encoder_.name + side + "/position", "m", 1, -infinity, infinity, 0.0});
-    channels.push_back({encoder_.name + side + "/velocity", "m/s", 1, -infinity, infinity, 0.0});
+/// Way and velocity of both tracks of a treel drive, exact. A track that slips counts its own motion, as an encoder on
+/// its motor does.
+class TreelEncoder final : public Sensor {
+ public:
+  TreelEncoder(const description::TreelEncoder& encoder, const Mount& mount) : encoder_(encoder), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels;
+    for (const char* side : {"/left", "/right"}) {
+      channels.push_back({encoder_.name + side + "/position", "m", 1, -infinity, infinity, 0.0});
+      channels.push_back({encoder_.name + side + "/velocity", "m/s", 1, -infinity, infinity, 0.0});
+    }
+    return channels;
   }
-  return channels;
-}
+  void sense(std::uint64_t, std::span<double> values) const override {
+    std::size_t i = 0;
+    for (const physics::Side side : {physics::Side::left, physics::Side::right}) {
+      const physics::TrackState track = mount_.world.track(mount_.body, encoder_.drive, side);
+      values[i++] = track.position;
+      values[i++] = track.velocity;
+    }
+  }
 
-void TreelEncoder::sense(std::uint64_t, std::span<double> values) const {
-  std::size_t i = 0;
-  for (const physics::Side side : {physics::Side::left, physics::Side::right}) {
-    const physics::TrackState track = mount_.world.track(mount_.body, encoder_.drive, side);
-    values[i++] = track.position;
-    values[i++] = track.velocity;
-  }
+ private:
+  description::TreelEncoder encoder_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> make_sensor(const description::TreelEncoder& encoder, const Mount& mount) {
+  return std::make_unique<TreelEncoder>(encoder, mount);
 }
 
 }  // namespace cohort::sensing

@@ -67,8 +67,7 @@ void Simulation::build_robot(std::uint32_t id) {
   RobotKind kind{model.name, {}, {}, 0, 0};
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     if (auto sensor = sensing::make_sensor(
-            model, device,
-            {*world_, emitters_, world, grippers_, lamp_view_, robot.body, instance.name, experiment_.seed})) {
+            {*world_, emitters_, world, grippers_, lamp_view_, robot.body, device, experiment_.seed})) {
       if (sensor->needs_record()) world_->record(robot.body);
       rings_.resize(lamp_view_.ring_count(), {id, robot.sensors.size()});
       const std::vector<Channel> channels = sensor->channels();

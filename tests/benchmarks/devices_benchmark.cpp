@@ -41,9 +41,8 @@ class Swarm {
     lamp_view_ = std::make_unique<LampView>(*world_, *emitters_);
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        auto sensor = make_sensor(robot, device,
-                                  {*world_, *emitters_, description_, *grippers_, *lamp_view_,
-                                   static_cast<std::uint32_t>(body), description_.instances[body].name, 1});
+        auto sensor = make_sensor(
+            {*world_, *emitters_, description_, *grippers_, *lamp_view_, static_cast<std::uint32_t>(body), device, 1});
         if (!sensor) continue;
         sensors_.push_back(std::move(sensor));
         std::size_t size = 0;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "server/sensing/signal_chain.hpp"
 #include "server/sensing/sensor.hpp"
+#include "server/sensing/signal_chain.hpp"
 #include "tests/support/small_world.hpp"
 
 namespace cohort::testing {
@@ -72,8 +72,7 @@ class Sensed {
     grippers_.emplace(small.description, small.world());
     lamp_view_.emplace(world, *emitters_);
     const description::Model& model = small.description.models[small.description.instances[body].model];
-    sensor_ = sensing::make_sensor(model, 0,
-                                   {world, *emitters_, small.description, *grippers_, *lamp_view_, body, "carrier", 1});
+    sensor_ = sensing::make_sensor({world, *emitters_, small.description, *grippers_, *lamp_view_, body, 0, 1});
     if (sensor_->needs_record()) small.world().record(body);
     channels_ = sensor_->channels();
     for (const Channel& channel : channels_) size_ += channel.size;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/sensing/air_pressure.hpp"
 #include "tests/support/sensed.hpp"
 
 /// SDF's own sensors, and the cohort: ones that are like them, against closed forms.
@@ -221,11 +220,14 @@ TEST(InclinometerSensor, ReadsZeroWhereThereIsNoGravity) {
 
 // Table I of ICAO Doc 7488 (geopotential altitude).
 TEST(AirPressureSensor, FollowsTheStandardAtmosphere) {
-  EXPECT_EQ(sensing::standard_pressure(0.0), 101325.0);
-  EXPECT_NEAR(sensing::standard_pressure(1000.0), 89874.6, 0.1);
-  EXPECT_NEAR(sensing::standard_pressure(5000.0), 54019.9, 0.1);
-  EXPECT_NEAR(sensing::standard_pressure(11000.0), 22632.0, 0.1);
-  EXPECT_EQ(sensing::standard_pressure(50000.0), 0.0);
+  const auto standard_pressure = [](double height) {
+    return Sensed(description::AirPressureSensor{"p", 0, {}, height}, at(0, 0, 0)).value("pressure");
+  };
+  EXPECT_EQ(standard_pressure(0.0), 101325.0);
+  EXPECT_NEAR(standard_pressure(1000.0), 89874.6, 0.1);
+  EXPECT_NEAR(standard_pressure(5000.0), 54019.9, 0.1);
+  EXPECT_NEAR(standard_pressure(11000.0), 22632.0, 0.1);
+  EXPECT_EQ(standard_pressure(50000.0), 0.0);
   Sensed sensed(description::AirPressureSensor{"p", 0, {{0, 0, 2}}, 996.0}, at(0, 0, 2));
   EXPECT_NEAR(sensed.value("pressure"), 89874.6, 0.1);
 }

@@ -113,10 +113,8 @@ class CohortSensing final : public SensingRun {
     std::size_t size = 0;
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        const description::Instance& robot = description_.instances[body];
-        sensors_.push_back(sensing::make_sensor(description_.models[robot.model], device,
-                                                {*world_, emitters_, description_, grippers_, lamp_view_,
-                                                 static_cast<std::uint32_t>(body), robot.name, scene.seed}));
+        sensors_.push_back(sensing::make_sensor({*world_, emitters_, description_, grippers_, lamp_view_,
+                                                 static_cast<std::uint32_t>(body), device, scene.seed}));
         std::size_t of_sensor = 0;
         for (const Channel& channel : sensors_.back()->channels()) of_sensor += channel.size;
         ends_.push_back(size += of_sensor);

@@ -7,7 +7,7 @@
 
 #include "server/actuation/user_actions.hpp"
 #include "server/core/channel.hpp"
-#include "server/description/model.hpp"
+#include "server/description/world.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/gripping/grippers.hpp"
 #include "server/physics/world/physics_world.hpp"
@@ -25,17 +25,21 @@ class Actuator {
   virtual void apply(std::span<const double> values) = 0;
 };
 
-/// What actuators act on, and the body of the robot that has them.
+/// What an actuator acts on, and the robot that has it. All that it refers to must outlive the actuator.
 struct Mount {
   physics::World& world;
   emission::Emitters& emitters;
+  const description::World& description;
   gripping::Grippers& grippers;
   UserActions& actions;
-  std::uint32_t body;
+  std::uint32_t body;  ///< the robot's, which is its index among the description's instances
+  std::size_t device;  ///< index in the robot's model
+
+  const description::Model& model() const { return description.models[description.instances[body].model]; }
+  const description::Joint& joint(std::size_t index) const { return model().joints[index]; }
 };
 
-/// The actuator of a device (`device`: its index in `model`), or null if it only senses. What `mount` refers to must
-/// outlive it.
-std::unique_ptr<Actuator> make_actuator(const description::Model& model, std::size_t device, Mount mount);
+/// The actuator of the device at `mount`, or null if it only senses.
+std::unique_ptr<Actuator> make_actuator(const Mount& mount);
 
 }  // namespace cohort::actuation

@@ -1,10 +1,29 @@
-#include "server/actuation/loudspeaker.hpp"
+#include "server/actuation/actuator_kinds.hpp"
 
 namespace cohort::actuation {
+namespace {
 
-std::vector<Channel> Loudspeaker::channels() const {
-  return {{speaker_.name + "/0/frequency", "Hz", 1, 0.0, speaker_.max_frequency, 0.0},
-          {speaker_.name + "/0/intensity", "1", 1, 0.0, speaker_.max_intensity, 0.0}};
+/// Frequency [Hz] and intensity of one tone.
+class Loudspeaker final : public Actuator {
+ public:
+  Loudspeaker(const description::Loudspeaker& speaker, const Mount& mount)
+      : speaker_(speaker), mount_(mount), tone_(mount.emitters.of_device(mount.body, mount.device).tone) {}
+  std::vector<Channel> channels() const override {
+    return {{speaker_.name + "/0/frequency", "Hz", 1, 0.0, speaker_.max_frequency, 0.0},
+            {speaker_.name + "/0/intensity", "1", 1, 0.0, speaker_.max_intensity, 0.0}};
+  }
+  void apply(std::span<const double> values) override { mount_.emitters.set_tone(tone_, values[0], values[1]); }
+
+ private:
+  description::Loudspeaker speaker_;
+  Mount mount_;
+  std::uint32_t tone_;
+};
+
+}  // namespace
+
+std::unique_ptr<Actuator> make_actuator(const description::Loudspeaker& speaker, const Mount& mount) {
+  return std::make_unique<Loudspeaker>(speaker, mount);
 }
 
 }  // namespace cohort::actuation

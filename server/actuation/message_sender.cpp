@@ -1,14 +1,35 @@
-#include "server/actuation/message_sender.hpp"
-
 #include <limits>
 
-namespace cohort::actuation {
+#include "server/actuation/actuator_kinds.hpp"
 
-std::vector<Channel> MessageSender::channels() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const auto size = static_cast<std::uint32_t>(device_.message_size);
-  return {{device_.name + "/0/sending", "1", 1, 0.0, 1.0, 0.0},
-          {device_.name + "/0/message", "1", size, -infinity, infinity, 0.0}};
+namespace cohort::actuation {
+namespace {
+
+/// A message to the robots around: sent at every tick for as long as `sending` is at least 0.5.
+class MessageSender final : public Actuator {
+ public:
+  MessageSender(const description::RangeAndBearing& device, const Mount& mount)
+      : device_(device), mount_(mount), beacon_(mount.emitters.of_device(mount.body, mount.device).beacon) {}
+  std::vector<Channel> channels() const override {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const auto size = static_cast<std::uint32_t>(device_.message_size);
+    return {{device_.name + "/0/sending", "1", 1, 0.0, 1.0, 0.0},
+            {device_.name + "/0/message", "1", size, -infinity, infinity, 0.0}};
+  }
+  void apply(std::span<const double> values) override {
+    mount_.emitters.set_beacon(beacon_, values[0] >= 0.5, values.subspan(1));
+  }
+
+ private:
+  description::RangeAndBearing device_;
+  Mount mount_;
+  std::uint32_t beacon_;
+};
+
+}  // namespace
+
+std::unique_ptr<Actuator> make_actuator(const description::RangeAndBearing& device, const Mount& mount) {
+  return std::make_unique<MessageSender>(device, mount);
 }
 
 }  // namespace cohort::actuation

@@ -1,17 +1,32 @@
-#include "server/actuation/treel_drive.hpp"
+#include "server/actuation/actuator_kinds.hpp"
 
 namespace cohort::actuation {
+namespace {
 
-std::vector<Channel> TreelDrive::channels() const {
-  std::vector<Channel> channels;
-  for (const char* side : {"/left", "/right"})
-    channels.push_back({drive_.name + side + "/velocity", "m/s", 1, -drive_.max_velocity, drive_.max_velocity, 0.0});
-  return channels;
-}
+/// Velocity of the left and the right track over ground [m/s].
+class TreelDrive final : public Actuator {
+ public:
+  TreelDrive(const description::TreelDrive& drive, const Mount& mount) : drive_(drive), mount_(mount) {}
+  std::vector<Channel> channels() const override {
+    std::vector<Channel> channels;
+    for (const char* side : {"/left", "/right"})
+      channels.push_back({drive_.name + side + "/velocity", "m/s", 1, -drive_.max_velocity, drive_.max_velocity, 0.0});
+    return channels;
+  }
+  void apply(std::span<const double> values) override {
+    mount_.world.set_track_velocity_target(mount_.body, mount_.device, physics::Side::left, values[0]);
+    mount_.world.set_track_velocity_target(mount_.body, mount_.device, physics::Side::right, values[1]);
+  }
 
-void TreelDrive::apply(std::span<const double> values) {
-  mount_.world.set_track_velocity_target(mount_.body, device_, physics::Side::left, values[0]);
-  mount_.world.set_track_velocity_target(mount_.body, device_, physics::Side::right, values[1]);
+ private:
+  description::TreelDrive drive_;
+  Mount mount_;
+};
+
+}  // namespace
+
+std::unique_ptr<Actuator> make_actuator(const description::TreelDrive& drive, const Mount& mount) {
+  return std::make_unique<TreelDrive>(drive, mount);
 }
 
 }  // namespace cohort::actuation

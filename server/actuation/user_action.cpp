@@ -1,9 +1,26 @@
-#include "server/actuation/user_action.hpp"
+#include "server/actuation/actuator_kinds.hpp"
 
 namespace cohort::actuation {
+namespace {
 
-std::vector<Channel> UserAction::channels() const { return {{action_.name + "/0/value", "1", 1, 0.0, 1.0, 0.0}}; }
+/// Tells that the robot does something, from 0 to 1.
+class UserAction final : public Actuator {
+ public:
+  UserAction(const description::UserAction& action, const Mount& mount)
+      : action_(action), mount_(mount), number_(mount.actions.of_device(mount.body, mount.device)) {}
+  std::vector<Channel> channels() const override { return {{action_.name + "/0/value", "1", 1, 0.0, 1.0, 0.0}}; }
+  void apply(std::span<const double> values) override { mount_.actions.command(number_, values[0]); }
 
-void UserAction::apply(std::span<const double> values) { mount_.actions.command(number_, values[0]); }
+ private:
+  description::UserAction action_;
+  Mount mount_;
+  std::uint32_t number_;
+};
+
+}  // namespace
+
+std::unique_ptr<Actuator> make_actuator(const description::UserAction& action, const Mount& mount) {
+  return std::make_unique<UserAction>(action, mount);
+}
 
 }  // namespace cohort::actuation

@@ -80,7 +80,7 @@ void Simulation::build_robot(std::uint32_t id) {
            total_size(channels)});
     }
     if (auto actuator =
-            actuation::make_actuator(model, device, {*world_, emitters_, grippers_, actions_, robot.body})) {
+            actuation::make_actuator({*world_, emitters_, world, grippers_, actions_, robot.body, device})) {
       const std::vector<Channel> channels = actuator->channels();
       kind.command.insert(kind.command.end(), channels.begin(), channels.end());
       robot.actuators.push_back(std::move(actuator));

@@ -14,9 +14,8 @@ class Battery final : public Sensor {
   std::vector<Channel> channels() const override;
   void sense(std::uint64_t tick, std::span<double> values) const override;
 
-  bool has_memory() const override { return true; }
   void remember(std::uint64_t tick, bool was_delivered) override;
-  bool is_exhausted() const override { return energy_ <= 0.0; }
+  bool disables_robot() const override { return energy_ <= 0.0; }
   void hash(StateHash& hash) const override { hash.add(energy_); }
   void save(SnapshotWriter& writer) const override { visit_memory(*this, StateSaver{writer}); }
   void restore(SnapshotReader& reader) override { visit_memory(*this, StateRestorer{reader}); }

@@ -17,14 +17,15 @@ std::uint32_t LampView::add_ring(std::uint32_t body, std::size_t link, const Eig
   return static_cast<std::uint32_t>(rings_.size() - 1);
 }
 
-void LampView::update(std::span<const char> will_ask, WorkerPool& workers) {
+void LampView::update(WorkerPool& workers) {
   answers_.clear();
+  if (!asking_.empty() && asking_.size() * solids_a_ray >= world_.scene().size()) look_from_all(workers);
   asking_.clear();
-  for (std::uint32_t ring = 0; ring < rings_.size(); ++ring)
-    if (will_ask[ring] != 0) asking_.push_back(ring);
-  const std::size_t lamps = emitters_.lit_lamps().size();
-  if (lamps == 0 || asking_.empty() || asking_.size() * solids_a_ray < world_.scene().size()) return;
+}
 
+void LampView::look_from_all(WorkerPool& workers) {
+  const std::size_t lamps = emitters_.lit_lamps().size();
+  if (lamps == 0) return;
   workers.for_each_chunk(asking_.size(), rings_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) rings_[asking_[i]].p_WS = middle_of(rings_[asking_[i]]);
   });

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "server/core/worker_pool.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/geometry/sight_lines.hpp"
 #include "server/physics/world/physics_world.hpp"
+#include "server/sensing/shared_view.hpp"
 
 namespace cohort::sensing {
 
@@ -15,18 +14,19 @@ namespace cohort::sensing {
 /// stands around the lamp sorted once for all of them; few rings by a ray for each question. The answers are the same,
 /// bit for bit: a lamp is seen if the segment from it to the middle of the ring meets nothing but the two bodies that
 /// carry them.
-class LampView {
+class LampView final : public SharedView {
  public:
   /// Keeps references to both.
   LampView(const physics::World& world, const emission::Emitters& emitters) : world_(world), emitters_(emitters) {}
 
   /// A ring whose middle is at p_LS of a link. Returns its number: they count from 0.
   std::uint32_t add_ring(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LS);
-  std::size_t ring_count() const { return rings_.size(); }
+  std::uint32_t ring_count() const { return static_cast<std::uint32_t>(rings_.size()); }
 
-  /// Looks from all lamps that are on, for the rings that will ask (`will_ask[ring]` is not 0). After
-  /// `Emitters::update`; the answers hold until the next one.
-  void update(std::span<const char> will_ask, WorkerPool& workers);
+  /// The ring will be asked for after the next update.
+  void ask(std::uint32_t ring) { asking_.push_back(ring); }
+  /// Looks from all lamps that are on, for the rings that have asked.
+  void update(WorkerPool& workers) override;
 
   /// `lamp`: place in `Emitters::lit_lamps()`, of one that is neither directional nor on the ring's own body. From any
   /// thread between two updates.
@@ -42,6 +42,7 @@ class LampView {
   enum Answer : char { unknown, hidden, seen };
 
   Eigen::Vector3d middle_of(const Ring& ring) const { return world_.link_pose(ring.body, ring.link) * ring.p_LS; }
+  void look_from_all(WorkerPool& workers);
   void look_from(std::uint32_t lamp, const geometry::Outlines& outlines, const geometry::SightLines::Heights& heights,
                  geometry::SightLines& lines);
 

@@ -52,7 +52,7 @@ class LightSensors final : public Sensor {
   LightSensors(const description::LightSensors& sensors, const Mount& mount)
       : sensors_(sensors),
         mount_(mount),
-        lamp_view_(mount.lamp_view),
+        lamp_view_(mount.views.get<LampView>(mount.world, mount.emitters)),
         ring_(lamp_view_.add_ring(mount.body, sensors.link, sensors.X_LS.position)) {
     if (sensors.samples) table_.emplace(sensors.samples);
     for (std::size_t i = 0; i < sensors.count; ++i) {
@@ -95,6 +95,8 @@ class LightSensors final : public Sensor {
     }
     for (double& value : values) value = saturated(sensors_.gain * value);
   }
+  bool has_shared_view() const override { return true; }
+  void ask_shared_view() override { lamp_view_.ask(ring_); }
 
  private:
   description::LightSensors sensors_;

@@ -18,7 +18,6 @@ class MessageReceiver final : public Sensor {
   std::vector<Channel> channels() const override;
   void sense(std::uint64_t tick, std::span<double> values) const override;
 
-  bool has_memory() const override { return true; }
   void remember(std::uint64_t tick, bool was_delivered) override;
   void hash(StateHash& hash) const override;
   void save(SnapshotWriter& writer) const override;

@@ -15,7 +15,7 @@
 #include "server/emission/emitters.hpp"
 #include "server/gripping/grippers.hpp"
 #include "server/physics/world/physics_world.hpp"
-#include "server/sensing/lamp_view.hpp"
+#include "server/sensing/shared_view.hpp"
 
 namespace cohort::sensing {
 
@@ -28,10 +28,10 @@ struct Mount {
   const emission::Emitters& emitters;
   const description::World& description;
   const gripping::Grippers& grippers;
-  LampView& lamp_view;  ///< light sensors make themselves known to it
-  std::uint32_t body;   ///< the robot's, which is its index among the description's instances
-  std::size_t device;   ///< index in the robot's model
-  std::uint64_t seed;   ///< of the experiment; with the robot's name it fixes what is random
+  SharedViews& views;
+  std::uint32_t body;  ///< the robot's, which is its index among the description's instances
+  std::size_t device;  ///< index in the robot's model
+  std::uint64_t seed;  ///< of the experiment; with the robot's name it fixes what is random
 
   const std::string& robot_name() const { return description.instances[body].name; }
   const description::Model& model() const { return description.models[description.instances[body].model]; }
@@ -52,13 +52,17 @@ class Sensor {
   /// Whether it asks for joint_wrench or link_acceleration of its robot's body, which the world then has to keep.
   virtual bool needs_record() const { return false; }
 
+  /// Of a sensor with a shared view: tells the view that `sense` will need it. Called for those that measure at a tick,
+  /// on one thread and in the order of the robots, before the views are updated and any sensor senses there.
+  virtual bool has_shared_view() const { return false; }
+  virtual void ask_shared_view() {}
+
   /// Of a sensor with a memory: takes note of this tick, before it senses and whether it is asked or not.
   /// `was_delivered`: the robot was given what was sensed at the tick before. Called again at the same tick, when
   /// something has been changed from outside, it takes note of this tick anew.
-  virtual bool has_memory() const { return false; }
   virtual void remember(std::uint64_t /*tick*/, bool /*was_delivered*/) {}
-  /// Whether the robot has no energy left.
-  virtual bool is_exhausted() const { return false; }
+  /// Whether the robot can do nothing in the step to come but what is neutral.
+  virtual bool disables_robot() const { return false; }
   /// What it remembers.
   virtual void hash(StateHash& /*hash*/) const {}
   virtual void save(SnapshotWriter& /*writer*/) const {}

@@ -30,9 +30,9 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   const emission::Emitters emitters(description, *world);
-  LampView lamp_view(*world, emitters);
+  SharedViews views;
   const gripping::Grippers grippers(description, *world);
-  const auto sensor = make_sensor({*world, emitters, description, grippers, lamp_view, 0, device, 1});
+  const auto sensor = make_sensor({*world, emitters, description, grippers, views, 0, device, 1});
   const std::uint64_t ticks = ring.technique == description::ProximityTechnique::random_ray ? random_ticks : 1;
 
   description::Samples samples;

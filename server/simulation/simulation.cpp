@@ -1,29 +1,19 @@
 #include "server/simulation/simulation.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <sstream>
 #include <stdexcept>
 
+#include "server/core/hash.hpp"
+#include "server/core/random.hpp"
+#include "server/core/snapshot.hpp"
 #include "server/physics/make_world.hpp"
+#include "server/simulation/action_events.hpp"
 
 namespace cohort {
 namespace {
 
-constexpr std::size_t robots_a_chunk = 32;
-
-std::size_t total_size(const std::vector<Channel>& channels) {
-  std::size_t size = 0;
-  for (const Channel& channel : channels) size += channel.size;
-  return size;
-}
-
-std::vector<double> neutral_values(const RobotKind& kind) {
-  std::vector<double> values;
-  for (const Channel& channel : kind.command) values.insert(values.end(), channel.size, channel.neutral);
-  return values;
-}
+constexpr std::size_t bodies_a_chunk = 64;
+constexpr std::uint64_t snapshot_mark = 0x746f6873'74726f68u;
 
 }  // namespace
 
@@ -35,134 +25,20 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
       emitters_(experiment_.world, *world_),
       grippers_(experiment_.world, *world_),
       actions_(experiment_.world, *world_),
-      lamp_view_(*world_, emitters_),
       objects_(experiment_, *world_),
+      robots_(experiment_, *world_, emitters_, grippers_, actions_, objects_, workers_),
       schedule_(experiment_, *world_, objects_, emitters_, actions_),
       spawned_models_(experiment_) {
-  const description::World& world = experiment_.world;
-  kind_of_model_.assign(world.models.size(), none);
-  robot_of_body_.assign(world.instances.size(), none);
-  note_ground();
-
-  robots_.resize(world.robots.size());
-  for (const description::Team& team : experiment.teams)
-    for (const std::uint32_t robot : team.robots) robots_[robot].policy = team.policy;
-  for (std::uint32_t robot = 0; robot < robots_.size(); ++robot) build_robot(robot);
-  body_hashes_.resize(world.instances.size());
-  scratch_.resize(workers_.threads());
+  note_bodies();
   begin_tick();
   sense();
 }
 
 Simulation::~Simulation() = default;
 
-void Simulation::build_robot(std::uint32_t id) {
-  const description::World& world = experiment_.world;
-  Robot& robot = robots_[id];
-  robot.body = static_cast<std::uint32_t>(world.robots[id]);
-  robot_of_body_[robot.body] = id;
-  const description::Instance& instance = world.robot(id);
-  const description::Model& model = world.robot_model(id);
-
-  RobotKind kind{model.name, {}, {}, 0, 0};
-  for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    if (auto sensor = sensing::make_sensor(
-            {*world_, emitters_, world, grippers_, lamp_view_, robot.body, device, experiment_.seed})) {
-      if (sensor->needs_record()) world_->record(robot.body);
-      rings_.resize(lamp_view_.ring_count(), {id, robot.sensors.size()});
-      const std::vector<Channel> channels = sensor->channels();
-      kind.observation.insert(kind.observation.end(), channels.begin(), channels.end());
-      const description::Readout* readout = description::readout_of(model.devices[device]);
-      robot.sensors.push_back(
-          {std::move(sensor),
-           sensing::SignalChain(readout != nullptr ? *readout : description::Readout{}, channels, experiment_.seed,
-                                instance.name, description::name_of(model.devices[device]), world.step),
-           total_size(channels)});
-    }
-    if (auto actuator =
-            actuation::make_actuator({*world_, emitters_, world, grippers_, actions_, robot.body, device})) {
-      const std::vector<Channel> channels = actuator->channels();
-      kind.command.insert(kind.command.end(), channels.begin(), channels.end());
-      robot.actuators.push_back(std::move(actuator));
-      robot.actuator_sizes.push_back(total_size(channels));
-    }
-  }
-  std::uint32_t& known = kind_of_model_[instance.model];
-  if (known == none) {
-    known = static_cast<std::uint32_t>(kinds_.size());
-    kind.observation_size = total_size(kind.observation);
-    kind.command_size = total_size(kind.command);
-    kinds_.push_back(std::move(kind));
-  }
-  robot.kind = known;
-  robot.observation_offset = observations_.size();
-  observations_.resize(observations_.size() + kinds_[known].observation_size);
-  robot.command = neutral_values(kinds_[known]);
-}
-
-bool Simulation::is_due(std::uint32_t robot, std::uint64_t tick) const {
-  const description::Policy& policy = robots_[robot].policy;
-  return tick >= policy.phase && (tick - policy.phase) % policy.period == 0;
-}
-
-std::span<const double> Simulation::observation(std::uint32_t robot) const {
-  return {observations_.data() + robots_[robot].observation_offset, kinds_[robots_[robot].kind].observation_size};
-}
-
-std::optional<CommandFault> Simulation::check_command(std::uint32_t robot, std::span<const double> values) const {
-  const RobotKind& kind = kinds_[robots_[robot].kind];
-  if (values.size() != kind.command_size) return wrong_size(robot, values.size());
-  std::size_t i = 0;
-  for (const Channel& channel : kind.command) {
-    for (std::uint32_t k = 0; k < channel.size; ++k, ++i) {
-      const bool can_act = values[i] >= channel.lower && values[i] <= channel.upper && std::isfinite(values[i]);
-      if (!can_act) return unfit(robot, channel, values[i]);
-    }
-  }
-  return std::nullopt;
-}
-
-CommandFault Simulation::wrong_size(std::uint32_t robot, std::size_t size) const {
-  std::ostringstream text;
-  text << "the command of " << robot_name(robot) << " has " << size << " values, expected "
-       << kinds_[robots_[robot].kind].command_size;
-  return {CommandFault::Reason::wrong_size, "", text.str()};
-}
-
-CommandFault Simulation::unfit(std::uint32_t robot, const Channel& channel, double value) const {
-  std::ostringstream text;
-  text << robot_name(robot) << ": " << channel.name << " is " << value << " " << channel.unit << ", expected "
-       << channel.lower << " to " << channel.upper;
-  const bool finite = std::isfinite(value);
-  return {finite ? CommandFault::Reason::out_of_range : CommandFault::Reason::not_finite, channel.name, text.str()};
-}
-
-bool Simulation::set_command(std::uint32_t robot, std::span<const double> values) {
-  std::vector<double>& command = robots_[robot].command;
-  // As they are hashed: 0.0 and -0.0 differ.
-  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
-  if (std::ranges::equal(command, values, {}, bits, bits)) return false;
-  note_change();
-  std::ranges::copy(values, command.begin());
-  return true;
-}
-
-bool Simulation::set_neutral_command(std::uint32_t robot) {
-  return set_command(robot, neutral_values(kinds_[robots_[robot].kind]));
-}
-
 void Simulation::step() {
   note_change();
-  for (Robot& robot : robots_) {
-    const bool is_exhausted = std::any_of(robot.sensors.begin(), robot.sensors.end(),
-                                          [](const SensorOfRobot& each) { return each.sensor->is_exhausted(); });
-    if (is_exhausted) robot.command = neutral_values(kinds_[robot.kind]);
-    std::span<const double> values = robot.command;
-    for (std::size_t i = 0; i < robot.actuators.size(); ++i) {
-      robot.actuators[i]->apply(values.first(robot.actuator_sizes[i]));
-      values = values.subspan(robot.actuator_sizes[i]);
-    }
-  }
+  robots_.actuate();
   schedule_.push(tick_);
   world_->step();
   ++tick_;
@@ -207,18 +83,13 @@ std::uint32_t Simulation::add_object(const std::string& name, std::size_t model,
   const std::uint32_t object = objects_.add(name, model, X_WM);
   emitters_.add_body(object, model);
   grippers_.note_model(model);
-  note_added();
+  note_bodies();
   return object;
 }
 
-// The world has bodies that the description does not list.
-void Simulation::note_added() {
-  robot_of_body_.resize(world_->body_count(), none);
-  note_ground();
+// The world has bodies that were not here before; later ones are not in the description.
+void Simulation::note_bodies() {
   body_hashes_.resize(world_->body_count());
-}
-
-void Simulation::note_ground() {
   const geometry::Scene& scene = world_->scene();
   is_ground_.resize(world_->body_count(), 0);
   for (; solids_noted_ < scene.size(); ++solids_noted_)
@@ -235,63 +106,19 @@ void Simulation::name_quarantined() {
   if (experiment_.world.physics.strict && !quarantined_.empty()) throw std::runtime_error(quarantined_[0]);
 }
 
-void Simulation::sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due, std::span<double> values,
-                           std::vector<double>& scratch) {
-  if (each.readout.is_immediate()) {
-    if (!each.readout.measures_at(tick, is_due)) return;
-    // What wanders goes on between the ticks at which the robot is asked, whose readings stay.
-    scratch.resize(values.size());
-    const std::span<double> measured = is_due ? values : std::span<double>(scratch);
-    each.sensor->sense(tick, measured);
-    each.readout.disturb(tick, measured);
-    return;
-  }
-  if (each.readout.measures_at(tick, is_due)) {
-    scratch.resize(values.size());
-    each.sensor->sense(tick, scratch);
-    each.readout.disturb(tick, scratch);
-    each.readout.take(tick, scratch);
-  }
-  if (is_due) each.readout.report(tick, values);
-}
-
-void Simulation::look_at_lamps() {
-  asking_rings_.assign(rings_.size(), 0);
-  for (std::size_t ring = 0; ring < rings_.size(); ++ring) {
-    const auto& [robot, sensor] = rings_[ring];
-    if (is_present(robot) && robots_[robot].sensors[sensor].readout.measures_at(tick_, is_due(robot, tick_)))
-      asking_rings_[ring] = 1;
-  }
-  lamp_view_.update(asking_rings_, workers_);
-}
-
 void Simulation::sense() {
   note_change();
   emitters_.update(workers_);
-  look_at_lamps();
-  workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
-    for (std::size_t id = begin; id < end; ++id) {
-      if (!is_present(static_cast<std::uint32_t>(id))) continue;
-      Robot& robot = robots_[id];
-      const bool is_asked = is_due(static_cast<std::uint32_t>(id), tick_);
-      std::span<double> values(observations_.data() + robot.observation_offset, kinds_[robot.kind].observation_size);
-      const bool was_asked = tick_ == 0 || is_due(static_cast<std::uint32_t>(id), tick_ - 1);
-      for (SensorOfRobot& each : robot.sensors) {
-        if (each.sensor->has_memory()) each.sensor->remember(tick_, was_asked);
-        sense_one(each, tick_, is_asked, values.first(each.size), scratch_[worker]);
-        values = values.subspan(each.size);
-      }
-    }
-  });
+  robots_.sense(tick_);
 }
 
 void Simulation::count_touches() {
   std::vector<char> touches_obstacle(robots_.size(), 0);
   std::vector<char> touches_robot(robots_.size(), 0);
   const auto note = [&](std::uint32_t body, std::uint32_t other) {
-    const std::uint32_t robot = robot_of_body_[body];
-    if (robot == none || is_ground_[other]) return;
-    (robot_of_body_[other] == none ? touches_obstacle : touches_robot)[robot] = 1;
+    const std::uint32_t robot = robots_.of_body(body);
+    if (robot == Robots::none || is_ground_[other]) return;
+    (robots_.of_body(other) == Robots::none ? touches_obstacle : touches_robot)[robot] = 1;
   };
   for (const physics::Contact& contact : world_->contacts()) {
     note(contact.body_a, contact.body_b);
@@ -303,6 +130,131 @@ void Simulation::count_touches() {
   for (const char touched : touches_robot) touches_.robots += static_cast<std::uint64_t>(touched);
 }
 
-Pose Simulation::robot_pose(std::uint32_t robot) const { return world_->link_pose(robots_[robot].body, 0); }
+std::string Simulation::act(const Action& action) {
+  std::string done = act_unsensed(action);
+  sense();
+  return done;
+}
+
+std::vector<ActionResult> Simulation::act(std::span<const Action> actions) {
+  std::vector<ActionResult> results;
+  results.reserve(actions.size());
+  bool is_changed = false;
+  for (const Action& action : actions) {
+    try {
+      results.push_back({true, act_unsensed(action)});
+      is_changed = true;
+    } catch (const std::invalid_argument& error) {
+      results.push_back({false, error.what()});
+    }
+  }
+  if (is_changed) sense();
+  return results;
+}
+
+std::string Simulation::act_unsensed(const Action& action) {
+  note_change();
+  if (const auto* const spawn = std::get_if<SpawnObject>(&action)) return spawn_object(*spawn);
+  return schedule_.act_from_outside(event_of(action, {experiment_.world, *world_, objects_}), tick_);
+}
+
+std::string Simulation::spawn_object(const SpawnObject& spawn) {
+  const Pose X_WM = checked_pose(spawn.X_WM);
+  check_utf8(spawn.model, "the model");
+  const std::size_t models_before = spawned_models_.size();
+  try {
+    const std::size_t model = spawned_models_.find_or_add(spawn.model);
+    const description::Model& described = experiment_.world.models[model];
+    if (described.is_robot())
+      throw std::invalid_argument(
+          "'" + described.name +
+          "' is a robot, and robots cannot be spawned yet: let an event of the experiment add it");
+    const std::string name = name_of_new(spawn, described.name, objects_);
+    add_object(name, model, X_WM);
+    return "spawn '" + name + "' of model '" + described.name + "'";
+  } catch (const std::invalid_argument&) {
+    spawned_models_.shrink(models_before);
+    throw;
+  }
+}
+
+std::vector<std::byte> Simulation::save() const {
+  SnapshotWriter writer;
+  writer.add(snapshot_mark);
+  writer.add(hash_name(COHORT_VERSION));
+  writer.add(static_cast<std::uint64_t>(experiment_.seed));
+  writer.add(static_cast<std::uint64_t>(experiment_.world.step.count()));
+  writer.add(tick_);
+  spawned_models_.save(writer);
+  world_->save(writer);
+  objects_.save(writer);
+  schedule_.save(writer);
+  emitters_.save(writer);
+  grippers_.save(writer);
+  actions_.save(writer);
+  robots_.save(writer);
+  writer.add(touches_.robot_ticks);
+  writer.add(touches_.obstacles);
+  writer.add(touches_.robots);
+  return writer.bytes();
+}
+
+void Simulation::restore(std::span<const std::byte> snapshot) {
+  note_change();
+  SnapshotReader reader(snapshot);
+  std::uint64_t mark = 0;
+  reader.read(mark);
+  if (mark != snapshot_mark) throw SnapshotError("this is no snapshot");
+  std::uint64_t version = 0;
+  reader.read(version);
+  if (version != hash_name(COHORT_VERSION))
+    throw SnapshotError("the snapshot is of another version than " COHORT_VERSION);
+  reader.expect_count(experiment_.seed, "as its seed");
+  reader.expect_count(static_cast<std::size_t>(experiment_.world.step.count()), "ns as its step");
+  reader.read(tick_);
+  spawned_models_.restore(reader);
+  for (std::size_t model = 0; model < experiment_.world.models.size(); ++model) grippers_.note_model(model);
+  world_->restore(reader);
+  objects_.restore(reader);
+  schedule_.restore(reader, tick_);
+  note_bodies();
+  emitters_.restore(reader);
+  emitters_.update(workers_);
+  grippers_.restore(reader);
+  actions_.restore(reader);
+  robots_.restore(reader);
+  reader.read(touches_.robot_ticks);
+  reader.read(touches_.obstacles);
+  reader.read(touches_.robots);
+  if (!reader.is_at_end()) throw SnapshotError("the snapshot goes on after its end");
+}
+
+std::uint64_t Simulation::state_hash() const {
+  if (!state_hash_) state_hash_ = computed_state_hash();
+  return *state_hash_;
+}
+
+std::uint64_t Simulation::computed_state_hash() const {
+  workers_.for_each_chunk(body_hashes_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t body = begin; body < end; ++body) {
+      StateHash hash;
+      world_->hash_body(static_cast<std::uint32_t>(body), hash);
+      if (const std::uint32_t robot = robots_.of_body(static_cast<std::uint32_t>(body)); robot != Robots::none)
+        robots_.hash(robot, hash);
+      body_hashes_[body] = hash.value();
+    }
+  });
+  StateHash hash;
+  hash.add(tick_);
+  for (const std::uint64_t body_hash : body_hashes_) hash.add(body_hash);
+  world_->hash_contacts(hash);
+  objects_.hash(hash);
+  schedule_.hash(hash);
+  emitters_.hash(hash);
+  grippers_.hash(hash);
+  actions_.hash(hash);
+  spawned_models_.hash(hash);
+  return hash.value();
+}
 
 }  // namespace cohort

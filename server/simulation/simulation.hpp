@@ -12,40 +12,20 @@
 #include <utility>
 #include <vector>
 
-#include "server/actuation/actuator.hpp"
 #include "server/actuation/user_actions.hpp"
-#include "server/core/channel.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/experiment.hpp"
 #include "server/emission/emitters.hpp"
 #include "server/gripping/grippers.hpp"
 #include "server/physics/world/physics_world.hpp"
-#include "server/sensing/sensor.hpp"
-#include "server/sensing/signal_chain.hpp"
 #include "server/simulation/action.hpp"
 #include "server/simulation/breakable_joints.hpp"
 #include "server/simulation/objects.hpp"
+#include "server/simulation/robots.hpp"
 #include "server/simulation/schedule.hpp"
 #include "server/simulation/spawned_models.hpp"
 
 namespace cohort {
-
-/// Robots of one model: what they observe and how they are commanded.
-struct RobotKind {
-  std::string model;
-  std::vector<Channel> observation;
-  std::vector<Channel> command;
-  std::size_t observation_size = 0;  ///< float64 values
-  std::size_t command_size = 0;
-};
-
-/// Why a command cannot act.
-struct CommandFault {
-  enum class Reason { wrong_size, not_finite, out_of_range };
-  Reason reason;
-  std::string channel;  ///< empty for wrong_size
-  std::string text;     ///< a sentence that says what was found and what was expected
-};
 
 /// Robot-ticks in which a robot touched something, since the run began.
 struct TouchCounts {
@@ -77,23 +57,25 @@ class Simulation {
   /// Simulated time: tick() * step.
   std::chrono::nanoseconds time() const { return experiment_.world.step * static_cast<std::int64_t>(tick_); }
 
-  std::uint32_t robot_count() const { return static_cast<std::uint32_t>(robots_.size()); }
-  const std::string& robot_name(std::uint32_t robot) const { return experiment_.world.robot(robot).name; }
-  std::span<const RobotKind> kinds() const { return kinds_; }
-  std::uint32_t kind_of(std::uint32_t robot) const { return robots_[robot].kind; }
-  const description::Policy& policy(std::uint32_t robot) const { return robots_[robot].policy; }
+  std::uint32_t robot_count() const { return robots_.size(); }
+  const std::string& robot_name(std::uint32_t robot) const { return robots_.name(robot); }
+  std::span<const RobotKind> kinds() const { return robots_.kinds(); }
+  std::uint32_t kind_of(std::uint32_t robot) const { return robots_.kind_of(robot); }
+  const description::Policy& policy(std::uint32_t robot) const { return robots_.policy(robot); }
   /// Its body in `world()`, which is its index among `objects()`.
-  std::uint32_t body_of(std::uint32_t robot) const { return robots_[robot].body; }
+  std::uint32_t body_of(std::uint32_t robot) const { return robots_.body_of(robot); }
   /// Whether the robot is in the world: an event of the experiment may bring it later, or take it out.
-  bool is_present(std::uint32_t robot) const { return objects_.is_present(robots_[robot].body); }
+  bool is_present(std::uint32_t robot) const { return robots_.is_present(robot); }
   /// Whether the robot is asked at this tick, if it is in the world then.
-  bool is_due(std::uint32_t robot, std::uint64_t tick) const;
+  bool is_due(std::uint32_t robot, std::uint64_t tick) const { return robots_.is_due(robot, tick); }
 
   /// As of the last tick at which the robot was due.
-  std::span<const double> observation(std::uint32_t robot) const;
+  std::span<const double> observation(std::uint32_t robot) const { return robots_.observation(robot); }
 
   /// Nothing if `values` may act on `robot`.
-  std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const;
+  std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const {
+    return robots_.check_command(robot, values);
+  }
   /// From now on `handler` is called at the boundary after each step, before the events, for every robot in the world
   /// that has an action of this name, in the order of the robots; if there are several, in the order of their coming.
   /// On the thread that steps. It may do what may be done between steps; what it keeps itself is no part of a snapshot,
@@ -103,11 +85,13 @@ class Simulation {
 
   /// From this tick on the robot does this, until told otherwise. `values` must have passed `check_command`. Until the
   /// first call every channel has its neutral value. Whether its bits are others than those that stood before.
-  bool set_command(std::uint32_t robot, std::span<const double> values);
+  bool set_command(std::uint32_t robot, std::span<const double> values) {
+    return note_if(robots_.set_command(robot, values));
+  }
   /// The same with every channel's neutral value.
-  bool set_neutral_command(std::uint32_t robot);
-  /// That acts in the next step, unless the robot's battery is empty by then.
-  std::span<const double> command(std::uint32_t robot) const { return robots_[robot].command; }
+  bool set_neutral_command(std::uint32_t robot) { return note_if(robots_.set_neutral_command(robot)); }
+  /// That acts in the next step, unless the robot is disabled by then, as by an empty battery.
+  std::span<const double> command(std::uint32_t robot) const { return robots_.command(robot); }
 
   /// Actuates in the order of the robots, steps the world to the next boundary and senses there. A body whose state
   /// breaks is quarantined; in a `strict` world std::runtime_error is thrown, which names it. The events of the new
@@ -169,7 +153,7 @@ class Simulation {
   /// changed since it was asked for last.
   std::uint64_t state_hash() const;
 
-  Pose robot_pose(std::uint32_t robot) const;  ///< of its root link, X_WL
+  Pose robot_pose(std::uint32_t robot) const { return object_pose(body_of(robot)); }  ///< of its root link, X_WL
   const physics::World& world() const { return *world_; }
   const emission::Emitters& emitters() const { return emitters_; }
   const gripping::Grippers& grippers() const { return grippers_; }
@@ -177,42 +161,21 @@ class Simulation {
   const TouchCounts& touches() const { return touches_; }
 
  private:
-  struct SensorOfRobot {
-    std::unique_ptr<sensing::Sensor> sensor;
-    sensing::SignalChain readout;
-    std::size_t size = 0;  // of what it observes
-  };
-  struct Robot {
-    std::uint32_t kind = 0;
-    std::uint32_t body = 0;
-    description::Policy policy;
-    std::vector<SensorOfRobot> sensors;
-    std::vector<std::unique_ptr<actuation::Actuator>> actuators;
-    std::vector<std::size_t> actuator_sizes;
-    std::size_t observation_offset = 0;
-    std::vector<double> command;  // that acts now
-  };
-
   // Whatever is part of the state hash is about to change, or has just done so.
   void note_change() { state_hash_.reset(); }
+  bool note_if(bool has_changed) {
+    if (has_changed) note_change();
+    return has_changed;
+  }
   std::uint64_t computed_state_hash() const;
-  void build_robot(std::uint32_t id);
   std::string act_unsensed(const Action& action);
   std::string spawn_object(const SpawnObject& spawn);
-  void note_ground();
-  CommandFault wrong_size(std::uint32_t robot, std::size_t size) const;
-  CommandFault unfit(std::uint32_t robot, const Channel& channel, double value) const;
   void sense();
-  void look_at_lamps();
-  static void sense_one(SensorOfRobot& each, std::uint64_t tick, bool is_due, std::span<double> values,
-                        std::vector<double>& scratch);
   void count_touches();
   void name_quarantined();
   void handle_actions();
   void begin_tick();
-  void note_added();
-
-  static constexpr std::uint32_t none = 0xffffffffu;
+  void note_bodies();
 
   description::Experiment experiment_;  // with the models that have come since
   mutable WorkerPool workers_;
@@ -221,22 +184,10 @@ class Simulation {
   emission::Emitters emitters_;
   gripping::Grippers grippers_;
   actuation::UserActions actions_;
-  sensing::LampView lamp_view_;
   Objects objects_;
+  Robots robots_;
   Schedule schedule_;
   SpawnedModels spawned_models_;
-  std::vector<RobotKind> kinds_;
-  std::vector<std::uint32_t> kind_of_model_;
-  std::vector<Robot> robots_;
-  std::vector<double> observations_;
-  std::vector<std::vector<double>> scratch_;  // of each worker
-  struct RingOfRobot {
-    std::uint32_t robot = 0;
-    std::size_t sensor = 0;
-  };
-  std::vector<RingOfRobot> rings_;  // of light sensors, by their numbers in the lamp view
-  std::vector<char> asking_rings_;
-  std::vector<std::uint32_t> robot_of_body_;
   std::vector<char> is_ground_;  // by body
   std::uint32_t solids_noted_ = 0;
   std::uint64_t tick_ = 0;

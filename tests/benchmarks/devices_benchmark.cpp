@@ -38,18 +38,16 @@ class Swarm {
     world_ = physics::make_world(description_, workers_);
     emitters_ = std::make_unique<emission::Emitters>(description_, *world_);
     grippers_ = std::make_unique<gripping::Grippers>(description_, *world_);
-    lamp_view_ = std::make_unique<LampView>(*world_, *emitters_);
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
         auto sensor = make_sensor(
-            {*world_, *emitters_, description_, *grippers_, *lamp_view_, static_cast<std::uint32_t>(body), device, 1});
+            {*world_, *emitters_, description_, *grippers_, views_, static_cast<std::uint32_t>(body), device, 1});
         if (!sensor) continue;
         sensors_.push_back(std::move(sensor));
         std::size_t size = 0;
         for (const Channel& channel : sensors_.back()->channels()) size += channel.size;
         values_.emplace_back(size);
       }
-    asks_.assign(lamp_view_->ring_count(), 1);
   }
 
   /// All LEDs of all robots shine, if they have any.
@@ -62,7 +60,8 @@ class Swarm {
 
   void sense(std::uint64_t tick) {
     emitters_->update(workers_);
-    lamp_view_->update(asks_, workers_);
+    for (const auto& sensor : sensors_) sensor->ask_shared_view();
+    views_.update(workers_);
     for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i]->sense(tick, values_[i]);
     benchmark::DoNotOptimize(values_.data());
   }
@@ -88,10 +87,9 @@ class Swarm {
   std::unique_ptr<physics::World> world_;
   std::unique_ptr<emission::Emitters> emitters_;
   std::unique_ptr<gripping::Grippers> grippers_;
-  std::unique_ptr<LampView> lamp_view_;
+  SharedViews views_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::vector<std::vector<double>> values_;
-  std::vector<char> asks_;
 };
 
 // Of a robot and tick: time / robots.

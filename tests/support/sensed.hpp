@@ -70,9 +70,8 @@ class Sensed {
     const physics::World& world = small.world();
     emitters_.emplace(small.description, world);
     grippers_.emplace(small.description, small.world());
-    lamp_view_.emplace(world, *emitters_);
     const description::Model& model = small.description.models[small.description.instances[body].model];
-    sensor_ = sensing::make_sensor({world, *emitters_, small.description, *grippers_, *lamp_view_, body, 0, 1});
+    sensor_ = sensing::make_sensor({world, *emitters_, small.description, *grippers_, views_, body, 0, 1});
     if (sensor_->needs_record()) small.world().record(body);
     channels_ = sensor_->channels();
     for (const Channel& channel : channels_) size_ += channel.size;
@@ -82,7 +81,7 @@ class Sensed {
 
   std::optional<emission::Emitters> emitters_;
   std::optional<gripping::Grippers> grippers_;
-  std::optional<sensing::LampView> lamp_view_;
+  sensing::SharedViews views_;
   std::unique_ptr<sensing::Sensor> sensor_;
   std::optional<sensing::SignalChain> readout_;
   std::vector<Channel> channels_;

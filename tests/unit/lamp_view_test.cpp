@@ -43,10 +43,11 @@ TEST(LampView, AnswersForManyRingsAsForFew) {
     const auto body = static_cast<std::uint32_t>(world.world().robots[robot]);
     EXPECT_EQ(by_lamp.add_ring(body, 1, {0.01, 0, 0.045}), robot);
     by_rays.add_ring(body, 1, {0.01, 0, 0.045});
+    by_lamp.ask(robot);
   }
   WorkerPool workers(3);
-  by_lamp.update(std::vector<char>(robots, 1), workers);
-  by_rays.update(std::vector<char>(robots, 0), workers);
+  by_lamp.update(workers);
+  by_rays.update(workers);
   int seen = 0, hidden = 0;
   for (std::uint32_t lamp = 0; lamp < emitters.lit_lamps().size(); ++lamp)
     for (std::uint32_t ring = 0; ring < robots; ++ring) {

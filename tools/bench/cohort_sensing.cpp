@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "server/physics/make_world.hpp"
+#include "server/sensing/lamp_view.hpp"
 #include "server/sensing/sensor.hpp"
 #include "server/sensing/take_samples.hpp"
 #include "server/simulation/simulation.hpp"
@@ -109,23 +110,23 @@ class CohortSensing final : public SensingRun {
         world_(physics::make_world(description_, workers_)),
         emitters_(description_, *world_),
         grippers_(description_, *world_),
-        lamp_view_(*world_, emitters_) {
+        lamp_view_(views_.get<sensing::LampView>(*world_, emitters_)) {
     std::size_t size = 0;
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        sensors_.push_back(sensing::make_sensor({*world_, emitters_, description_, grippers_, lamp_view_,
+        sensors_.push_back(sensing::make_sensor({*world_, emitters_, description_, grippers_, views_,
                                                  static_cast<std::uint32_t>(body), device, scene.seed}));
         std::size_t of_sensor = 0;
         for (const Channel& channel : sensors_.back()->channels()) of_sensor += channel.size;
         ends_.push_back(size += of_sensor);
       }
     values_.resize(size);
-    asks_.assign(lamp_view_.ring_count(), 1);
   }
 
   void sense() override {
     emitters_.update(workers_);
-    lamp_view_.update(asks_, workers_);
+    for (const auto& sensor : sensors_) sensor->ask_shared_view();
+    views_.update(workers_);
     std::size_t begin = 0;
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
       sensors_[i]->sense(tick_, std::span(values_).subspan(begin, ends_[i] - begin));
@@ -136,12 +137,13 @@ class CohortSensing final : public SensingRun {
 
   std::optional<double> answer() const override {
     if (emitters_.lit_lamps().empty()) return mean(values_);
-    if (asks_.empty()) return std::nullopt;
+    const std::uint32_t rings = lamp_view_.ring_count();
+    if (rings == 0) return std::nullopt;
     std::size_t seen = 0;
     const std::size_t lamps = emitters_.lit_lamps().size();
-    for (std::uint32_t ring = 0; ring < asks_.size(); ++ring)
+    for (std::uint32_t ring = 0; ring < rings; ++ring)
       for (std::uint32_t lamp = 0; lamp < lamps; ++lamp) seen += lamp_view_.is_in_sight(lamp, ring) ? 1 : 0;
-    return static_cast<double>(seen) / static_cast<double>(lamps * asks_.size());
+    return static_cast<double>(seen) / static_cast<double>(lamps * rings);
   }
 
  private:
@@ -150,11 +152,11 @@ class CohortSensing final : public SensingRun {
   std::unique_ptr<physics::World> world_;
   emission::Emitters emitters_;
   gripping::Grippers grippers_;
-  sensing::LampView lamp_view_;
+  sensing::SharedViews views_;
+  sensing::LampView& lamp_view_;
   std::vector<std::unique_ptr<sensing::Sensor>> sensors_;
   std::vector<std::size_t> ends_;  // of each sensor's values
   std::vector<double> values_;
-  std::vector<char> asks_;
   std::uint64_t tick_ = 0;
 };
 

@@ -1,0 +1,235 @@
+#include "server/simulation/robots.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <sstream>
+
+namespace cohort {
+namespace {
+
+constexpr std::size_t robots_a_chunk = 32;
+
+std::size_t total_size(const std::vector<Channel>& channels) {
+  std::size_t size = 0;
+  for (const Channel& channel : channels) size += channel.size;
+  return size;
+}
+
+void append(std::vector<Channel>& channels, const std::vector<Channel>& more) {
+  channels.insert(channels.end(), more.begin(), more.end());
+}
+
+std::vector<double> neutral_values(const RobotKind& kind) {
+  std::vector<double> values;
+  for (const Channel& channel : kind.command) values.insert(values.end(), channel.size, channel.neutral);
+  return values;
+}
+
+// What a sensor observes at a tick, through its signal chain; `values` are those of the last tick at which the robot
+// was due.
+void observe(const sensing::Sensor& sensor, sensing::SignalChain& chain, std::uint64_t tick, bool is_due,
+             std::span<double> values, std::vector<double>& scratch) {
+  if (chain.is_immediate()) {
+    if (!chain.measures_at(tick, is_due)) return;
+    // What wanders goes on between the ticks at which the robot is asked, whose readings stay.
+    scratch.resize(values.size());
+    const std::span<double> measured = is_due ? values : std::span<double>(scratch);
+    sensor.sense(tick, measured);
+    chain.disturb(tick, measured);
+    return;
+  }
+  if (chain.measures_at(tick, is_due)) {
+    scratch.resize(values.size());
+    sensor.sense(tick, scratch);
+    chain.disturb(tick, scratch);
+    chain.take(tick, scratch);
+  }
+  if (is_due) chain.report(tick, values);
+}
+
+}  // namespace
+
+Robots::Robots(const description::Experiment& experiment, physics::World& world, emission::Emitters& emitters,
+               gripping::Grippers& grippers, actuation::UserActions& actions, const Objects& objects,
+               WorkerPool& workers)
+    : experiment_(experiment), objects_(objects), workers_(workers), scratch_(workers.threads()) {
+  const description::World& description = experiment.world;
+  robots_.resize(description.robots.size());
+  of_body_.assign(description.instances.size(), none);
+  for (const description::Team& team : experiment.teams)
+    for (const std::uint32_t robot : team.robots) robots_[robot].policy = team.policy;
+
+  std::vector<std::uint32_t> kind_of_model(description.models.size(), none);
+  for (std::uint32_t id = 0; id < robots_.size(); ++id) {
+    Robot& robot = robots_[id];
+    robot.body = static_cast<std::uint32_t>(description.robots[id]);
+    of_body_[robot.body] = id;
+    const description::Model& model = description.robot_model(id);
+    RobotKind kind{model.name, {}, {}, 0, 0};
+    for (std::size_t device = 0; device < model.devices.size(); ++device) {
+      if (auto sensor = sensing::make_sensor(
+              {world, emitters, description, grippers, views_, robot.body, device, experiment.seed})) {
+        if (sensor->needs_record()) world.record(robot.body);
+        append(kind.observation, sensor->channels());
+        add_sensor(id, std::move(sensor), model.devices[device]);
+      }
+      if (auto actuator =
+              actuation::make_actuator({world, emitters, description, grippers, actions, robot.body, device})) {
+        const std::vector<Channel> channels = actuator->channels();
+        append(kind.command, channels);
+        robot.actuators.push_back({std::move(actuator), total_size(channels)});
+      }
+    }
+    std::uint32_t& known = kind_of_model[description.robot(id).model];
+    if (known == none) {
+      known = static_cast<std::uint32_t>(kinds_.size());
+      kind.observation_size = total_size(kind.observation);
+      kind.command_size = total_size(kind.command);
+      kinds_.push_back(std::move(kind));
+    }
+    robot.kind = known;
+    robot.observation_offset = observations_.size();
+    observations_.resize(observations_.size() + kinds_[known].observation_size);
+    robot.command = neutral_values(kinds_[known]);
+  }
+}
+
+void Robots::add_sensor(std::uint32_t id, std::unique_ptr<sensing::Sensor> sensor, const description::Device& device) {
+  std::vector<SensorOfRobot>& sensors = robots_[id].sensors;
+  if (sensor->has_shared_view()) sharing_views_.push_back({id, sensors.size()});
+  const std::vector<Channel> channels = sensor->channels();
+  const description::Readout* const readout = description::readout_of(device);
+  sensors.push_back(
+      {std::move(sensor),
+       sensing::SignalChain(readout != nullptr ? *readout : description::Readout{}, channels, experiment_.seed,
+                            name(id), description::name_of(device), experiment_.world.step),
+       total_size(channels)});
+}
+
+bool Robots::is_due(std::uint32_t robot, std::uint64_t tick) const {
+  const description::Policy& policy = robots_[robot].policy;
+  return tick >= policy.phase && (tick - policy.phase) % policy.period == 0;
+}
+
+std::span<const double> Robots::observation(std::uint32_t robot) const {
+  return {observations_.data() + robots_[robot].observation_offset, kinds_[robots_[robot].kind].observation_size};
+}
+
+std::optional<CommandFault> Robots::check_command(std::uint32_t robot, std::span<const double> values) const {
+  const RobotKind& kind = kinds_[robots_[robot].kind];
+  if (values.size() != kind.command_size) return wrong_size(robot, values.size());
+  std::size_t i = 0;
+  for (const Channel& channel : kind.command) {
+    for (std::uint32_t k = 0; k < channel.size; ++k, ++i) {
+      const bool can_act = values[i] >= channel.lower && values[i] <= channel.upper && std::isfinite(values[i]);
+      if (!can_act) return unfit(robot, channel, values[i]);
+    }
+  }
+  return std::nullopt;
+}
+
+CommandFault Robots::wrong_size(std::uint32_t robot, std::size_t size) const {
+  std::ostringstream text;
+  text << "the command of " << name(robot) << " has " << size << " values, expected "
+       << kinds_[robots_[robot].kind].command_size;
+  return {CommandFault::Reason::wrong_size, "", text.str()};
+}
+
+CommandFault Robots::unfit(std::uint32_t robot, const Channel& channel, double value) const {
+  std::ostringstream text;
+  text << name(robot) << ": " << channel.name << " is " << value << " " << channel.unit << ", expected "
+       << channel.lower << " to " << channel.upper;
+  const bool finite = std::isfinite(value);
+  return {finite ? CommandFault::Reason::out_of_range : CommandFault::Reason::not_finite, channel.name, text.str()};
+}
+
+bool Robots::set_command(std::uint32_t robot, std::span<const double> values) {
+  std::vector<double>& command = robots_[robot].command;
+  // As they are hashed: 0.0 and -0.0 differ.
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  if (std::ranges::equal(command, values, {}, bits, bits)) return false;
+  std::ranges::copy(values, command.begin());
+  return true;
+}
+
+bool Robots::set_neutral_command(std::uint32_t robot) {
+  return set_command(robot, neutral_values(kinds_[robots_[robot].kind]));
+}
+
+void Robots::actuate() {
+  for (Robot& robot : robots_) {
+    if (std::ranges::any_of(robot.sensors, [](const SensorOfRobot& each) { return each.sensor->disables_robot(); }))
+      robot.command = neutral_values(kinds_[robot.kind]);
+    std::span<const double> values = robot.command;
+    for (const ActuatorOfRobot& each : robot.actuators) {
+      each.actuator->apply(values.first(each.size));
+      values = values.subspan(each.size);
+    }
+  }
+}
+
+void Robots::update_shared_views(std::uint64_t tick) {
+  for (const auto& [robot, place] : sharing_views_) {
+    const SensorOfRobot& each = robots_[robot].sensors[place];
+    if (is_present(robot) && each.signal_chain.measures_at(tick, is_due(robot, tick))) each.sensor->ask_shared_view();
+  }
+  views_.update(workers_);
+}
+
+void Robots::sense(std::uint64_t tick) {
+  update_shared_views(tick);
+  workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    for (auto id = static_cast<std::uint32_t>(begin); id < end; ++id) {
+      if (!is_present(id)) continue;
+      Robot& robot = robots_[id];
+      const bool is_asked = is_due(id, tick);
+      const bool was_asked = tick == 0 || is_due(id, tick - 1);
+      std::span<double> values(observations_.data() + robot.observation_offset, kinds_[robot.kind].observation_size);
+      for (SensorOfRobot& each : robot.sensors) {
+        each.sensor->remember(tick, was_asked);
+        observe(*each.sensor, each.signal_chain, tick, is_asked, values.first(each.size), scratch_[worker]);
+        values = values.subspan(each.size);
+      }
+    }
+  });
+}
+
+void Robots::hash(std::uint32_t robot, StateHash& hash) const {
+  for (const double value : observation(robot)) hash.add(value);
+  for (const double value : robots_[robot].command) hash.add(value);
+  for (const SensorOfRobot& each : robots_[robot].sensors) {
+    each.sensor->hash(hash);
+    each.signal_chain.hash(hash);
+  }
+}
+
+void Robots::save(SnapshotWriter& writer) const {
+  writer.add_count(robots_.size());
+  for (const Robot& robot : robots_) {
+    writer.add_count(robot.command.size());
+    writer.add_all(robot.command.data(), robot.command.size());
+    for (const SensorOfRobot& each : robot.sensors) {
+      each.sensor->save(writer);
+      each.signal_chain.save(writer);
+    }
+  }
+  writer.add_count(observations_.size());
+  writer.add_all(observations_.data(), observations_.size());
+}
+
+void Robots::restore(SnapshotReader& reader) {
+  reader.expect_count(robots_.size(), "robots");
+  for (Robot& robot : robots_) {
+    reader.expect_count(robot.command.size(), "commanded values of a robot");
+    reader.read_all(robot.command.data(), robot.command.size());
+    for (SensorOfRobot& each : robot.sensors) {
+      each.sensor->restore(reader);
+      each.signal_chain.restore(reader);
+    }
+  }
+  reader.expect_count(observations_.size(), "observed values");
+  reader.read_all(observations_.data(), observations_.size());
+}
+
+}  // namespace cohort

@@ -9,7 +9,7 @@
 
 namespace cohort {
 Schedule::Schedule(const description::Experiment& experiment, physics::World& world, Objects& objects,
-               emission::Emitters& emitters, const actuation::UserActions& actions)
+                   emission::Emitters& emitters, const actuation::UserActions& actions)
     : experiment_(experiment),
       world_(world),
       objects_(objects),

@@ -11,12 +11,11 @@
 
 namespace cohort {
 
-/// What an experiment says of the course of its run, at work: its events, what actions of robots make happen, and when
-/// it stops.
+/// The schedule of a run, as its experiment has it: its events, what actions of robots make happen, and when it stops.
 class Schedule {
  public:
   Schedule(const description::Experiment& experiment, physics::World& world, Objects& objects,
-         emission::Emitters& emitters, const actuation::UserActions& actions);
+           emission::Emitters& emitters, const actuation::UserActions& actions);
 
   /// The events of a boundary: those of its time, then those of the actions that begin. Throws std::runtime_error for
   /// one that cannot be done. Returns a sentence for each.

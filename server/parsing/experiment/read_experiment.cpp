@@ -167,8 +167,8 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   experiment_.duration = duration.value_or(read_seconds(top, "duration").value_or(experiment_.duration));
   top.require("world", "the file of the world, relative to this file");
   top.require("teams", "which robots have which controller");
-  const ScheduleReader course(top, experiment_.file, report_);
-  read_world_of(top, course.later_objects());
+  const ScheduleReader schedule(top, experiment_.file, report_);
+  read_world_of(top, schedule.later_objects());
   read_step(top);
   if (top.has("threads"))
     experiment_.threads = static_cast<unsigned>(top.whole("threads", 1, most_threads).value_or(1));
@@ -176,7 +176,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
     experiment_.world.physics =
         with_values(experiment_.world.physics, read_physics_map(top.where("physics"), top.path_to("physics"), report_));
   read_teams(top);
-  if (world_is_read_) course.read(experiment_);
+  if (world_is_read_) schedule.read(experiment_);
 
   if (!problems_.empty()) throw InputError(std::move(problems_));
   return std::move(experiment_);

@@ -1,65 +1,15 @@
 #include "server/parsing/files/xml_outline.hpp"
 
+#include <expat.h>
+
 #include <algorithm>
-#include <charconv>
-#include <cstdint>
+#include <limits>
+#include <memory>
 
 #include "server/core/text.hpp"
 
 namespace cohort::parsing {
 namespace {
-
-constexpr std::string_view white_space = " \t\r\n";
-
-bool ends_name(char c) { return white_space.find(c) != std::string_view::npos || c == '/' || c == '>' || c == '='; }
-
-void append_utf8(std::string& text, std::uint32_t code) {
-  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
-  const auto put_tail = [&](int shift) { put(0x80 | (code >> shift & 0x3f)); };
-  if (code < 0x80) {
-    put(code);
-  } else if (code < 0x800) {
-    put(0xc0 | code >> 6), put_tail(0);
-  } else if (code < 0x10000) {
-    put(0xe0 | code >> 12), put_tail(6), put_tail(0);
-  } else {
-    put(0xf0 | (code >> 18 & 0x07)), put_tail(12), put_tail(6), put_tail(0);
-  }
-}
-
-// What stands between '&' and ';'. Unknown entities stay as they are, as in libsdformat's parser.
-std::string decoded(std::string_view entity) {
-  constexpr std::pair<std::string_view, const char*> named[] = {
-      {"amp", "&"}, {"lt", "<"}, {"gt", ">"}, {"quot", "\""}, {"apos", "'"}};
-  for (const auto& [name, meaning] : named)
-    if (entity == name) return meaning;
-  std::string as_written = "&" + std::string(entity) + ";";
-  if (entity.size() < 2 || entity[0] != '#') return as_written;
-  const bool hexadecimal = entity[1] == 'x';
-  const char* const end = entity.data() + entity.size();
-  std::uint32_t code = 0;
-  const auto [stopped, error] =
-      std::from_chars(entity.data() + (hexadecimal ? 2 : 1), end, code, hexadecimal ? 16 : 10);
-  if (error != std::errc{} || stopped != end) return as_written;
-  std::string text;
-  append_utf8(text, code);
-  return text;
-}
-
-std::string without_entities(std::string_view raw) {
-  std::string text;
-  while (!raw.empty()) {
-    const std::size_t start = std::min(raw.find('&'), raw.size());
-    text += raw.substr(0, start);
-    raw.remove_prefix(start);
-    if (raw.empty()) break;
-    const std::size_t end = raw.find(';');
-    if (end == std::string_view::npos) return text + std::string(raw);
-    text += decoded(raw.substr(1, end - 1));
-    raw.remove_prefix(end + 1);
-  }
-  return text;
-}
 
 std::string with_entities(std::string_view raw) {
   std::string text;
@@ -92,174 +42,102 @@ void write(const XmlNode& node, XmlText& written) {
 
 constexpr std::size_t deepest = 64;  // of XML elements; SDF itself needs a dozen
 
-class Scanner {
+/// Builds the tree from expat's events. What a file declares is not expanded in text and stays as it is written; in
+/// attributes expat's own limits hold. Nothing is fetched.
+class TreeBuilder {
  public:
-  explicit Scanner(std::string_view text) : rest_(text) {}
+  explicit TreeBuilder(std::string_view text);
 
-  XmlOutline scan();
+  XmlOutline build();
 
  private:
-  // Each takes its construct from the front of the text; false after an error.
-  bool character_data();
-  bool section(std::string_view opening, std::string_view closing);
-  bool declaration();
-  bool opening_tag();
-  bool attribute(XmlNode& node);
-  bool closing_tag();
+  static TreeBuilder& of(void* self) { return *static_cast<TreeBuilder*>(self); }
+  int line() const { return static_cast<int>(XML_GetCurrentLineNumber(parser_.get())); }
+  void open(const char* name, const char** attributes);
+  void close();
+  XmlSyntaxError error() const;
 
-  bool fail(int line, std::string message) {
-    outline_.error = {line, std::move(message)};
-    return false;
-  }
-  bool at(std::string_view prefix) const { return rest_.starts_with(prefix); }
-  std::string_view take(std::size_t count) {
-    const std::string_view taken = rest_.substr(0, count);
-    line_ += static_cast<int>(std::count(taken.begin(), taken.end(), '\n'));
-    rest_.remove_prefix(taken.size());
-    return taken;
-  }
-  std::string_view take_name() {
-    return take(static_cast<std::size_t>(std::find_if(rest_.begin(), rest_.end(), ends_name) - rest_.begin()));
-  }
-  void skip_space() { take(std::min(rest_.find_first_not_of(white_space), rest_.size())); }
-  bool close_element();
-
-  std::string_view rest_;
-  int line_ = 1;
-  bool has_root_ = false;
+  std::string_view text_;
+  std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser_{XML_ParserCreate(nullptr), XML_ParserFree};
   std::vector<XmlNode> open_;  // from the root inwards
   XmlOutline outline_;
 };
 
-XmlOutline Scanner::scan() {
-  if (at("\xef\xbb\xbf")) take(3);  // byte order mark
-  bool well_formed = true;
-  while (well_formed && !rest_.empty()) {
-    if (rest_[0] != '<')
-      well_formed = character_data();
-    else if (at("<!--"))
-      well_formed = section("<!--", "-->");
-    else if (at("<![CDATA["))
-      well_formed = section("<![CDATA[", "]]>");
-    else if (at("<?"))
-      well_formed = section("<?", "?>");
-    else if (at("<!"))
-      well_formed = declaration();
-    else if (at("</"))
-      well_formed = closing_tag();
-    else
-      well_formed = opening_tag();
-  }
-  if (well_formed && !open_.empty())
-    fail(open_.back().line, "<" + open_.back().name + "> is never closed");
-  else if (well_formed && !has_root_)
-    fail(0, "there is no XML element in this file");
+TreeBuilder::TreeBuilder(std::string_view text) : text_(text) {
+  const XML_Parser parser = parser_.get();
+  XML_SetUserData(parser, this);
+  XML_SetElementHandler(
+      parser, [](void* self, const char* name, const char** attributes) { of(self).open(name, attributes); },
+      [](void* self, const char*) { of(self).close(); });
+  XML_SetCharacterDataHandler(parser, [](void* self, const char* characters, int count) {
+    of(self).open_.back().text.append(characters, static_cast<std::size_t>(count));
+  });
+  XML_SetDefaultHandler(parser, nullptr);  // so that entities are skipped, not expanded
+  XML_SetSkippedEntityHandler(parser, [](void* self, const char* name, int) {
+    if (!of(self).open_.empty()) of(self).open_.back().text += std::string("&") + name + ";";
+  });
+}
+
+XmlOutline TreeBuilder::build() {
+  if (text_.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    outline_.error = {0, "has more than 2 GB"};
+  else if (XML_Parse(parser_.get(), text_.data(), static_cast<int>(text_.size()), XML_TRUE) == XML_STATUS_ERROR &&
+           !outline_.error)
+    outline_.error = error();
   return std::move(outline_);
 }
 
-bool Scanner::character_data() {
-  const int line = line_;
-  const std::string_view text = trimmed(take(std::min(rest_.find('<'), rest_.size())));
-  if (text.empty()) return true;
-  if (open_.empty()) return fail(line, "there is text outside of the root element");
-  open_.back().text += without_entities(text);
-  return true;
-}
-
-bool Scanner::section(std::string_view opening, std::string_view closing) {
-  const int line = line_;
-  take(opening.size());
-  const std::size_t end = rest_.find(closing);
-  if (end == std::string_view::npos)
-    return fail(line, "'" + std::string(opening) + "' has no '" + std::string(closing) + "'");
-  const std::string_view content = take(end);
-  if (closing == "]]>" && !open_.empty()) open_.back().text += content;
-  take(closing.size());
-  return true;
-}
-
-bool Scanner::declaration() {
-  const int line = line_;
-  int depth = 0;  // of the brackets of an internal subset
-  for (std::size_t i = 0; i < rest_.size(); ++i) {
-    if (rest_[i] == '[') ++depth;
-    if (rest_[i] == ']') --depth;
-    if (rest_[i] == '>' && depth == 0) {
-      take(i + 1);
-      return true;
-    }
+void TreeBuilder::open(const char* name, const char** attributes) {
+  if (open_.size() >= deepest) {
+    outline_.error = {line(),
+                      std::string("<") + name + "> is nested more than " + std::to_string(deepest) + " levels deep"};
+    XML_StopParser(parser_.get(), XML_FALSE);
+    return;
   }
-  return fail(line, "'<!' has no '>'");
+  XmlNode& node = open_.emplace_back();
+  node.name = name;
+  node.line = line();
+  for (; *attributes != nullptr; attributes += 2) node.attributes.emplace_back(attributes[0], attributes[1]);
 }
 
-bool Scanner::opening_tag() {
-  XmlNode node;
-  node.line = line_;
-  take(1);
-  node.name = take_name();
-  if (!is_xml_name(node.name)) return fail(node.line, "'<' is not followed by a name; write '&lt;' for the character");
-  if (open_.size() >= deepest)
-    return fail(node.line, "<" + node.name + "> is nested more than " + std::to_string(deepest) + " levels deep");
-  if (open_.empty() && has_root_)
-    return fail(node.line, "<" + node.name + "> is a second root element; a file has one");
-  has_root_ = true;
-  while (true) {
-    skip_space();
-    if (rest_.empty()) return fail(node.line, "the tag <" + node.name + " has no '>'");
-    if (at("/>")) {
-      take(2);
-      open_.push_back(std::move(node));
-      return close_element();
-    }
-    if (at(">")) {
-      take(1);
-      open_.push_back(std::move(node));
-      return true;
-    }
-    if (!attribute(node)) return false;
-  }
-}
-
-bool Scanner::attribute(XmlNode& node) {
-  const int line = line_;
-  const std::string name(take_name());
-  skip_space();
-  if (!is_xml_name(name) || !at("=")) return fail(line, "in the tag <" + node.name + ", expected ATTRIBUTE=\"VALUE\"");
-  take(1);
-  skip_space();
-  if (!at("\"") && !at("'"))
-    return fail(line, "the value of the attribute '" + name + "' is not between quotation marks");
-  if (node.attribute(name) != nullptr) return fail(line, "the attribute '" + name + "' is given twice");
-  const char quote = take(1)[0];
-  const std::size_t end = rest_.find(quote);
-  if (end == std::string_view::npos) return fail(line, "the value of the attribute '" + name + "' never ends");
-  node.attributes.emplace_back(name, without_entities(take(end)));
-  take(1);
-  return true;
-}
-
-bool Scanner::closing_tag() {
-  const int line = line_;
-  take(2);
-  const std::string name(take_name());
-  skip_space();
-  if (!at(">")) return fail(line, "the tag </" + name + " has no '>'");
-  take(1);
-  if (open_.empty()) return fail(line, "</" + name + "> closes nothing");
-  if (open_.back().name != name)
-    return fail(line, "</" + name + "> does not close <" + open_.back().name + "> of line " +
-                          std::to_string(open_.back().line));
-  return close_element();
-}
-
-bool Scanner::close_element() {
+void TreeBuilder::close() {
+  if (outline_.error) return;  // of a stopped parser, an empty element still ends
   XmlNode node = std::move(open_.back());
   open_.pop_back();
-  if (open_.empty())
-    outline_.root = std::move(node);
-  else
-    open_.back().children.push_back(std::move(node));
-  return true;
+  node.text = trimmed(node.text);
+  (open_.empty() ? outline_.root : open_.back().children.emplace_back()) = std::move(node);
+}
+
+// Where expat stopped, with what it knows and we do.
+XmlSyntaxError TreeBuilder::error() const {
+  const auto place = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get()));
+  const std::string_view rest = text_.substr(std::min(place, text_.size()));
+  const auto up_to = [&](const char* ends) { return std::string(rest.substr(0, rest.find_first_of(ends))); };
+  const XML_Error code = XML_GetErrorCode(parser_.get());
+  switch (code) {
+    case XML_ERROR_NO_ELEMENTS:
+      if (open_.empty()) return {0, "there is no XML element in this file"};
+      return {open_.back().line, "<" + open_.back().name + "> is never closed"};
+    case XML_ERROR_TAG_MISMATCH:
+      return {line(), "</" + up_to(" \t\r\n>") + "> does not close <" + open_.back().name + "> of line " +
+                          std::to_string(open_.back().line)};
+    case XML_ERROR_DUPLICATE_ATTRIBUTE: return {line(), "the attribute '" + up_to(" \t\r\n=") + "' is given twice"};
+    case XML_ERROR_UNDEFINED_ENTITY:
+      return {line(), "'" + up_to(";") + ";' stands for nothing; write '&amp;' for the character '&'"};
+    case XML_ERROR_UNCLOSED_TOKEN:
+    case XML_ERROR_UNCLOSED_CDATA_SECTION: return {line(), "'" + up_to(" \t\r\n") + "' has no end"};
+    case XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
+      if (rest.starts_with('<')) return {line(), "there is a second root element; a file has one"};
+      [[fallthrough]];
+    case XML_ERROR_SYNTAX:
+    case XML_ERROR_INVALID_TOKEN:
+      if (!open_.empty()) break;
+      return {line(), "there is text outside of the root element"};
+    default: return {line(), std::string("not XML: ") + XML_ErrorString(code)};
+  }
+  return {line(), "not XML from column " + std::to_string(XML_GetCurrentColumnNumber(parser_.get()) + 1) +
+                      " on: expected UTF-8, ATTRIBUTE=\"VALUE\" in tags, and '&lt;' and '&amp;' for the characters '<' "
+                      "and '&'"};
 }
 
 }  // namespace
@@ -286,7 +164,7 @@ bool is_xml_name(std::string_view name) {
   });
 }
 
-XmlOutline outline_xml(std::string_view text) { return Scanner(text).scan(); }
+XmlOutline outline_xml(std::string_view text) { return TreeBuilder(text).build(); }
 
 XmlText xml_text_of(const XmlNode& node) {
   XmlText written{"", {nullptr}};

@@ -1,7 +1,5 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -132,15 +130,15 @@ class ExperimentReader {
   Experiment read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration);
 
  private:
-  YAML::Node load();
+  YamlPtr load();
   void read_world_of(const YamlMap& top, const std::vector<LaterObject>& later);
   void read_step(const YamlMap& top);
   void read_teams(const YamlMap& top);
-  void read_team(const YAML::Node& node, const std::string& path);
-  void read_parameters(const YAML::Node& map, const std::string& path, const std::string& prefix,
+  void read_team(const YamlNode& node, const std::string& path);
+  void read_parameters(const YamlNode& map, const std::string& path, const std::string& prefix,
                        std::vector<Parameter>& parameters);
-  void select(const YAML::Node& selector, const std::string& path, std::set<std::uint32_t>& selected);
-  void claim(const YAML::Node& node, const std::string& path, const std::string& team,
+  void select(const YamlNode& selector, const std::string& path, std::set<std::uint32_t>& selected);
+  void claim(const YamlNode& node, const std::string& path, const std::string& team,
              const std::set<std::uint32_t>& selected);
   void report_robots_without_team(const YamlMap& top);
   std::string listed(const std::vector<std::uint32_t>& robots) const;
@@ -156,8 +154,8 @@ class ExperimentReader {
 };
 
 Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration) {
-  const YAML::Node node = load();
-  const YamlMap top(node, "", names_of_keys(experiment_part("experiment", "")), report_);
+  const YamlPtr document = load();
+  const YamlMap top(*document, "", names_of_keys(experiment_part("experiment", "")), report_);
   experiment_.name = experiment_.file.stem().string();
 
   const std::uint64_t written_seed =
@@ -182,22 +180,16 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   return std::move(experiment_);
 }
 
-YAML::Node ExperimentReader::load() {
+YamlPtr ExperimentReader::load() {
   const fs::path& file = experiment_.file;
   if (auto reason = input_.why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
   if (kind_of_file(input_, file) == FileKind::sdf)
     throw InputError(
         {{file, 0, "",
           "this is a world; expected an experiment (YAML), which names a world and who controls its robots"}});
-  const std::string& text = input_.read(file);
-  // What yaml-cpp would take, and whoever walks through it would never be done with.
-  if (const YamlDocument document = parse_yaml(text); document.error)
-    throw InputError({{file, document.error->line, "", document.error->message}});
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    throw InputError({{file, 0, "", error.msg}});
-  }
+  const YamlDocument document = parse_yaml(input_.read(file));
+  if (document.error) throw InputError({{file, document.error->line, "", document.error->message}});
+  return document.root;
 }
 
 void ExperimentReader::read_world_of(const YamlMap& top, const std::vector<LaterObject>& later) {
@@ -230,17 +222,17 @@ void ExperimentReader::read_step(const YamlMap& top) {
 
 void ExperimentReader::read_teams(const YamlMap& top) {
   if (!top.has("teams")) return;
-  const YAML::Node teams = top.where("teams");
-  if (!teams.IsSequence()) {
+  const YamlNode& teams = top.where("teams");
+  if (!teams.is_list()) {
     top.problem("teams", "expected a list of teams, not " + shown(teams));
     return;
   }
-  for (std::size_t i = 0; i < teams.size(); ++i) read_team(teams[i], "teams[" + std::to_string(i) + "]");
+  for (std::size_t i = 0; i < teams.items.size(); ++i) read_team(*teams.items[i], "teams[" + std::to_string(i) + "]");
   // A missing or misspelt selector leaves robots without a team.
   if (selectors_are_right_) report_robots_without_team(top);
 }
 
-void ExperimentReader::read_team(const YAML::Node& node, const std::string& path) {
+void ExperimentReader::read_team(const YamlNode& node, const std::string& path) {
   const YamlMap map(node, path, names_of_keys(experiment_part("teams", "experiment")), report_);
   map.require("name", "a name for the team");
   map.require("robots", "which robots belong to it");
@@ -248,9 +240,9 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
   Team team;
   team.name = map.text("name").value_or("");
   team.controller = map.text("controller").value_or("");
-  team.controller_line = map.where("controller").Mark().line + 1;
+  team.controller_line = map.where("controller").line;
   if (map.has("parameters")) {
-    if (map.where("parameters").IsMap())
+    if (map.where("parameters").is_map())
       read_parameters(map.where("parameters"), map.path_to("parameters"), "", team.parameters);
     else
       map.problem("parameters", "expected 'NAME: VALUE' lines, not " + shown(map.where("parameters")));
@@ -262,11 +254,11 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
       map.problem("name", "another team has the name '" + team.name + "'");
 
   if (map.has("robots")) {
-    const YAML::Node robots = map.where("robots");
+    const YamlNode& robots = map.where("robots");
     std::set<std::uint32_t> selected;
-    if (robots.IsSequence() && robots.size() > 0) {
-      for (std::size_t i = 0; i < robots.size(); ++i)
-        select(robots[i], map.path_to("robots") + "[" + std::to_string(i) + "]", selected);
+    if (robots.is_list() && !robots.items.empty()) {
+      for (std::size_t i = 0; i < robots.items.size(); ++i)
+        select(*robots.items[i], map.path_to("robots") + "[" + std::to_string(i) + "]", selected);
     } else {
       select(robots, map.path_to("robots"), selected);
     }
@@ -280,57 +272,54 @@ void ExperimentReader::read_team(const YAML::Node& node, const std::string& path
 
 // The controller knows what they mean; here only their shape is looked at: maps of maps, of values, and of lists of
 // values.
-void ExperimentReader::read_parameters(const YAML::Node& map, const std::string& path, const std::string& prefix,
+void ExperimentReader::read_parameters(const YamlNode& map, const std::string& path, const std::string& prefix,
                                        std::vector<Parameter>& parameters) {
-  for (const auto& entry : map) {
-    if (!entry.first.IsScalar()) {
-      report_.problem(entry.first, path, "expected a name, not " + shown(entry.first));
+  for (const auto& [key, value] : map.pairs) {
+    if (!key->is_scalar()) {
+      report_.problem(*key, path, "expected a name, not " + shown(*key));
       continue;
     }
-    const std::string name = prefix + entry.first.Scalar();
-    const std::string path_to_it = path + "." + entry.first.Scalar();
-    const YAML::Node& value = entry.second;
-    if (value.IsMap()) {
-      read_parameters(value, path_to_it, name + ".", parameters);
+    const std::string name = prefix + key->text;
+    const std::string path_to_it = path + "." + key->text;
+    if (value->is_map()) {
+      read_parameters(*value, path_to_it, name + ".", parameters);
       continue;
     }
-    Parameter parameter{name, {}, entry.first.Mark().line + 1};
-    if (value.IsScalar()) parameter.values.push_back(value.Scalar());
-    bool is_right = value.IsScalar() || value.IsSequence();
-    if (value.IsSequence()) {
-      for (const YAML::Node& each : value) {
-        is_right &= each.IsScalar();
-        parameter.values.push_back(is_right ? each.Scalar() : "");
-      }
+    Parameter parameter{name, {}, key->line};
+    if (value->is_scalar()) parameter.values.push_back(value->text);
+    bool is_right = value->is_scalar() || value->is_list();
+    for (const YamlPtr& each : value->items) {
+      is_right &= each->is_scalar();
+      parameter.values.push_back(each->text);
     }
     if (!is_right) {
-      report_.problem(entry.first, path_to_it,
+      report_.problem(*key, path_to_it,
                       "expected a value or a list of values, not " +
-                          (value.IsSequence() ? "a list of something else" : shown(value)));
+                          (value->is_list() ? "a list of something else" : shown(*value)));
     } else if (std::ranges::any_of(parameters, [&](const Parameter& other) { return other.name == name; })) {
-      report_.problem(entry.first, path_to_it, "the parameter is given twice");
+      report_.problem(*key, path_to_it, "the parameter is given twice");
     } else {
       parameters.push_back(std::move(parameter));
     }
   }
 }
 
-void ExperimentReader::select(const YAML::Node& selector, const std::string& path, std::set<std::uint32_t>& selected) {
-  if (!selector.IsScalar()) {
+void ExperimentReader::select(const YamlNode& selector, const std::string& path, std::set<std::uint32_t>& selected) {
+  if (!selector.is_scalar()) {
     report_.problem(selector, path,
                     "expected a robot's name, an id, a range 0..7, all, or a list of these, not " + shown(selector));
     return;
   }
   if (!world_is_read_) return;
   try {
-    for (const std::uint32_t robot : select_robots(experiment_.world, selector.Scalar())) selected.insert(robot);
+    for (const std::uint32_t robot : select_robots(experiment_.world, selector.text)) selected.insert(robot);
   } catch (const std::invalid_argument& error) {
     report_.problem(selector, path, error.what());
     selectors_are_right_ = false;
   }
 }
 
-void ExperimentReader::claim(const YAML::Node& node, const std::string& path, const std::string& team,
+void ExperimentReader::claim(const YamlNode& node, const std::string& path, const std::string& team,
                              const std::set<std::uint32_t>& selected) {
   std::vector<std::uint32_t> taken;
   for (const std::uint32_t robot : selected) {

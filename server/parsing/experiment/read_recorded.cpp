@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "server/description/experiment.hpp"
-#include "server/parsing/keys/experiment_keys.hpp"
 #include "server/description/select_robots.hpp"
+#include "server/parsing/keys/experiment_keys.hpp"
 #include "server/parsing/yaml/yaml_document.hpp"
 
 namespace cohort::parsing {
@@ -32,13 +32,9 @@ Recorded read_recorded(const std::string& text, const Experiment& experiment) {
   const YamlDocument document = parse_yaml(text);
   if (document.error) throw InputError({{place, document.error->line, "", document.error->message}});
   std::vector<Problem> problems;
-  try {
-    const YamlReport report(place, problems);
-    const ScheduleEntry entry(YAML::Load(text), "record", experiment_part("record", "experiment"), report);
-    read_recorded(entry, experiment.world, recorded);
-  } catch (const YAML::Exception& error) {
-    throw InputError({{place, 0, "", error.msg}});
-  }
+  const YamlReport report(place, problems);
+  read_recorded(ScheduleEntry(*document.root, "record", experiment_part("record", "experiment"), report),
+                experiment.world, recorded);
   if (!problems.empty()) throw InputError(std::move(problems));
   return recorded;
 }

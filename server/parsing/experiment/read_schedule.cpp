@@ -39,21 +39,18 @@ std::string either_of(const std::vector<std::string>& kinds) {
 
 }  // namespace
 
-// NOLINTNEXTLINE(bugprone-exception-escape): assigning a YAML::Node may throw, and nothing here relies on it not to.
 struct ScheduleReader::Written {
-  YAML::Node node;   // the whole entry
   std::string path;  // of the kind, such as `events[0].add`
   std::string kind;
-  YAML::Node map;  // of the kind's keys
+  const YamlNode* map = nullptr;  // of the kind's keys
   std::chrono::nanoseconds time{0};
-  YAML::Node on;  // what makes it happen in place of a time
+  const YamlNode* on = nullptr;  // what makes it happen in place of a time
   std::string on_path;
 };
 
-// NOLINTNEXTLINE(bugprone-exception-escape): the same.
 struct ScheduleReader::ReadEvent {
   Event event;
-  YAML::Node node;
+  const YamlNode* node = nullptr;
   std::string path;
 };
 
@@ -131,14 +128,14 @@ void ScheduleReader::choose_kind(const YamlMap& map, const std::vector<std::stri
       continue;
     }
     written.kind = kind;
-    written.map = map.where(kind);
+    written.map = &map.where(kind);
     written.path = map.path_to(kind);
   }
 }
 
 void ScheduleReader::read_when(const YamlMap& map, Written& written) {
   if (map.has("on")) {
-    written.on = map.where("on");
+    written.on = &map.where("on");
     written.on_path = map.path_to("on");
     if (map.has("at")) map.problem("on", "has no place beside `at`");
     return;
@@ -154,26 +151,27 @@ void ScheduleReader::read_when(const YamlMap& map, Written& written) {
 std::vector<ScheduleReader::Written> ScheduleReader::entries(const std::string& list, bool have_times) const {
   std::vector<Written> found;
   if (!top_.has(list)) return found;
-  const YAML::Node nodes = top_.where(list);
-  if (!nodes.IsSequence()) {
+  const YamlNode& nodes = top_.where(list);
+  if (!nodes.is_list()) {
     top_.problem(list, "expected a list, not " + shown(nodes));
     return found;
   }
   const std::vector<std::string> kinds = kinds_in(list);
   std::vector<std::string> known = kinds;
   if (have_times) known.insert(known.begin(), {"at", "on"});
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  for (std::size_t i = 0; i < nodes.items.size(); ++i) {
+    const YamlNode& node = *nodes.items[i];
     const std::string path = list + "[" + std::to_string(i) + "]";
-    const YamlMap map(nodes[i], path, known, report_);
-    if (!nodes[i].IsMap()) continue;
-    Written written{nodes[i], path, "", {}, {}, {}, ""};
+    const YamlMap map(node, path, known, report_);
+    if (!node.is_map()) continue;
+    Written written;
     if (have_times) read_when(map, written);
     choose_kind(map, kinds, written);
     if (!written.kind.empty())
       found.push_back(written);
-    else if (std::all_of(nodes[i].begin(), nodes[i].end(),
-                         [&](const auto& entry) { return entry.first.IsScalar() && is_when(entry.first.Scalar()); }))
-      report_.problem(nodes[i], path, "missing: one of " + either_of(kinds));
+    else if (std::ranges::all_of(node.pairs,
+                                 [](const auto& pair) { return pair.first->is_scalar() && is_when(pair.first->text); }))
+      report_.problem(node, path, "missing: one of " + either_of(kinds));
   }
   return found;
 }
@@ -182,19 +180,16 @@ std::vector<LaterObject> ScheduleReader::later_objects() const {
   // What is wrong is reported when all of it is read.
   std::vector<Problem> ignored;
   std::vector<LaterObject> objects;
-  if (!top_.has("events") || !top_.where("events").IsSequence()) return objects;
-  const YAML::Node nodes = top_.where("events");
+  if (!top_.has("events") || !top_.where("events").is_list()) return objects;
+  const YamlNode& nodes = top_.where("events");
   const YamlReport nothing(file_, ignored);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const YAML::Node& node = nodes[i];
-    if (!node.IsMap() || !node["add"] || !node["add"].IsMap()) continue;
+  for (std::size_t i = 0; i < nodes.items.size(); ++i) {
+    const YamlNode* const added = nodes.items[i]->find("add");
+    if (added == nullptr || !added->is_map()) continue;
     const std::string path = "events[" + std::to_string(i) + "].add";
-    const KeyValues values = read_values(node["add"], path, experiment_part("add", "events"), true, nothing);
+    const KeyValues values = read_values(*added, path, experiment_part("add", "events"), true, nothing);
     if (!values.has("model") || !values.has("name") || !values.has("pose")) continue;
-    objects.push_back({values.text("model"),
-                       values.text("name"),
-                       values.pose("pose"),
-                       {file_, node["add"].Mark().line + 1, path, ""}});
+    objects.push_back({values.text("model"), values.text("name"), values.pose("pose"), {file_, added->line, path, ""}});
   }
   return objects;
 }
@@ -230,7 +225,7 @@ void ScheduleReader::read_events(Experiment& experiment) const {
 
 // The robots among those chosen that have the action.
 std::optional<Reaction> ScheduleReader::read_on(const Written& written, const World& world) const {
-  const ScheduleEntry entry(written.on, written.on_path, experiment_part("on", "an event"), report_);
+  const ScheduleEntry entry(*written.on, written.on_path, experiment_part("on", "an event"), report_);
   const KeyValues& values = entry.values();
   if (!values.has("action") || !values.has("robots")) return std::nullopt;
   std::set<std::uint32_t> chosen;
@@ -257,7 +252,7 @@ std::optional<Reaction> ScheduleReader::read_on(const Written& written, const Wo
 }
 
 std::vector<ScheduleReader::ReadEvent> ScheduleReader::read_event(const Written& written, const World& world) const {
-  const ScheduleEntry entry(written.map, written.path, experiment_part(written.kind, "events"), report_);
+  const ScheduleEntry entry(*written.map, written.path, experiment_part(written.kind, "events"), report_);
   std::vector<std::size_t> objects;
   if (written.kind == "add") {
     const auto is_added = [&](const Instance& instance) {
@@ -287,9 +282,9 @@ void ScheduleReader::check_order(const World& world, const std::vector<ReadEvent
     const Event& event = each.event;
     const std::string name = "'" + world.instances[event.object].name + "'";
     if (is_gone[event.object])
-      report_.problem(each.node, each.path, name + " has been removed by then");
+      report_.problem(*each.node, each.path, name + " has been removed by then");
     else if (event.kind != "add" && !is_there[event.object])
-      report_.problem(each.node, each.path, name + " has not been added by then");
+      report_.problem(*each.node, each.path, name + " has not been added by then");
     if (event.kind == "add") is_there[event.object] = 1;
     if (event.kind == "remove" && is_there[event.object]) is_gone[event.object] = 1;
   }
@@ -297,7 +292,7 @@ void ScheduleReader::check_order(const World& world, const std::vector<ReadEvent
 
 void ScheduleReader::read_stops(Experiment& experiment) const {
   for (const Written& written : entries("stop", false)) {
-    const ScheduleEntry entry(written.map, written.path, experiment_part(written.kind, "stop"), report_);
+    const ScheduleEntry entry(*written.map, written.path, experiment_part(written.kind, "stop"), report_);
     StopCondition condition{written.kind, entry.objects(experiment.world), OneQuarantined{},
                             entry.time("for").value_or(std::chrono::nanoseconds(0))};
     if (const auto what = named(conditions, written.kind)(entry)) {
@@ -309,11 +304,11 @@ void ScheduleReader::read_stops(Experiment& experiment) const {
 
 void ScheduleReader::read_prints(Experiment& experiment) const {
   if (!top_.has("print")) return;
-  const YAML::Node nodes = top_.where("print");
-  if (!nodes.IsSequence()) return top_.problem("print", "expected a list, not " + shown(nodes));
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const ScheduleEntry entry(nodes[i], "print[" + std::to_string(i) + "]", experiment_part("print", "experiment"),
-                              report_);
+  const YamlNode& nodes = top_.where("print");
+  if (!nodes.is_list()) return top_.problem("print", "expected a list, not " + shown(nodes));
+  for (std::size_t i = 0; i < nodes.items.size(); ++i) {
+    const ScheduleEntry entry(*nodes.items[i], "print[" + std::to_string(i) + "]",
+                              experiment_part("print", "experiment"), report_);
     const KeyValues& values = entry.values();
     const std::optional<std::chrono::nanoseconds> every = entry.time("every");
     PrintedQuantity printed;

@@ -15,12 +15,11 @@ std::optional<std::chrono::nanoseconds> schedule_time(double seconds) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(std::round(seconds * 1e9)));
 }
 
-ScheduleEntry::ScheduleEntry(const YAML::Node& map, std::string path, const Extension& part, const YamlReport& report)
+ScheduleEntry::ScheduleEntry(const YamlNode& map, std::string path, const Extension& part, const YamlReport& report)
     : map_(map), path_(std::move(path)), report_(report), values_(read_values(map, path_, part, true, report)) {}
 
 void ScheduleEntry::problem(const std::string& key, std::string message) const {
-  const YAML::Node& map = map_;
-  report_.problem(is_written(key) ? map[key] : map, path_ + "." + key, std::move(message));
+  report_.problem(is_written(key) ? *map_.find(key) : map_, path_ + "." + key, std::move(message));
 }
 
 std::optional<std::chrono::nanoseconds> ScheduleEntry::time(const std::string& key) const {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include <chrono>
 #include <cstddef>
 #include <optional>
@@ -19,11 +17,12 @@ std::optional<std::chrono::nanoseconds> schedule_time(double seconds);
 /// The values of one map in the course of an experiment, and where they stand. What is wrong goes to the report.
 class ScheduleEntry {
  public:
-  ScheduleEntry(const YAML::Node& map, std::string path, const Extension& part, const YamlReport& report);
+  /// `map` and `report` must outlive this.
+  ScheduleEntry(const YamlNode& map, std::string path, const Extension& part, const YamlReport& report);
 
   const KeyValues& values() const { return values_; }
   /// Whether the file has the key.
-  bool is_written(const std::string& key) const { return map_.IsMap() && map_[key]; }
+  bool is_written(const std::string& key) const { return map_.find(key) != nullptr; }
   /// At the key, or at the map if it has no such key.
   void problem(const std::string& key, std::string message) const;
   /// Of the whole map.
@@ -35,7 +34,7 @@ class ScheduleEntry {
   std::vector<std::size_t> objects(const World& world) const;
 
  private:
-  YAML::Node map_;
+  const YamlNode& map_;
   std::string path_;
   const YamlReport& report_;
   KeyValues values_;

@@ -45,7 +45,7 @@ PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values) {
   return settings;
 }
 
-KeyValues read_physics_map(const YAML::Node& node, const std::string& path, const YamlReport& report) {
+KeyValues read_physics_map(const YamlNode& node, const std::string& path, const YamlReport& report) {
   return read_values(node, path, *find_extension("physics", "world"), false, report);
 }
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "server/parsing/keys/key_values.hpp"
 #include "server/description/world.hpp"
+#include "server/parsing/keys/key_values.hpp"
 #include "server/parsing/yaml/yaml_map.hpp"
 
 namespace cohort::parsing {
@@ -16,6 +16,6 @@ std::string name_of(Fidelity fidelity);
 std::string name_of(Solver solver);
 
 /// The keys of `cohort:physics` in YAML, only those that are there. What is wrong with them is reported.
-KeyValues read_physics_map(const YAML::Node& node, const std::string& path, const YamlReport& report);
+KeyValues read_physics_map(const YamlNode& node, const std::string& path, const YamlReport& report);
 
 }  // namespace cohort::parsing

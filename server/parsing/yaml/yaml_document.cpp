@@ -138,6 +138,12 @@ class NoMore : public YAML::EventHandler {
 
 }  // namespace
 
+const YamlNode* YamlNode::find(std::string_view key) const {
+  const auto found =
+      std::ranges::find_if(pairs, [&](const auto& pair) { return pair.first->is_scalar() && pair.first->text == key; });
+  return found == pairs.end() ? nullptr : found->second.get();
+}
+
 YamlDocument parse_yaml(std::string_view text) {
   YamlDocument document;
   try {

@@ -32,6 +32,8 @@ struct YamlNode {
   bool is_scalar() const { return kind == Kind::scalar; }
   bool is_list() const { return kind == Kind::list; }
   bool is_map() const { return kind == Kind::map; }
+  /// What a map has under the key, the first time that it is written; nullptr if nothing, or if this is no map.
+  const YamlNode* find(std::string_view key) const;
 };
 
 struct YamlDocument {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,6 +9,7 @@
 
 #include "server/description/input_error.hpp"
 #include "server/parsing/parsing.hpp"
+#include "server/parsing/yaml/yaml_document.hpp"
 
 namespace cohort::parsing {
 
@@ -20,8 +19,8 @@ class YamlReport {
   YamlReport(std::filesystem::path file, std::vector<Problem>& problems)
       : file_(std::move(file)), problems_(problems) {}
 
-  void problem(const YAML::Node& node, const std::string& element, std::string message) const {
-    problems_.push_back({file_, node.Mark().line + 1, element, std::move(message)});
+  void problem(const YamlNode& node, const std::string& element, std::string message) const {
+    problems_.push_back({file_, node.line, element, std::move(message)});
   }
 
  private:
@@ -33,12 +32,12 @@ class YamlReport {
 class YamlMap {
  public:
   /// `path` is where the map stands, such as `teams[0]`; empty at the top of the file. Keys other than `known` are
-  /// reported, and so is a node that is no map: then there are no values.
-  YamlMap(const YAML::Node& node, std::string path, const std::vector<std::string>& known, const YamlReport& report);
+  /// reported, and so is a node that is no map: then there are no values. `node` must outlive this.
+  YamlMap(const YamlNode& node, std::string path, const std::vector<std::string>& known, const YamlReport& report);
 
-  bool has(const std::string& key) const { return static_cast<bool>(value(key)); }
+  bool has(const std::string& key) const { return node_.find(key) != nullptr; }
   /// Of the key, or of the map if the key is absent.
-  YAML::Node where(const std::string& key) const { return has(key) ? value(key) : node_; }
+  const YamlNode& where(const std::string& key) const { return has(key) ? *node_.find(key) : node_; }
   std::string path_to(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   /// Reports the key if it is absent, unless an unknown one was taken for it.
   void require(const std::string& key, const std::string& doc) const;
@@ -54,15 +53,10 @@ class YamlMap {
   std::optional<std::uint64_t> whole(const std::string& key, std::uint64_t least, std::uint64_t greatest) const;
 
  private:
-  YAML::Node value(const std::string& key) const;
-
-  YAML::Node node_;
+  const YamlNode& node_;
   std::string path_;
   const YamlReport& report_;
   std::set<std::string> misspelt_;  // known keys that unknown ones were taken for
 };
-
-/// What a node is, for messages: its text in quotes, or `a list`, `a map`, `nothing`.
-std::string shown(const YAML::Node& node);
 
 }  // namespace cohort::parsing

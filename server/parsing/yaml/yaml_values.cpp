@@ -13,13 +13,13 @@ bool has_several_numbers(ExtensionValue value) {
 }
 
 // The text of a value; of a list of numbers, all of them. Empty if it is something else.
-std::string text_of(const YAML::Node& node, const ExtensionKey& key) {
-  if (node.IsScalar()) return std::string(trimmed(node.Scalar()));
+std::string text_of(const YamlNode& node, const ExtensionKey& key) {
+  if (node.is_scalar()) return std::string(trimmed(node.text));
   std::string text;
-  if (!node.IsSequence() || !has_several_numbers(key.value)) return text;
-  for (const YAML::Node& each : node) {
-    if (!each.IsScalar()) return {};
-    text += (text.empty() ? "" : " ") + each.Scalar();
+  if (!node.is_list() || !has_several_numbers(key.value)) return text;
+  for (const YamlPtr& each : node.items) {
+    if (!each->is_scalar()) return {};
+    text += (text.empty() ? "" : " ") + each->text;
   }
   return text;
 }
@@ -32,11 +32,11 @@ std::vector<std::string> names_of_keys(const Extension& part) {
   return names;
 }
 
-KeyValues read_values(const YAML::Node& node, const std::string& path, const Extension& part, bool fill,
+KeyValues read_values(const YamlNode& node, const std::string& path, const Extension& part, bool fill,
                       const YamlReport& report) {
   const YamlMap map(node, path, names_of_keys(part), report);
   KeyValues values;
-  const auto take = [&](const YAML::Node& value, const std::string& where, const ExtensionKey& key) {
+  const auto take = [&](const YamlNode& value, const std::string& where, const ExtensionKey& key) {
     const std::string text = text_of(value, key);
     if (std::optional<KeyValues::Value> parsed = parse_value(text, key))
       values.add(key.name, *std::move(parsed));
@@ -54,13 +54,13 @@ KeyValues read_values(const YAML::Node& node, const std::string& path, const Ext
         values.add(key.name, *parse_value(key.fallback, key));
       continue;
     }
-    const YAML::Node value = map.where(name);
-    if (!key.repeats || !value.IsSequence()) {
+    const YamlNode& value = map.where(name);
+    if (!key.repeats || !value.is_list()) {
       take(value, map.path_to(name), key);
       continue;
     }
-    for (std::size_t i = 0; i < value.size(); ++i)
-      take(value[i], map.path_to(name) + "[" + std::to_string(i) + "]", key);
+    for (std::size_t i = 0; i < value.items.size(); ++i)
+      take(*value.items[i], map.path_to(name) + "[" + std::to_string(i) + "]", key);
   }
   return values;
 }

@@ -5,7 +5,7 @@
 
 #include "idl/identity.hpp"
 #include "tests/support/process.hpp"
-#include "tools/cohort/commands/certificates.hpp"
+#include "tools/cohort/commands/security/certificates.hpp"
 
 namespace cohort::testing {
 

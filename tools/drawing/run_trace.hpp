@@ -11,15 +11,10 @@
 #include "server/description/world.hpp"
 #include "server/geometry/shapes.hpp"
 #include "server/simulation/simulation.hpp"
+#include "tools/drawing/viewpoint.hpp"
 
-/// What a run leaves behind for a picture of it. Everything is in the frame of who looks, V: x to the right, y upwards,
-/// z towards them.
+/// What a run leaves behind for a picture of it. Everything is in the frame of who looks, V.
 namespace cohort::tool {
-
-enum class Viewpoint {
-  above,  ///< V is W
-  side,   ///< x of V is that of W, y of V is z of W
-};
 
 struct TracedSolid {
   enum class Kind {

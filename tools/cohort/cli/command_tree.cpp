@@ -1,5 +1,6 @@
 #include "tools/cohort/cli/command_tree.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 
@@ -79,7 +80,7 @@ bool Placeholder::is_file() const {
 
 bool Placeholder::is_folder() const { return text == "DIR"; }
 
-CommandTree command_tree(const CLI::App& app) { return tree_of(app, ""); }
+CommandTree command_tree(const CommandLine& line) { return tree_of(line.app(), ""); }
 
 std::vector<const CommandTree*> all_commands(const CommandTree& root) {
   std::vector<const CommandTree*> all;

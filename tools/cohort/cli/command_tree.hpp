@@ -1,8 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "tools/cohort/cli/command_line.hpp"
 
 /// The command lines that a program understands, as CLI11 was told of them: for shells' completion and the manual page.
 namespace cohort::tool {
@@ -41,7 +42,7 @@ struct CommandTree {
 };
 
 /// Without what CLI11 was told to hide.
-CommandTree command_tree(const CLI::App& app);
+CommandTree command_tree(const CommandLine& line);
 
 /// The command itself, then those below it, each before its own.
 std::vector<const CommandTree*> all_commands(const CommandTree& root);

@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "client_sdk/src/client.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -34,7 +37,7 @@ std::shared_ptr<spdlog::logger> make_logger(LogFormat format, const std::string&
 // What follows time and level. Texts of files and controllers need not be UTF-8.
 std::string json_members(const std::string& message, const LogFields& fields) {
   nlohmann::ordered_json object = {{"message", message}};
-  for (const auto& [name, value] : fields) object[name] = value;
+  for (const auto& [name, value] : fields) std::visit([&](const auto& held) { object[name] = held; }, value.get());
   const std::string text = object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return text.substr(1, text.size() - 2);
 }

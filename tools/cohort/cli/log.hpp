@@ -1,17 +1,21 @@
 #pragma once
 
+#include <concepts>
+#include <cstdint>
 #include <memory>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
-#include "client_sdk/src/client.hpp"
 #include "server/description/input_error.hpp"
 
 namespace spdlog {
 class logger;
+}
+namespace cohort {
+enum class Severity;  // client_sdk/src/client.hpp
 }
 
 namespace cohort::tool {
@@ -28,8 +32,24 @@ struct LogOptions {
   bool progress = true;                ///< print progress and notices, which have no level
 };
 
+/// A value of a field: a number, a text, or texts.
+class LogValue {
+ public:
+  LogValue(std::integral auto value) : value_(std::int64_t{value}) {}
+  LogValue(std::uint64_t value) : value_(value) {}
+  LogValue(double value) : value_(value) {}
+  LogValue(const char* value) : value_(std::string(value)) {}
+  LogValue(std::string value) : value_(std::move(value)) {}
+  LogValue(std::vector<std::string> value) : value_(std::move(value)) {}
+
+  const auto& get() const { return value_; }
+
+ private:
+  std::variant<std::int64_t, std::uint64_t, double, std::string, std::vector<std::string>> value_;
+};
+
 /// What a message is about, for machines: printed in JSON only.
-using LogFields = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
+using LogFields = std::vector<std::pair<std::string, LogValue>>;
 
 /// All that a command has to say on standard error: as text for people, or as JSON, an object on each line with `time`,
 /// `level`, `message` and fields. Any thread may call it; a line is never torn apart.

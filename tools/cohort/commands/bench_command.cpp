@@ -1,18 +1,34 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <limits>
 
 #include "tools/bench/bench.hpp"
-#include "tools/cohort/commands/commands.hpp"
+#include "tools/bench/lockstep/bench_client.hpp"
+#include "tools/bench/lockstep/lockstep.hpp"
+#include "tools/bench/thesis.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
 namespace {
 
+struct BenchCommand {
+  enum class What { scenes, thesis, lockstep, client };
+  What what = What::scenes;
+  bench::Options scenes{};
+  bench::ThesisOptions thesis{};          ///< the thesis's tables
+  bench::LockstepOptions lockstep{};      ///< the barrier
+  std::vector<std::string> placements{};  ///< of it; empty: all
+  bench::BenchClient client{};            ///< one of its processes
+  std::filesystem::path json{};           ///< file to write; empty: none
+  std::filesystem::path svg{};            ///< the same: lockstep's graph
+};
+
 int measure_scenes(const BenchCommand& command, Log& log, const bench::Surroundings& surroundings) {
   constexpr const char* what = "the results";
   try {
-    bench::check_engines(command.options);
+    bench::check_engines(command.scenes);
     if (!command.json.empty()) check_writable(what, command.json);
   } catch (const std::exception& error) {
     log.error(error.what());
@@ -23,8 +39,9 @@ int measure_scenes(const BenchCommand& command, Log& log, const bench::Surroundi
     log.clear_progress();
     std::cout << '\n' << table << std::flush;
   };
-  const auto results = command.thesis ? bench::measure_thesis(*command.thesis, surroundings, print)
-                                      : bench::measure_all(command.options, surroundings, print);
+  const auto results = command.what == BenchCommand::What::thesis
+                           ? bench::measure_thesis(command.thesis, surroundings, print)
+                           : bench::measure_all(command.scenes, surroundings, print);
   if (!command.json.empty()) write_file(what, command.json, results.dump(2) + "\n");
   return exit_ok;
 }
@@ -39,7 +56,12 @@ int measure_lockstep(const BenchCommand& command, Log& log, const bench::Surroun
     log.error(error.what());
     return exit_usage;
   }
-  const auto results = bench::measure_lockstep(*command.lockstep, surroundings, [&](const std::string& line) {
+  bench::LockstepOptions options = command.lockstep;
+  if (!command.placements.empty()) options.placements.clear();
+  for (const std::string& wanted : command.placements)
+    for (const auto& [name, placement] : bench::placements())
+      if (name == wanted) options.placements.push_back(placement);
+  const auto results = bench::measure_lockstep(options, surroundings, [&](const std::string& line) {
     log.clear_progress();
     std::cout << line << std::flush;
   });
@@ -48,13 +70,15 @@ int measure_lockstep(const BenchCommand& command, Log& log, const bench::Surroun
   return exit_ok;
 }
 
-}  // namespace
-
 int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop) {
   const bench::Surroundings surroundings{[&](const std::string& message) { log.progress(message); }, stop};
   try {
-    if (command.client) return bench::run_bench_client(*command.client, stop);
-    if (command.lockstep) return measure_lockstep(command, log, surroundings);
+    switch (command.what) {
+      case BenchCommand::What::client: return bench::run_bench_client(command.client, stop);
+      case BenchCommand::What::lockstep: return measure_lockstep(command, log, surroundings);
+      case BenchCommand::What::scenes:
+      case BenchCommand::What::thesis: break;
+    }
     return measure_scenes(command, log, surroundings);
   } catch (const bench::Interrupted&) {
     return exit_interrupted;
@@ -62,6 +86,147 @@ int bench(const BenchCommand& command, Log& log, const std::atomic<bool>& stop) 
     log.error(error.what());
     return exit_failed;
   }
+}
+
+void add_scenes_options(CommandLine line, BenchCommand& command) {
+  bench::Options& options = command.scenes;
+  line.add_option("--scene", options.scenes, "Scenes (default: all)")
+      .comma_separated()
+      .check(one_of(bench::scene_names()))
+      .type_name("NAME[,NAME...]");
+  line.add_option("--engines", options.engines, "Engines to compare (default: all in this build)")
+      .comma_separated()
+      .check(one_of(bench::engine_names()))
+      .type_name("NAME[,NAME...]");
+  line.add_option("--robots", options.robots, "How many robots, one run for each number (default: some for each scene)")
+      .comma_separated()
+      .check(whole_number(1, 100'000))
+      .type_name("N[,N...]");
+  line.add_option("--seconds", options.seconds, "Simulated seconds of each repetition")
+      .check(number_above_zero(1e6))
+      .capture_default_str()
+      .type_name("S");
+  line.add_option("--repetitions", options.repetitions, "Repetitions, the engines in turns")
+      .check(whole_number(1, 1000))
+      .capture_default_str()
+      .type_name("N");
+  line.add_option("--threads", options.threads, "Run Cohort with this many threads too, in turns with one")
+      .check(whole_number(1, 1024))
+      .capture_default_str()
+      .type_name("N");
+  line.add_option("--seed", options.seed, "Seed of places and commands")
+      .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      .capture_default_str()
+      .type_name("N");
+  line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
+  line.footer(
+      "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies),\n"
+      "crowd_planar (Cohort in the plane only), chain (connected robots), rays, build (time and memory),\n"
+      "accuracy (against closed forms).\n"
+      "Engines: cohort, and as Debian ships them ode-worldstep, ode-quickstep, mujoco and enki.\n"
+      "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
+      "they can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with\n"
+      "speed; Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
+      "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
+}
+
+void add_thesis_options(CommandLine line, BenchCommand& command) {
+  bench::ThesisOptions& options = command.thesis;
+  line.add_option("--seconds", options.seconds, "Simulated seconds of each cell")
+      .check(number_above_zero(1e6))
+      .capture_default_str()
+      .type_name("S");
+  line.add_option("--budget", options.budget, "CPU seconds that a cell may take; the rest is extrapolated")
+      .check(number_above_zero(1e6))
+      .capture_default_str()
+      .type_name("S");
+  line.add_option("--seed", options.seed, "Seed of places and commands")
+      .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      .capture_default_str()
+      .type_name("N");
+  line.add_option("--table", options.tables, "Tables (default: all)")
+      .comma_separated()
+      .check(one_of(bench::thesis_tables()))
+      .type_name("NAME[,NAME...]");
+  line.add_option("--robots", options.robots,
+                  "How many robots, a row for each number (default: the thesis's, and more)")
+      .comma_separated()
+      .check(whole_number(1, 100'000))
+      .type_name("N[,N...]");
+  line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
+  line.footer(
+      "Tables 5.1 (random movement) and 5.2 (connected robots): the thesis's own seconds, and beside them Cohort and\n"
+      "ODE, the thesis's engine, run here and now with steps of 10 ms; ODE also with the thesis's 100 ms, and what "
+      "its\n"
+      "robots then do (behaviour). Tables 5.3 (proximity sensors) and 5.4 (light and sound): robots that stand still,\n"
+      "beside rays of ODE. docs/bench.md says all of it.");
+}
+
+void add_lockstep_options(CommandLine line, BenchCommand& command) {
+  bench::LockstepOptions& options = command.lockstep;
+  std::vector<std::string> names;
+  for (const auto& [name, placement] : bench::placements()) names.push_back(name);
+  line.add_option("--robots", options.robots, "How many robots, a row for each number")
+      .comma_separated()
+      .check(whole_number(1, 10'000))
+      .capture_default_str()
+      .type_name("N[,N...]");
+  line.add_option("--placement", command.placements,
+                  "All robots in one process, in eights, or each in one (default: all three)")
+      .comma_separated()
+      .check(one_of(names))
+      .type_name("WHERE[,WHERE...]");
+  line.add_option("--seconds", options.seconds, "Wall time of each repetition, of Cohort and of UDP each")
+      .check(number_above_zero(1e4))
+      .capture_default_str()
+      .type_name("S");
+  line.add_option("--repetitions", options.repetitions, "Repetitions, Cohort and UDP in turns")
+      .check(whole_number(1, 1000))
+      .capture_default_str()
+      .type_name("N");
+  line.add_flag("--own-thread{false}", options.inline_step,
+                "Clients step on a thread of their own, as 'cohort host' does without --inline");
+  const Option look_ahead =
+      line.add_flag("--look-ahead", options.look_ahead,
+                    "Measure a physics and a controller that compute for the same time, with and without a delay");
+  line.add_option("--json", command.json, "Write the results to this file as JSON").type_name("FILE");
+  line.add_option("--svg", command.svg, "Draw the results to this file as SVG").type_name("FILE").excludes(look_ahead);
+  line.footer(
+      "A server and its clients in lockstep over DDS, beside the same bytes between as many processes over raw UDP, "
+      "in\n"
+      "turns. docs/bench.md says all of it.\n"
+      "Example: cohort bench lockstep --robots 8,128 --placement eights");
+}
+
+// What `cohort bench lockstep` starts.
+void add_client_options(CommandLine line, bench::BenchClient& client) {
+  line.add_option("--robots", client.robots).comma_separated();
+  line.add_option("--domain", client.domain);
+  line.add_option("--work", client.work);
+  line.add_flag("--inline", client.inline_step);
+  line.add_option("--udp-port", client.udp.port);
+  line.add_option("--number", client.udp.number);
+  line.add_option("--command-bytes", client.udp.command_bytes);
+}
+
+}  // namespace
+
+Subcommand add_bench(CommandLine app) {
+  using What = BenchCommand::What;
+  const auto command = std::make_shared<BenchCommand>();
+  CommandLine line = app.add_subcommand("bench", "Measure Cohort and other physics engines on the same scenes");
+  add_scenes_options(line, *command);
+  const auto add = [&](const char* name, const char* text, What what) {
+    CommandLine sub = line.add_subcommand(name, text);
+    sub.callback([command, what] { command->what = what; });
+    return sub;
+  };
+  add_thesis_options(add("thesis", "Run the tables of the thesis of 2005 again", What::thesis), *command);
+  add_lockstep_options(add("lockstep", "Measure what the barrier costs, beside raw UDP", What::lockstep), *command);
+  CommandLine client = add("client", "", What::client);
+  client.hide();
+  add_client_options(client, command->client);
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return bench(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

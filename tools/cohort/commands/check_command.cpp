@@ -24,8 +24,6 @@ void warn(const description::World& world, Log& log) {
   for (const description::Problem& warning : world.warnings) log.problem(LogLevel::warning, warning);
 }
 
-}  // namespace
-
 int check(const std::filesystem::path& file, Log& log) {
   try {
     if (parsing::kind_of_file(file) == parsing::FileKind::sdf) {
@@ -47,12 +45,22 @@ int check(const std::filesystem::path& file, Log& log) {
     }
     std::cout << file.string() << ": no mistakes found\n";
     return exit_ok;
-  } catch (const description::InputError& error) {
-    log.problems(error);
+  } catch (const description::InputError&) {
+    throw;
   } catch (const std::exception& error) {
     log.problem(LogLevel::error, {file, 0, "", error.what()});
   }
   return exit_usage;
+}
+
+}  // namespace
+
+Subcommand add_check(CommandLine app) {
+  const auto file = std::make_shared<std::filesystem::path>();
+  CommandLine line = app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
+  line.add_option("FILE", *file, "Experiment (.yaml) or world (.sdf)").required().type_name("");
+  line.footer("Example: cohort check worlds/arenas/obstacles.sdf");
+  return {line, [file](Log& log, const std::atomic<bool>&) { return check(*file, log); }};
 }
 
 }  // namespace cohort::tool

@@ -7,12 +7,18 @@
 
 #include "server/core/processors.hpp"
 #include "server/recording/difference.hpp"
-#include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/cli/replay_progress.hpp"
 #include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
 namespace {
+
+struct DiffCommand {
+  std::filesystem::path first;
+  std::filesystem::path second;
+  bool json = false;
+};
 
 using Seconds = std::chrono::duration<double>;
 
@@ -53,31 +59,36 @@ void print_json(const recording::Comparison& found) {
   fmt::print("{}\n", json.dump(2));
 }
 
+int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const recording::Recording first(command.first);
+  const recording::Recording second(command.second);
+  for (const recording::Recording* each : {&first, &second})
+    if (!each->damage().empty()) log.warning(each->damage());
+  ReplayProgress progress(log);
+  const recording::Comparison found =
+      recording::compare(first, second, available_processors(), [&](std::chrono::nanoseconds log_time) {
+        progress.at(log_time, "compared");
+        return !stop;
+      });
+  log.clear_progress();
+  if (stop) return exit_interrupted;
+  if (command.json)
+    print_json(found);
+  else
+    print_text(found);
+  return found.parting || !found.ends.empty() ? exit_failed : exit_ok;
+}
+
 }  // namespace
 
-int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
-  try {
-    const recording::Recording first(command.first);
-    const recording::Recording second(command.second);
-    for (const recording::Recording* each : {&first, &second})
-      if (!each->damage().empty()) log.warning(each->damage());
-    ReplayProgress progress(log);
-    const recording::Comparison found =
-        recording::compare(first, second, available_processors(), [&](std::chrono::nanoseconds log_time) {
-          progress.at(log_time, "compared");
-          return !stop;
-        });
-    log.clear_progress();
-    if (stop) return exit_interrupted;
-    if (command.json)
-      print_json(found);
-    else
-      print_text(found);
-    return found.parting || !found.ends.empty() ? exit_failed : exit_ok;
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_diff(CommandLine app) {
+  const auto command = std::make_shared<DiffCommand>();
+  CommandLine line = app.add_subcommand("diff", "Find where two recorded runs part, and in what");
+  line.add_option("FIRST", command->first, "Recording (MCAP)").required().type_name("");
+  line.add_option("SECOND", command->second, "Another one").required().type_name("");
+  line.add_flag("--json", command->json, "Print it as JSON");
+  line.footer("Example: cohort diff monday.mcap tuesday.mcap");
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return diff(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

@@ -12,33 +12,44 @@
 namespace cohort::tool {
 namespace {
 
+struct ExportCommand {
+  std::filesystem::path file;
+  std::filesystem::path output;         ///< .sdf or .yaml
+  std::optional<std::uint64_t> seed{};  ///< of the populations; none: the experiment's, or 1
+};
+
 description::World read(const ExportCommand& command) {
   if (parsing::kind_of_file(command.file) == parsing::FileKind::sdf)
     return parsing::read_world_or_model(command.file, command.seed.value_or(1), installed_model_folders());
   return parsing::read_experiment(command.file, command.seed, {}, installed_model_folders()).world;
 }
 
+int export_world(const ExportCommand& command, Log& log) {
+  const bool as_yaml = parsing::is_yaml(command.output);
+  if (!as_yaml && command.output.extension() != ".sdf") {
+    log.error("a world is written as .sdf or .yaml, not as '" + command.output.extension().string() + "'");
+    return exit_usage;
+  }
+  check_writable("the world", command.output);
+  const description::World world = read(command);
+  for (const description::Problem& warning : world.warnings) log.problem(LogLevel::warning, warning);
+  const parsing::XmlNode sdf = parsing::sdf_of(world, command.output.parent_path());
+  write_file("the world", command.output, as_yaml ? parsing::yaml_of_sdf(sdf) : parsing::xml_text(sdf));
+  return exit_ok;
+}
+
 }  // namespace
 
-int export_world(const ExportCommand& command, Log& log) {
-  try {
-    const bool as_yaml = parsing::is_yaml(command.output);
-    if (!as_yaml && command.output.extension() != ".sdf") {
-      log.error("a world is written as .sdf or .yaml, not as '" + command.output.extension().string() + "'");
-      return exit_usage;
-    }
-    check_writable("the world", command.output);
-    const description::World world = read(command);
-    for (const description::Problem& warning : world.warnings) log.problem(LogLevel::warning, warning);
-    const parsing::XmlNode sdf = parsing::sdf_of(world, command.output.parent_path());
-    write_file("the world", command.output, as_yaml ? parsing::yaml_of_sdf(sdf) : parsing::xml_text(sdf));
-    return exit_ok;
-  } catch (const description::InputError& error) {
-    log.problems(error);
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_export(CommandLine app) {
+  const auto command = std::make_shared<ExportCommand>();
+  CommandLine line = app.add_subcommand("export", "Write a world, or that of an experiment, as SDF or YAML");
+  line.add_option("FILE", command->file, "World, model or experiment").required().type_name("");
+  line.add_option("-o,--output", command->output, "File to write, .sdf or .yaml").required().type_name("FILE");
+  line.add_option("--seed", command->seed, "Seed of the populations, instead of the experiment's")
+      .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      .type_name("N");
+  line.footer("Example: cohort export worlds/arenas/obstacles.sdf -o placed.sdf");
+  return {line, [command](Log& log, const std::atomic<bool>&) { return export_world(*command, log); }};
 }
 
 }  // namespace cohort::tool

@@ -3,16 +3,25 @@
 #include <chrono>
 
 #include "server/description/select_robots.hpp"
-#include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/cli/output_file.hpp"
-#include "tools/cohort/commands/recording_part.hpp"
 #include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/recording_part.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 #include "tools/data/csv_tables.hpp"
 #include "tools/data/hdf5_tables.hpp"
 #include "tools/data/recording_tables.hpp"
 
 namespace cohort::tool {
 namespace {
+
+struct ExportDataCommand {
+  std::filesystem::path file;
+  std::filesystem::path csv;   ///< folder; empty: hdf5
+  std::filesystem::path hdf5;  ///< file; one of the two is not empty
+  std::vector<std::string> robots{};
+  RecordingPart part{};
+};
 
 // Of the recording's first world; none for no selectors.
 std::set<std::string> selected_names(const recording::Recording& recording, const std::vector<std::string>& selectors) {
@@ -25,28 +34,34 @@ std::set<std::string> selected_names(const recording::Recording& recording, cons
   return names;
 }
 
+int export_data(const ExportDataCommand& command, Log& log) {
+  const recording::Recording recording(command.file);
+  if (!recording.damage().empty()) log.warning(recording.damage());
+  data::Selection selection{.robots = selected_names(recording, command.robots)};
+  selection.from = start_of(command.part);
+  selection.to = end_of(command.part);
+  if (!command.hdf5.empty()) check_writable("the tables", command.hdf5);
+  const auto sink = command.csv.empty() ? data::hdf5_tables(command.hdf5) : data::csv_tables(command.csv);
+  const std::uint64_t rows = data::write_tables(recording, selection, *sink);
+  log.notice(
+      fmt::format("wrote {} to {}", counted(rows, "row"), (command.csv.empty() ? command.hdf5 : command.csv).string()),
+      {{"rows", rows}});
+  return exit_ok;
+}
+
 }  // namespace
 
-int export_data(const ExportDataCommand& command, Log& log) {
-  try {
-    const recording::Recording recording(command.file);
-    if (!recording.damage().empty()) log.warning(recording.damage());
-    data::Selection selection{.robots = selected_names(recording, command.robots)};
-    selection.from = start_of(command.part);
-    selection.to = end_of(command.part);
-    if (!command.hdf5.empty()) check_writable("the tables", command.hdf5);
-    const auto sink = command.csv.empty() ? data::hdf5_tables(command.hdf5) : data::csv_tables(command.csv);
-    const std::uint64_t rows = data::write_tables(recording, selection, *sink);
-    log.notice(fmt::format("wrote {} to {}", counted(rows, "row"),
-                           (command.csv.empty() ? command.hdf5 : command.csv).string()),
-               {{"rows", rows}});
-    return exit_ok;
-  } catch (const description::InputError& error) {
-    log.problems(error);
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_export_data(CommandLine app) {
+  const auto command = std::make_shared<ExportDataCommand>();
+  CommandLine line = app.add_subcommand("export-data", "Write a recording as tables");
+  line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
+  CommandLine target = line.add_alternatives("Target");
+  target.add_option("--csv", command->csv, "Folder for a CSV file for each table").type_name("DIR");
+  target.add_option("--hdf5", command->hdf5, "HDF5 file for all of them").type_name("FILE");
+  add_robots_of_recording(line, command->robots);
+  add_part_options(line, command->part);
+  line.footer("Example: cohort export-data run.mcap --csv tables");
+  return {line, [command](Log& log, const std::atomic<bool>&) { return export_data(*command, log); }};
 }
 
 }  // namespace cohort::tool

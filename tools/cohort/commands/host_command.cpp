@@ -2,34 +2,55 @@
 #include "client_sdk/src/domains.hpp"
 #include "client_sdk/src/plugin_loader.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
+namespace {
+
+struct HostCommand {
+  std::string plugin{};
+  ClientSide client{};
+  bool inline_step = false;  ///< ClientOptions
+  bool for_run = false;      ///< started by `cohort run`, whose server tells what becomes of a client
+};
+
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
-  try {
-    const LoadedPlugin loaded(command.plugin, default_plugin_directories());
-    ClientOptions options;
-    options.server = command.server;
-    if (!command.domains.empty()) options.domain = domain_of_this_process(command.domains);
-    options.secure = command.secure;
-    options.robots = command.robots;
-    options.inline_step = command.inline_step;
-    options.tell = [&](Severity severity, const std::string& text) {
-      const std::string name = loaded.plugin().name;
-      log.write(command.for_run ? LogLevel::debug : level_of(severity), name + ": " + text, {{"controller", name}});
-    };
-    switch (run_client(loaded.plugin(), options, stop)) {
-      case ClientEnd::finished: return exit_ok;
-      case ClientEnd::interrupted: return exit_interrupted;
-      case ClientEnd::refused: return exit_usage;
-      case ClientEnd::superseded: return command.for_run ? exit_superseded : exit_failed;
-      case ClientEnd::failed:
-      case ClientEnd::server_lost: return exit_failed;
-    }
-    return exit_failed;
-  } catch (const std::exception& error) {
-    log.error(error.what());
-    return exit_usage;
+  const LoadedPlugin loaded(command.plugin, default_plugin_directories());
+  ClientOptions options;
+  options.server = command.client.connection.server;
+  if (!command.client.connection.domains.empty())
+    options.domain = domain_of_this_process(command.client.connection.domains);
+  options.secure = command.client.connection.secure;
+  options.robots = command.client.robots;
+  options.inline_step = command.inline_step;
+  options.tell = [&](Severity severity, const std::string& text) {
+    const std::string name = loaded.plugin().name;
+    log.write(command.for_run ? LogLevel::debug : level_of(severity), name + ": " + text, {{"controller", name}});
+  };
+  switch (run_client(loaded.plugin(), options, stop)) {
+    case ClientEnd::finished: return exit_ok;
+    case ClientEnd::interrupted: return exit_interrupted;
+    case ClientEnd::refused: return exit_usage;
+    case ClientEnd::superseded: return command.for_run ? exit_superseded : exit_failed;
+    case ClientEnd::failed:
+    case ClientEnd::server_lost: return exit_failed;
   }
+  return exit_failed;
+}
+
+}  // namespace
+
+Subcommand add_host(CommandLine app, LogFlags& flags) {
+  const auto command = std::make_shared<HostCommand>();
+  CommandLine line = app.add_subcommand("host", "Run a controller plugin for some robots of a server");
+  line.add_option("PLUGIN", command->plugin, "Name of a controller, or path to its plugin").required().type_name("");
+  add_client_options(line, command->client);
+  add_log_flags(line, flags);
+  line.add_flag("--inline", command->inline_step,
+                "Step on the thread that receives, while steps take less than 1 ms: a quicker answer");
+  line.add_flag("--for-run", command->for_run).hide();  // `cohort run` starts it so
+  line.footer("Example: cohort host obstacle_avoidance --robots 0..7 --server 10.0.0.5 --domain 7");
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return host(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

@@ -4,18 +4,28 @@
 #include <cmath>
 
 #include "server/core/processors.hpp"
-#include "server/description/select_robots.hpp"
 #include "server/core/text.hpp"
+#include "server/description/select_robots.hpp"
 #include "server/recording/replay.hpp"
-#include "tools/cohort/commands/commands.hpp"
-#include "tools/processes/external_program.hpp"
 #include "tools/cohort/cli/output_file.hpp"
-#include "tools/drawing/plot.hpp"
+#include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/recording_part.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 #include "tools/drawing/chart.hpp"
+#include "tools/drawing/plot.hpp"
+#include "tools/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {
+
+struct PlotCommand {
+  std::filesystem::path file;
+  std::filesystem::path output;     ///< .svg or .png
+  std::vector<std::string> what{};  ///< `speed` and channels; empty: paths
+  std::vector<std::string> robots{};
+  Viewpoint viewpoint = Viewpoint::above;  ///< of paths
+  RecordingPart part{};
+};
 
 using recording::Replay;
 
@@ -136,32 +146,40 @@ void write_png(const std::filesystem::path& file, const std::string& svg) {
     throw std::runtime_error(fmt::format("{} cannot be drawn: rsvg-convert says {}", file.string(), result.errors));
 }
 
+int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const std::string extension = command.output.extension().string();
+  if (extension != ".svg" && extension != ".png")
+    throw std::invalid_argument(
+        fmt::format("{}: expected a file name that ends in .svg or .png", command.output.string()));
+  check_writable("the picture", command.output);
+  const recording::Recording recording(command.file);
+  if (!recording.damage().empty()) log.warning(recording.damage());
+  Replay replay(recording, available_processors());
+  const std::string svg =
+      command.what.empty() ? draw_paths(replay, command, log, stop) : draw_series(replay, command, log, stop);
+  if (stop) return exit_interrupted;
+  if (extension == ".svg")
+    write_file("the picture", command.output, svg);
+  else
+    write_png(command.output, svg);
+  return exit_ok;
+}
+
 }  // namespace
 
-int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {
-  try {
-    const std::string extension = command.output.extension().string();
-    if (extension != ".svg" && extension != ".png")
-      throw std::invalid_argument(
-          fmt::format("{}: expected a file name that ends in .svg or .png", command.output.string()));
-    check_writable("the picture", command.output);
-    const recording::Recording recording(command.file);
-    if (!recording.damage().empty()) log.warning(recording.damage());
-    Replay replay(recording, available_processors());
-    const std::string svg =
-        command.what.empty() ? draw_paths(replay, command, log, stop) : draw_series(replay, command, log, stop);
-    if (stop) return exit_interrupted;
-    if (extension == ".svg")
-      write_file("the picture", command.output, svg);
-    else
-      write_png(command.output, svg);
-    return exit_ok;
-  } catch (const description::InputError& error) {
-    log.problems(error);
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_plot(CommandLine app) {
+  const auto command = std::make_shared<PlotCommand>();
+  CommandLine line = app.add_subcommand("plot", "Draw a recording: paths, speeds, what robots sense");
+  line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
+  line.add_option("-o,--output", command->output, "Picture to write (.svg or .png)").required().type_name("FILE");
+  line.add_option("--what", command->what, "Over time: speed, or channels such as proximity/3/reading (default: paths)")
+      .comma_separated()
+      .type_name("WHAT[,WHAT...]");
+  add_robots_of_recording(line, command->robots);
+  add_viewpoint_option(line, "--view", "Of paths", command->viewpoint);
+  add_part_options(line, command->part);
+  line.footer("Example: cohort plot run.mcap --what speed,proximity/0/reading --robots 0..3 -o speeds.svg");
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return plot(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

@@ -7,8 +7,9 @@
 #include "client_sdk/src/control_client.hpp"
 #include "server/recording/mcap/disk_file.hpp"
 #include "server/recording/mcap/recover.hpp"
-#include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -32,6 +33,12 @@ std::string recorded_text(const RecordOptions& options) {
   return text.empty() ? "" : text.dump();
 }
 
+struct RecordCommand {
+  std::filesystem::path file;
+  RecordOptions record{};
+  Connection connection{};
+};
+
 // One call of the command.
 class LiveRecording {
  public:
@@ -39,9 +46,9 @@ class LiveRecording {
       : command_(command),
         log_(log),
         stop_(stop),
-        client_({.server = command.server,
-                 .domain = domain(),
-                 .secure = command.secure.string(),
+        client_({.server = command.connection.server,
+                 .domain = command.connection.domain(),
+                 .secure = command.connection.secure.string(),
                  .label = "cohort record"}) {}
 
   int run() {
@@ -53,17 +60,16 @@ class LiveRecording {
       if (stop_) return exit_interrupted;
       throw;
     }
-    file_.emplace(command_.record.file);
-    log_.notice(fmt::format("{}: {}", command_.record.file.string(), text));
+    file_.emplace(command_.file);
+    log_.notice(fmt::format("{}: {}", command_.file.string(), text));
     return fetch();
   }
 
  private:
-  std::uint32_t domain() const { return command_.domains.empty() ? 0 : command_.domains.front(); }
-
   bool find_server() {
     if (!client_.wait_for_server(until_a_notice, stop_) && !stop_)
-      log_.notice(fmt::format("waiting for a server at {}, domain {}", command_.server, domain()));
+      log_.notice(fmt::format("waiting for a server at {}, domain {}", command_.connection.server,
+                              command_.connection.domain()));
     return client_.wait_for_server(for_ever, stop_);
   }
 
@@ -92,7 +98,7 @@ class LiveRecording {
       client_.get_recording(size_, until_it_knows, never_);  // so that the server may go
     } catch (const ControlError&) {                          // it has gone already
     }
-    log_.notice(fmt::format("{}: {:.1f} MB, {}", command_.record.file.string(), 1e-6 * static_cast<double>(size_),
+    log_.notice(fmt::format("{}: {:.1f} MB, {}", command_.file.string(), 1e-6 * static_cast<double>(size_),
                             is_stopped_ ? "stopped" : "to the end of the run"));
     if (last.problem.empty()) return exit_ok;
     log_.warning(last.problem);
@@ -102,7 +108,7 @@ class LiveRecording {
   std::string close_what_came() {
     try {
       file_.reset();
-      return recording::recover(command_.record.file, command_.record.file).text();
+      return recording::recover(command_.file, command_.file).text();
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -118,23 +124,31 @@ class LiveRecording {
   bool is_stopped_ = false;
 };
 
-}  // namespace
-
 int record(const RecordCommand& command, Log& log, const std::atomic<bool>& stop) {
+  check_writable("the recording", command.file);
+  recording::check_not_being_written(command.file);
+  LiveRecording recording(command, log, stop);
   try {
-    check_writable("the recording", command.record.file);
-    recording::check_not_being_written(command.record.file);
-    LiveRecording recording(command, log, stop);
-    try {
-      return recording.run();
-    } catch (const std::exception& error) {
-      log.error(error.what());
-      return exit_failed;
-    }
+    return recording.run();
   } catch (const std::exception& error) {
     log.error(error.what());
+    return exit_failed;
   }
-  return exit_usage;
+}
+
+}  // namespace
+
+Subcommand add_record(CommandLine app) {
+  const auto command = std::make_shared<RecordCommand>();
+  CommandLine line = app.add_subcommand("record", "Record a run of a server from now on");
+  line.add_option("-o,--output", command->file, "File to write (MCAP)").required().type_name("FILE");
+  add_recorded_options(line, command->record, "--");
+  add_server_option(line, command->connection.server);
+  add_domain_option(line, command->connection.domains, domain_of_server);
+  add_secure_option(line, command->connection.secure,
+                    "Folder of an identity that looks on or controls (default: $COHORT_SECURE)");
+  line.footer("Example: cohort record --server 10.0.0.5 --domain 7 -o run.mcap");
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return record(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

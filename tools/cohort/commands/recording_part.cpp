@@ -11,6 +11,15 @@ std::chrono::nanoseconds nanoseconds(double seconds) {
 
 }  // namespace
 
+void add_part_options(CommandLine line, RecordingPart& part) {
+  line.add_option("--from", part.from, "Time in the recording to begin at, in simulated seconds (default: 0)")
+      .check(number_from_zero(most_seconds))
+      .type_name("S");
+  line.add_option("--to", part.to, "Time to end at (default: the end)")
+      .check(number_from_zero(most_seconds))
+      .type_name("S");
+}
+
 std::chrono::nanoseconds start_of(const RecordingPart& part) { return nanoseconds(part.from); }
 
 std::chrono::nanoseconds end_of(const RecordingPart& part) {

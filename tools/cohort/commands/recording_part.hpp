@@ -3,11 +3,21 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <optional>
 
 #include "server/recording/replay.hpp"
-#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/cli/command_line.hpp"
+#include "tools/cohort/cli/log.hpp"
 
 namespace cohort::tool {
+
+/// Log times of a recording, both in it [s].
+struct RecordingPart {
+  double from = 0.0;
+  std::optional<double> to{};  ///< none: to the end
+};
+
+void add_part_options(CommandLine line, RecordingPart& part);
 
 inline constexpr const char* nothing_in_part = "the recording has nothing in the time that is asked for";
 

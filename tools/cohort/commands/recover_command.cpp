@@ -2,22 +2,23 @@
 
 #include "server/recording/mcap/disk_file.hpp"
 #include "server/recording/mcap/recover.hpp"
-#include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
+namespace {
+
+struct RecoverCommand {
+  std::filesystem::path file;
+  std::filesystem::path output;  ///< empty: in place of `file`
+};
 
 int recover(const RecoverCommand& command, Log& log) {
   const std::filesystem::path& target = command.output.empty() ? command.file : command.output;
-  try {
-    const recording::FileBytes file(command.file);
-    recording::check_magic(file);
-    recording::check_not_being_written(command.file);
-    check_writable("the recording", target);
-  } catch (const std::exception& error) {
-    log.error(error.what());
-    return exit_usage;
-  }
+  const recording::FileBytes file(command.file);
+  recording::check_magic(file);
+  recording::check_not_being_written(command.file);
+  check_writable("the recording", target);
   try {
     const recording::Recovery recovery = recording::recover(command.file, target);
     std::cout << target.string() << ": " << recovery.text();
@@ -26,6 +27,17 @@ int recover(const RecoverCommand& command, Log& log) {
     log.error(error.what());
   }
   return exit_failed;
+}
+
+}  // namespace
+
+Subcommand add_recover(CommandLine app) {
+  const auto command = std::make_shared<RecoverCommand>();
+  CommandLine line = app.add_subcommand("recover", "Make a whole recording of what can be read of a damaged one");
+  line.add_option("FILE", command->file, "Recording (.mcap)").required().type_name("");
+  line.add_option("-o,--output", command->output, "File to write (default: FILE itself is replaced)").type_name("FILE");
+  line.footer("Example: cohort recover run.mcap");
+  return {line, [command](Log& log, const std::atomic<bool>&) { return recover(*command, log); }};
 }
 
 }  // namespace cohort::tool

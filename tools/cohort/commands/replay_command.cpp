@@ -6,13 +6,21 @@
 
 #include "server/core/processors.hpp"
 #include "server/recording/replay.hpp"
-#include "tools/cohort/commands/commands.hpp"
-#include "tools/cohort/commands/recording_part.hpp"
 #include "tools/cohort/cli/replay_progress.hpp"
 #include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/recording_part.hpp"
 
 namespace cohort::tool {
 namespace {
+
+struct ReplayCommand {
+  std::filesystem::path file;
+  bool verify = false;  ///< compare the state of every boundary
+  RecordingPart part{};
+  unsigned threads = 0;  ///< 0: one for each core
+  bool quiet = false;
+};
 
 using Seconds = std::chrono::duration<double>;
 
@@ -77,24 +85,33 @@ int run_again(recording::Replay& replay, const ReplayCommand& command, Log& log,
   return exit_ok;
 }
 
+int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const recording::Recording recording(command.file);
+  if (!recording.damage().empty()) log.warning(recording.damage());
+  warn_of_other_build(recording, log);
+  recording::Replay replay(recording, command.threads == 0 ? available_processors() : command.threads);
+
+  const auto start = std::chrono::steady_clock::now();
+  const int code = command.verify ? verify(replay, command, log, stop) : run_again(replay, command, log, stop);
+  const double wall = Seconds(std::chrono::steady_clock::now() - start).count();
+  log.info(fmt::format("replayed in {:.2f} s", wall), {{"wall_s", wall}});
+  return stop ? exit_interrupted : code;
+}
+
 }  // namespace
 
-int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
-  try {
-    const recording::Recording recording(command.file);
-    if (!recording.damage().empty()) log.warning(recording.damage());
-    warn_of_other_build(recording, log);
-    recording::Replay replay(recording, command.threads == 0 ? available_processors() : command.threads);
-
-    const auto start = std::chrono::steady_clock::now();
-    const int code = command.verify ? verify(replay, command, log, stop) : run_again(replay, command, log, stop);
-    const double wall = Seconds(std::chrono::steady_clock::now() - start).count();
-    log.info(fmt::format("replayed in {:.2f} s", wall), {{"wall_s", wall}});
-    return stop ? exit_interrupted : code;
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_replay(CommandLine app) {
+  const auto command = std::make_shared<ReplayCommand>();
+  CommandLine line = app.add_subcommand("replay", "Run a recording's world again, without controllers");
+  line.add_option("FILE", command->file, "Recording (MCAP)").required().type_name("");
+  line.add_flag("--verify", command->verify, "Compare the state of every tick with the recorded one");
+  add_part_options(line, command->part);
+  line.add_option("--threads", command->threads, "Threads that step the world (default: the cores)")
+      .check(whole_number(1, 1024))
+      .type_name("N");
+  line.add_flag("--quiet", command->quiet, "Print errors and differences only");
+  line.footer("Example: cohort replay run.mcap --verify");
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return replay(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

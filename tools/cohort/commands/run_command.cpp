@@ -2,11 +2,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <memory>
 #include <utility>
 
 #include "client_sdk/math/portable_math.hpp"
 #include "server/core/processors.hpp"
+#include "server/core/text.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
@@ -17,6 +20,7 @@
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 #include "tools/cohort/running/one_run.hpp"
 #include "tools/cohort/running/run_recording.hpp"
 #include "tools/cohort/running/serving.hpp"
@@ -177,16 +181,16 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
       .state = command.paused ? session::PlaybackState::paused : session::PlaybackState::playing,
       .from = runs.from,
       .keep_interval = keep_interval_of(command, *world.experiment)};
-  const std::filesystem::path file = numbered(command.record.file, number, count);
+  const Outputs outputs = numbered(command.outputs, number, count);
   std::optional<recording::Recorder> recorder;
-  if (!file.empty()) {
+  if (!outputs.recording.empty()) {
     using enum recording::Beginning;
-    recorder.emplace(file, *world.experiment);
+    recorder.emplace(outputs.recording, *world.experiment);
     recorder->begin(*world.experiment, *world.simulation, runs.from ? restored : first);
   }
   for (;;) {
     std::optional<OneRun> one;
-    one.emplace(command, number, count, *world.experiment, *world.simulation, recorder ? &*recorder : nullptr, log);
+    one.emplace(command, outputs, *world.experiment, *world.simulation, recorder ? &*recorder : nullptr, log);
     std::optional<World> next;
     options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
     const RunResult result =
@@ -197,7 +201,7 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
       const double cpu = cpu_seconds();
       goes_on = result.end == RunResult::End::finished;
       const int code = one->finish(result, cpu - std::exchange(runs.cpu_before, cpu));
-      const bool is_recorded = !recorder || close_recording(*recorder, file, result, log);
+      const bool is_recorded = !recorder || close_recording(*recorder, outputs.recording, result, log);
       return is_recorded || code != exit_ok ? code : exit_failed;
     }
     log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}",
@@ -248,44 +252,116 @@ Snapshot snapshot_of(RunCommand& command) {
   return snapshot;
 }
 
-}  // namespace
-
-int run(const RunCommand& asked, Log& log, const std::atomic<bool>& stop) {
-  RunCommand command = asked;
+int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
   Runs runs{command};
   runs.cpu_before = cpu_seconds();  // a shell that became this process may have had children
-  try {
-    const std::size_t count = command.files.size() * command.repeat;
-    for (std::size_t number = 1; number <= count; ++number) {
-      if (!command.summary.empty()) check_writable("the summary", numbered(command.summary, number, count));
-      if (!command.plot.empty()) check_writable("the plot", numbered(command.plot, number, count));
-      if (!command.record.file.empty()) check_writable("the recording", numbered(command.record.file, number, count));
-      if (!command.csv.empty()) check_writable("the table", numbered(command.csv, number, count));
-    }
-    const bool in_process = command.controllers == Controllers::in_process;
-    if (in_process) refuse_what_needs_a_server(command);
-    runs.from = snapshot_of(command);
-    for (const std::filesystem::path& file : command.files) {
-      runs.experiments.push_back(std::make_shared<description::Experiment>(read(command, file, log)));
-      if (runs.from) session::expect_same_experiment(*runs.from, *runs.experiments.back());
-    }
-    const description::Experiment& first = *runs.experiments.front();
-    if (in_process) refuse_keyboard(first);
-    if (command.controllers != Controllers::external) runs.controllers = load_controllers(first);
-    runs.first = build_world(command, runs.experiments.front(), runs.from, log);
-    if (command.controllers != Controllers::external) try_controllers(first, *runs.first.simulation, runs.controllers);
-    warn_if_not_portable(log);
-
-    if (!in_process) runs.serving.emplace(command, first, log);
-    if (runs.serving && command.view) runs.serving->start_view(first);
-    if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
-    return run_each(runs, log, stop);
-  } catch (const description::InputError& error) {
-    log.problems(error);
-  } catch (const std::exception& error) {
-    log.error(error.what());
+  const std::size_t count = command.files.size() * command.repeat;
+  for (std::size_t number = 1; number <= count; ++number) check_writable(numbered(command.outputs, number, count));
+  const bool in_process = command.controllers == Controllers::in_process;
+  if (in_process) refuse_what_needs_a_server(command);
+  runs.from = snapshot_of(command);
+  for (const std::filesystem::path& file : command.files) {
+    runs.experiments.push_back(std::make_shared<description::Experiment>(read(command, file, log)));
+    if (runs.from) session::expect_same_experiment(*runs.from, *runs.experiments.back());
   }
-  return exit_usage;
+  const description::Experiment& first = *runs.experiments.front();
+  if (in_process) refuse_keyboard(first);
+  if (command.controllers != Controllers::external) runs.controllers = load_controllers(first);
+  runs.first = build_world(command, runs.experiments.front(), runs.from, log);
+  if (command.controllers != Controllers::external) try_controllers(first, *runs.first.simulation, runs.controllers);
+  warn_if_not_portable(log);
+
+  if (!in_process) runs.serving.emplace(command, first, log);
+  if (runs.serving && command.view) runs.serving->start_view(first);
+  if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
+  return run_each(runs, log, stop);
+}
+
+void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
+  line.add_option("--repeat", command.repeat,
+                  "How often to run it, the world built anew each time, the controllers attached")
+      .check(whole_number(1, 1'000'000))
+      .capture_default_str()
+      .type_name("N");
+  line.add_option("--threads", command.threads,
+                  "Threads that step the world, with the same results (default: the cores that it may use)")
+      .check(whole_number(1, 1024))
+      .type_name("N");
+  line.add_option("--duration", command.duration, "Simulated seconds, instead of the experiment's")
+      .check(number_above_zero(most_seconds))
+      .type_name("S");
+  line.add_option("--seed", command.seed, "Seed, instead of the experiment's")
+      .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      .type_name("N");
+  line.add_option_function<std::string>(
+          "--speed",
+          [&command](const std::string& speed) { command.speed = speed == "max" ? 0.0 : *parse_real(speed); },
+          "Simulated seconds per second at the most (default: max, or 1 if people drive or look)")
+      .check(max_or_number_above_zero(1e9))
+      .type_name("max|X");
+  line.add_option("--summary", command.outputs.summary, "Write the summary to this file as JSON").type_name("FILE");
+  line.add_option("--plot", command.outputs.plot, "Draw arena, paths and contacts to this file as SVG")
+      .type_name("FILE");
+  add_viewpoint_option(line, "--plot-view", "Of the plot", command.outputs.viewpoint);
+  line.add_option("--csv", command.outputs.csv, "Write what the experiment prints to this file as CSV")
+      .type_name("FILE");
+  line.add_option("--record", command.outputs.recording, "Record the run to this file (MCAP)").type_name("FILE");
+  add_recorded_options(line, command.record, "--record-");
+  const Option view = line.add_flag("--view", command.view, "Show it in a browser, as 'cohort view' does");
+  line.add_flag("--control", command.view_controls, "With --view: let whoever looks control it").needs(view);
+  line.add_flag("--paused", command.paused, "Begin paused, until 'cohort ctl resume' or 'step'");
+  line.add_option("--keep-snapshots", command.keep_interval,
+                  "Simulated seconds between snapshots in memory, for 'cohort ctl back' (default: none)")
+      .check(number_above_zero(most_seconds))
+      .type_name("S");
+  line.add_option("--from", command.from, "Go on from this snapshot of 'cohort ctl save'").type_name("FILE");
+  add_domain_option(line, command.domains,
+                    "DDS domains to serve (default: free ones, or 0 if others start controllers)");
+  add_secure_option(line, command.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");
+  add_log_flags(line, flags);
+  line.add_flag("--quiet", flags.quiet, "Print errors only");
+}
+
+Subcommand running(CommandLine line, const std::shared_ptr<RunCommand>& command, const LogFlags& flags) {
+  return {line, [command, &flags](Log& log, const std::atomic<bool>& stop) {
+            command->quiet = flags.quiet;
+            return run(*command, log, stop);
+          }};
+}
+
+}  // namespace
+
+Subcommand add_run(CommandLine app, LogFlags& flags) {
+  static const std::map<std::string, Controllers> placements = {{"inprocess", Controllers::in_process},
+                                                                {"process", Controllers::process},
+                                                                {"per-robot", Controllers::per_robot},
+                                                                {"external", Controllers::external}};
+  const auto command = std::make_shared<RunCommand>();
+  CommandLine line = app.add_subcommand("run", "Run an experiment with its controllers");
+  line.add_option("FILE", command->files.emplace_back(), "Experiment (YAML)").required().type_name("");
+  add_run_options(line, *command, flags);
+  line.add_option_function<std::string>(
+          "--controllers",
+          [&command = *command](const std::string& where) { command.controllers = placements.at(where); },
+          "process for each team (the default), per-robot, inprocess with the server, or external")
+      .check(one_of({"process", "per-robot", "inprocess", "external"}))
+      .type_name("process|per-robot|inprocess|external");
+  line.footer("Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10 --plot run.svg");
+  return running(line, command, flags);
+}
+
+Subcommand add_serve(CommandLine app, LogFlags& flags) {
+  const auto command = std::make_shared<RunCommand>();
+  command->controllers = Controllers::external;
+  CommandLine line = app.add_subcommand("serve", "Run an experiment alone and wait for controllers to attach");
+  line.add_option("FILE", command->files, "Experiments (YAML), run one after the other").required().type_name("");
+  add_run_options(line, *command, flags);
+  line.add_option("--network", command->network, "Address of the interface to serve on")
+      .envname("COHORT_NETWORK")
+      .capture_default_str()
+      .type_name("ADDRESS");
+  line.footer("Example: cohort serve worlds/experiments/obstacle_avoidance.yaml --domain 7 --network 10.0.0.5");
+  return running(line, command, flags);
 }
 
 }  // namespace cohort::tool

@@ -3,12 +3,20 @@
 #include "server/parsing/files/sample_file.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/read_world.hpp"
+#include "server/sensing/take_samples.hpp"
 #include "tools/cohort/cli/installed_models.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
 namespace {
+
+struct SamplesCommand {
+  std::filesystem::path file;  ///< model, or world whose first robot is meant
+  std::string device{};        ///< name of a proximity ring
+  std::filesystem::path output;
+  sensing::SampleGrid grid{};
+};
 
 // The model and the device that are meant: of the first robot of the file.
 const description::Model& robot_of(const description::World& world, const SamplesCommand& command) {
@@ -28,22 +36,42 @@ std::size_t ring_of(const description::Model& model, const std::string& name) {
                            suggestion(name, names));
 }
 
+int take_samples(const SamplesCommand& command) {
+  check_writable("samples", command.output);
+  const description::World world = parsing::read_world_or_model(command.file, 1, installed_model_folders());
+  const description::Model& model = robot_of(world, command);
+  const description::Samples samples = sensing::take_samples(model, ring_of(model, command.device), command.grid);
+  write_file("samples", command.output, parsing::samples_as_text(samples));
+  return exit_ok;
+}
+
 }  // namespace
 
-int take_samples(const SamplesCommand& command, Log& log) {
-  try {
-    check_writable("samples", command.output);
-    const description::World world = parsing::read_world_or_model(command.file, 1, installed_model_folders());
-    const description::Model& model = robot_of(world, command);
-    const description::Samples samples = sensing::take_samples(model, ring_of(model, command.device), command.grid);
-    write_file("samples", command.output, parsing::samples_as_text(samples));
-    return exit_ok;
-  } catch (const description::InputError& error) {
-    log.problems(error);
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_samples(CommandLine app) {
+  const auto command = std::make_shared<SamplesCommand>();
+  CommandLine line = app.add_subcommand("samples", "Write what a ring of proximity sensors reads of a cylinder");
+  constexpr double longest = 1e3;  // [m]
+  line.add_option("MODEL", command->file, "Model, or world whose first robot is meant").required().type_name("");
+  line.add_option("DEVICE", command->device, "Name of its proximity_ring").required().type_name("");
+  line.add_option("-o,--output", command->output, "File to write").required().type_name("FILE");
+  line.add_option("--radius", command->grid.radius, "Radius of the cylinder in metres")
+      .check(number_above_zero(longest))
+      .capture_default_str()
+      .type_name("M");
+  line.add_option("--height", command->grid.height, "Height of the cylinder in metres")
+      .check(number_above_zero(longest))
+      .capture_default_str()
+      .type_name("M");
+  line.add_option("--distances", command->grid.distances, "How many distances, from contact to the end of the range")
+      .check(whole_number(2, 10'000))
+      .capture_default_str()
+      .type_name("N");
+  line.add_option("--angles", command->grid.angles, "How many angles, evenly all round")
+      .check(whole_number(1, 10'000))
+      .capture_default_str()
+      .type_name("N");
+  line.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
+  return {line, [command](Log&, const std::atomic<bool>&) { return take_samples(*command); }};
 }
 
 }  // namespace cohort::tool

@@ -4,8 +4,9 @@
 
 #include "client_sdk/src/client.hpp"
 #include "client_sdk/src/domains.hpp"
-#include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/cli/key_reader.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 #include "tools/cohort/running/keyboard.hpp"
 
 namespace cohort::tool {
@@ -79,36 +80,39 @@ class Console {
   std::thread thread_;
 };
 
+int teleop(const ClientSide& client, Log& log, const std::atomic<bool>& stop) {
+  Keyboard keyboard;
+  std::atomic<bool> leave = false;
+  ClientOptions options;
+  options.server = client.connection.server;
+  if (!client.connection.domains.empty()) options.domain = domain_of_this_process(client.connection.domains);
+  options.secure = client.connection.secure;
+  options.robots = client.robots;
+  options.name = "teleop";
+  options.tell = [&](Severity severity, const std::string& text) {
+    if (leave && !stop) return;  // nobody is surprised by that
+    log.write(level_of(severity), text);
+  };
+  const Console console(keyboard, log, stop, leave);
+  switch (run_client(keyboard_controllers(keyboard), options, leave)) {
+    case ClientEnd::finished: return exit_ok;
+    case ClientEnd::interrupted: return stop ? exit_interrupted : exit_ok;
+    case ClientEnd::refused: return exit_usage;
+    case ClientEnd::superseded:
+    case ClientEnd::failed:
+    case ClientEnd::server_lost: break;
+  }
+  return exit_failed;
+}
+
 }  // namespace
 
-int teleop(const TeleopCommand& command, Log& log, const std::atomic<bool>& stop) {
-  try {
-    Keyboard keyboard;
-    std::atomic<bool> leave = false;
-    ClientOptions options;
-    options.server = command.server;
-    if (!command.domains.empty()) options.domain = domain_of_this_process(command.domains);
-    options.secure = command.secure;
-    options.robots = command.robots;
-    options.name = "teleop";
-    options.tell = [&](Severity severity, const std::string& text) {
-      if (leave && !stop) return;  // nobody is surprised by that
-      log.write(level_of(severity), text);
-    };
-    const Console console(keyboard, log, stop, leave);
-    switch (run_client(keyboard_controllers(keyboard), options, leave)) {
-      case ClientEnd::finished: return exit_ok;
-      case ClientEnd::interrupted: return stop ? exit_interrupted : exit_ok;
-      case ClientEnd::refused: return exit_usage;
-      case ClientEnd::superseded:
-      case ClientEnd::failed:
-      case ClientEnd::server_lost: break;
-    }
-    return exit_failed;
-  } catch (const std::exception& error) {
-    log.error(error.what());
-    return exit_usage;
-  }
+Subcommand add_teleop(CommandLine app) {
+  const auto client = std::make_shared<ClientSide>();
+  CommandLine line = app.add_subcommand("teleop", "Drive robots of a server by keyboard");
+  add_client_options(line, *client);
+  line.footer("Example: cohort teleop --robots 0");
+  return {line, [client](Log& log, const std::atomic<bool>& stop) { return teleop(*client, log, stop); }};
 }
 
 }  // namespace cohort::tool

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <thread>
 
 #include "server/recording/recording.hpp"
-#include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/cli/installed_page.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 #include "tools/view/admission.hpp"
 #include "tools/view/live_source.hpp"
 #include "tools/view/recording_source.hpp"
@@ -15,6 +17,19 @@
 
 namespace cohort::tool {
 namespace {
+
+struct ViewCommand {
+  std::filesystem::path recording;  ///< what is shown; empty: a server
+  Connection connection{};
+  std::filesystem::path secure_control{};  ///< folder of an identity that may control
+  std::filesystem::path secure_drive{};    ///< and of one that may drive; empty: the one above
+  bool may_control = false;
+  std::string network = "127.0.0.1";    ///< address of the interface to serve on
+  std::optional<std::uint16_t> port{};  ///< 0: any free one; none: 8080, or any free one where that is taken
+  std::string token{};                  ///< that browsers have to give; empty: one is made where strangers can connect
+  std::vector<std::string> origins{};   ///< of other pages that may connect
+  unsigned threads = 0;                 ///< that replay a recording; 0: one for each core
+};
 
 constexpr std::uint16_t usual_port = 8080;
 
@@ -91,25 +106,51 @@ int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>
 
 int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
   const auto& secure_drive = command.secure_drive.empty() ? command.secure_control : command.secure_drive;
-  const view::LiveOptions live{.server = command.server,
-                               .domain = command.domains.empty() ? 0 : command.domains.front(),
-                               .secure = command.secure.string(),
+  const view::LiveOptions live{.server = command.connection.server,
+                               .domain = command.connection.domain(),
+                               .secure = command.connection.secure.string(),
                                .secure_control = command.secure_control.string(),
                                .secure_drive = secure_drive.string(),
                                .may_control = command.may_control};
-  return serve(command, "Cohort at " + command.server, log, stop,
+  return serve(command, "Cohort at " + command.connection.server, log, stop,
                [&](view::Topics& topics) { return std::make_unique<view::LiveSource>(live, topics); });
 }
 
 }  // namespace
 
-int view(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
-  try {
-    return command.recording.empty() ? view_server(command, log, stop) : view_recording(command, log, stop);
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_view(CommandLine app) {
+  const auto command = std::make_shared<ViewCommand>();
+  CommandLine line = app.add_subcommand("view", "Show a recording or a running server in a browser");
+  const Option recording =
+      line.add_option("RECORDING", command->recording, "Recording (MCAP) to show, instead of a server").type_name("");
+  add_server_option(line, command->connection.server);
+  line.add_flag("--control", command->may_control, "Let whoever looks control the server").excludes(recording);
+  line.add_option("--secure-control", command->secure_control, "Folder of an identity that may control, for --control")
+      .type_name("DIR");
+  line.add_option("--secure-drive", command->secure_drive,
+                  "Folder of the identity that drives robots from the page (default: that of --secure-control)")
+      .type_name("DIR");
+  line.add_option("--port", command->port, "Where browsers find it (default: 8080, or any free one if that is taken)")
+      .check(whole_number(0, std::numeric_limits<std::uint16_t>::max()))
+      .type_name("N");
+  line.add_option("--network", command->network, "Address of the interface to serve browsers on")
+      .capture_default_str()
+      .type_name("ADDRESS");
+  line.add_option("--token", command->token,
+                  "What browsers have to give (default: none on the loopback, or a random one)")
+      .type_name("TEXT");
+  line.add_option("--origin", command->origins, "Another page that may connect, such as https://app.foxglove.dev")
+      .comma_separated()
+      .type_name("URL[,URL...]");
+  line.add_option("--threads", command->threads, "Threads that replay a recording (default: the cores)")
+      .check(whole_number(1, 1024))
+      .type_name("N");
+  add_domain_option(line, command->connection.domains, domain_of_server);
+  add_secure_option(line, command->connection.secure, "Folder of the observers' identity (default: $COHORT_SECURE)");
+  line.footer("Example: cohort view run.mcap");
+  return {line, [command](Log& log, const std::atomic<bool>& stop) {
+            return command->recording.empty() ? view_server(*command, log, stop) : view_recording(*command, log, stop);
+          }};
 }
 
 }  // namespace cohort::tool

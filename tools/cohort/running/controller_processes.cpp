@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "server/description/select_robots.hpp"
-#include "tools/cohort/running/run_options.hpp"
+#include "tools/cohort/cli/exit_codes.hpp"
 
 namespace cohort::tool {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "server/session/server/server.hpp"
-#include "tools/processes/children.hpp"
 #include "tools/cohort/cli/log.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
+#include "tools/processes/children.hpp"
 
 namespace cohort::tool {
 

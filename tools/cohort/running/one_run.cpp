@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "server/session/run_recorder.hpp"
+#include "tools/cohort/cli/exit_codes.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/running/summary_file.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
@@ -12,24 +15,16 @@ namespace cohort::tool {
 
 using session::RunResult;
 
-std::filesystem::path numbered(const std::filesystem::path& file, std::size_t number, std::size_t count) {
-  if (file.empty() || count == 1) return file;
-  return file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string());
-}
-
-OneRun::OneRun(const RunCommand& command, std::size_t number, std::size_t count,
-               const description::Experiment& experiment, Simulation& simulation, recording::Recorder* recorder,
-               Log& log)
+OneRun::OneRun(const RunCommand& command, Outputs outputs, const description::Experiment& experiment,
+               Simulation& simulation, recording::Recorder* recorder, Log& log)
     : experiment_(experiment),
       log_(log),
-      summary_(numbered(command.summary, number, count)),
-      plot_(numbered(command.plot, number, count)),
-      csv_(numbered(command.csv, number, count)),
+      outputs_(std::move(outputs)),
       terminal_(log, {.quiet = command.quiet,
                       .own_controllers = command.controllers != Controllers::external && !has_keyboard(experiment)}) {
   if (recorder != nullptr) recorders_.push_back(recorder);
-  if (!plot_.empty()) trace_.emplace(experiment.world, simulation, command.viewpoint);
-  if (!experiment.prints.empty()) table_.emplace(experiment, simulation, csv_.empty() && !command.quiet);
+  if (!outputs_.plot.empty()) trace_.emplace(experiment.world, simulation, outputs_.viewpoint);
+  if (!experiment.prints.empty()) table_.emplace(experiment, simulation, outputs_.csv.empty() && !command.quiet);
 }
 
 session::RunListener OneRun::listener() {
@@ -72,13 +67,15 @@ bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
     }
   };
   bool written = true;
-  if (!summary_.empty()) written &= try_to([&] { write_summary(summary_, experiment_, result, cpu_seconds); });
+  if (!outputs_.summary.empty())
+    written &= try_to([&] { write_summary(outputs_.summary, experiment_, result, cpu_seconds); });
   if (trace_)
     written &= try_to([&] {
       const PlotCaption caption = {experiment_.name, result.sim_time, result.state_hash};
-      write_file("the plot", plot_, draw_plot(trace_->finish(), caption));
+      write_file("the plot", outputs_.plot, draw_plot(trace_->finish(), caption));
     });
-  if (!csv_.empty()) written &= try_to([&] { write_file("the table", csv_, table_ ? table_->text() : std::string()); });
+  if (!outputs_.csv.empty())
+    written &= try_to([&] { write_file("the table", outputs_.csv, table_ ? table_->text() : std::string()); });
   return written;
 }
 

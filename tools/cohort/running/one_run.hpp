@@ -1,29 +1,26 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <vector>
 
 #include "server/recording/recorder.hpp"
 #include "server/session/run.hpp"
+#include "tools/cohort/cli/printed_table.hpp"
+#include "tools/cohort/cli/terminal.hpp"
 #include "tools/cohort/running/run_options.hpp"
 #include "tools/drawing/plot_view.hpp"
-#include "tools/cohort/cli/printed_table.hpp"
 #include "tools/drawing/run_trace.hpp"
-#include "tools/cohort/cli/terminal.hpp"
 
 namespace cohort::tool {
-
-/// Of several runs each has a file of its own: `summary.json` of the second is `summary-2.json`.
-std::filesystem::path numbered(const std::filesystem::path& file, std::size_t number, std::size_t count);
 
 /// One experiment's run, with all that people see of it.
 class OneRun {
  public:
-  /// `recorder` has begun with `simulation`; null if nothing is recorded. All must outlive this.
-  OneRun(const RunCommand& command, std::size_t number, std::size_t count, const description::Experiment& experiment,
-         Simulation& simulation, recording::Recorder* recorder, Log& log);
+  /// `outputs`: of this run. `recorder` has begun with `simulation`; null if nothing is recorded. All else must outlive
+  /// this.
+  OneRun(const RunCommand& command, Outputs outputs, const description::Experiment& experiment, Simulation& simulation,
+         recording::Recorder* recorder, Log& log);
 
   session::RunListener listener();
 
@@ -36,7 +33,7 @@ class OneRun {
   const description::Experiment& experiment_;
   std::vector<recording::Recorder*> recorders_;  // one or none
   Log& log_;
-  std::filesystem::path summary_, plot_, csv_;
+  Outputs outputs_;
   Terminal terminal_;
   std::optional<TraceRecorder> trace_;
   std::optional<PrintedTable> table_;

@@ -6,17 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/drawing/run_trace.hpp"
+#include "tools/cohort/running/outputs.hpp"
 
 namespace cohort::tool {
-
-// docs/cli.md tells users what these mean.
-inline constexpr int exit_ok = 0;
-inline constexpr int exit_failed = 1;  // the run ended with an error, or what it found could not be written
-inline constexpr int exit_usage = 2;   // bad command line, world, experiment or set-up: nothing was started
-inline constexpr int exit_interrupted = 130;
-// Between `cohort run` and the hosts that it starts: somebody else drives its robots now.
-inline constexpr int exit_superseded = 3;
 
 enum class Controllers {
   in_process,  ///< in the server's process
@@ -27,7 +19,6 @@ enum class Controllers {
 
 /// What a recording holds, where the experiment says something else.
 struct RecordOptions {
-  std::filesystem::path file;                 ///< empty: no recording
   std::optional<double> pose_rate{};          ///< [Hz]
   std::optional<double> joint_rate{};         ///< [Hz]
   std::optional<double> observation_rate{};   ///< [Hz]
@@ -42,11 +33,8 @@ struct RunCommand {
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
   Controllers controllers = Controllers::process;
-  std::optional<double> speed;             ///< 0: as fast as it goes; none: that, or real time if people drive
-  std::filesystem::path summary;           ///< file to write; empty: none
-  std::filesystem::path plot;              ///< the same
-  Viewpoint viewpoint = Viewpoint::above;  ///< of the plot
-  std::filesystem::path csv;               ///< the same: what the experiment prints
+  std::optional<double> speed;  ///< 0: as fast as it goes; none: that, or real time if people drive
+  Outputs outputs;
   RecordOptions record;
   bool quiet = false;
   bool paused = false;                 ///< at first

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/description/experiment.hpp"
 #include "tools/cohort/running/run_options.hpp"
 
 namespace cohort::tool {

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <utility>
 
-#include "tools/cohort/running/controller_processes.hpp"
 #include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/running/controller_processes.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "server/session/server/server.hpp"
-#include "tools/processes/children.hpp"
 #include "tools/cohort/cli/log.hpp"
 #include "tools/cohort/running/run_options.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
+#include "tools/processes/children.hpp"
 
 namespace cohort::tool {
 

@@ -4,8 +4,8 @@
 #include <ctime>
 
 #include "idl/wire.hpp"
-#include "tools/cohort/commands/certificates.hpp"
-#include "tools/cohort/commands/doctor.hpp"
+#include "tools/cohort/commands/doctor/doctor.hpp"
+#include "tools/cohort/commands/security/certificates.hpp"
 
 namespace cohort::tool {
 namespace {

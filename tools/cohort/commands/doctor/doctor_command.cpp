@@ -6,9 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "idl/wire.hpp"
-#include "tools/cohort/commands/command_lines.hpp"
-#include "tools/cohort/commands/doctor.hpp"
-#include "tools/cohort/cli/usage.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/doctor/doctor.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -73,42 +72,41 @@ std::vector<Finding> examine(const DoctorCommand& command) {
   return findings;
 }
 
-}  // namespace
-
-void add_doctor_options(CLI::App& app, DoctorCommand& command) {
-  app.add_option("--server", command.server, "Address of the server that should answer (default: any of this machine)")
-      ->envname("COHORT_SERVER")
-      ->type_name("ADDRESS");
-  app.add_option("--domain", command.domain, "Its DDS domain (default: 0)")
-      ->envname("COHORT_DOMAIN")
-      ->check(whole_number(0, last_domain))
-      ->type_name("N");
-  app.add_option("--network", command.network, "Address of the interface that this machine is to serve on")
-      ->envname("COHORT_NETWORK")
-      ->capture_default_str()
-      ->type_name("ADDRESS");
-  app.add_option("--secure", command.secure, "Folder of 'cohort security', or of one identity of it")
-      ->envname("COHORT_SECURE")
-      ->type_name("DIR");
-  app.add_flag("--json", command.json, "Print the findings as JSON");
-  app.footer("Example: cohort doctor --server 10.0.0.5 --domain 7");
+int doctor(DoctorCommand command) {
+  command.expects_server = !command.server.empty();
+  if (!command.expects_server) command.server = command.network;
+  const std::vector<Finding> findings = examine(command);
+  if (command.json)
+    print_json(findings);
+  else
+    print(findings);
+  const auto is_problem = [](const Finding& finding) { return finding.health == Health::problem; };
+  return std::ranges::any_of(findings, is_problem) ? exit_failed : exit_ok;
 }
 
-int doctor(DoctorCommand command, Log& log) {
-  try {
-    command.expects_server = !command.server.empty();
-    if (!command.expects_server) command.server = command.network;
-    const std::vector<Finding> findings = examine(command);
-    if (command.json)
-      print_json(findings);
-    else
-      print(findings);
-    const auto is_problem = [](const Finding& finding) { return finding.health == Health::problem; };
-    return std::ranges::any_of(findings, is_problem) ? exit_failed : exit_ok;
-  } catch (const std::exception& error) {
-    log.error(error.what());
-    return exit_usage;
-  }
+}  // namespace
+
+Subcommand add_doctor(CommandLine app) {
+  const auto command = std::make_shared<DoctorCommand>();
+  CommandLine line = app.add_subcommand("doctor", "Look for what usually goes wrong, and say what to do");
+  line.add_option("--server", command->server,
+                  "Address of the server that should answer (default: any of this machine)")
+      .envname("COHORT_SERVER")
+      .type_name("ADDRESS");
+  line.add_option("--domain", command->domain, "Its DDS domain (default: 0)")
+      .envname("COHORT_DOMAIN")
+      .check(whole_number(0, last_domain))
+      .type_name("N");
+  line.add_option("--network", command->network, "Address of the interface that this machine is to serve on")
+      .envname("COHORT_NETWORK")
+      .capture_default_str()
+      .type_name("ADDRESS");
+  line.add_option("--secure", command->secure, "Folder of 'cohort security', or of one identity of it")
+      .envname("COHORT_SECURE")
+      .type_name("DIR");
+  line.add_flag("--json", command->json, "Print the findings as JSON");
+  line.footer("Example: cohort doctor --server 10.0.0.5 --domain 7");
+  return {line, [command](Log&, const std::atomic<bool>&) { return doctor(*command); }};
 }
 
 }  // namespace cohort::tool

@@ -11,7 +11,7 @@
 
 #include "idl/survey.hpp"
 #include "server/core/processors.hpp"
-#include "tools/cohort/commands/doctor.hpp"
+#include "tools/cohort/commands/doctor/doctor.hpp"
 
 namespace cohort::tool {
 namespace {

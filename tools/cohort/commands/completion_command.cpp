@@ -1,10 +1,12 @@
-#include "tools/cohort/commands/completion.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
+#include <iostream>
 #include <map>
+
+#include "tools/cohort/cli/command_tree.hpp"
+#include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -193,15 +195,23 @@ std::string for_fish(const CommandTree& tree) {
   return text;
 }
 
+const std::map<std::string, std::string (*)(const CommandTree&)> scripts = {
+    {"bash", for_bash}, {"zsh", for_zsh}, {"fish", for_fish}};
+
 }  // namespace
 
-std::string completion(const CommandTree& tree, Shell shell) {
-  switch (shell) {
-    case Shell::bash: return for_bash(tree);
-    case Shell::zsh: return for_zsh(tree);
-    case Shell::fish: break;
-  }
-  return for_fish(tree);
+Subcommand add_completion(CommandLine app) {
+  const auto shell = std::make_shared<std::string>();
+  CommandLine line = app.add_subcommand("completion", "Print a script that completes command lines in a shell");
+  line.add_option("SHELL", *shell, "Which one")
+      .required()
+      .check(one_of({"bash", "zsh", "fish"}))
+      .type_name("bash|zsh|fish");
+  line.footer("Example: source <(cohort completion bash)");
+  return {line, [=](Log&, const std::atomic<bool>&) {
+            std::cout << scripts.at(*shell)(command_tree(app));
+            return exit_ok;
+          }};
 }
 
 }  // namespace cohort::tool

@@ -6,9 +6,8 @@
 #include <iostream>
 
 #include "client_sdk/src/client.hpp"
-#include "tools/cohort/commands/certificates.hpp"
-#include "tools/cohort/commands/command_lines.hpp"
-#include "tools/cohort/cli/usage.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/security/certificates.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -21,6 +20,17 @@ fs::path server_folder(const fs::path& folder, const std::string& name) { return
 fs::path client_folder(const fs::path& folder, const std::string& name) { return folder / "clients" / name; }
 
 std::string joined(const std::vector<std::string>& texts) { return fmt::format("{}", fmt::join(texts, ",")); }
+
+struct SecurityCommand {
+  enum class What { init, add, list };
+  What what = What::list;
+  fs::path folder{};                   ///< of all identities
+  std::vector<std::string> clients{};  ///< of init: NAME=SELECTORS
+  std::string name{};                  ///< of add
+  std::vector<std::string> robots{};   ///< of add: selectors
+  bool encrypt = false;
+  unsigned days = 365;
+};
 
 // What an identity may do besides driving robots stands among their selectors.
 void take_rights(NewIdentity& identity, const std::vector<std::string>& selectors) {
@@ -135,61 +145,56 @@ void list(const SecurityCommand& command) {
 
 }  // namespace
 
-void add_security_commands(CLI::App& app, SecurityCommand& command) {
-  app.require_subcommand(1);
-  const auto add_folder = [&](CLI::App& sub) {
-    sub.add_option("DIR", command.folder, "Folder of all identities")->required()->type_name("");
+Subcommand add_security(CommandLine app) {
+  const auto command = std::make_shared<SecurityCommand>();
+  CommandLine line = app.add_subcommand("security", "Make and list who may drive what, with certificates");
+  line.require_subcommand();
+  const auto add_folder = [command](CommandLine sub) {
+    sub.add_option("DIR", command->folder, "Folder of all identities").required().type_name("");
   };
-  const auto add_days = [&](CLI::App& sub) {
-    sub.add_option("--days", command.days, "How long the certificates are valid")
-        ->check(whole_number(1, longest_validity))
-        ->capture_default_str()
-        ->type_name("N");
+  const auto add_days = [command](CommandLine sub) {
+    sub.add_option("--days", command->days, "How long the certificates are valid")
+        .check(whole_number(1, longest_validity))
+        .capture_default_str()
+        .type_name("N");
   };
-  CLI::App* init_app = app.add_subcommand("init", "Make certificates and permissions for a server and its clients");
-  add_folder(*init_app);
-  init_app
-      ->add_option("--client", command.clients,
-                   "A client and what it may drive, control too; may be repeated (default: controllers=all)")
-      ->allow_extra_args(false)
-      ->type_name("NAME=SEL[,SEL...]");
-  init_app->add_flag("--encrypt", command.encrypt, "Encrypt all messages (default: sign them)");
-  add_days(*init_app);
-  init_app->callback([&] { command.what = SecurityCommand::What::init; });
-  init_app->footer("Example: cohort security init keys --client red=red/* --client operator=none,control");
+  CommandLine init_line = line.add_subcommand("init", "Make certificates and permissions for a server and its clients");
+  add_folder(init_line);
+  init_line
+      .add_option("--client", command->clients,
+                  "A client and what it may drive, control too; may be repeated (default: controllers=all)")
+      .one_value()
+      .type_name("NAME=SEL[,SEL...]");
+  init_line.add_flag("--encrypt", command->encrypt, "Encrypt all messages (default: sign them)");
+  add_days(init_line);
+  init_line.callback([command] { command->what = SecurityCommand::What::init; });
+  init_line.footer("Example: cohort security init keys --client red=red/* --client operator=none,control");
 
-  CLI::App* add_app = app.add_subcommand("add", "Make one more client");
-  add_folder(*add_app);
-  add_app->add_option("NAME", command.name, "Of the client: letters, digits, _ and -")->required()->type_name("");
-  add_app
-      ->add_option("--robots", command.robots,
-                   "What it may drive: all, an id, ids A..B, a name with *, none; and control; by commas")
-      ->required()
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("SEL[,SEL...]");
-  add_days(*add_app);
-  add_app->callback([&] { command.what = SecurityCommand::What::add; });
-  add_app->footer("Example: cohort security add keys green --robots green/*");
+  CommandLine add_line = line.add_subcommand("add", "Make one more client");
+  add_folder(add_line);
+  add_line.add_option("NAME", command->name, "Of the client: letters, digits, _ and -").required().type_name("");
+  add_line
+      .add_option("--robots", command->robots,
+                  "What it may drive: all, an id, ids A..B, a name with *, none; and control; by commas")
+      .required()
+      .comma_separated()
+      .type_name("SEL[,SEL...]");
+  add_days(add_line);
+  add_line.callback([command] { command->what = SecurityCommand::What::add; });
+  add_line.footer("Example: cohort security add keys green --robots green/*");
 
-  CLI::App* list_app = app.add_subcommand("list", "Say who may drive what, and until when certificates are valid");
-  add_folder(*list_app);
-  list_app->callback([&] { command.what = SecurityCommand::What::list; });
-  list_app->footer("Example: cohort security list keys");
-}
-
-int security(const SecurityCommand& command, Log& log) {
-  try {
-    switch (command.what) {
-      case SecurityCommand::What::init: initialise(command); break;
-      case SecurityCommand::What::add: add(command); break;
-      case SecurityCommand::What::list: list(command); break;
-    }
-    return exit_ok;
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+  CommandLine list_line = line.add_subcommand("list", "Say who may drive what, and until when certificates are valid");
+  add_folder(list_line);
+  list_line.callback([command] { command->what = SecurityCommand::What::list; });
+  list_line.footer("Example: cohort security list keys");
+  return {line, [command](Log&, const std::atomic<bool>&) {
+            switch (command->what) {
+              case SecurityCommand::What::init: initialise(*command); break;
+              case SecurityCommand::What::add: add(*command); break;
+              case SecurityCommand::What::list: list(*command); break;
+            }
+            return exit_ok;
+          }};
 }
 
 }  // namespace cohort::tool

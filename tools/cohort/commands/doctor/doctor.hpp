@@ -7,10 +7,19 @@
 #include <vector>
 
 #include "idl/identity.hpp"
-#include "tools/cohort/commands/commands.hpp"
 
 /// What `cohort doctor` looks at, each check by itself.
 namespace cohort::tool {
+
+/// `cohort doctor`: docs/troubleshooting.md.
+struct DoctorCommand {
+  std::string server{};  ///< empty: one on this machine
+  bool expects_server = false;
+  std::uint32_t domain = 0;
+  std::string network = "127.0.0.1";
+  std::filesystem::path secure{};  ///< of all identities, or of one; empty: without security
+  bool json = false;
+};
 
 enum class Health { ok, warning, problem };
 

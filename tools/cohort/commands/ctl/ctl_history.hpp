@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "server/viewing/run_history.hpp"
@@ -15,6 +14,6 @@ void add(viewing::RunHistory& history, viewing::RunHistory later);
 /// For people: a line for each event, by its first time, and one on how far back the run can go.
 std::string history_text(const viewing::RunHistory& history, std::chrono::nanoseconds step);
 /// For programs: docs/cli.md.
-nlohmann::ordered_json history_json(const viewing::RunHistory& history, std::chrono::nanoseconds step);
+std::string history_json(const viewing::RunHistory& history, std::chrono::nanoseconds step);
 
 }  // namespace cohort::tool

@@ -1,8 +1,9 @@
-#include "tools/cohort/commands/ctl_history.hpp"
+#include "tools/cohort/commands/ctl/ctl_history.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace cohort::tool {
@@ -41,7 +42,7 @@ std::string history_text(const viewing::RunHistory& history, std::chrono::nanose
                             seconds_at(history.keep_interval, step));
 }
 
-ordered_json history_json(const viewing::RunHistory& history, std::chrono::nanoseconds step) {
+std::string history_json(const viewing::RunHistory& history, std::chrono::nanoseconds step) {
   ordered_json events = ordered_json::array();
   for (const viewing::HistoryEvent& event : history.events)
     events.push_back({{"tick", event.tick},
@@ -54,7 +55,7 @@ ordered_json history_json(const viewing::RunHistory& history, std::chrono::nanos
     json["kept"] = {{"first_tick", history.first_kept_tick},
                     {"last_tick", history.last_kept_tick},
                     {"interval", history.keep_interval}};
-  return json;
+  return json.dump(2) + "\n";
 }
 
 }  // namespace cohort::tool

@@ -1,8 +1,10 @@
-#include "tools/cohort/commands/man_page.hpp"
-
 #include <fmt/format.h>
 
+#include <iostream>
 #include <map>
+
+#include "tools/cohort/cli/command_tree.hpp"
+#include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -75,8 +77,6 @@ std::string environment_of(const CommandTree& tree) {
   return text;
 }
 
-}  // namespace
-
 std::string man_page(const CommandTree& tree) {
   const std::size_t colon = tree.text.find(": ");
   std::string text = fmt::format(
@@ -93,6 +93,17 @@ std::string man_page(const CommandTree& tree) {
     if (command != &tree) text += section_of(*command);
   return text + ".SH ENVIRONMENT\n" + environment_of(tree) +
          ".SH SEE ALSO\nThe documents beside this page, in share/doc/cohort: docs/cli.md has all of this at length.\n";
+}
+
+}  // namespace
+
+Subcommand add_man_page(CommandLine app) {
+  CommandLine line = app.add_subcommand("man-page", "Print the manual page, which tells what all of --help tell");
+  line.footer("Example: cohort man-page | man -l -");
+  return {line, [app](Log&, const std::atomic<bool>&) {
+            std::cout << man_page(command_tree(app));
+            return exit_ok;
+          }};
 }
 
 }  // namespace cohort::tool

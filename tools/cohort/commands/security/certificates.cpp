@@ -1,4 +1,4 @@
-#include "tools/cohort/commands/certificates.hpp"
+#include "tools/cohort/commands/security/certificates.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "tools/processes/external_program.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {

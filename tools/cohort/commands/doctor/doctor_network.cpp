@@ -15,7 +15,7 @@
 #include <sstream>
 
 #include "idl/survey.hpp"
-#include "tools/cohort/commands/doctor.hpp"
+#include "tools/cohort/commands/doctor/doctor.hpp"
 
 namespace cohort::tool {
 namespace {

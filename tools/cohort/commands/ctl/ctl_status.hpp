@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "idl/control_messages.hpp"
@@ -10,8 +9,8 @@ namespace cohort::tool {
 
 /// For people: some lines on the run, and a table with a line for each controller.
 std::string status_text(const wire::Reply& reply);
-/// For programs: docs/cli.md.
-nlohmann::ordered_json status_json(const wire::Reply& reply);
+/// For programs: docs/cli.md. `indent`: of each level in spaces; -1: all in one line.
+std::string status_json(const wire::Reply& reply, int indent);
 
 /// A word for a state.
 std::string word_of(wire::SimulationState state);

@@ -1,7 +1,8 @@
-#include "tools/cohort/commands/ctl_status.hpp"
+#include "tools/cohort/commands/ctl/ctl_status.hpp"
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "tools/cohort/cli/wording.hpp"
@@ -72,10 +73,10 @@ std::string status_text(const wire::Reply& reply) {
   return text;
 }
 
-nlohmann::ordered_json status_json(const wire::Reply& reply) {
+std::string status_json(const wire::Reply& reply, int indent) {
   nlohmann::ordered_json json = {
       {"state", word_of(reply.state)}, {"run", reply.run}, {"tick", reply.tick}, {"sim_time_ns", reply.time_ns}};
-  if (reply.status.empty()) return json;
+  if (reply.status.empty()) return json.dump(indent) + "\n";
   const wire::SimulationStatus& status = reply.status.front();
   nlohmann::ordered_json controllers = nlohmann::ordered_json::array();
   for (const wire::ControllerStatus& each : status.controllers)
@@ -105,7 +106,7 @@ nlohmann::ordered_json status_json(const wire::Reply& reply) {
                                      {"awaited_count", status.awaited_count},
                                      {"waiting_s", seconds(status.waiting_ns)},
                                      {"controllers", controllers}});
-  return json;
+  return json.dump(indent) + "\n";
 }
 
 }  // namespace cohort::tool

@@ -8,10 +8,11 @@
 #include <thread>
 
 #include "client_sdk/src/control_client.hpp"
-#include "tools/cohort/commands/commands.hpp"
-#include "tools/cohort/commands/ctl_history.hpp"
-#include "tools/cohort/commands/ctl_status.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/ctl/ctl_history.hpp"
+#include "tools/cohort/commands/ctl/ctl_options.hpp"
+#include "tools/cohort/commands/ctl/ctl_status.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -52,9 +53,9 @@ class Ctl {
       : command_(std::move(command)),
         log_(log),
         stop_(stop),
-        client_({.server = command_.server,
-                 .domain = command_.domains.empty() ? 0 : command_.domains.front(),
-                 .secure = command_.secure.string(),
+        client_({.server = command_.connection.server,
+                 .domain = command_.connection.domain(),
+                 .secure = command_.connection.secure.string(),
                  .label = "cohort ctl"}),
         patience_(patience_for(command_)) {}
 
@@ -74,16 +75,17 @@ class Ctl {
 
  private:
   int no_server() {
-    const std::uint32_t domain = command_.domains.empty() ? 0 : command_.domains.front();
+    const std::uint32_t domain = command_.connection.domain();
     log_.error(fmt::format(
         "no server that can be controlled is at {}, domain {}. Is one running there, with this --domain? A run that "
         "starts "
         "its own controllers takes a domain of its own unless it is given one{}. 'cohort doctor --server {} --domain "
         "{}' looks "
         "for what is wrong",
-        command_.server, domain,
-        command_.secure.empty() ? "; one with --secure needs it here too" : ", and does its folder have this identity",
-        command_.server, domain));
+        command_.connection.server, domain,
+        command_.connection.secure.empty() ? "; one with --secure needs it here too"
+                                           : ", and does its folder have this identity",
+        command_.connection.server, domain));
     return exit_failed;
   }
 
@@ -151,7 +153,7 @@ class Ctl {
   int status() {
     const auto reply = ask_status();
     if (!reply) return no_reply();
-    std::fputs((command_.json ? status_json(*reply).dump(2) + "\n" : status_text(*reply)).c_str(), stdout);
+    std::fputs((command_.json ? status_json(*reply, 2) : status_text(*reply)).c_str(), stdout);
     return exit_ok;
   }
 
@@ -166,7 +168,7 @@ class Ctl {
       }
       if (!reply) return no_reply();
       const char* const begin = is_terminal && !command_.json ? "\033[H\033[2J" : "";
-      const std::string text = command_.json ? status_json(*reply).dump() + "\n" : status_text(*reply);
+      const std::string text = command_.json ? status_json(*reply, -1) : status_text(*reply);
       std::printf("%s%s%s", begin, text.c_str(), is_terminal || command_.json ? "" : "\n");
       std::fflush(stdout);
       while (!stop_ && std::chrono::steady_clock::now() < next) std::this_thread::sleep_for(milliseconds(20));
@@ -192,7 +194,7 @@ class Ctl {
       request.offset = reply->offset;
     }
     const std::chrono::nanoseconds step(status->status.front().step_ns);
-    std::fputs((command_.json ? history_json(all, step).dump(2) + "\n" : history_text(all, step)).c_str(), stdout);
+    std::fputs((command_.json ? history_json(all, step) : history_text(all, step)).c_str(), stdout);
     return exit_ok;
   }
 
@@ -230,22 +232,24 @@ class Ctl {
   const milliseconds patience_;
 };
 
+int ctl(const CtlCommand& command, Log& log, const std::atomic<bool>& stop) {
+  Ctl one(command, log, stop);
+  try {
+    return one.run();
+  } catch (const std::exception& error) {
+    if (stop) return exit_interrupted;
+    log.error(error.what());
+    return exit_failed;
+  }
+}
+
 }  // namespace
 
-int ctl(CtlCommand command, Log& log, const std::atomic<bool>& stop) {
-  try {
-    Ctl one(std::move(command), log, stop);
-    try {
-      return one.run();
-    } catch (const std::exception& error) {
-      if (stop) return exit_interrupted;
-      log.error(error.what());
-      return exit_failed;
-    }
-  } catch (const std::exception& error) {
-    log.error(error.what());
-  }
-  return exit_usage;
+Subcommand add_ctl(CommandLine app) {
+  const auto command = std::make_shared<CtlCommand>();
+  CommandLine line = app.add_subcommand("ctl", "Control a run: pause, step, change its world, save, ask how it is");
+  add_ctl_options(line, *command);
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return ctl(*command, log, stop); }};
 }
 
 }  // namespace cohort::tool

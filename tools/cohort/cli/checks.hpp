@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace cohort::tool {
+
+/// Tells what was expected in place of an option's value; nothing if the value is right.
+using Check = std::function<std::string(const std::string& value)>;
+
+inline constexpr double most_seconds = 9e9;  ///< fits into nanoseconds
+
+Check whole_number(std::uint64_t least, std::uint64_t greatest);
+Check number_above_zero(double greatest);
+Check number_from_zero(double greatest);
+Check max_or_number_above_zero(double greatest);
+Check domain_range();
+Check one_of(std::vector<std::string> names);
+
+}  // namespace cohort::tool

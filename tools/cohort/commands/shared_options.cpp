@@ -1,0 +1,71 @@
+#include "tools/cohort/commands/shared_options.hpp"
+
+#include "client_sdk/src/domains.hpp"
+
+namespace cohort::tool {
+
+void add_server_option(CommandLine line, std::string& server) {
+  line.add_option("--server", server, "Address of the server")
+      .envname("COHORT_SERVER")
+      .capture_default_str()
+      .type_name("ADDRESS");
+}
+
+void add_domain_option(CommandLine line, std::vector<std::uint32_t>& domains, const std::string& text) {
+  line.add_option_function<std::string>(
+          "--domain", [&domains](const std::string& value) { domains = parse_domains(value); }, text)
+      .envname("COHORT_DOMAIN")
+      .check(domain_range())
+      .type_name("N|A..B");
+}
+
+void add_secure_option(CommandLine line, std::filesystem::path& folder, const std::string& text) {
+  line.add_option("--secure", folder, text).envname("COHORT_SECURE").type_name("DIR");
+}
+
+void add_client_options(CommandLine line, ClientSide& client) {
+  line.add_option("--robots", client.robots, "Which robots: all, an id, ids A..B, or a name with *; several by commas")
+      .required()
+      .comma_separated()
+      .type_name("SEL[,SEL...]");
+  add_server_option(line, client.connection.server);
+  add_domain_option(line, client.connection.domains,
+                    "DDS domain of the server, or a range: then one of it (default: 0)");
+  add_secure_option(line, client.connection.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
+}
+
+void add_robots_of_recording(CommandLine line, std::vector<std::string>& robots) {
+  line.add_option("--robots", robots, "Which robots, as of 'cohort host' (default: all)")
+      .comma_separated()
+      .type_name("SEL[,SEL...]");
+}
+
+void add_recorded_options(CommandLine line, RecordOptions& options, const std::string& prefix) {
+  constexpr double most_hertz = 1e9;
+  line.add_option(prefix + "poses", options.pose_rate, "Poses a simulated second in it, 0 for none")
+      .check(number_from_zero(most_hertz))
+      .type_name("HZ");
+  line.add_option(prefix + "joints", options.joint_rate, "Joint states and poses of all links a simulated second")
+      .check(number_from_zero(most_hertz))
+      .type_name("HZ");
+  line.add_option(prefix + "observations", options.observation_rate, "Observations of a robot a simulated second")
+      .check(number_from_zero(most_hertz))
+      .type_name("HZ");
+  line.add_option(prefix + "robots", options.robots, "Whose observations: as --robots of 'cohort host'")
+      .comma_separated()
+      .type_name("SEL[,SEL...]");
+  line.add_option(prefix + "snapshots", options.snapshot_interval, "Simulated seconds between snapshots, 0 for none")
+      .check(number_from_zero(most_seconds))
+      .type_name("S");
+}
+
+void add_viewpoint_option(CommandLine line, const std::string& name, const std::string& subject, Viewpoint& viewpoint) {
+  line.add_option_function<std::string>(
+          name,
+          [&viewpoint](const std::string& view) { viewpoint = view == "side" ? Viewpoint::side : Viewpoint::above; },
+          subject + ": from above (the default), or from the side")
+      .check(one_of({"above", "side"}))
+      .type_name("above|side");
+}
+
+}  // namespace cohort::tool

@@ -4,16 +4,14 @@ namespace cohort::actuation {
 namespace {
 
 /// How far a gripper is to be open: from 0, closed, to 1.
-class GripperMotor final : public Actuator {
+class GripperMotor final : public ActuatorOf<description::Gripper> {
  public:
   GripperMotor(const description::Gripper& gripper, const Mount& mount)
-      : gripper_(gripper), mount_(mount), number_(mount.grippers.of_device(mount.body, mount.device)) {}
-  std::vector<Channel> channels() const override { return {{gripper_.name + "/0/opening", "1", 1, 0.0, 1.0, 1.0}}; }
+      : ActuatorOf(gripper, mount), number_(mount.grippers.of_device(mount.body, mount.device)) {}
+  std::vector<Channel> channels() const override { return {{device_.name + "/0/opening", "1", 1, 0.0, 1.0, 1.0}}; }
   void apply(std::span<const double> values) override { mount_.grippers.command(number_, values[0]); }
 
  private:
-  description::Gripper gripper_;
-  Mount mount_;
   std::uint32_t number_;
 };
 

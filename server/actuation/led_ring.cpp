@@ -4,27 +4,25 @@ namespace cohort::actuation {
 namespace {
 
 /// The colours of LEDs, each as a marker that cameras see and, if it has an intensity, as a lamp.
-class LedRing final : public Actuator {
+class LedRing final : public ActuatorOf<description::LedRing> {
  public:
   LedRing(const description::LedRing& leds, const Mount& mount)
-      : leds_(leds), mount_(mount), first_(mount.emitters.of_device(mount.body, mount.device)) {}
+      : ActuatorOf(leds, mount), first_(mount.emitters.of_device(mount.body, mount.device)) {}
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
-    for (std::size_t i = 0; i < leds_.count; ++i)
-      channels.push_back({leds_.name + "/" + std::to_string(i) + "/color", "1", 3, 0.0, 1.0, 0.0});
+    for (std::size_t i = 0; i < device_.count; ++i)
+      channels.push_back({device_.name + "/" + std::to_string(i) + "/color", "1", 3, 0.0, 1.0, 0.0});
     return channels;
   }
   void apply(std::span<const double> values) override {
-    for (std::uint32_t i = 0; i < leds_.count; ++i) {
+    for (std::uint32_t i = 0; i < device_.count; ++i) {
       const Eigen::Vector3d color(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
       mount_.emitters.set_marker(first_.marker + i, color);
-      if (leds_.intensity > 0.0) mount_.emitters.set_lamp(first_.lamp + i, color);
+      if (device_.intensity > 0.0) mount_.emitters.set_lamp(first_.lamp + i, color);
     }
   }
 
  private:
-  description::LedRing leds_;
-  Mount mount_;
   emission::Emitters::OfDevice first_;
 };
 

@@ -4,19 +4,17 @@ namespace cohort::actuation {
 namespace {
 
 /// Frequency [Hz] and intensity of one tone.
-class Loudspeaker final : public Actuator {
+class Loudspeaker final : public ActuatorOf<description::Loudspeaker> {
  public:
   Loudspeaker(const description::Loudspeaker& speaker, const Mount& mount)
-      : speaker_(speaker), mount_(mount), tone_(mount.emitters.of_device(mount.body, mount.device).tone) {}
+      : ActuatorOf(speaker, mount), tone_(mount.emitters.of_device(mount.body, mount.device).tone) {}
   std::vector<Channel> channels() const override {
-    return {{speaker_.name + "/0/frequency", "Hz", 1, 0.0, speaker_.max_frequency, 0.0},
-            {speaker_.name + "/0/intensity", "1", 1, 0.0, speaker_.max_intensity, 0.0}};
+    return {{device_.name + "/0/frequency", "Hz", 1, 0.0, device_.max_frequency, 0.0},
+            {device_.name + "/0/intensity", "1", 1, 0.0, device_.max_intensity, 0.0}};
   }
   void apply(std::span<const double> values) override { mount_.emitters.set_tone(tone_, values[0], values[1]); }
 
  private:
-  description::Loudspeaker speaker_;
-  Mount mount_;
   std::uint32_t tone_;
 };
 

@@ -6,10 +6,10 @@ namespace cohort::actuation {
 namespace {
 
 /// A message to the robots around: sent at every tick for as long as `sending` is at least 0.5.
-class MessageSender final : public Actuator {
+class MessageSender final : public ActuatorOf<description::RangeAndBearing> {
  public:
   MessageSender(const description::RangeAndBearing& device, const Mount& mount)
-      : device_(device), mount_(mount), beacon_(mount.emitters.of_device(mount.body, mount.device).beacon) {}
+      : ActuatorOf(device, mount), beacon_(mount.emitters.of_device(mount.body, mount.device).beacon) {}
   std::vector<Channel> channels() const override {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto size = static_cast<std::uint32_t>(device_.message_size);
@@ -21,8 +21,6 @@ class MessageSender final : public Actuator {
   }
 
  private:
-  description::RangeAndBearing device_;
-  Mount mount_;
   std::uint32_t beacon_;
 };
 

@@ -6,21 +6,17 @@ namespace cohort::actuation {
 namespace {
 
 /// Where one joint goes, and stays [rad] or [m].
-class PositionMotor final : public Actuator {
+class PositionMotor final : public ActuatorOf<description::PositionMotor> {
  public:
-  PositionMotor(const description::PositionMotor& motor, const Mount& mount) : motor_(motor), mount_(mount) {}
+  using ActuatorOf::ActuatorOf;
   std::vector<Channel> channels() const override {
-    const char* unit = mount_.joint(motor_.joint).type == description::JointType::prismatic ? "m" : "rad";
-    const description::JointAxis& axis = mount_.joint(motor_.joint).axis;
-    return {{motor_.name + "/0/position", unit, 1, axis.lower, axis.upper, std::clamp(0.0, axis.lower, axis.upper)}};
+    const char* unit = mount_.joint(device_.joint).type == description::JointType::prismatic ? "m" : "rad";
+    const description::JointAxis& axis = mount_.joint(device_.joint).axis;
+    return {{device_.name + "/0/position", unit, 1, axis.lower, axis.upper, std::clamp(0.0, axis.lower, axis.upper)}};
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_joint_position_target(mount_.body, motor_.joint, values[0]);
+    mount_.world.set_joint_position_target(mount_.body, device_.joint, values[0]);
   }
-
- private:
-  description::PositionMotor motor_;
-  Mount mount_;
 };
 
 }  // namespace

@@ -4,23 +4,20 @@ namespace cohort::actuation {
 namespace {
 
 /// Velocity of the left and the right track over ground [m/s].
-class TreelDrive final : public Actuator {
+class TreelDrive final : public ActuatorOf<description::TreelDrive> {
  public:
-  TreelDrive(const description::TreelDrive& drive, const Mount& mount) : drive_(drive), mount_(mount) {}
+  using ActuatorOf::ActuatorOf;
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
     for (const char* side : {"/left", "/right"})
-      channels.push_back({drive_.name + side + "/velocity", "m/s", 1, -drive_.max_velocity, drive_.max_velocity, 0.0});
+      channels.push_back(
+          {device_.name + side + "/velocity", "m/s", 1, -device_.max_velocity, device_.max_velocity, 0.0});
     return channels;
   }
   void apply(std::span<const double> values) override {
     mount_.world.set_track_velocity_target(mount_.body, mount_.device, physics::Side::left, values[0]);
     mount_.world.set_track_velocity_target(mount_.body, mount_.device, physics::Side::right, values[1]);
   }
-
- private:
-  description::TreelDrive drive_;
-  Mount mount_;
 };
 
 }  // namespace

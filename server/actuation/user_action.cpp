@@ -4,16 +4,14 @@ namespace cohort::actuation {
 namespace {
 
 /// Tells that the robot does something, from 0 to 1.
-class UserAction final : public Actuator {
+class UserAction final : public ActuatorOf<description::UserAction> {
  public:
   UserAction(const description::UserAction& action, const Mount& mount)
-      : action_(action), mount_(mount), number_(mount.actions.of_device(mount.body, mount.device)) {}
-  std::vector<Channel> channels() const override { return {{action_.name + "/0/value", "1", 1, 0.0, 1.0, 0.0}}; }
+      : ActuatorOf(action, mount), number_(mount.actions.of_device(mount.body, mount.device)) {}
+  std::vector<Channel> channels() const override { return {{device_.name + "/0/value", "1", 1, 0.0, 1.0, 0.0}}; }
   void apply(std::span<const double> values) override { mount_.actions.command(number_, values[0]); }
 
  private:
-  description::UserAction action_;
-  Mount mount_;
   std::uint32_t number_;
 };
 

@@ -4,20 +4,16 @@ namespace cohort::actuation {
 namespace {
 
 /// Velocity of one joint [rad/s] or [m/s].
-class VelocityMotor final : public Actuator {
+class VelocityMotor final : public ActuatorOf<description::VelocityMotor> {
  public:
-  VelocityMotor(const description::VelocityMotor& motor, const Mount& mount) : motor_(motor), mount_(mount) {}
+  using ActuatorOf::ActuatorOf;
   std::vector<Channel> channels() const override {
-    const char* unit = mount_.joint(motor_.joint).type == description::JointType::prismatic ? "m/s" : "rad/s";
-    return {{motor_.name + "/0/velocity", unit, 1, -motor_.max_velocity, motor_.max_velocity, 0.0}};
+    const char* unit = mount_.joint(device_.joint).type == description::JointType::prismatic ? "m/s" : "rad/s";
+    return {{device_.name + "/0/velocity", unit, 1, -device_.max_velocity, device_.max_velocity, 0.0}};
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_joint_velocity_target(mount_.body, motor_.joint, values[0]);
+    mount_.world.set_joint_velocity_target(mount_.body, device_.joint, values[0]);
   }
-
- private:
-  description::VelocityMotor motor_;
-  Mount mount_;
 };
 
 }  // namespace

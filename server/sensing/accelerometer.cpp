@@ -6,20 +6,16 @@ namespace {
 
 /// What a mass on springs measures along the axes of S: the acceleration of its origin, the mean over the last step,
 /// less gravity. At rest it is g upwards, in free fall 0.
-class Accelerometer final : public Sensor {
+class Accelerometer final : public SensorOf<description::Accelerometer> {
  public:
-  Accelerometer(const description::Accelerometer& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    return {{sensor_.name + "/0/acceleration", "m/s^2", 3, -infinity, infinity, 0.0}};
+    return {{device_.name + "/0/acceleration", "m/s^2", 3, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    write(proper_acceleration_of(sensor_, mount_), values);
+    write(proper_acceleration_of(device_, mount_), values);
   }
   bool needs_record() const override { return true; }
-
- private:
-  description::Accelerometer sensor_;
-  Mount mount_;
 };
 
 }  // namespace

@@ -21,20 +21,15 @@ double standard_pressure(double height) {
 
 /// The pressure of the air at the height of S above the sea, as of the International Standard Atmosphere (ICAO Doc
 /// 7488, its lowest layer, continued above and below): p = p0 (1 - L h / T0)^(g M / (R L)).
-class AirPressureSensor final : public Sensor {
+class AirPressureSensor final : public SensorOf<description::AirPressureSensor> {
  public:
-  AirPressureSensor(const description::AirPressureSensor& sensor, const Mount& mount)
-      : sensor_(sensor), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    return {{sensor_.name + "/0/pressure", "Pa", 1, 0.0, infinity, 0.0}};
+    return {{device_.name + "/0/pressure", "Pa", 1, 0.0, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    values[0] = standard_pressure(sensor_.reference_altitude + pose_of(sensor_, mount_).position.z());
+    values[0] = standard_pressure(device_.reference_altitude + pose_of(device_, mount_).position.z());
   }
-
- private:
-  description::AirPressureSensor sensor_;
-  Mount mount_;
 };
 
 }  // namespace

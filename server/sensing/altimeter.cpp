@@ -6,22 +6,20 @@ namespace {
 
 /// Height of the origin of S above where it was at first, and its velocity upwards, both along the world's z axis.
 /// "At first" is when this is made: before the first step of a run, also of one that is then restored.
-class Altimeter final : public Sensor {
+class Altimeter final : public SensorOf<description::Altimeter> {
  public:
   Altimeter(const description::Altimeter& altimeter, const Mount& mount)
-      : altimeter_(altimeter), mount_(mount), first_height_(pose_of(altimeter, mount).position.z()) {}
+      : SensorOf(altimeter, mount), first_height_(pose_of(altimeter, mount).position.z()) {}
   std::vector<Channel> channels() const override {
-    return {{altimeter_.name + "/0/vertical_position", "m", 1, -infinity, infinity, 0.0},
-            {altimeter_.name + "/0/vertical_velocity", "m/s", 1, -infinity, infinity, 0.0}};
+    return {{device_.name + "/0/vertical_position", "m", 1, -infinity, infinity, 0.0},
+            {device_.name + "/0/vertical_velocity", "m/s", 1, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    values[0] = pose_of(altimeter_, mount_).position.z() - first_height_;
-    values[1] = velocity_of(altimeter_, mount_).z();
+    values[0] = pose_of(device_, mount_).position.z() - first_height_;
+    values[1] = velocity_of(device_, mount_).z();
   }
 
  private:
-  description::Altimeter altimeter_;
-  Mount mount_;
   double first_height_;  // [m]
 };
 

@@ -8,7 +8,7 @@ namespace {
 
 /// Charge and power of a robot's battery (description::Battery). Over each step it gives its idle power and, for every
 /// motor and track that moves its load, force times velocity / efficiency; a motor that brakes gives nothing back.
-class Battery final : public Sensor {
+class Battery final : public SensorOf<description::Battery> {
  public:
   Battery(const description::Battery& battery, const Mount& mount);
   std::vector<Channel> channels() const override;
@@ -29,8 +29,6 @@ class Battery final : public Sensor {
     visit(self.noted_tick_);
   }
 
-  description::Battery battery_;
-  Mount mount_;
   std::vector<std::size_t> motor_joints_;
   std::vector<std::size_t> drives_;  // devices of the model
   double step_ = 0.0;                // [s]
@@ -40,8 +38,7 @@ class Battery final : public Sensor {
 };
 
 Battery::Battery(const description::Battery& battery, const Mount& mount)
-    : battery_(battery),
-      mount_(mount),
+    : SensorOf(battery, mount),
       step_(std::chrono::duration<double>(mount.description.step).count()),
       energy_(battery.capacity * battery.charge) {
   const std::vector<description::Device>& devices = mount.model().devices;
@@ -54,8 +51,7 @@ Battery::Battery(const description::Battery& battery, const Mount& mount)
 }
 
 std::vector<Channel> Battery::channels() const {
-  return {{battery_.name + "/0/charge", "1", 1, 0.0, 1.0, 0.0},
-          {battery_.name + "/0/power", "W", 1, 0.0, infinity, 0.0}};
+  return {{device_.name + "/0/charge", "1", 1, 0.0, 1.0, 0.0}, {device_.name + "/0/power", "W", 1, 0.0, infinity, 0.0}};
 }
 
 double Battery::mechanical_power() const {
@@ -75,12 +71,12 @@ double Battery::mechanical_power() const {
 void Battery::remember(std::uint64_t tick, bool) {
   if (tick == noted_tick_) return;  // nothing has moved since, or at all yet
   noted_tick_ = tick;
-  power_ = energy_ > 0.0 ? battery_.idle_power + mechanical_power() / battery_.motor_efficiency : 0.0;
+  power_ = energy_ > 0.0 ? device_.idle_power + mechanical_power() / device_.motor_efficiency : 0.0;
   energy_ = std::max(0.0, energy_ - power_ * step_);
 }
 
 void Battery::sense(std::uint64_t, std::span<double> values) const {
-  values[0] = energy_ / battery_.capacity;
+  values[0] = energy_ / device_.capacity;
   values[1] = power_;
 }
 

@@ -7,15 +7,15 @@ namespace cohort::sensing {
 namespace {
 
 /// The world's temperature and humidity and what the sources around add (description::ClimateSource).
-class ClimateSensor final : public Sensor {
+class ClimateSensor final : public SensorOf<description::ClimateSensor> {
  public:
-  ClimateSensor(const description::ClimateSensor& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    return {{sensor_.name + "/0/temperature", "K", 1, 0.0, infinity, 0.0},
-            {sensor_.name + "/0/humidity", "1", 1, 0.0, 1.0, 0.0}};
+    return {{device_.name + "/0/temperature", "K", 1, 0.0, infinity, 0.0},
+            {device_.name + "/0/humidity", "1", 1, 0.0, 1.0, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Eigen::Vector3d p_W = mount_.world.link_pose(mount_.body, sensor_.link) * sensor_.p_LS;
+    const Eigen::Vector3d p_W = mount_.world.link_pose(mount_.body, device_.link) * device_.p_LS;
     double temperature = mount_.description.climate.temperature;
     double humidity = mount_.description.climate.humidity;
     for (const emission::ClimateSource& source : mount_.emitters.climate_sources()) {
@@ -28,10 +28,6 @@ class ClimateSensor final : public Sensor {
     values[0] = std::max(temperature, 0.0);
     values[1] = std::clamp(humidity, 0.0, 1.0);
   }
-
- private:
-  description::ClimateSensor sensor_;
-  Mount mount_;
 };
 
 }  // namespace

@@ -5,12 +5,12 @@ namespace {
 
 /// Whether one collision touched anything in the last step, and how hard it was pressed: the sum of the normal impulses
 /// of its contact points, over the duration of the step.
-class ContactSensor final : public Sensor {
+class ContactSensor final : public SensorOf<description::ContactSensor> {
  public:
-  ContactSensor(const description::ContactSensor& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    return {{sensor_.name + "/0/touching", "1", 1, 0.0, 1.0, 0.0, false},
-            {sensor_.name + "/0/force", "N", 1, 0.0, infinity, 0.0}};
+    return {{device_.name + "/0/touching", "1", 1, 0.0, 1.0, 0.0, false},
+            {device_.name + "/0/force", "N", 1, 0.0, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
     double impulse = 0.0;
@@ -28,11 +28,8 @@ class ContactSensor final : public Sensor {
  private:
   bool is_own(std::uint32_t solid) const {
     const geometry::Solid& own = mount_.world.scene().solid(solid);
-    return own.link == sensor_.link && own.collision == sensor_.collision;
+    return own.link == device_.link && own.collision == device_.collision;
   }
-
-  description::ContactSensor sensor_;
-  Mount mount_;
 };
 
 }  // namespace

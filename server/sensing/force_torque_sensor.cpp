@@ -7,18 +7,18 @@ namespace {
 /// What goes through a joint, over the last step: force, and torque about the origin of the joint, on its parent by its
 /// child or the other way round, in the axes of the child, the parent or S (SDF 1.9, <force_torque>). Zero for a planar
 /// body.
-class ForceTorqueSensor final : public Sensor {
+class ForceTorqueSensor final : public SensorOf<description::ForceTorqueSensor> {
  public:
   ForceTorqueSensor(const description::ForceTorqueSensor& sensor, const Mount& mount)
-      : sensor_(sensor), joint_(mount.joint(sensor.joint)), mount_(mount) {}
+      : SensorOf(sensor, mount), joint_(mount.joint(sensor.joint)) {}
   std::vector<Channel> channels() const override {
-    return {{sensor_.name + "/0/force", "N", 3, -infinity, infinity, 0.0},
-            {sensor_.name + "/0/torque", "N m", 3, -infinity, infinity, 0.0}};
+    return {{device_.name + "/0/force", "N", 3, -infinity, infinity, 0.0},
+            {device_.name + "/0/torque", "N m", 3, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const physics::Wrench on_child = mount_.world.joint_wrench(mount_.body, sensor_.joint);
+    const physics::Wrench on_child = mount_.world.joint_wrench(mount_.body, device_.joint);
     const Eigen::Quaterniond W_axes = axes_W().conjugate();
-    const double sign = sensor_.is_on_parent ? -1.0 : 1.0;
+    const double sign = device_.is_on_parent ? -1.0 : 1.0;
     write(Eigen::Vector3d(W_axes * (sign * on_child.force_W)), values);
     write(Eigen::Vector3d(W_axes * (sign * on_child.torque_W)), values.subspan(3));
   }
@@ -27,18 +27,16 @@ class ForceTorqueSensor final : public Sensor {
  private:
   Eigen::Quaterniond axes_W() const {
     using Frame = description::ForceTorqueSensor::Frame;
-    if (sensor_.axes == Frame::parent)
+    if (device_.axes == Frame::parent)
       return joint_.parent == description::Joint::world
                  ? Eigen::Quaterniond::Identity()
                  : mount_.world.link_pose(mount_.body, joint_.parent).orientation;
     const Eigen::Quaterniond child_W = mount_.world.link_pose(mount_.body, joint_.child).orientation;
-    if (sensor_.axes == Frame::child) return child_W;
-    return child_W * joint_.X_LJ.orientation * sensor_.X_JS.orientation;
+    if (device_.axes == Frame::child) return child_W;
+    return child_W * joint_.X_LJ.orientation * device_.X_JS.orientation;
   }
 
-  description::ForceTorqueSensor sensor_;
   description::Joint joint_;
-  Mount mount_;
 };
 
 }  // namespace

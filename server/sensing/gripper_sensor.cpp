@@ -4,12 +4,12 @@ namespace cohort::sensing {
 namespace {
 
 /// What a gripper knows of itself: its opening, whether it holds something, with what force, and its light barrier.
-class GripperSensor final : public Sensor {
+class GripperSensor final : public SensorOf<description::Gripper> {
  public:
   GripperSensor(const description::Gripper& gripper, const Mount& mount)
-      : gripper_(gripper), mount_(mount), number_(mount.grippers.of_device(mount.body, mount.device)) {}
+      : SensorOf(gripper, mount), number_(mount.grippers.of_device(mount.body, mount.device)) {}
   std::vector<Channel> channels() const override {
-    const std::string prefix = gripper_.name + "/0/";
+    const std::string prefix = device_.name + "/0/";
     return {{prefix + "opening", "1", 1, 0.0, 1.0, 0.0},
             {prefix + "gripping", "1", 1, 0.0, 1.0, 0.0, false},
             {prefix + "force", "N", 1, 0.0, infinity, 0.0},
@@ -23,8 +23,6 @@ class GripperSensor final : public Sensor {
   }
 
  private:
-  description::Gripper gripper_;
-  Mount mount_;
   std::uint32_t number_;
 };
 

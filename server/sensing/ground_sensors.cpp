@@ -5,27 +5,23 @@ namespace {
 
 /// Infrared sensors under a robot, each a ray along -z of the link. The reading is 1 - d / range for a surface at
 /// distance d, 0 if there is none within range, as over a hole (thesis, section 3.2.2).
-class GroundSensors final : public Sensor {
+class GroundSensors final : public SensorOf<description::GroundSensors> {
  public:
-  GroundSensors(const description::GroundSensors& sensors, const Mount& mount) : sensors_(sensors), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
-    for (std::size_t i = 0; i < sensors_.places_L.size(); ++i)
-      channels.push_back({sensors_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
+    for (std::size_t i = 0; i < device_.places_L.size(); ++i)
+      channels.push_back({device_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Pose X_WL = mount_.world.link_pose(mount_.body, sensors_.link);
+    const Pose X_WL = mount_.world.link_pose(mount_.body, device_.link);
     const Eigen::Vector3d down_W = X_WL.orientation * -Eigen::Vector3d::UnitZ();
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto hit = mount_.world.scene().cast_ray(X_WL * sensors_.places_L[i], down_W, sensors_.range, mount_.body);
-      values[i] = hit ? 1.0 - hit->distance / sensors_.range : 0.0;
+      const auto hit = mount_.world.scene().cast_ray(X_WL * device_.places_L[i], down_W, device_.range, mount_.body);
+      values[i] = hit ? 1.0 - hit->distance / device_.range : 0.0;
     }
   }
-
- private:
-  description::GroundSensors sensors_;
-  Mount mount_;
 };
 
 }  // namespace

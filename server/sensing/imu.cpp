@@ -7,9 +7,9 @@ namespace {
 /// Orientation and angular velocity of S, and the acceleration that a mass on springs in it measures: that of its
 /// origin, the mean over the last step, less gravity; at rest it is g upwards. The orientation is the rotation of S in
 /// its frame of reference (REP 145; SDF 1.9, <orientation_reference_frame>).
-class Imu final : public Sensor {
+class Imu final : public SensorOf<description::Imu> {
  public:
-  Imu(const description::Imu& imu, const Mount& mount) : imu_(imu), mount_(mount) {
+  Imu(const description::Imu& imu, const Mount& mount) : SensorOf(imu, mount) {
     const Eigen::Vector3d& rpy = imu.reference_rpy;
     const Eigen::Quaterniond turned = Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
                                       Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
@@ -19,25 +19,23 @@ class Imu final : public Sensor {
   }
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
-    if (imu_.has_orientation) channels.push_back({imu_.name + "/0/orientation", "1", 4, -1.0, 1.0, 0.0, false});
-    channels.push_back({imu_.name + "/0/angular_velocity", "rad/s", 3, -infinity, infinity, 0.0});
-    channels.push_back({imu_.name + "/0/linear_acceleration", "m/s^2", 3, -infinity, infinity, 0.0});
+    if (device_.has_orientation) channels.push_back({device_.name + "/0/orientation", "1", 4, -1.0, 1.0, 0.0, false});
+    channels.push_back({device_.name + "/0/angular_velocity", "rad/s", 3, -infinity, infinity, 0.0});
+    channels.push_back({device_.name + "/0/linear_acceleration", "m/s^2", 3, -infinity, infinity, 0.0});
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Eigen::Quaterniond R_WS = pose_of(imu_, mount_).orientation;
-    if (imu_.has_orientation) {
+    const Eigen::Quaterniond R_WS = pose_of(device_, mount_).orientation;
+    if (device_.has_orientation) {
       write(Eigen::Quaterniond(R_RW_ * R_WS), values);
       values = values.subspan(4);
     }
-    write(Eigen::Vector3d(R_WS.conjugate() * mount_.world.link_twist(mount_.body, imu_.link).angular_W), values);
-    write(proper_acceleration_of(imu_, mount_), values.subspan(3));
+    write(Eigen::Vector3d(R_WS.conjugate() * mount_.world.link_twist(mount_.body, device_.link).angular_W), values);
+    write(proper_acceleration_of(device_, mount_), values.subspan(3));
   }
   bool needs_record() const override { return true; }
 
  private:
-  description::Imu imu_;
-  Mount mount_;
   Eigen::Quaterniond R_RW_;  // R: the frame of reference
 };
 

@@ -10,25 +10,21 @@ namespace {
 /// How S leans, from the direction u that is up, against gravity, in S: roll = atan2(u_y, u_z) and
 /// pitch = atan2(-u_x, sqrt(u_y^2 + u_z^2)), those of the rotation yaw-pitch-roll from the world to S whatever its yaw
 /// (third row of the matrix: Diebel, "Representing attitude", 2006, section 5.6). Both are 0 where there is no gravity.
-class Inclinometer final : public Sensor {
+class Inclinometer final : public SensorOf<description::Inclinometer> {
  public:
-  Inclinometer(const description::Inclinometer& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
     constexpr double pi = std::numbers::pi;
-    return {{sensor_.name + "/0/roll", "rad", 1, -pi, pi, 0.0},
-            {sensor_.name + "/0/pitch", "rad", 1, -0.5 * pi, 0.5 * pi, 0.0}};
+    return {{device_.name + "/0/roll", "rad", 1, -pi, pi, 0.0},
+            {device_.name + "/0/pitch", "rad", 1, -0.5 * pi, 0.5 * pi, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Eigen::Vector3d up_S = pose_of(sensor_, mount_).orientation.conjugate() * -mount_.description.gravity;
+    const Eigen::Vector3d up_S = pose_of(device_, mount_).orientation.conjugate() * -mount_.description.gravity;
     values[0] = values[1] = 0.0;
     if (up_S.isZero(0.0)) return;
     values[0] = std::atan2(up_S.y(), up_S.z());
     values[1] = std::atan2(-up_S.x(), std::sqrt(up_S.y() * up_S.y() + up_S.z() * up_S.z()));
   }
-
- private:
-  description::Inclinometer sensor_;
-  Mount mount_;
 };
 
 }  // namespace

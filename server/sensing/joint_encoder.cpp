@@ -4,23 +4,19 @@ namespace cohort::sensing {
 namespace {
 
 /// Position and velocity of one joint, exact.
-class JointEncoder final : public Sensor {
+class JointEncoder final : public SensorOf<description::JointEncoder> {
  public:
-  JointEncoder(const description::JointEncoder& encoder, const Mount& mount) : encoder_(encoder), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    const description::Joint& joint = mount_.joint(encoder_.joint);
+    const description::Joint& joint = mount_.joint(device_.joint);
     const std::string unit = joint.type == description::JointType::prismatic ? "m" : "rad";
-    return {{encoder_.name + "/0/position", unit, 1, joint.axis.lower, joint.axis.upper, 0.0},
-            {encoder_.name + "/0/velocity", unit + "/s", 1, -infinity, infinity, 0.0}};
+    return {{device_.name + "/0/position", unit, 1, joint.axis.lower, joint.axis.upper, 0.0},
+            {device_.name + "/0/velocity", unit + "/s", 1, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    values[0] = mount_.world.joint_position(mount_.body, encoder_.joint);
-    values[1] = mount_.world.joint_velocity(mount_.body, encoder_.joint);
+    values[0] = mount_.world.joint_position(mount_.body, device_.joint);
+    values[1] = mount_.world.joint_velocity(mount_.body, device_.joint);
   }
-
- private:
-  description::JointEncoder encoder_;
-  Mount mount_;
 };
 
 }  // namespace

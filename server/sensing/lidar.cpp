@@ -18,11 +18,10 @@ double angle(double least, double greatest, std::size_t i, std::size_t n) {
 /// goes along (cos e cos b, cos e sin b, sin e) in S; in n columns or rows the i-th is at
 /// min + i (max - min) / (n - 1). What is nearer than the least range reads as that, and nothing within the greatest
 /// one as the greatest, which noise leaves as it is.
-class Lidar final : public Sensor {
+class Lidar final : public SensorOf<description::Lidar> {
  public:
   Lidar(const description::Lidar& lidar, const Mount& mount)
-      : lidar_(lidar),
-        mount_(mount),
+      : SensorOf(lidar, mount),
         // Noise leaves the infinite as it is, and the signal chain then brings it into the range of the channel.
         nothing_(lidar.readout.noises.empty() ? lidar.max_range : infinity) {
     for (std::size_t row = 0; row < lidar.rows; ++row) {
@@ -38,23 +37,21 @@ class Lidar final : public Sensor {
   }
   std::vector<Channel> channels() const override {
     const auto rays = static_cast<std::uint32_t>(directions_S_.size());
-    return {{lidar_.name + "/0/ranges", "m", rays, lidar_.min_range, lidar_.max_range, lidar_.max_range}};
+    return {{device_.name + "/0/ranges", "m", rays, device_.min_range, device_.max_range, device_.max_range}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Pose X_WS = pose_of(lidar_, mount_);
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(lidar_.max_range);
-    const geometry::Bounds region = is_flat_ ? geometry::bounds_of_disc(X_WS, lidar_.max_range)
+    const Pose X_WS = pose_of(device_, mount_);
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(device_.max_range);
+    const geometry::Bounds region = is_flat_ ? geometry::bounds_of_disc(X_WS, device_.max_range)
                                              : geometry::Bounds{X_WS.position - reach, X_WS.position + reach};
     const geometry::RayFan fan(mount_.world.scene(), X_WS.position, region, mount_.body);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto hit = fan.cast(X_WS.position, X_WS.orientation * directions_S_[i], lidar_.max_range);
-      values[i] = hit ? std::max(hit->distance, lidar_.min_range) : nothing_;
+      const auto hit = fan.cast(X_WS.position, X_WS.orientation * directions_S_[i], device_.max_range);
+      values[i] = hit ? std::max(hit->distance, device_.min_range) : nothing_;
     }
   }
 
  private:
-  description::Lidar lidar_;
-  Mount mount_;
   std::vector<Eigen::Vector3d> directions_S_;
   bool is_flat_ = true;  // all in the xy plane of S
   double nothing_;       // what is measured where nothing is

@@ -47,11 +47,10 @@ double arriving_light(const emission::Lamp& lamp, const Eigen::Vector3d& directi
 /// nothing from behind. The reading is the sum over the lamps times the gain, saturated. With samples, the table's
 /// readings for the lamp's distance and bearing, times what a lamp as bright gives at 1 m, take the place of distance
 /// and cosine.
-class LightSensors final : public Sensor {
+class LightSensors final : public SensorOf<description::LightSensors> {
  public:
   LightSensors(const description::LightSensors& sensors, const Mount& mount)
-      : sensors_(sensors),
-        mount_(mount),
+      : SensorOf(sensors, mount),
         lamp_view_(mount.views.get<LampView>(mount.world, mount.emitters)),
         ring_(lamp_view_.add_ring(mount.body, sensors.link, sensors.X_LS.position)) {
     if (sensors.samples) table_.emplace(sensors.samples);
@@ -62,12 +61,12 @@ class LightSensors final : public Sensor {
   }
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
-    for (std::size_t i = 0; i < sensors_.count; ++i)
-      channels.push_back({sensors_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
+    for (std::size_t i = 0; i < device_.count; ++i)
+      channels.push_back({device_.name + "/" + std::to_string(i) + "/reading", "1", 1, 0.0, 1.0, 0.0});
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Pose X_WS = pose_of(sensors_, mount_);
+    const Pose X_WS = pose_of(device_, mount_);
     std::ranges::fill(values, 0.0);
     const std::span<const std::uint32_t> lamps = mount_.emitters.lit_lamps();
     for (std::uint32_t place = 0; place < lamps.size(); ++place) {
@@ -93,14 +92,12 @@ class LightSensors final : public Sensor {
       for (std::size_t i = 0; i < values.size(); ++i)
         values[i] += arriving * std::max(0.0, direction_S.dot(directions_S_[i]));
     }
-    for (double& value : values) value = saturated(sensors_.gain * value);
+    for (double& value : values) value = saturated(device_.gain * value);
   }
   bool has_shared_view() const override { return true; }
   void ask_shared_view() override { lamp_view_.ask(ring_); }
 
  private:
-  description::LightSensors sensors_;
-  Mount mount_;
   LampView& lamp_view_;
   std::uint32_t ring_;  // number in the lamp view
   std::vector<Eigen::Vector3d> directions_S_;

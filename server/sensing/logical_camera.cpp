@@ -19,16 +19,15 @@ struct Seen {
 /// Which objects have the origin of their root link within a frustum along the x axis of S, whatever hides it: y/x and
 /// z/x there are at most tan(fov / 2), and that over the aspect ratio (as Gazebo's logical camera). The nearest ones
 /// are reported, with their poses in S; of two as near, the one with the lower index first.
-class LogicalCamera final : public Sensor {
+class LogicalCamera final : public SensorOf<description::LogicalCamera> {
  public:
   LogicalCamera(const description::LogicalCamera& camera, const Mount& mount)
-      : camera_(camera),
-        mount_(mount),
+      : SensorOf(camera, mount),
         width_(std::sin(0.5 * camera.horizontal_fov) / std::cos(0.5 * camera.horizontal_fov)),
         height_(width_ / camera.aspect_ratio) {}
   std::vector<Channel> channels() const override {
     constexpr auto size = static_cast<std::uint32_t>(capacity);
-    const std::string prefix = camera_.name + "/0/";
+    const std::string prefix = device_.name + "/0/";
     return {{prefix + "count", "1", 1, 0.0, static_cast<double>(capacity), 0.0, false},
             {prefix + "object", "1", size, -1.0, 4294967295.0, -1.0, false},
             {prefix + "position", "m", 3 * size, -infinity, infinity, 0.0, false},
@@ -36,7 +35,7 @@ class LogicalCamera final : public Sensor {
   }
   void sense(std::uint64_t, std::span<double> values) const override {
     const physics::World& world = mount_.world;
-    const Pose X_SW = pose_of(camera_, mount_).inverse();
+    const Pose X_SW = pose_of(device_, mount_).inverse();
     std::vector<Seen> seen;
     for (std::uint32_t body = 0; body < world.body_count(); ++body) {
       if (body == mount_.body || !world.is_active(body)) continue;
@@ -61,12 +60,10 @@ class LogicalCamera final : public Sensor {
 
  private:
   bool is_seen(const Eigen::Vector3d& p_S) const {
-    return p_S.x() >= camera_.near && p_S.x() <= camera_.far && std::abs(p_S.y()) <= width_ * p_S.x() &&
+    return p_S.x() >= device_.near && p_S.x() <= device_.far && std::abs(p_S.y()) <= width_ * p_S.x() &&
            std::abs(p_S.z()) <= height_ * p_S.x();
   }
 
-  description::LogicalCamera camera_;
-  Mount mount_;
   double width_;   // half of what is seen at 1 m [m]
   double height_;  // the same
 };

@@ -5,20 +5,16 @@ namespace cohort::sensing {
 namespace {
 
 /// The magnetic field of the world, which is the same everywhere, in S.
-class Magnetometer final : public Sensor {
+class Magnetometer final : public SensorOf<description::Magnetometer> {
  public:
-  Magnetometer(const description::Magnetometer& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    return {{sensor_.name + "/0/magnetic_field", "T", 3, -infinity, infinity, 0.0}};
+    return {{device_.name + "/0/magnetic_field", "T", 3, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    write(Eigen::Vector3d(pose_of(sensor_, mount_).orientation.conjugate() * mount_.description.magnetic_field),
+    write(Eigen::Vector3d(pose_of(device_, mount_).orientation.conjugate() * mount_.description.magnetic_field),
           values);
   }
-
- private:
-  description::Magnetometer sensor_;
-  Mount mount_;
 };
 
 }  // namespace

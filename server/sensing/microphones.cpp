@@ -13,27 +13,26 @@ namespace {
 /// arrives at a distance d [m] is the intensity of the source / d^2. The reading is the sum over the sources times the
 /// gain, saturated. With samples, the table's readings for the source's distance from the link's origin and its bearing
 /// from the link's x axis, times its intensity, take the place of the distance. A robot does not hear itself.
-class Microphones final : public Sensor {
+class Microphones final : public SensorOf<description::Microphones> {
  public:
-  Microphones(const description::Microphones& microphones, const Mount& mount)
-      : microphones_(microphones), mount_(mount) {
+  Microphones(const description::Microphones& microphones, const Mount& mount) : SensorOf(microphones, mount) {
     if (microphones.samples) table_.emplace(microphones.samples);
   }
   std::vector<Channel> channels() const override {
-    const auto bands = static_cast<std::uint32_t>(microphones_.bands.size());
+    const auto bands = static_cast<std::uint32_t>(device_.bands.size());
     std::vector<Channel> channels;
-    for (std::size_t i = 0; i < microphones_.places_L.size(); ++i)
-      channels.push_back({microphones_.name + "/" + std::to_string(i) + "/intensity", "1", bands, 0.0, 1.0, 0.0});
+    for (std::size_t i = 0; i < device_.places_L.size(); ++i)
+      channels.push_back({device_.name + "/" + std::to_string(i) + "/intensity", "1", bands, 0.0, 1.0, 0.0});
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
     constexpr double least_squared = 1e-6;  // [m^2]: at no distance a source would be infinitely loud
-    const Pose X_WL = mount_.world.link_pose(mount_.body, microphones_.link);
+    const Pose X_WL = mount_.world.link_pose(mount_.body, device_.link);
     std::vector<Eigen::Vector3d> places_W;
-    places_W.reserve(microphones_.places_L.size());
-    for (const Eigen::Vector3d& p_L : microphones_.places_L) places_W.push_back(X_WL * p_L);
+    places_W.reserve(device_.places_L.size());
+    for (const Eigen::Vector3d& p_L : device_.places_L) places_W.push_back(X_WL * p_L);
     std::vector<double> sampled(places_W.size());
-    const std::size_t bands = microphones_.bands.size();
+    const std::size_t bands = device_.bands.size();
     std::ranges::fill(values, 0.0);
     for (const std::uint32_t index : mount_.emitters.sounding_tones()) {
       const emission::Tone& tone = mount_.emitters.tone(index);
@@ -47,7 +46,7 @@ class Microphones final : public Sensor {
       }
       const double range_squared = tone.sound.range * tone.sound.range;
       for (std::size_t band = 0; band < bands; ++band) {
-        if (frequency < microphones_.bands[band].x() || frequency > microphones_.bands[band].y()) continue;
+        if (frequency < device_.bands[band].x() || frequency > device_.bands[band].y()) continue;
         for (std::size_t i = 0; i < places_W.size(); ++i) {
           if (table_) {
             values[i * bands + band] += sampled[i];
@@ -58,12 +57,10 @@ class Microphones final : public Sensor {
         }
       }
     }
-    for (double& value : values) value = saturated(microphones_.gain * value);
+    for (double& value : values) value = saturated(device_.gain * value);
   }
 
  private:
-  description::Microphones microphones_;
-  Mount mount_;
   std::optional<SampleTable> table_;
 };
 

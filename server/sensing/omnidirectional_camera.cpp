@@ -10,28 +10,27 @@ namespace {
 
 /// Coloured spots all round (description::OmnidirectionalCamera), as `markers_in_sight` finds them: what the s-bot's
 /// camera makes of its image in the end.
-class OmnidirectionalCamera final : public Sensor {
+class OmnidirectionalCamera final : public SensorOf<description::OmnidirectionalCamera> {
  public:
-  OmnidirectionalCamera(const description::OmnidirectionalCamera& camera, const Mount& mount)
-      : camera_(camera), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
     constexpr double pi = std::numbers::pi;
-    const auto most = static_cast<double>(camera_.capacity);
-    std::vector<Channel> channels{{camera_.name + "/0/count", "1", 1, 0.0, most, 0.0, false}};
-    for (std::size_t i = 0; i < camera_.capacity; ++i) {
-      const std::string name = camera_.name + "/" + std::to_string(i);
+    const auto most = static_cast<double>(device_.capacity);
+    std::vector<Channel> channels{{device_.name + "/0/count", "1", 1, 0.0, most, 0.0, false}};
+    for (std::size_t i = 0; i < device_.capacity; ++i) {
+      const std::string name = device_.name + "/" + std::to_string(i);
       channels.push_back({name + "/bearing", "rad", 1, -pi, pi, 0.0});
       channels.push_back({name + "/elevation", "rad", 1, -pi / 2.0, pi / 2.0, 0.0});
-      channels.push_back({name + "/distance", "m", 1, 0.0, camera_.range, 0.0});
+      channels.push_back({name + "/distance", "m", 1, 0.0, device_.range, 0.0});
       channels.push_back({name + "/color", "1", 3, 0.0, 1.0, 0.0, false});
     }
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
     std::ranges::fill(values, 0.0);
-    const Pose X_WS = pose_of(camera_, mount_);
+    const Pose X_WS = pose_of(device_, mount_);
     const std::vector<Spot> spots =
-        markers_in_sight(mount_, X_WS, {camera_.range, camera_.min_elevation, camera_.max_elevation, camera_.capacity});
+        markers_in_sight(mount_, X_WS, {device_.range, device_.min_elevation, device_.max_elevation, device_.capacity});
     std::size_t i = 0;
     values[i++] = static_cast<double>(spots.size());
     for (const Spot& spot : spots) {
@@ -41,10 +40,6 @@ class OmnidirectionalCamera final : public Sensor {
       for (const double part : mount_.emitters.marker(spot.marker).color) values[i++] = part;
     }
   }
-
- private:
-  description::OmnidirectionalCamera camera_;
-  Mount mount_;
 };
 
 }  // namespace

@@ -39,7 +39,7 @@ void paint(std::span<double> image, std::size_t pixel, const Eigen::Vector3d& co
 /// a light that is always the same and throws no shadows (Lambert's law). Markers that are in sight (markers_in_sight)
 /// are drawn over it as spots with a radius of 5 mm and their own colour, at least the pixel that they are in, the
 /// nearest last. Lamps light nothing up.
-class PanoramicCamera final : public Sensor {
+class PanoramicCamera final : public SensorOf<description::PanoramicCamera> {
  public:
   PanoramicCamera(const description::PanoramicCamera& camera, const Mount& mount);
   std::vector<Channel> channels() const override;
@@ -49,50 +49,48 @@ class PanoramicCamera final : public Sensor {
   void draw_surfaces(const Pose& X_WS, std::span<double> image) const;
   void draw_markers(const Pose& X_WS, std::span<double> image) const;
 
-  description::PanoramicCamera camera_;
-  Mount mount_;
   geometry::Panorama panorama_;
 };
 
 PanoramicCamera::PanoramicCamera(const description::PanoramicCamera& camera, const Mount& mount)
-    : camera_(camera), mount_(mount), panorama_(camera.width, elevations_of(camera)) {}
+    : SensorOf(camera, mount), panorama_(camera.width, elevations_of(camera)) {}
 
 std::vector<Channel> PanoramicCamera::channels() const {
-  const auto size = static_cast<std::uint32_t>(3 * camera_.width * camera_.height);
-  return {{camera_.name + "/0/image", "1", size, 0.0, 1.0, 0.0}};
+  const auto size = static_cast<std::uint32_t>(3 * device_.width * device_.height);
+  return {{device_.name + "/0/image", "1", size, 0.0, 1.0, 0.0}};
 }
 
 void PanoramicCamera::sense(std::uint64_t, std::span<double> values) const {
-  const Pose X_WS = pose_of(camera_, mount_);
+  const Pose X_WS = pose_of(device_, mount_);
   draw_surfaces(X_WS, values);
   draw_markers(X_WS, values);
 }
 
 void PanoramicCamera::draw_surfaces(const Pose& X_WS, std::span<double> image) const {
   const geometry::Scene& scene = mount_.world.scene();
-  std::vector<std::optional<geometry::RayHit>> hits(camera_.width * camera_.height);
-  panorama_.cast(geometry::Outlines(scene), X_WS, camera_.range, mount_.body, hits);
+  std::vector<std::optional<geometry::RayHit>> hits(device_.width * device_.height);
+  panorama_.cast(geometry::Outlines(scene), X_WS, device_.range, mount_.body, hits);
   for (std::size_t pixel = 0; pixel < hits.size(); ++pixel)
     paint(image, pixel,
           hits[pixel] ? Eigen::Vector3d(brightness(hits[pixel]->normal_W) * scene.solid(hits[pixel]->solid).color)
-                      : camera_.sky);
+                      : device_.sky);
 }
 
 void PanoramicCamera::draw_markers(const Pose& X_WS, std::span<double> image) const {
   const std::vector<Spot> spots = markers_in_sight(
       mount_, X_WS,
-      {camera_.range, camera_.min_elevation, camera_.max_elevation, std::numeric_limits<std::size_t>::max()});
-  const auto width = static_cast<std::int64_t>(camera_.width);
-  const auto height = static_cast<std::int64_t>(camera_.height);
+      {device_.range, device_.min_elevation, device_.max_elevation, std::numeric_limits<std::size_t>::max()});
+  const auto width = static_cast<std::int64_t>(device_.width);
+  const auto height = static_cast<std::int64_t>(device_.height);
   const double columns_a_radian = static_cast<double>(width) / (2.0 * pi);
-  const double rows_a_radian = static_cast<double>(height) / (camera_.max_elevation - camera_.min_elevation);
+  const double rows_a_radian = static_cast<double>(height) / (device_.max_elevation - device_.min_elevation);
   for (std::size_t i = spots.size(); i-- > 0;) {
     const Spot& spot = spots[i];
     const Eigen::Vector3d direction_S(std::cos(spot.elevation) * std::cos(spot.bearing),
                                       std::cos(spot.elevation) * std::sin(spot.bearing), std::sin(spot.elevation));
     const std::int64_t column = integer_floor(spot.bearing * columns_a_radian + 0.5);
     const std::int64_t row = std::clamp<std::int64_t>(
-        integer_floor((camera_.max_elevation - spot.elevation) * rows_a_radian), 0, height - 1);
+        integer_floor((device_.max_elevation - spot.elevation) * rows_a_radian), 0, height - 1);
     const double half_angle = std::asin(std::min(1.0, spot_radius / std::max(spot.distance, spot_radius)));
     const double cosine = std::cos(half_angle);
     // Towards a pole a column is narrower.

@@ -54,7 +54,7 @@ Vector2d to_nearest_point(const geometry::Outline& outline, const Vector2d& p_W)
 ///  - samples: the readings of a table for each solid that reaches through the plane of the ring and is no ground, by
 ///    the distance of its nearest point from the middle of the ring and that point's bearing, seen from above and
 ///    through all else; the greatest counts.
-class ProximityRing final : public Sensor {
+class ProximityRing final : public SensorOf<description::ProximityRing> {
  public:
   ProximityRing(const description::ProximityRing& ring, const Mount& mount);
   std::vector<Channel> channels() const override;
@@ -70,8 +70,6 @@ class ProximityRing final : public Sensor {
   void cast_shadows(const Pose& X_WS, std::span<double> values) const;
   void look_up(const Pose& X_WS, std::span<double> values) const;
 
-  description::ProximityRing ring_;
-  Mount mount_;
   std::vector<Eigen::Vector3d> directions_S_;
   RandomStream random_;
   std::optional<geometry::ShadowRing> shadows_;
@@ -80,7 +78,7 @@ class ProximityRing final : public Sensor {
 };
 
 ProximityRing::ProximityRing(const description::ProximityRing& ring, const Mount& mount)
-    : ring_(ring), mount_(mount), random_(mount.seed, mount.robot_name(), ring.name + "/cone") {
+    : SensorOf(ring, mount), random_(mount.seed, mount.robot_name(), ring.name + "/cone") {
   for (std::size_t i = 0; i < ring.count; ++i)
     directions_S_.emplace_back(std::cos(bearing_of(i)), std::sin(bearing_of(i)), 0.0);
   const double half = 0.5 * ring.cone;
@@ -90,25 +88,25 @@ ProximityRing::ProximityRing(const description::ProximityRing& ring, const Mount
 }
 
 double ProximityRing::bearing_of(std::size_t sensor) const {
-  return ring_.first_bearing + static_cast<double>(sensor) * ring_.spacing;
+  return device_.first_bearing + static_cast<double>(sensor) * device_.spacing;
 }
 
 std::vector<Channel> ProximityRing::channels() const {
   double least = 0.0, greatest = 1.0;
   if (table_) {
-    greatest = std::max(0.0, *std::ranges::max_element(ring_.samples->readings));
-    least = std::min(0.0, *std::ranges::min_element(ring_.samples->readings));
+    greatest = std::max(0.0, *std::ranges::max_element(device_.samples->readings));
+    least = std::min(0.0, *std::ranges::min_element(device_.samples->readings));
   }
   std::vector<Channel> channels;
-  for (std::size_t i = 0; i < ring_.count; ++i)
-    channels.push_back({ring_.name + "/" + std::to_string(i) + "/reading", table_ ? ring_.samples->units[i] : "1", 1,
-                        least, greatest, 0.0});
+  for (std::size_t i = 0; i < device_.count; ++i)
+    channels.push_back({device_.name + "/" + std::to_string(i) + "/reading", table_ ? device_.samples->units[i] : "1",
+                        1, least, greatest, 0.0});
   return channels;
 }
 
 void ProximityRing::sense(std::uint64_t tick, std::span<double> values) const {
-  const Pose X_WS = pose_of(ring_, mount_);
-  switch (ring_.technique) {
+  const Pose X_WS = pose_of(device_, mount_);
+  switch (device_.technique) {
     case ProximityTechnique::ray: return cast_axes(X_WS, values);
     case ProximityTechnique::random_ray:
     case ProximityTechnique::five_rays: return cast_in_cones(tick, X_WS, values);
@@ -119,15 +117,15 @@ void ProximityRing::sense(std::uint64_t tick, std::span<double> values) const {
 
 double ProximityRing::reading(const geometry::RayFan& fan, const Pose& X_WS, std::size_t sensor,
                               const Vector3d& direction_S) const {
-  const Vector3d origin_W = X_WS.position + ring_.ring_radius * (X_WS.orientation * directions_S_[sensor]);
-  const auto hit = fan.cast(origin_W, X_WS.orientation * direction_S, ring_.range);
-  return hit ? 1.0 - hit->distance / ring_.range : 0.0;
+  const Vector3d origin_W = X_WS.position + device_.ring_radius * (X_WS.orientation * directions_S_[sensor]);
+  const auto hit = fan.cast(origin_W, X_WS.orientation * direction_S, device_.range);
+  return hit ? 1.0 - hit->distance / device_.range : 0.0;
 }
 
 void ProximityRing::cast_axes(const Pose& X_WS, std::span<double> values) const {
-  const geometry::Bounds disc = geometry::bounds_of_disc(X_WS, ring_.ring_radius + ring_.range);
+  const geometry::Bounds disc = geometry::bounds_of_disc(X_WS, device_.ring_radius + device_.range);
   const geometry::RayFan fan(mount_.world.scene(), X_WS.position, disc, mount_.body);
-  for (std::size_t i = 0; i < ring_.count; ++i) values[i] = reading(fan, X_WS, i, directions_S_[i]);
+  for (std::size_t i = 0; i < device_.count; ++i) values[i] = reading(fan, X_WS, i, directions_S_[i]);
 }
 
 // A sensor's axis, turned towards its left and upwards. [rad]
@@ -142,13 +140,13 @@ Vector3d ProximityRing::turned(std::size_t sensor, double aside, double up) cons
 
 void ProximityRing::cast_in_cones(std::uint64_t tick, const Pose& X_WS, std::span<double> values) const {
   constexpr double rounding = 1e-9;
-  const double reach = ring_.ring_radius + ring_.range + rounding;
+  const double reach = device_.ring_radius + device_.range + rounding;
   const geometry::RayFan fan(mount_.world.scene(), X_WS.position,
                              geometry::Bounds{X_WS.position, X_WS.position}.grown_by(reach), mount_.body);
-  const double half = 0.5 * ring_.cone;
+  const double half = 0.5 * device_.cone;
   const double beside = std::sqrt(5.0 / 8.0) * half;
-  for (std::size_t i = 0; i < ring_.count; ++i) {
-    if (ring_.technique == ProximityTechnique::random_ray) {
+  for (std::size_t i = 0; i < device_.count; ++i) {
+    if (device_.technique == ProximityTechnique::random_ray) {
       const auto draw = static_cast<std::uint32_t>(2 * i);
       const double angle = std::acos(1.0 - random_.uniform(tick, draw) * (1.0 - std::cos(half)));
       const double around = 2.0 * std::numbers::pi * random_.uniform(tick, draw + 1);
@@ -164,18 +162,18 @@ void ProximityRing::cast_in_cones(std::uint64_t tick, const Pose& X_WS, std::spa
 
 void ProximityRing::cast_shadows(const Pose& X_WS, std::span<double> values) const {
   std::vector<double> distances(shadow_directions);
-  shadows_->cast(mount_.world.scene(), X_WS.position, heading_of(X_WS), ring_.ring_radius + ring_.range, mount_.body,
-                 distances);
+  shadows_->cast(mount_.world.scene(), X_WS.position, heading_of(X_WS), device_.ring_radius + device_.range,
+                 mount_.body, distances);
   constexpr auto count = static_cast<std::int64_t>(shadow_directions);
   constexpr double a_radian = static_cast<double>(shadow_directions) / (2.0 * std::numbers::pi);
-  for (std::size_t i = 0; i < ring_.count; ++i) {
+  for (std::size_t i = 0; i < device_.count; ++i) {
     const std::int64_t nearest = integer_floor(bearing_of(i) * a_radian + 0.5);
     const std::int64_t first = std::min(nearest, -integer_floor(-(bearing_of(i) - shadow_width_) * a_radian));
     const std::int64_t last = std::max(nearest, integer_floor((bearing_of(i) + shadow_width_) * a_radian));
     double sum = 0.0;
     for (std::int64_t k = first; k <= last; ++k) {
-      const double distance = distances[static_cast<std::size_t>((k % count + count) % count)] - ring_.ring_radius;
-      sum += std::clamp(1.0 - distance / ring_.range, 0.0, 1.0);
+      const double distance = distances[static_cast<std::size_t>((k % count + count) % count)] - device_.ring_radius;
+      sum += std::clamp(1.0 - distance / device_.range, 0.0, 1.0);
     }
     values[i] = sum / static_cast<double>(last - first + 1);
   }

@@ -4,10 +4,21 @@
 
 #include "server/sensing/sensor.hpp"
 
-/// The register of sensors, by what a model says of them: each stands in a file of its own, and a new kind is one more
-/// line here.
 namespace cohort::sensing {
 
+/// What a kind of sensor builds on: a device as the model has it, and where it is mounted.
+template <class Device>
+class SensorOf : public Sensor {
+ public:
+  SensorOf(const Device& device, const Mount& mount) : device_(device), mount_(mount) {}
+
+ protected:
+  Device device_;
+  Mount mount_;
+};
+
+// The register of sensors, by what a model says of them: each stands in a file of its own, and a new kind is one more
+// line here.
 std::unique_ptr<Sensor> make_sensor(const description::Accelerometer& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::AirPressureSensor& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::Altimeter& altimeter, const Mount& mount);

@@ -4,20 +4,16 @@ namespace cohort::sensing {
 namespace {
 
 /// What the motor of a joint gave over the last step.
-class TorqueSensor final : public Sensor {
+class TorqueSensor final : public SensorOf<description::TorqueSensor> {
  public:
-  TorqueSensor(const description::TorqueSensor& sensor, const Mount& mount) : sensor_(sensor), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
-    const bool slides = mount_.joint(sensor_.joint).type == description::JointType::prismatic;
-    return {{sensor_.name + (slides ? "/0/force" : "/0/torque"), slides ? "N" : "N m", 1, -infinity, infinity, 0.0}};
+    const bool slides = mount_.joint(device_.joint).type == description::JointType::prismatic;
+    return {{device_.name + (slides ? "/0/force" : "/0/torque"), slides ? "N" : "N m", 1, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    values[0] = mount_.world.joint_effort(mount_.body, sensor_.joint);
+    values[0] = mount_.world.joint_effort(mount_.body, device_.joint);
   }
-
- private:
-  description::TorqueSensor sensor_;
-  Mount mount_;
 };
 
 }  // namespace

@@ -7,18 +7,18 @@ namespace cohort::sensing {
 namespace {
 
 /// The force of a joint's child on its parent over the last step, in the xy plane of the parent (thesis, section 1.1).
-class TractionSensor final : public Sensor {
+class TractionSensor final : public SensorOf<description::TractionSensor> {
  public:
   TractionSensor(const description::TractionSensor& sensor, const Mount& mount)
-      : sensor_(sensor), parent_(mount.joint(sensor.joint).parent), mount_(mount) {}
+      : SensorOf(sensor, mount), parent_(mount.joint(sensor.joint).parent) {}
   std::vector<Channel> channels() const override {
-    const std::string prefix = sensor_.name + "/0/";
+    const std::string prefix = device_.name + "/0/";
     return {{prefix + "direction", "rad", 1, -std::numbers::pi, std::numbers::pi, 0.0},
             {prefix + "intensity", "N", 1, 0.0, infinity, 0.0},
             {prefix + "force", "N", 2, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Eigen::Vector3d on_parent_W = -mount_.world.joint_wrench(mount_.body, sensor_.joint).force_W;
+    const Eigen::Vector3d on_parent_W = -mount_.world.joint_wrench(mount_.body, device_.joint).force_W;
     Eigen::Vector3d force = on_parent_W;
     if (parent_ != description::Joint::world)
       force = mount_.world.link_pose(mount_.body, parent_).orientation.conjugate() * on_parent_W;
@@ -30,9 +30,7 @@ class TractionSensor final : public Sensor {
   bool needs_record() const override { return true; }
 
  private:
-  description::TractionSensor sensor_;
   std::size_t parent_;  // link
-  Mount mount_;
 };
 
 }  // namespace

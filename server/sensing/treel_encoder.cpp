@@ -5,29 +5,25 @@ namespace {
 
 /// Way and velocity of both tracks of a treel drive, exact. A track that slips counts its own motion, as an encoder on
 /// its motor does.
-class TreelEncoder final : public Sensor {
+class TreelEncoder final : public SensorOf<description::TreelEncoder> {
  public:
-  TreelEncoder(const description::TreelEncoder& encoder, const Mount& mount) : encoder_(encoder), mount_(mount) {}
+  using SensorOf::SensorOf;
   std::vector<Channel> channels() const override {
     std::vector<Channel> channels;
     for (const char* side : {"/left", "/right"}) {
-      channels.push_back({encoder_.name + side + "/position", "m", 1, -infinity, infinity, 0.0});
-      channels.push_back({encoder_.name + side + "/velocity", "m/s", 1, -infinity, infinity, 0.0});
+      channels.push_back({device_.name + side + "/position", "m", 1, -infinity, infinity, 0.0});
+      channels.push_back({device_.name + side + "/velocity", "m/s", 1, -infinity, infinity, 0.0});
     }
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
     std::size_t i = 0;
     for (const physics::Side side : {physics::Side::left, physics::Side::right}) {
-      const physics::TrackState track = mount_.world.track(mount_.body, encoder_.drive, side);
+      const physics::TrackState track = mount_.world.track(mount_.body, device_.drive, side);
       values[i++] = track.position;
       values[i++] = track.velocity;
     }
   }
-
- private:
-  description::TreelEncoder encoder_;
-  Mount mount_;
 };
 
 }  // namespace

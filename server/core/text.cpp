@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numeric>
 
 namespace cohort {
 namespace {
@@ -44,21 +43,6 @@ std::optional<double> parse_real(std::string_view text) {
 }
 
 std::optional<std::uint64_t> parse_whole(std::string_view text) { return parse<std::uint64_t>(trimmed(text)); }
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);  // of the table, one at a time
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
 
 std::optional<std::string> nearest(std::string_view unknown, const std::vector<std::string>& known) {
   const std::size_t slip = std::max<std::size_t>(2, unknown.size() / 3);

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "client_sdk/text/edit_distance.hpp"
+
 /// Reading what a person typed: whole and strict, and the same in every locale.
 namespace cohort {
 
@@ -21,9 +23,6 @@ std::optional<double> parse_real(std::string_view text);
 
 /// A non-negative whole number of at most 64 bits.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
-
-/// How many letters are to be added, removed or replaced to get from one to the other (Levenshtein).
-std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The known name that an unknown one is a slip away from, or nothing.
 std::optional<std::string> nearest(std::string_view unknown, const std::vector<std::string>& known);

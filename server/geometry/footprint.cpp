@@ -4,36 +4,17 @@
 #include <cmath>
 #include <limits>
 
+#include "server/geometry/convex_hull_2d.hpp"
+
 namespace cohort::geometry {
 namespace {
 
 // Below this a direction in the plane is rounding.
 constexpr double negligible = 1e-9;
 
-// Counter-clockwise corners of the convex hull (Andrew's monotone chain).
-std::vector<Eigen::Vector2d> hull_of(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  std::vector<Eigen::Vector2d> hull;
-  const auto add = [&](const Eigen::Vector2d& point, std::size_t least) {
-    const auto turns_left = [&] {
-      const Eigen::Vector2d along = hull.back() - hull[hull.size() - 2];
-      const Eigen::Vector2d onward = point - hull.back();
-      return along.x() * onward.y() - along.y() * onward.x() > 0.0;
-    };
-    while (hull.size() > least && !turns_left()) hull.pop_back();
-    hull.push_back(point);
-  };
-  for (const Eigen::Vector2d& point : points) add(point, 1);
-  const std::size_t lower = hull.size();
-  for (auto point = points.rbegin() + 1; point != points.rend(); ++point) add(*point, lower);
-  return hull;
-}
-
 // The rectangle of the least area around points: it has an edge along one of their convex hull.
 Footprint least_rectangle(const std::vector<Eigen::Vector2d>& points) {
-  const std::vector<Eigen::Vector2d> hull = hull_of(points);
+  const std::vector<Eigen::Vector2d> hull = convex_hull_2d(points);
   Footprint least;
   double least_area = std::numeric_limits<double>::infinity();
   const auto try_axis = [&](const Eigen::Vector2d& axis) {
@@ -54,8 +35,9 @@ Footprint least_rectangle(const std::vector<Eigen::Vector2d>& points) {
     }
   };
   try_axis(Eigen::Vector2d::UnitX());
-  for (std::size_t i = 1; i < hull.size(); ++i)
-    if (const Eigen::Vector2d edge = hull[i] - hull[i - 1]; edge.norm() > negligible) try_axis(edge.normalized());
+  for (std::size_t i = 0; i < hull.size(); ++i)
+    if (const Eigen::Vector2d edge = hull[(i + 1) % hull.size()] - hull[i]; edge.norm() > negligible)
+      try_axis(edge.normalized());
   return least;
 }
 
@@ -173,7 +155,9 @@ Eigen::Vector2d Footprint::half_extent() const {
          Eigen::Vector2d::Constant(radius);
 }
 
-std::optional<Footprint> footprint_of(const description::Shape& shape, const Pose& X_WC) { return std::visit(Shadow{X_WC}, shape); }
+std::optional<Footprint> footprint_of(const description::Shape& shape, const Pose& X_WC) {
+  return std::visit(Shadow{X_WC}, shape);
+}
 
 std::vector<Footprint> footprints_of(const description::Model& model, const Pose& X_WM) {
   std::vector<Footprint> footprints;

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "server/geometry/convex_hull_2d.hpp"
 #include "tools/drawing/outline.hpp"
 #include "tools/drawing/plot_view.hpp"
 #include "tools/drawing/svg.hpp"
@@ -158,7 +159,8 @@ class Drawing {
     // Rounded as they are written: corners above each other are then one.
     for (const Vector2d& corner_V : outline.corners_V)
       points.push_back((100.0 * view_(corner_V)).array().round() / 100.0);
-    fmt::format_to(out_, "<polygon points=\"{}\"/>\n", svg::polygon_points(svg::convex_hull(std::move(points))));
+    fmt::format_to(out_, "<polygon points=\"{}\"/>\n",
+                   svg::polygon_points(geometry::convex_hull_2d(std::move(points))));
   }
 
   bool is_from_the_side() const { return trace_.viewpoint == Viewpoint::side; }

@@ -135,31 +135,6 @@ Points simplified(const Points& points, double tolerance) {
   return result;
 }
 
-Points convex_hull(Points points) {
-  const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
-  };
-  std::sort(points.begin(), points.end(), before);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  // Andrew's monotone chain: one side there, the other one back.
-  Points hull;
-  const auto add = [&](const Eigen::Vector2d& point, std::size_t fixed) {
-    while (hull.size() > fixed) {
-      const Eigen::Vector2d last = hull.back() - hull[hull.size() - 2];
-      const Eigen::Vector2d next = point - hull.back();
-      if (last.x() * next.y() - last.y() * next.x() > 0.0) break;
-      hull.pop_back();
-    }
-    hull.push_back(point);
-  };
-  for (const Eigen::Vector2d& point : points) add(point, 1);
-  const std::size_t there = hull.size();
-  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], there);
-  hull.pop_back();
-  return hull;
-}
-
 std::string oklch(double lightness, double chroma, double hue) {
   constexpr double chroma_step = 0.002;
   std::optional<std::array<double, 3>> colour;

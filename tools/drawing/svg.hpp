@@ -28,9 +28,6 @@ std::string polygon_points(const Points& points);
 /// Cartographica 10(2), 1973).
 Points simplified(const Points& points, double tolerance);
 
-/// Corners of the convex hull of `points`, in order.
-Points convex_hull(Points points);
-
 /// `#rrggbb` of a colour in OKLCH, its chroma lowered as far as sRGB requires. Hue in turns (B. Ottosson, "A perceptual
 /// color space for image processing", 2020).
 std::string oklch(double lightness, double chroma, double hue);

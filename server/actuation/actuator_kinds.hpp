@@ -8,6 +8,17 @@
 /// more line here.
 namespace cohort::actuation {
 
+/// What a kind of actuator builds on: a device as the model has it, and where it is mounted.
+template <class Device>
+class ActuatorOf : public Actuator {
+ public:
+  ActuatorOf(const Device& device, const Mount& mount) : device_(device), mount_(mount) {}
+
+ protected:
+  Device device_;
+  Mount mount_;
+};
+
 std::unique_ptr<Actuator> make_actuator(const description::EffortMotor& motor, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::Gripper& gripper, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::LedRing& leds, const Mount& mount);

@@ -13,13 +13,13 @@ using description::Box;
 using description::Capsule;
 using description::Cylinder;
 using description::Ellipsoid;
-using geometry::Footprint;
 using description::Heightmap;
 using description::Mesh;
 using description::Plane;
 using description::Sphere;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using geometry::Footprint;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double most_lean = 0.25;  // sine of the angle

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "server/recording/mcap/disk_file.hpp"
 #include "server/recording/facts.hpp"
+#include "server/recording/mcap/disk_file.hpp"
 
 namespace cohort::recording {
 namespace {

@@ -27,7 +27,7 @@ std::uint64_t whole_ticks(std::chrono::nanoseconds time, std::chrono::nanosecond
 }  // namespace
 
 SignalChain::SignalChain(const description::Readout& readout, std::vector<Channel> channels, std::uint64_t seed,
-                 const std::string& robot, const std::string& device, std::chrono::nanoseconds step)
+                         const std::string& robot, const std::string& device, std::chrono::nanoseconds step)
     : readout_(readout), random_(seed, robot, device) {
   for (const Channel& channel : channels) {
     for (std::uint32_t i = 0; i < channel.size; ++i) {

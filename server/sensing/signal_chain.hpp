@@ -20,7 +20,7 @@ class SignalChain {
  public:
   /// `robot`: scoped name.
   SignalChain(const description::Readout& readout, std::vector<Channel> channels, std::uint64_t seed,
-          const std::string& robot, const std::string& device, std::chrono::nanoseconds step);
+              const std::string& robot, const std::string& device, std::chrono::nanoseconds step);
 
   /// Whether readings are as old as the tick and need no memory; then `disturb` is all that there is to it.
   bool is_immediate() const { return is_immediate_; }

@@ -40,8 +40,7 @@ std::vector<std::string> names_in_world(const Objects& objects) {
 std::uint32_t find_object(const std::string& name, const ActionScope& scope) {
   check_name(name, "the name of the object");
   const std::optional<std::uint32_t> object = scope.objects.find(name);
-  if (!object)
-    refuse("there is no object " + quoted(name) + suggestion(name, names_in_world(scope.objects)));
+  if (!object) refuse("there is no object " + quoted(name) + suggestion(name, names_in_world(scope.objects)));
   if (!scope.objects.is_present(*object)) refuse(quoted(name) + " is not in the world");
   return *object;
 }
@@ -118,8 +117,7 @@ std::optional<std::pair<std::uint32_t, std::size_t>> find_light(const std::strin
       if (model.emitters[light].name == wanted) return std::pair{*object, light};
       names.push_back(model.emitters[light].name);
     }
-    refuse(quoted(scope.objects.name(*object)) + " has no light " + quoted(wanted) +
-           suggestion(wanted, names));
+    refuse(quoted(scope.objects.name(*object)) + " has no light " + quoted(wanted) + suggestion(wanted, names));
   }
   return std::nullopt;
 }
@@ -150,8 +148,7 @@ description::Event event_of_kind(const SetLight& set, const ActionScope& scope) 
   if (!scope.objects.find(set.name)) {
     const auto light = find_light(set.name, scope);
     if (!light)
-      refuse("there is no light or object " + quoted(set.name) +
-             suggestion(set.name, names_of_lights(scope)));
+      refuse("there is no light or object " + quoted(set.name) + suggestion(set.name, names_of_lights(scope)));
     object = scope.objects.name(light->first);
     effect.emitters.push_back(light->second);
   }

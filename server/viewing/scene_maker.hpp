@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/viewing/scene_messages.hpp"
 #include "server/simulation/simulation.hpp"
+#include "server/viewing/scene_messages.hpp"
 
 namespace cohort::viewing {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/viewing/scene_messages.hpp"
 #include "server/simulation/simulation.hpp"
+#include "server/viewing/scene_messages.hpp"
 
 namespace cohort::viewing {
 

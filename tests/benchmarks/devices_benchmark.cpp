@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
-#include "server/physics/make_world.hpp"
 #include "server/core/random.hpp"
+#include "server/physics/make_world.hpp"
 #include "server/sensing/sensor.hpp"
 #include "tests/support/robots.hpp"
 

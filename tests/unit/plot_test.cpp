@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "tests/support/robots.hpp"
-#include "tools/drawing/outline.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/drawing/outline.hpp"
 #include "tools/drawing/svg.hpp"
 
 namespace cohort::tool {

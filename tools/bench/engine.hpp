@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "tools/bench/bench_scene.hpp"
 #include "tools/bench/driving.hpp"
 #include "tools/bench/mechanics.hpp"
-#include "tools/bench/bench_scene.hpp"
 
 namespace cohort::bench {
 

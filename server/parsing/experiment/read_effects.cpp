@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "server/description/select_robots.hpp"
 #include "server/core/text.hpp"
+#include "server/description/select_robots.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/parsing/experiment/schedule_entry.hpp"
 #include "server/description/event.hpp"
+#include "server/parsing/experiment/schedule_entry.hpp"
 
 namespace cohort::parsing {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "server/parsing/experiment/schedule_entry.hpp"
 #include "server/description/event.hpp"
+#include "server/parsing/experiment/schedule_entry.hpp"
 
 namespace cohort::parsing {
 

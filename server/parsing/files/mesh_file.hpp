@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "server/parsing/files/input_file.hpp"
 #include "server/description/shape.hpp"
+#include "server/parsing/files/input_file.hpp"
 
 namespace cohort::parsing {
 

@@ -9,9 +9,9 @@
 #include <sdf/Visual.hh>
 #include <utility>
 
-#include "server/parsing/sdf/extension_values.hpp"
 #include "server/parsing/model/mass_properties.hpp"
 #include "server/parsing/model/read_model.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "server/description/model.hpp"
+#include "server/parsing/model/shape_files.hpp"
 #include "server/parsing/sdf/sdf_report.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
-#include "server/parsing/model/shape_files.hpp"
 
 namespace cohort::parsing {
 

@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "server/parsing/sdf/extension_values.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/model/terrain.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -6,9 +6,9 @@
 #include <sdf/Element.hh>
 #include <tuple>
 
+#include "server/description/shape.hpp"
 #include "server/parsing/files/sample_file.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
-#include "server/description/shape.hpp"
 
 namespace cohort::parsing {
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <utility>
 
-#include "server/parsing/sdf/sdf_schema.hpp"
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/sdf_schema.hpp"
 
 namespace cohort::parsing {
 namespace {

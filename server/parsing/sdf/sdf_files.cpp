@@ -9,11 +9,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/core/text.hpp"
+#include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/sdf/sdf_errors.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
-#include "server/parsing/files/sdf_version.hpp"
-#include "server/core/text.hpp"
 #include "server/parsing/sdf/urdf_file.hpp"
 #include "server/parsing/sdf/yaml_sdf.hpp"
 

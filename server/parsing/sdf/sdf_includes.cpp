@@ -10,9 +10,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/core/text.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
-#include "server/core/text.hpp"
 
 namespace cohort::parsing {
 namespace {

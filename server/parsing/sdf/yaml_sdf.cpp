@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
-#include "server/parsing/sdf/sdf_schema.hpp"
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/sdf_schema.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -71,9 +71,9 @@ struct Placed {
 };
 
 /// Poses for instances of a model, upright and with a gap of at least `gap` between the bounding circle of an instance
-/// and all that is in its way: everything solid of the occupancy and the bounding circles of the others. The circle is about
-/// the model's origin, so the heading does not matter. The lowest point of the model stands on the highest ground under
-/// the circle: planes, height maps, and what is static and no higher than `level`; at `level` if there is none.
+/// and all that is in its way: everything solid of the occupancy and the bounding circles of the others. The circle is
+/// about the model's origin, so the heading does not matter. The lowest point of the model stands on the highest ground
+/// under the circle: planes, height maps, and what is static and no higher than `level`; at `level` if there is none.
 ///
 /// Random places are tried again if they are taken, a bounded number of times; given ones are left out. The draws of
 /// instance i depend on seed, name and i alone.

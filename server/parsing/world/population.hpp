@@ -5,8 +5,8 @@
 #include <string>
 
 #include "server/parsing/keys/extensions.hpp"
-#include "server/parsing/world/placement.hpp"
 #include "server/parsing/sdf/sdf_report.hpp"
+#include "server/parsing/world/placement.hpp"
 
 namespace cohort::parsing {
 

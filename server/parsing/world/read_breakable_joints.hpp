@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "server/parsing/sdf/extension_values.hpp"
 #include "server/description/world.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
 
 namespace cohort::parsing {
 

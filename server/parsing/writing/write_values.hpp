@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "server/core/pose.hpp"
-#include "server/parsing/keys/extensions.hpp"
 #include "server/description/model.hpp"
+#include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/writing/write_world.hpp"
 
 /// What writing a world as XML is made of.

@@ -3,8 +3,8 @@
 #include <set>
 #include <sstream>
 
-#include "server/parsing/sdf/sdf_schema.hpp"
 #include "server/core/text.hpp"
+#include "server/parsing/sdf/sdf_schema.hpp"
 #include "server/parsing/sdf/yaml_sdf.hpp"
 
 namespace cohort::parsing {

@@ -4,14 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "server/physics/world/anchors.hpp"
 #include "server/physics/contact/collision.hpp"
+#include "server/physics/islands/force_record.hpp"
 #include "server/physics/multibody/connections.hpp"
 #include "server/physics/multibody/contact_rows.hpp"
-#include "server/physics/islands/force_record.hpp"
 #include "server/physics/multibody/multibody.hpp"
-#include "server/physics/world/pushes.hpp"
 #include "server/physics/multibody/rows.hpp"
+#include "server/physics/world/anchors.hpp"
+#include "server/physics/world/pushes.hpp"
 
 namespace cohort::physics {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/physics/world/motion_record.hpp"
 #include "server/physics/multibody/multibody.hpp"
+#include "server/physics/world/motion_record.hpp"
 
 namespace cohort::physics {
 

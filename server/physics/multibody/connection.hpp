@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "server/physics/world/anchors.hpp"
 #include "server/physics/multibody/multibody.hpp"
 #include "server/physics/multibody/rows.hpp"
+#include "server/physics/world/anchors.hpp"
 #include "server/physics/world/physics_world.hpp"
 
 namespace cohort::physics {

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "server/description/world.hpp"
-#include "server/physics/world/anchors.hpp"
 #include "server/physics/contact/contact_point.hpp"
 #include "server/physics/multibody/rows.hpp"
+#include "server/physics/world/anchors.hpp"
 
 namespace cohort::physics {
 

@@ -4,9 +4,9 @@
 #include <limits>
 #include <vector>
 
-#include "server/physics/world/anchors.hpp"
 #include "server/physics/multibody/equations.hpp"
 #include "server/physics/multibody/lanes.hpp"
+#include "server/physics/world/anchors.hpp"
 
 namespace cohort::physics {
 

@@ -26,8 +26,7 @@ geometry::Bounds TrackRows::ground_region(const Pose& X_WS) const {
   return {centre_W - half_W, centre_W + half_W};
 }
 
-void TrackRows::find_ground(const geometry::Scene& scene, const Pose& X_WS,
-                             std::span<const std::uint32_t> candidates) {
+void TrackRows::find_ground(const geometry::Scene& scene, const Pose& X_WS, std::span<const std::uint32_t> candidates) {
   X_WL_ = X_WS * X_SL_;
   const Eigen::Matrix3d R = X_WL_.orientation.toRotationMatrix();
   const Eigen::Vector3d centre_W = X_WL_.position + drive_.ground_height * R.col(2);

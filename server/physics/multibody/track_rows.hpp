@@ -3,8 +3,8 @@
 #include <array>
 
 #include "server/description/model.hpp"
-#include "server/physics/world/anchors.hpp"
 #include "server/physics/multibody/ground.hpp"
+#include "server/physics/world/anchors.hpp"
 #include "server/physics/world/physics_world.hpp"
 
 namespace cohort::physics {

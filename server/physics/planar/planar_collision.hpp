@@ -7,9 +7,9 @@
 #include "server/core/snapshot.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/geometry/scene.hpp"
-#include "server/physics/world/anchors.hpp"
 #include "server/physics/planar/planar_contact.hpp"
 #include "server/physics/planar/planar_grid.hpp"
+#include "server/physics/world/anchors.hpp"
 
 namespace cohort::physics {
 

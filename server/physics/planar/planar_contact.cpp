@@ -7,8 +7,8 @@
 namespace cohort::physics {
 namespace {
 
-using geometry::Footprint;
 using Eigen::Vector2d;
+using geometry::Footprint;
 
 // Nearer than this two points have no direction between them [m].
 constexpr double coincident = 1e-12;

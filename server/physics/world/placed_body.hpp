@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/physics/world/anchors.hpp"
 #include "server/core/state_visitors.hpp"
+#include "server/physics/world/anchors.hpp"
 
 namespace cohort::physics {
 

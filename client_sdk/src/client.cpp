@@ -8,11 +8,11 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <random>
 #include <set>
 #include <utility>
 
 #include "client_sdk/src/frame_queue.hpp"
+#include "client_sdk/src/this_process.hpp"
 #include "idl/wire.hpp"
 
 namespace cohort {
@@ -24,25 +24,12 @@ using namespace std::chrono_literals;
 constexpr auto stop_is_polled_every = 100ms;
 constexpr auto patience_before_notice = 3s;
 constexpr auto joins_again_every = 1s;
-constexpr auto server_may_be_away = 2s;
 constexpr auto time_for_last_words = 500ms;
 // Where steps are longer, what a hand-over costs does not matter, and DDS must not stand still. A few may be long
 // because others had the processor.
 constexpr auto longest_inline_frame = 1ms;
 constexpr int most_long_frames = 8;  // in a row
 constexpr int frames_kept_by_dds = 8;
-
-std::uint64_t random_id() {
-  std::random_device device;
-  const std::uint64_t high = device();
-  return high << 32 | device();
-}
-
-std::string host_name() {
-  char name[256] = {};
-  ::gethostname(name, sizeof(name) - 1);
-  return name;
-}
 
 std::optional<wire::Identity> identity_of(const ClientOptions& options) {
   if (options.secure.empty()) return std::nullopt;

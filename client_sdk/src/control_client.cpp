@@ -6,9 +6,10 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
-#include <random>
 #include <thread>
 #include <utility>
+
+#include "client_sdk/src/this_process.hpp"
 
 namespace cohort {
 namespace {
@@ -19,19 +20,6 @@ using namespace std::chrono_literals;
 constexpr auto look_interval = 10ms;
 constexpr std::chrono::milliseconds first_interval{50};  // after which a request is asked again
 constexpr std::chrono::milliseconds longest_interval{1000};
-constexpr auto server_may_be_away = 2s;
-
-std::uint64_t random_id() {
-  std::random_device device;
-  const std::uint64_t high = device();
-  return high << 32 | device() | 1;
-}
-
-std::string host_name() {
-  char name[256] = {};
-  ::gethostname(name, sizeof(name) - 1);
-  return name;
-}
 
 std::optional<wire::Identity> identity_of(const ControlOptions& options) {
   if (options.secure.empty()) return std::nullopt;

@@ -1,6 +1,6 @@
-#include <limits>
 
 #include "server/actuation/actuator_kinds.hpp"
+#include "server/core/infinity.hpp"
 
 namespace cohort::actuation {
 namespace {
@@ -11,7 +11,6 @@ class MessageSender final : public ActuatorOf<description::RangeAndBearing> {
   MessageSender(const description::RangeAndBearing& device, const Mount& mount)
       : ActuatorOf(device, mount), beacon_(mount.emitters.of_device(mount.body, mount.device).beacon) {}
   std::vector<Channel> channels() const override {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     const auto size = static_cast<std::uint32_t>(device_.message_size);
     return {{device_.name + "/0/sending", "1", 1, 0.0, 1.0, 0.0},
             {device_.name + "/0/message", "1", size, -infinity, infinity, 0.0}};

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "server/core/infinity.hpp"
 #include "server/core/integer_floor.hpp"
 #include "server/geometry/shapes.hpp"
 
@@ -53,7 +53,6 @@ class Cells {
   /// along the ray the search may end, which may shrink from call to call.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, Visit&& visit) const {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     std::int64_t column = index_of(origin.x());
     std::int64_t row = index_of(origin.y());
     const std::int64_t step_x = direction.x() >= 0.0 ? 1 : -1;

@@ -35,7 +35,7 @@ double squared_length(const Vector& v) {
   return x * x + y * y + z * z;
 }
 
-ExactVector cross(const LatticePoint& a, const LatticePoint& b) {
+ExactVector cross_product(const LatticePoint& a, const LatticePoint& b) {
   return {Exact(a.y) * b.z - Exact(a.z) * b.y, Exact(a.z) * b.x - Exact(a.x) * b.z,
           Exact(a.x) * b.y - Exact(a.y) * b.x};
 }
@@ -82,7 +82,7 @@ class Hull {
   // > 0 if the point is outside of the plane through the corners: six times the volume that they span.
   Exact height(const std::array<Index, 3>& corners, Index point) const {
     const LatticePoint& a = points_[corners[0]];
-    const ExactVector normal = cross(points_[corners[1]] - a, points_[corners[2]] - a);
+    const ExactVector normal = cross_product(points_[corners[1]] - a, points_[corners[2]] - a);
     const LatticePoint to = points_[point] - a;
     return normal.x * to.x + normal.y * to.y + normal.z * to.z;
   }
@@ -105,8 +105,8 @@ class Hull {
   void start() {
     const Index a = furthest([&](Index i) { return squared_length(points_[i] - points_[0]); });
     Index b = furthest([&](Index i) { return squared_length(points_[i] - points_[a]); });
-    Index c =
-        furthest([&](Index i) { return squared_length(cross(points_[b] - points_[a], points_[i] - points_[a])); });
+    Index c = furthest(
+        [&](Index i) { return squared_length(cross_product(points_[b] - points_[a], points_[i] - points_[a])); });
     const Index d = furthest([&](Index i) { return std::abs(static_cast<double>(height({a, b, c}, i))); });
     if (height({a, b, c}, d) > 0) std::swap(b, c);
     faces_ = {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "server/core/plane_vectors.hpp"
 #include "server/geometry/convex_hull_2d.hpp"
 
 namespace cohort::geometry {
@@ -18,7 +19,7 @@ Footprint least_rectangle(const std::vector<Eigen::Vector2d>& points) {
   Footprint least;
   double least_area = std::numeric_limits<double>::infinity();
   const auto try_axis = [&](const Eigen::Vector2d& axis) {
-    const Eigen::Vector2d across(-axis.y(), axis.x());
+    const Eigen::Vector2d across = left_of(axis);
     Eigen::Vector2d lower = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
     Eigen::Vector2d upper = -lower;
     for (const Eigen::Vector2d& corner : hull) {
@@ -144,7 +145,7 @@ struct Shadow {
 
 double Footprint::distance(const Eigen::Vector2d& point) const {
   const Eigen::Vector2d offset = point - centre;
-  const Eigen::Vector2d across(-axis.y(), axis.x());
+  const Eigen::Vector2d across = left_of(axis);
   const Eigen::Vector2d in_axes(std::abs(axis.dot(offset)), std::abs(across.dot(offset)));
   return std::max(0.0, (in_axes - half).cwiseMax(0.0).norm() - radius);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "server/core/infinity.hpp"
 #include "server/core/integer_floor.hpp"
 
 namespace cohort::geometry {
@@ -13,8 +14,6 @@ namespace {
 using description::HeightGrid;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// One of the two triangles of a cell as the plane that it lies in.
 struct Slope {

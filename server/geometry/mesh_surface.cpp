@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "server/core/infinity.hpp"
 #include "server/geometry/convex_hull.hpp"
 
 namespace cohort::geometry {
@@ -13,7 +14,6 @@ namespace {
 using Eigen::Vector3d;
 using Triangle = std::array<std::uint32_t, 3>;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t triangles_a_leaf = 4;
 constexpr std::size_t deepest = 64;  // the tree is halved at every level
 

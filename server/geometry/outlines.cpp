@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "server/core/infinity.hpp"
 #include "server/geometry/footprint.hpp"
 
 namespace cohort::geometry {
@@ -21,7 +21,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using geometry::Footprint;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double most_lean = 0.25;  // sine of the angle
 
 struct Circumscribe {

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
+#include "server/core/infinity.hpp"
 #include "server/core/integer_floor.hpp"
+#include "server/core/plane_vectors.hpp"
+#include "server/geometry/rounding.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -18,13 +20,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double pi = std::numbers::pi;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double slack = 1e-9;  // more than the rounding of an angle [rad]
-
-// More than any rounding of lengths like this one. [m]
-double rounding_of(double length) { return 1e-7 + 1e-8 * length; }
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+constexpr double angle_slack = 1e-9;  // more than the rounding of an angle [rad]
 
 }  // namespace
 
@@ -171,8 +167,12 @@ Panorama::Panorama(std::size_t columns, std::vector<double> elevations) : elevat
 
 std::pair<std::size_t, std::size_t> Panorama::rows_between(double least, double most) const {
   const auto index = [](auto begin, auto at) { return static_cast<std::size_t>(at - begin); };
-  const auto first = [&](auto begin, auto end) { return index(begin, std::lower_bound(begin, end, least - slack)); };
-  const auto last = [&](auto begin, auto end) { return index(begin, std::upper_bound(begin, end, most + slack)); };
+  const auto first = [&](auto begin, auto end) {
+    return index(begin, std::lower_bound(begin, end, least - angle_slack));
+  };
+  const auto last = [&](auto begin, auto end) {
+    return index(begin, std::upper_bound(begin, end, most + angle_slack));
+  };
   if (ascending_) return {first(elevations_.begin(), elevations_.end()), last(elevations_.begin(), elevations_.end())};
   return {rows() - last(elevations_.rbegin(), elevations_.rend()),
           rows() - first(elevations_.rbegin(), elevations_.rend())};
@@ -189,8 +189,8 @@ std::optional<Panorama::Window> Panorama::window_of(const Scene& scene, std::uin
   const auto count = static_cast<std::int64_t>(columns());
   const double a_radian = static_cast<double>(count) / (2.0 * pi);
   // The least column that is not before the first bearing, and the greatest that is not beyond the last.
-  const std::int64_t first = -integer_floor(-(extent.first_bearing - slack) * a_radian);
-  const std::int64_t last = integer_floor((extent.last_bearing + slack) * a_radian);
+  const std::int64_t first = -integer_floor(-(extent.first_bearing - angle_slack) * a_radian);
+  const std::int64_t last = integer_floor((extent.last_bearing + angle_slack) * a_radian);
   if (last < first) return std::nullopt;
   window.first_column = static_cast<std::size_t>((first % count + count) % count);
   window.columns = static_cast<std::size_t>(std::min(last - first + 1, count));

@@ -1,14 +1,14 @@
 #include "server/geometry/scene.hpp"
 
 #include <algorithm>
-#include <limits>
+
+#include "server/core/infinity.hpp"
 
 namespace cohort::geometry {
 namespace {
 
 // A solid that touches more cells than this is kept in a list of its own: walls, floors, planes.
 constexpr double most_cells = 64.0;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

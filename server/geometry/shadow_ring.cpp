@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "server/core/infinity.hpp"
 #include "server/core/integer_floor.hpp"
+#include "server/core/plane_vectors.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -14,10 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double level = 1e-9;  // planes that lean less are ground
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 void keep(double& nearest, double distance, double range) {
   if (distance <= range) nearest = std::min(nearest, distance);
@@ -102,7 +100,7 @@ void ShadowRing::shade_by_rectangle(const Shadow& rectangle, double range, std::
   }
   if ((source.cwiseAbs() - half).cwiseMax(0.0).norm() > range) return;
   const Vector2d edge = half.x() * axis;
-  const Vector2d side = half.y() * Vector2d(-axis.y(), axis.x());
+  const Vector2d side = half.y() * left_of(axis);
   // Bearings relative to that of the centre, between which it lies: all corners are within half a turn.
   double least = 0.0;
   double most = 0.0;

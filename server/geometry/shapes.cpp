@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "server/core/infinity.hpp"
 #include "server/geometry/height_field.hpp"
 #include "server/geometry/mesh_surface.hpp"
 
@@ -19,8 +20,6 @@ using description::Mesh;
 using description::Plane;
 using description::Sphere;
 using Eigen::Vector3d;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Vector3d half_extents(const Box& box, const Eigen::Matrix3d& rotation) {
   return rotation.cwiseAbs() * (0.5 * box.size);

@@ -4,7 +4,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
+
+#include "server/core/infinity.hpp"
+#include "server/core/plane_vectors.hpp"
+#include "server/geometry/rounding.hpp"
 
 namespace cohort::geometry {
 namespace {
@@ -12,17 +15,11 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double turns = 4.0;          // that turn_of has in a full one
-constexpr double negligible = 1e-200;  // squares of lengths below this lose digits [m^2]
+constexpr double turns = 4.0;            // that turn_of has in a full one
+constexpr double least_square = 1e-200;  // squares of lengths below this lose digits [m^2]
 constexpr std::uint32_t least_bins = 16;
 constexpr std::uint32_t most_bins = 256;
 constexpr std::size_t ranks = 256;  // that distances are sorted by
-
-// More than any rounding of lengths like this one. [m]
-double rounding_of(double length) { return 1e-7 + 1e-8 * length; }
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Grows with the azimuth, from 0 along x to 4 at the full turn: the length along a square that stands on its corner,
 // which needs neither root nor arc tangent.
@@ -109,7 +106,7 @@ void SightLines::add(const Outlines::Item& item) {
   if (outline.is_round()) {
     candidate.nearest = distance - candidate.radius;
     const double tangent = std::sqrt(std::max(0.0, squared - candidate.radius * candidate.radius));
-    const Vector2d turned = candidate.radius * Vector2d(-centre.y(), centre.x());
+    const Vector2d turned = candidate.radius * left_of(centre);
     rightmost = tangent * centre - turned;
     leftmost = tangent * centre + turned;
   } else {
@@ -120,7 +117,7 @@ void SightLines::add(const Outlines::Item& item) {
     candidate.rectangle = static_cast<std::uint32_t>(rectangles_.size());
     rectangles_.push_back({axis, half, source});
     const Vector2d edge = half.x() * axis;
-    const Vector2d side = half.y() * Vector2d(-axis.y(), axis.x());
+    const Vector2d side = half.y() * left_of(axis);
     rightmost = leftmost = centre - edge - side;
     for (const Vector2d& corner :
          {Vector2d(centre + edge - side), Vector2d(centre + edge + side), Vector2d(centre - edge + side)}) {
@@ -268,7 +265,7 @@ bool SightLines::is_free(const Vector3d& p_WR, std::uint32_t receiver_body) cons
   const double squared = level_squared + line.offset_W.z() * line.offset_W.z();
   if (squared == 0.0) return true;
   if (!is_within_range(line.offset_W, squared)) return false;
-  line.length = level_squared < negligible ? 0.0 : std::sqrt(level_squared);
+  line.length = level_squared < least_square ? 0.0 : std::sqrt(level_squared);
   line.receiver_body = receiver_body;
   const double inverse = 1.0 / line.length;
   line.along = inverse * line.offset_W.head<2>();

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "server/core/integer_floor.hpp"
+#include "server/core/plane_vectors.hpp"
 #include "server/core/random.hpp"
 #include "server/geometry/outlines.hpp"
 #include "server/geometry/ray_fan.hpp"
@@ -34,7 +35,7 @@ Vector2d to_nearest_point(const geometry::Outline& outline, const Vector2d& p_W)
     return distance > outline.radius ? Vector2d(offset * ((distance - outline.radius) / distance)) : Vector2d(0.0, 0.0);
   }
   const Vector2d& axis = outline.axis_W;
-  const Vector2d side(-axis.y(), axis.x());
+  const Vector2d side = left_of(axis);
   const auto gap = [](double along, double half) { return along - std::clamp(along, -half, half); };
   return gap(axis.dot(offset), outline.half.x()) * axis + gap(side.dot(offset), outline.half.y()) * side;
 }

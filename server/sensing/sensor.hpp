@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "server/core/channel.hpp"
 #include "server/core/hash.hpp"
+#include "server/core/infinity.hpp"
 #include "server/core/snapshot.hpp"
 #include "server/description/world.hpp"
 #include "server/emission/emitters.hpp"
@@ -20,7 +20,6 @@
 namespace cohort::sensing {
 
 /// As a bound: a channel has none.
-inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Where a sensor is mounted, and what it senses. All that it refers to must outlive the sensor.
 struct Mount {

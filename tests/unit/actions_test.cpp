@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 
+#include "server/core/infinity.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/small_world.hpp"
 
@@ -19,8 +19,6 @@ using testing::solid_box;
 using testing::static_shape;
 using testing::tracked_robot;
 using testing::world_with_floor;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const std::string crate_sdf = R"(<sdf version="1.9" xmlns:cohort="https://cohort-sim.org/sdf/1"><model name="crate">
 <link name="body">

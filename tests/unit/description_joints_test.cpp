@@ -1,13 +1,11 @@
 #include <cmath>
-#include <limits>
 
+#include "server/core/infinity.hpp"
 #include "tests/support/written_worlds.hpp"
 
 // Joints, and the devices that name them.
 namespace cohort::description {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string model(const std::string& content) { return "<model name=\"m\">" + content + "</model>"; }
 std::string universal(const std::string& second) {

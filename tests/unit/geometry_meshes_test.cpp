@@ -4,6 +4,7 @@
 #include <memory>
 #include <numbers>
 
+#include "server/core/infinity.hpp"
 #include "server/core/random.hpp"
 #include "server/geometry/convex_hull.hpp"
 #include "server/geometry/mesh_surface.hpp"
@@ -18,8 +19,6 @@ using description::Heightmap;
 using description::Mesh;
 using description::TriangleMesh;
 using Eigen::Vector3d;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Vector3d random_vector(const RandomStream& random, std::uint64_t n, double half_width) {
   return {half_width * (2 * random.uniform(n, 0) - 1), half_width * (2 * random.uniform(n, 1) - 1),

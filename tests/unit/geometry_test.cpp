@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "server/core/infinity.hpp"
 #include "server/core/random.hpp"
 #include "server/geometry/ray_fan.hpp"
 #include "server/geometry/scene.hpp"
@@ -220,7 +221,6 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
 }
 
 TEST_F(RandomScene, CastsRaysWithoutEndAsLongOnes) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   int hits = 0, misses = 0;
   for (std::uint64_t n = 0; n < 300; ++n) {
     const Vector3d origin = random_vector(random, n + 30'000, 3.0);
@@ -269,7 +269,6 @@ TEST(Scene, SaysWhatIsRemoved) {
   const std::uint32_t ball = scene.add({description::Sphere{0.1}, {}, 0, true, {{1, 0, 0}}});
   const std::uint32_t wall = scene.add({description::Box{{0.1, 1, 1}}, {}, 1, false, {{2, 0, 0}}});
   scene.build();
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const std::uint32_t solid : {ball, wall}) {
     scene.remove(solid);
     EXPECT_TRUE(scene.is_removed(solid));

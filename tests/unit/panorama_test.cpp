@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "server/core/infinity.hpp"
 #include "tests/support/random_scene.hpp"
 
 namespace cohort::geometry {
@@ -15,7 +15,6 @@ namespace {
 using Eigen::Vector3d;
 using Image = std::vector<std::optional<RayHit>>;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
 std::vector<double> even_elevations(std::size_t rows, double least, double most) {

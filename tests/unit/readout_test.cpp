@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "server/core/infinity.hpp"
 #include "server/sensing/signal_chain.hpp"
 
 /// What lies between measurement and report, apart from any world.
@@ -11,7 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t samples = 20'000;
 
 SignalChain readout_of(const description::Readout& readout, double lower = -infinity, double upper = infinity,

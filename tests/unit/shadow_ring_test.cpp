@@ -3,18 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
+#include "server/core/infinity.hpp"
 #include "tests/support/random_scene.hpp"
 
 namespace cohort::geometry {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::vector<double> shadows(const Scene& scene, const Vector3d& p_WR, double heading = 0.0, double range = 10.0,
                             std::uint32_t ignored_body = Scene::no_body, std::size_t directions = 360) {

@@ -3,16 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "server/core/infinity.hpp"
 #include "tests/support/random_scene.hpp"
 
 namespace cohort::geometry {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Scene scene_of(const Shape& shape, const Pose& X_WC) {
   Scene scene;

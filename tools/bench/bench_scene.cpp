@@ -9,7 +9,6 @@ namespace cohort::bench {
 namespace {
 
 constexpr double covered = 0.17;     // share of the arena's floor
-constexpr double gap = 0.002;        // between a robot and the border of its cell, at the least
 constexpr double spread_cell = 2.0;  // two robots at 0.2 m/s meet after 4.7 s at the earliest
 
 }  // namespace

@@ -8,6 +8,9 @@
 /// forward.
 namespace cohort::bench {
 
+/// Between what stands in a cell and its border, at the least. [m]
+inline constexpr double gap = 0.002;
+
 /// A rigid body with the inertia of a solid cylinder about the vertical axis.
 struct CylinderBody {
   double mass = 0.0;    // [kg]

@@ -28,7 +28,7 @@ constexpr int turret_body = 4;  // of the first robot
 
 using Output = std::back_insert_iterator<std::string>;
 
-std::string inertial(const CylinderBody& body, double z) {
+std::string inertial_xml(const CylinderBody& body, double z) {
   const double across = body.mass * (3.0 * body.radius * body.radius + body.height * body.height) / 12.0;
   const double along = body.mass * body.radius * body.radius / 2.0;
   return fmt::format(R"(<inertial pos="0 0 {}" mass="{}" diaginertia="{} {} {}"/>)", z, body.mass, across, across,
@@ -101,7 +101,7 @@ class ModelText {
     const Placement& at = scene_.robots[i];
     const CylinderBody chassis = robot.chassis_without_wheels();
     fmt::format_to(out_, R"(<body pos="{} {} 0" euler="0 0 {}"><freejoint/>)", at.x, at.y, at.yaw);
-    text_ += inertial(chassis, chassis.z);
+    text_ += inertial_xml(chassis, chassis.z);
     add_cylinder(robot.hull_radius, robot.hull_height, robot.hull_z);
     for (const double x : {-robot.caster_x, robot.caster_x})
       fmt::format_to(
@@ -111,7 +111,7 @@ class ModelText {
     add_wheel("right", i, -robot.half_gauge);
     fmt::format_to(out_, R"(<body name="turret{}" pos="0 0 {}"><joint name="turret{}" axis="0 0 1" damping="{}"/>)", i,
                    robot.turret_joint_height, i, damping(robot.max_turret_torque, robot.max_turret_rate));
-    text_ += inertial(robot.turret, robot.turret.z - robot.turret_joint_height);
+    text_ += inertial_xml(robot.turret, robot.turret.z - robot.turret_joint_height);
     add_cylinder(robot.turret.radius, robot.turret.height, robot.turret.z - robot.turret_joint_height);
     text_ += "</body></body>";
   }

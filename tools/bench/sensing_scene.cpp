@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/core/random.hpp"
+#include "tools/bench/bench_scene.hpp"
 
 namespace cohort::bench {
 namespace {
@@ -13,7 +14,6 @@ constexpr std::uint32_t least_arena = 64;  // robots that the smallest arena is 
 constexpr std::uint32_t things = 24;       // obstacles or sources in it
 constexpr double area_a_robot = 0.1;       // [m^2]
 constexpr double widest = 0.071;           // half of the diagonal of a box [m]
-constexpr double gap = 0.002;              // between a thing and the border of its cell, at the least [m]
 
 // Places for robots first, then for other things; all at random.
 std::vector<Placement> places(std::uint32_t robots, std::uint32_t others, double side, std::uint64_t seed) {

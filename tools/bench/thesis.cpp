@@ -70,7 +70,6 @@ ThesisCell measure_cell(const Column& column, Scene scene, const ThesisOptions& 
 // Room for each robot, on a plane without walls; where only we go, ours alone.
 constexpr double room = 0.25;
 constexpr double freedom = 0.05;
-constexpr std::uint32_t last_of_ode = 1000;
 
 Scene random_scene(std::uint32_t robots, std::uint64_t seed) {
   Scene scene;

@@ -13,6 +13,9 @@
 /// in Cohort and in ODE, the engine of the thesis, side by side.
 namespace cohort::bench {
 
+/// With more robots only Cohort goes on.
+inline constexpr std::uint32_t last_of_ode = 1000;
+
 struct ThesisOptions {
   double seconds = 100.0;  ///< simulated, of each cell
   double budget = 2.0;     ///< CPU time that a cell may take before the rest is extrapolated [s]

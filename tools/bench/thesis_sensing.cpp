@@ -15,7 +15,6 @@ using description::ProximityTechnique;
 
 constexpr unsigned repetitions = 5;   // with a seed each
 constexpr double thesis_frame = 0.1;  // [s]
-constexpr std::uint32_t last_of_ode = 1000;
 constexpr std::uint32_t swarm = 1000;
 constexpr std::size_t both = 2;  // the column of table 5.4 with light and sound
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <variant>
 
+#include "server/core/infinity.hpp"
 #include "server/geometry/footprint.hpp"
 
 namespace cohort::tool {
@@ -77,7 +77,6 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
 
   const Scene& scene = simulation.world().scene();
   // Without robots nothing is a floor.
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   double lowest_robot = world.robots.empty() ? -infinity : infinity;
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);

@@ -8,7 +8,6 @@
 namespace cohort::figures {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double depth = 0.015;
 constexpr double jaw_height = 0.02;  // in the turret [m]
 constexpr double closing_time = 0.5;

@@ -10,8 +10,6 @@ namespace {
 
 constexpr double sensor_height = 0.042;  // in the turret [m]
 constexpr double z = turret_height + sensor_height;
-constexpr double degree = std::numbers::pi / 180.0;
-constexpr double exact = 1e-9;
 
 // Thesis, section 3.2.3 and figure 3.2.
 double saturated(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }

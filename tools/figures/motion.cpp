@@ -9,7 +9,6 @@ namespace cohort::figures {
 namespace {
 
 constexpr double g = 9.81;  // [m/s^2]
-constexpr double degree = std::numbers::pi / 180.0;
 
 // Of the tracked robot; both tracks push with torque / radius until the speed is there.
 constexpr double mass = 0.7;                 // [kg]

@@ -14,8 +14,6 @@ using description::ProximityTechnique;
 constexpr double range = 0.2;                          // thesis, section 3.2.1 [m]
 constexpr double cone = 2.0 / 9.0 * std::numbers::pi;  // 40 degrees, the same
 constexpr double ring_height = turret_height + 0.02;
-constexpr double exact = 1e-9;
-constexpr double degree = std::numbers::pi / 180.0;
 
 description::ProximityRing ring_of(ProximityTechnique technique) {
   description::ProximityRing ring;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "server/simulation/simulation.hpp"
 
 namespace cohort::figures {
+
+inline constexpr double degree = std::numbers::pi / 180.0;
+inline constexpr double exact = 1e-9;  ///< tolerance of what is computed in closed form
 
 Pose at(double x, double y, double z, double yaw = 0.0);
 /// Leaning forwards by `pitch` [rad].

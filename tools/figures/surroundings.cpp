@@ -8,10 +8,8 @@
 namespace cohort::figures {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double eye = 0.02;  // in the turret [m]
 constexpr double eye_height = turret_height + eye;
-constexpr double exact = 1e-9;
 
 struct Air {
   double air;

@@ -210,7 +210,7 @@ void Children::read_output(Child& child) {
   char buffer[4096];
   constexpr int at_once = 16;  // as much as a pipe holds: a child that never stops must not keep us from the others
   for (int i = 0; i < at_once; ++i) {
-    const ssize_t size = read(child.output, buffer, sizeof buffer);
+    const ssize_t size = ::read(child.output, buffer, sizeof buffer);
     if (size == 0) return close_if_open(child.output);
     if (size < 0) return;
     child.line.append(buffer, static_cast<std::size_t>(size));

@@ -44,7 +44,7 @@ void read_both(const Pipe& out, const Pipe& err, ProgramResult& result) {
     for (std::size_t i = 0; i < watched.size(); ++i) {
       if (watched[i].fd < 0 || watched[i].revents == 0) continue;
       std::array<char, 4096> buffer{};
-      const ssize_t count = read(watched[i].fd, buffer.data(), buffer.size());
+      const ssize_t count = ::read(watched[i].fd, buffer.data(), buffer.size());
       if (count > 0) texts[i]->append(buffer.data(), static_cast<std::size_t>(count));
       if (count == 0 || (count < 0 && errno != EINTR)) watched[i].fd = -1;
     }

@@ -13,6 +13,7 @@
 #include "server/description/select_robots.hpp"
 #include "server/parsing/experiment/read_schedule.hpp"
 #include "server/parsing/files/input_file.hpp"
+#include "server/parsing/keys/choices.hpp"
 #include "server/parsing/keys/experiment_keys.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/physics_settings.hpp"
@@ -28,19 +29,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_threads = 1024;
 constexpr std::uint64_t greatest_tick_count = std::numeric_limits<std::uint32_t>::max();
-
-const std::vector<std::pair<std::string, OnLate>> late_policies = {{"wait", OnLate::wait},
-                                                                   {"hold", OnLate::hold},
-                                                                   {"zero", OnLate::zero},
-                                                                   {"detach", OnLate::detach},
-                                                                   {"stop", OnLate::stop}};
-
-std::vector<std::string> names_of_policies() {
-  std::vector<std::string> names;
-  names.reserve(late_policies.size());
-  for (const auto& [name, policy] : late_policies) names.push_back(name);
-  return names;
-}
 
 // A time that is more than nothing and fits into nanoseconds.
 std::optional<std::chrono::nanoseconds> read_seconds(const YamlMap& map, const std::string& key) {
@@ -89,13 +77,12 @@ Policy read_policy(const YamlMap& team) {
   policy.required = read_required(team, !is_free);
 
   const std::string on_late = team.text("on_late").value_or(is_free ? "hold" : "wait");
-  const auto found =
-      std::find_if(late_policies.begin(), late_policies.end(), [&](const auto& each) { return each.first == on_late; });
-  if (found == late_policies.end()) {
-    team.problem("on_late", "unknown policy '" + on_late + "'" + suggestion(on_late, names_of_policies()));
+  if (std::ranges::find(late_policies, on_late) == std::end(late_policies)) {
+    team.problem("on_late", "unknown policy '" + on_late + "'" +
+                                suggestion(on_late, {std::begin(late_policies), std::end(late_policies)}));
     return policy;
   }
-  policy.on_late = found->second;
+  policy.on_late = choice_of<OnLate>(late_policies, on_late);
   if (policy.on_late == OnLate::wait) {
     if (is_free) team.problem("on_late", "nobody waits under mode: free; expected hold, zero, detach or stop");
     if (team.has("deadline")) team.problem("deadline", "has no meaning with on_late: wait, which waits for ever");

@@ -14,6 +14,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/experiment/read_recorded.hpp"
 #include "server/parsing/experiment/schedule_entry.hpp"
+#include "server/parsing/keys/choices.hpp"
 #include "server/parsing/keys/experiment_keys.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/yaml/yaml_values.hpp"
@@ -81,14 +82,11 @@ std::optional<Condition> read_quarantined(const ScheduleEntry&) { return OneQuar
 constexpr std::pair<std::string_view, ReadCondition> conditions[] = {
     {"inside", &read_inside}, {"beyond", &read_beyond}, {"at_rest", &read_at_rest}, {"quarantined", &read_quarantined}};
 
-constexpr std::pair<std::string_view, Quantity> quantities[] = {{"position", Quantity::position},
-                                                                {"pose", Quantity::pose},
-                                                                {"heading", Quantity::heading},
-                                                                {"velocity", Quantity::velocity},
-                                                                {"count", Quantity::count},
-                                                                {"quarantined", Quantity::quarantined},
-                                                                {"joint_force", Quantity::joint_force},
-                                                                {"joint_torque", Quantity::joint_torque}};
+ReadCondition reader_of(std::string_view kind) {
+  const auto found = std::ranges::find(conditions, kind, &std::pair<std::string_view, ReadCondition>::first);
+  if (found == std::end(conditions)) throw std::logic_error("nothing reads " + std::string(kind));
+  return found->second;
+}
 
 bool is_of_joints(Quantity quantity) { return quantity == Quantity::joint_force || quantity == Quantity::joint_torque; }
 
@@ -108,14 +106,6 @@ std::vector<std::size_t> selected_joints(const ScheduleEntry& entry, const World
       entry.problem("joints", "no breakable joint is called '" + selector + "'" + suggestion(selector, names));
   }
   return {selected.begin(), selected.end()};
-}
-
-template <class Named>
-auto named(const Named& entries, std::string_view name) {
-  const auto* const found =
-      std::find_if(std::begin(entries), std::end(entries), [&](const auto& entry) { return entry.first == name; });
-  if (found == std::end(entries)) throw std::logic_error("nothing reads " + std::string(name));
-  return found->second;
 }
 
 }  // namespace
@@ -295,7 +285,7 @@ void ScheduleReader::read_stops(Experiment& experiment) const {
     const ScheduleEntry entry(*written.map, written.path, experiment_part(written.kind, "stop"), report_);
     StopCondition condition{written.kind, entry.objects(experiment.world), OneQuarantined{},
                             entry.time("for").value_or(std::chrono::nanoseconds(0))};
-    if (const auto what = named(conditions, written.kind)(entry)) {
+    if (const auto what = reader_of(written.kind)(entry)) {
       condition.what = *what;
       experiment.stops.push_back(std::move(condition));
     }
@@ -315,7 +305,7 @@ void ScheduleReader::read_prints(Experiment& experiment) const {
     for (const std::string& selector : values.texts("objects"))
       printed.selector += (printed.selector.empty() ? "" : " ") + selector;
     if (!values.has("quantity") || !every) continue;
-    printed.quantity = named(quantities, values.text("quantity"));
+    printed.quantity = choice_of<Quantity>(quantities, values.text("quantity"));
     const bool of_joints = is_of_joints(printed.quantity);
     if (const std::string stray = of_joints ? "objects" : "joints"; entry.is_written(stray))
       entry.problem(stray, "has no place beside the quantity '" + values.text("quantity") + "'");

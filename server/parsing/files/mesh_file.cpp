@@ -33,7 +33,7 @@ void check_format(const std::filesystem::path& file) {
   throw std::runtime_error("'" + file.string() + "' is in no format that is read: expected .stl, .obj or .dae");
 }
 
-Eigen::Matrix4d to_eigen(const aiMatrix4x4& m) {
+Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
   Eigen::Matrix4d matrix;
   matrix << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
   return matrix;
@@ -175,7 +175,7 @@ TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, con
     while (!waiting.empty()) {
       const auto [node, parent] = waiting.back();
       waiting.pop_back();
-      const Eigen::Matrix4d transform = parent * to_eigen(node->mTransformation);
+      const Eigen::Matrix4d transform = parent * matrix_of(node->mTransformation);
       for (unsigned i = 0; i < node->mNumMeshes; ++i) {
         const aiMesh& part = *scene->mMeshes[node->mMeshes[i]];
         builder.add(part, transform, color_of(*scene, part));

@@ -40,18 +40,18 @@ void write(const XmlNode& node, XmlText& written) {
   text += "</" + node.name + '>';
 }
 
-constexpr std::size_t deepest = 64;  // of XML elements; SDF itself needs a dozen
+constexpr std::size_t most_elements_deep = 64;  // of XML elements; SDF itself needs a dozen
 
 /// Builds the tree from expat's events. What a file declares is not expanded in text and stays as it is written; in
 /// attributes expat's own limits hold. Nothing is fetched.
-class TreeBuilder {
+class OutlineBuilder {
  public:
-  explicit TreeBuilder(std::string_view text);
+  explicit OutlineBuilder(std::string_view text);
 
   XmlOutline build();
 
  private:
-  static TreeBuilder& of(void* self) { return *static_cast<TreeBuilder*>(self); }
+  static OutlineBuilder& of(void* self) { return *static_cast<OutlineBuilder*>(self); }
   int line() const { return static_cast<int>(XML_GetCurrentLineNumber(parser_.get())); }
   void open(const char* name, const char** attributes);
   void close();
@@ -63,7 +63,7 @@ class TreeBuilder {
   XmlOutline outline_;
 };
 
-TreeBuilder::TreeBuilder(std::string_view text) : text_(text) {
+OutlineBuilder::OutlineBuilder(std::string_view text) : text_(text) {
   const XML_Parser parser = parser_.get();
   XML_SetUserData(parser, this);
   XML_SetElementHandler(
@@ -78,7 +78,7 @@ TreeBuilder::TreeBuilder(std::string_view text) : text_(text) {
   });
 }
 
-XmlOutline TreeBuilder::build() {
+XmlOutline OutlineBuilder::build() {
   if (text_.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     outline_.error = {0, "has more than 2 GB"};
   else if (XML_Parse(parser_.get(), text_.data(), static_cast<int>(text_.size()), XML_TRUE) == XML_STATUS_ERROR &&
@@ -87,10 +87,10 @@ XmlOutline TreeBuilder::build() {
   return std::move(outline_);
 }
 
-void TreeBuilder::open(const char* name, const char** attributes) {
-  if (open_.size() >= deepest) {
-    outline_.error = {line(),
-                      std::string("<") + name + "> is nested more than " + std::to_string(deepest) + " levels deep"};
+void OutlineBuilder::open(const char* name, const char** attributes) {
+  if (open_.size() >= most_elements_deep) {
+    outline_.error = {line(), std::string("<") + name + "> is nested more than " + std::to_string(most_elements_deep) +
+                                  " levels deep"};
     XML_StopParser(parser_.get(), XML_FALSE);
     return;
   }
@@ -100,7 +100,7 @@ void TreeBuilder::open(const char* name, const char** attributes) {
   for (; *attributes != nullptr; attributes += 2) node.attributes.emplace_back(attributes[0], attributes[1]);
 }
 
-void TreeBuilder::close() {
+void OutlineBuilder::close() {
   if (outline_.error) return;  // of a stopped parser, an empty element still ends
   XmlNode node = std::move(open_.back());
   open_.pop_back();
@@ -109,7 +109,7 @@ void TreeBuilder::close() {
 }
 
 // Where expat stopped, with what it knows and we do.
-XmlSyntaxError TreeBuilder::error() const {
+XmlSyntaxError OutlineBuilder::error() const {
   const auto place = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get()));
   const std::string_view rest = text_.substr(std::min(place, text_.size()));
   const auto up_to = [&](const char* ends) { return std::string(rest.substr(0, rest.find_first_of(ends))); };
@@ -164,7 +164,7 @@ bool is_xml_name(std::string_view name) {
   });
 }
 
-XmlOutline outline_xml(std::string_view text) { return TreeBuilder(text).build(); }
+XmlOutline outline_xml(std::string_view text) { return OutlineBuilder(text).build(); }
 
 XmlText xml_text_of(const XmlNode& node) {
   XmlText written{"", {nullptr}};

@@ -4,8 +4,11 @@
 #include <stdexcept>
 #include <string>
 
+#include "server/parsing/keys/choices.hpp"
+
 namespace cohort::parsing {
 namespace {
+namespace of_experiments {
 
 using enum ExtensionValue;
 
@@ -25,7 +28,6 @@ constexpr ExtensionKey experiment[] = {
     {"record", group, "", "its defaults", "what a recording holds, if there is one"},
 };
 
-constexpr std::string_view late_policies[] = {"wait", "hold", "zero", "detach", "stop"};
 constexpr std::string_view modes[] = {"lockstep", "free"};
 constexpr std::string_view restarts[] = {"on_failure", "never"};
 
@@ -114,9 +116,6 @@ constexpr ExtensionKey quarantined[] = {
     {"objects", name, "", "*", "names, in which `*` stands for any characters", true},
 };
 
-constexpr std::string_view quantities[] = {"position", "pose",        "heading",     "velocity",
-                                           "count",    "quarantined", "joint_force", "joint_torque"};
-
 constexpr ExtensionKey print[] = {
     {"quantity", choice, "", "",
      "`position`, `pose`, `heading`, `velocity`, `count`, `quarantined`, `joint_force` or `joint_torque`", false,
@@ -162,11 +161,13 @@ constexpr Extension table[] = {
     {"record", "experiment", false, "What a recording holds beside what replays the run.", record, "record"},
 };
 
+}  // namespace of_experiments
 }  // namespace
 
-std::span<const Extension> experiment_parts() { return table; }
+std::span<const Extension> experiment_parts() { return of_experiments::table; }
 
 const Extension& experiment_part(std::string_view name, std::string_view parent) {
+  using of_experiments::table;
   const auto found = std::find_if(std::begin(table), std::end(table),
                                   [&](const Extension& each) { return each.name == name && each.parent == parent; });
   if (found == std::end(table)) throw std::logic_error("no part " + std::string(name) + " of an experiment");

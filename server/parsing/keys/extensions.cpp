@@ -3,6 +3,7 @@
 #include <iterator>
 #include <vector>
 
+#include "server/parsing/keys/choices.hpp"
 #include "server/parsing/keys/device_keys.hpp"
 
 namespace cohort::parsing {
@@ -19,7 +20,6 @@ constexpr ExtensionKey population[] = {
      "if there is no room for all: a warning that says how many fitted, not an error"},
 };
 
-constexpr std::string_view headings[] = {"random", "fixed", "towards", "away", "along"};
 constexpr std::string_view patterns[] = {"column", "row", "wedge"};
 
 constexpr ExtensionKey placement[] = {
@@ -71,9 +71,6 @@ constexpr ExtensionKey uniform[] = {
     {"min", point, "m", "", "corner with the least x and y of the origins of the instances"},
     {"max", point, "m", "", "corner with the greatest x and y"},
 };
-
-constexpr std::string_view fidelities[] = {"articulated", "treel", "planar"};
-constexpr std::string_view solvers[] = {"iterative", "direct", "hybrid"};
 
 constexpr ExtensionKey physics[] = {
     {"fidelity", choice, "", "treel", "how much of a model is simulated: `articulated`, `treel` or `planar`", false,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "server/parsing/parsing.hpp"
@@ -54,6 +55,13 @@ struct Extension {
 
 /// Without the colon.
 inline constexpr std::string_view extension_prefix = "cohort";
+/// With both.
+inline std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
+inline bool has_prefix(std::string_view name) { return name.starts_with(prefixed("")); }
+/// As it is if it has none.
+inline std::string_view without_prefix(std::string_view name) {
+  return has_prefix(name) ? name.substr(extension_prefix.size() + 1) : name;
+}
 
 std::span<const Extension> extensions();
 

@@ -18,7 +18,7 @@ struct Unsupported {
 };
 
 // Elements of SDF 1.9. One with a value is passed over where the value is SDF's default.
-constexpr Unsupported table[] = {
+constexpr Unsupported unsupported[] = {
     {"world", "wind"},
     {"world", "actor"},
     {"world", "state"},
@@ -94,7 +94,7 @@ void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report
                                 element->GetName() + "> is not supported and is ignored");
     if (is_second_friction(child))
       report.warning(child, "<mu2> is not supported and is ignored; friction is the same in every direction");
-    for (const Unsupported& entry : table)
+    for (const Unsupported& entry : unsupported)
       if (entry.parent == element->GetName() && entry.element == child->GetName() && !has_default_value(child))
         report.warning(child, "<" + child->GetName() + "> is not supported and is ignored" + entry.remark);
     if (is_container(child->GetName())) warn_of_unsupported(child, report);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <type_traits>
 
+#include "server/parsing/keys/choices.hpp"
 #include "server/parsing/keys/device_keys.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 
@@ -24,7 +25,7 @@ void read_value(const KeyValues& values, const keys::MemberKey<Struct, Member>& 
   if constexpr (keys::List<Member>)
     member = values.all<typename Member::value_type>(key.name);
   else if constexpr (std::is_enum_v<Member>)
-    member = static_cast<Member>(std::ranges::find(key.choices, values.text(key.name)) - key.choices.begin());
+    member = choice_of<Member>(key.choices, values.text(key.name));
   else if constexpr (std::is_same_v<Member, std::chrono::nanoseconds>)
     member = to_time(key.unit == "Hz" ? 1.0 / values.real(key.name) : values.real(key.name));
   else

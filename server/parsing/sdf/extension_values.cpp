@@ -8,22 +8,14 @@
 namespace cohort::parsing {
 namespace {
 
-std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
-
-bool has_prefix(const sdf::ElementPtr& element) { return element->GetName().starts_with(prefixed("")); }
-
-std::string_view without_prefix(const sdf::ElementPtr& element) {
-  return std::string_view(element->GetName()).substr(extension_prefix.size() + 1);
-}
-
 const ExtensionKey* find_key(const Extension& extension, const sdf::ElementPtr& element) {
-  if (!has_prefix(element)) return nullptr;
+  if (!has_prefix(element->GetName())) return nullptr;
   for (const ExtensionKey& key : extension.keys)
-    if (key.name == without_prefix(element)) return &key;
+    if (key.name == without_prefix(element->GetName())) return &key;
   return nullptr;
 }
 
-std::string text_of(const sdf::ElementPtr& element) {
+std::string value_text(const sdf::ElementPtr& element) {
   return element->GetValue() ? std::string(trimmed(element->GetValue()->GetAsString())) : std::string();
 }
 
@@ -42,7 +34,7 @@ bool is_extension(std::string_view name) {
 
 void report_misplaced(const sdf::ElementPtr& element, std::string_view parent, const SdfReport& report) {
   for (const Extension& extension : extensions())
-    if (has_prefix(element) && extension.name == without_prefix(element)) {
+    if (has_prefix(element->GetName()) && extension.name == without_prefix(element->GetName())) {
       const std::string home =
           is_extension(extension.parent) ? prefixed(extension.parent) : std::string(extension.parent);
       report.problem(element, "<" + element->GetName() + "> belongs in <" + home + ">");
@@ -53,8 +45,8 @@ void report_misplaced(const sdf::ElementPtr& element, std::string_view parent, c
 
 void report_extensions_below(const sdf::ElementPtr& element, const SdfReport& report) {
   for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (has_prefix(child)) {
-      if (find_extension(without_prefix(child), element->GetName()) == nullptr)
+    if (has_prefix(child->GetName())) {
+      if (find_extension(without_prefix(child->GetName()), element->GetName()) == nullptr)
         report_misplaced(child, element->GetName(), report);
     } else if (child->GetName() != "plugin") {
       report_extensions_below(child, report);
@@ -143,7 +135,7 @@ bool ExtensionValues::read_value(const sdf::ElementPtr& element, const Extension
     report.problem(stray, "unexpected element; <" + element->GetName() + "> holds " + expected(key));
     return false;
   }
-  const std::string text = text_of(element);
+  const std::string text = value_text(element);
   std::optional<Value> value = parse_value(text, key);
   if (!value) {
     report.problem(element, why_wrong(text, key));
@@ -157,9 +149,10 @@ std::vector<std::pair<sdf::ElementPtr, const Extension*>> extensions_in(const sd
                                                                         const SdfReport& report) {
   std::vector<std::pair<sdf::ElementPtr, const Extension*>> found;
   for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
-    if (!has_prefix(child)) {
+    if (!has_prefix(child->GetName())) {
       if (child->GetName() != "model") report_extensions_below(child, report);
-    } else if (const Extension* const extension = find_extension(without_prefix(child), element->GetName())) {
+    } else if (const Extension* const extension =
+                   find_extension(without_prefix(child->GetName()), element->GetName())) {
       found.emplace_back(child, extension);
     } else {
       report_misplaced(child, element->GetName(), report);

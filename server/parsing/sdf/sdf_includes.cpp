@@ -154,7 +154,7 @@ std::optional<ignition::math::Pose3d> pose_of_frame(const sdf::Model& model, con
   return pose_in_model(model.ModelByName(name));
 }
 
-std::string text_of(const ignition::math::Pose3d& X) {
+std::string pose_text(const ignition::math::Pose3d& X) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text.precision(17);
@@ -225,7 +225,7 @@ std::vector<XmlNode> merged(const XmlNode& model, const sdf::Model& sdf_model, c
             include.line,
             include.file,
             {{"relative_to", placed}, {"rotation_format", "quat_xyzw"}},
-            text_of(X_MP->Inverse()),
+            pose_text(X_MP->Inverse()),
             {}};
   }
   add_frame(proxy, link, std::move(pose));

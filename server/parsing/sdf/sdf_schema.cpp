@@ -7,12 +7,6 @@
 namespace cohort::parsing {
 namespace {
 
-constexpr std::string_view prefix = "cohort:";
-
-std::string_view without_prefix(std::string_view name) {
-  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
-}
-
 bool is_vector_type(std::string_view type) {
   constexpr std::string_view types[] = {"pose", "vector2d", "vector2i", "vector3", "color", "quaternion"};
   return std::find(std::begin(types), std::end(types), type) != std::end(types);
@@ -103,7 +97,7 @@ ElementSchema ElementSchema::root() {
 ElementSchema ElementSchema::child(const std::string& name) const {
   ElementSchema schema;
   schema.name_ = name;
-  if (is_extension() || name.starts_with(prefix)) {
+  if (is_extension() || has_prefix(name)) {
     schema.name_ = without_prefix(name);
     schema.extension_ = find_extension(schema.name_, name_);
     if (extension_ != nullptr) schema.key_ = find_key(*extension_, schema.name_);
@@ -120,7 +114,7 @@ bool ElementSchema::takes_anything() const { return is_free() || (element_ && el
 
 bool ElementSchema::has_child(const std::string& name) const {
   const std::vector<std::string> known = children();
-  return std::find(known.begin(), known.end(), is_extension() ? std::string(prefix) + name : name) != known.end();
+  return std::find(known.begin(), known.end(), is_extension() ? prefixed(name) : name) != known.end();
 }
 
 bool ElementSchema::has_attribute(const std::string& name) const {
@@ -159,9 +153,9 @@ std::vector<std::string> ElementSchema::children() const {
     for (unsigned i = 0; i < element_->GetElementDescriptionCount(); ++i)
       names.push_back(element_->GetElementDescription(i)->GetName());
   if (extension_ != nullptr)
-    for (const ExtensionKey& key : extension_->keys) names.push_back(std::string(prefix) + std::string(key.name));
+    for (const ExtensionKey& key : extension_->keys) names.push_back(prefixed(key.name));
   for (const Extension& extension : extensions())
-    if (extension.parent == name_) names.push_back(std::string(prefix) + std::string(extension.name));
+    if (extension.parent == name_) names.push_back(prefixed(extension.name));
   return names;
 }
 

@@ -12,7 +12,6 @@ namespace cohort::parsing {
 namespace {
 
 constexpr const char* name_space = "https://cohort-sim.org/sdf/1";
-constexpr std::string_view prefix = "cohort:";
 
 struct Entry {
   std::string key;
@@ -32,7 +31,7 @@ bool is_list_of_scalars(const YamlNode& node) {
 }
 
 // YAML's infinity is not SDF's.
-std::string text_of(const YamlNode& node) {
+std::string scalar_text(const YamlNode& node) {
   std::string text = node.text;
   std::transform(text.begin(), text.end(), text.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -43,7 +42,7 @@ std::string text_of(const YamlNode& node) {
 
 std::string joined(const YamlNode& list) {
   std::string text;
-  for (const YamlPtr& item : list.items) text += (text.empty() ? "" : " ") + text_of(*item);
+  for (const YamlPtr& item : list.items) text += (text.empty() ? "" : " ") + scalar_text(*item);
   return text;
 }
 
@@ -126,7 +125,7 @@ void Converter::fill(XmlNode& node, const YamlNode& value, const ElementSchema& 
     case YamlNode::Kind::map: fill_from_map(node, value, schema, path); break;
     case YamlNode::Kind::scalar:
       if (schema.is_free() || schema.is_extension() || schema.has_value())
-        node.text = trimmed(text_of(value));
+        node.text = trimmed(scalar_text(value));
       else if (!trimmed(value.text).empty())
         problem(value.line, path, "expected 'KEY: VALUE' lines, not " + shown(value));
       break;
@@ -189,14 +188,14 @@ void Converter::add_entry(XmlNode& node, const Entry& entry, const ElementSchema
 
 void Converter::add_attribute(XmlNode& node, const std::string& name, const Entry& entry, const std::string& path) {
   if (entry.value->is_scalar())
-    node.attributes.emplace_back(name, text_of(*entry.value));
+    node.attributes.emplace_back(name, scalar_text(*entry.value));
   else
     problem(entry.line, path, "expected a value for '" + name + "', not " + shown(*entry.value));
 }
 
 void Converter::set_value(XmlNode& node, const Entry& entry, const std::string& path) {
   if (entry.value->is_scalar())
-    node.text = trimmed(text_of(*entry.value));
+    node.text = trimmed(scalar_text(*entry.value));
   else if (is_list_of_scalars(*entry.value))
     node.text = joined(*entry.value);
   else
@@ -214,7 +213,7 @@ void Converter::add_in_order(XmlNode& node, const Entry& entry, const ElementSch
 
 void Converter::add_children(XmlNode& node, const Entry& entry, const ElementSchema& schema, const std::string& path) {
   std::string name = entry.key;
-  if (schema.is_extension() && name.find(':') == std::string::npos) name = std::string(prefix) + name;
+  if (schema.is_extension() && name.find(':') == std::string::npos) name = prefixed(name);
   const ElementSchema child = schema.child(name);
   const YamlNode& value = *entry.value;
   if (!value.is_list() || (child.is_vector() && is_list_of_scalars(value))) {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
+
+#include "server/core/infinity.hpp"
+#include "server/core/plane_vectors.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -12,13 +14,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double negligible_cell = 1e-3;  // [m]
 
 // Below this share of its length a normal lies in the plane: a wall is no ground.
 constexpr double upright = 1e-9;
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Whether the triangle's shadow holds the point, and the height of the triangle there.
 std::optional<double> height_at(const Triangle& t, const Vector2d& point) {

@@ -11,10 +11,6 @@ namespace cohort::parsing {
 /// Settings of which the keys of `cohort:physics` that are given replace those of `settings`.
 PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values);
 
-/// As `cohort:physics` calls it.
-std::string name_of(Fidelity fidelity);
-std::string name_of(Solver solver);
-
 /// The keys of `cohort:physics` in YAML, only those that are there. What is wrong with them is reported.
 KeyValues read_physics_map(const YamlNode& node, const std::string& path, const YamlReport& report);
 

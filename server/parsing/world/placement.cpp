@@ -7,6 +7,8 @@
 #include <numbers>
 #include <optional>
 
+#include "server/core/infinity.hpp"
+#include "server/core/plane_vectors.hpp"
 #include "server/core/random.hpp"
 
 namespace cohort::parsing {
@@ -33,7 +35,6 @@ struct Bounds {
 };
 
 Bounds bounds_of(const Model& model) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   Bounds bounds{0.0, infinity, -infinity};
   for (const geometry::Footprint& part : geometry::footprints_of(model, Pose{})) {
     bounds.radius = std::max(bounds.radius, part.centre.norm() + part.half.norm() + part.radius);
@@ -179,7 +180,7 @@ class Placer {
     const std::uint64_t rows = (placement_.count + columns - 1) / columns;
     const auto half = [](std::uint64_t count) { return 0.5 * static_cast<double>(count - 1); };
     const Vector2d x_axis(std::cos(layout.yaw), std::sin(layout.yaw));
-    const Vector2d y_axis(-x_axis.y(), x_axis.x());
+    const Vector2d y_axis = left_of(x_axis);
     std::vector<Vector3d> places;
     for (std::uint64_t i = 0; i < placement_.count; ++i) {
       const double column = static_cast<double>(i % columns) - half(columns);
@@ -212,7 +213,7 @@ class Placer {
   std::vector<Placed> place(const FormationLayout& layout) const {
     const double turn = heading(0, 0, layout.centre, 0.0);
     const Vector2d x_axis(std::cos(turn), std::sin(turn));
-    const Vector2d y_axis(-x_axis.y(), x_axis.x());
+    const Vector2d y_axis = left_of(x_axis);
     std::vector<Vector3d> places;
     for (const Vector3d& member : layout.members) {
       const Vector2d point = layout.centre + member.x() * x_axis + member.y() * y_axis;

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "server/parsing/keys/choices.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 
 namespace cohort::parsing {
@@ -12,12 +13,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr std::pair<std::string_view, HeadingKind> headings[] = {{"random", HeadingKind::random},
-                                                                 {"fixed", HeadingKind::fixed},
-                                                                 {"towards", HeadingKind::towards},
-                                                                 {"away", HeadingKind::away},
-                                                                 {"along", HeadingKind::along}};
 
 std::optional<Layout> read_uniform(const ExtensionValues& values, std::uint64_t, const SdfReport& report) {
   const UniformLayout layout{values.point("min"), values.point("max")};
@@ -109,12 +104,7 @@ bool read_heading(const ExtensionValues& values, const SdfReport& report, Placem
       std::holds_alternative<RingLayout>(placement.layout) || std::holds_alternative<LineLayout>(placement.layout);
   placement.heading = is_random ? HeadingKind::random : HeadingKind::fixed;
   placement.yaw = values.real("yaw");
-  if (values.has("heading")) {
-    const std::string& name = values.text("heading");
-    placement.heading = std::find_if(std::begin(headings), std::end(headings), [&](const auto& each) {
-                          return each.first == name;
-                        })->second;
-  }
+  if (values.has("heading")) placement.heading = choice_of<HeadingKind>(headings, values.text("heading"));
   if (placement.heading == HeadingKind::along && !has_course) {
     report.problem(values.where("heading"), "'along' is for <cohort:ring> and <cohort:line>");
     return false;

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <type_traits>
 
+#include "server/parsing/keys/choices.hpp"
 #include "server/parsing/keys/device_keys.hpp"
 #include "server/parsing/writing/write_sdf_sensors.hpp"
 #include "server/parsing/writing/write_values.hpp"
@@ -15,7 +16,7 @@ std::vector<std::string> texts_of_value(const ExtensionKey& key, const Member& v
     for (const auto& each : value) texts.push_back(text_of(each));
     return texts;
   } else if constexpr (std::is_enum_v<Member>) {
-    return {std::string(key.choices[static_cast<std::size_t>(value)])};
+    return {word_for(key.choices, value)};
   } else if constexpr (std::is_same_v<Member, std::chrono::nanoseconds>) {
     constexpr double nanoseconds = 1e9;
     const auto count = static_cast<double>(value.count());

@@ -1,10 +1,10 @@
 #include "server/parsing/writing/write_sdf_sensors.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 
+#include "server/core/infinity.hpp"
 #include "server/parsing/writing/write_values.hpp"
 
 namespace cohort::parsing {
@@ -46,7 +46,6 @@ const Noise* noise_on(const Readout& readout, std::string_view quantity, int val
 double density_of(double deviation, double time) {
   const double factor = drift_from_density(time);
   const double density = deviation / factor;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double each : {density, std::nextafter(density, 0.0), std::nextafter(density, infinity)})
     if (each * factor == deviation) return each;
   return density;

@@ -24,8 +24,6 @@ std::string text_of(const Eigen::Vector2d& v);
 std::string text_of(const Eigen::Vector3d& v);
 std::string text_of(const Pose& X);
 
-inline std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
-
 inline XmlNode& add(XmlNode& parent, std::string name) {
   XmlNode& child = parent.children.emplace_back();
   child.name = std::move(name);

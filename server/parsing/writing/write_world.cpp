@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "server/parsing/world/physics_settings.hpp"
+#include "server/parsing/keys/choices.hpp"
 #include "server/parsing/writing/write_values.hpp"
 
 namespace cohort::parsing {
@@ -100,8 +100,8 @@ class WorldWriter {
     add_value(sdf, "max_step_size", static_cast<double>(world_.step.count()) / nanoseconds);
     const PhysicsSettings& settings = world_.physics;
     XmlNode& physics = add(world, prefixed("physics"));
-    add_key(physics, "fidelity", name_of(settings.fidelity));
-    add_key(physics, "solver", name_of(settings.solver));
+    add_key(physics, "fidelity", word_for(fidelities, settings.fidelity));
+    add_key(physics, "solver", word_for(solvers, settings.solver));
     add_key(physics, "iterations", static_cast<std::uint64_t>(settings.iterations));
     add_key(physics, "direct_bodies", static_cast<std::uint64_t>(settings.direct_bodies));
     if (std::isfinite(settings.lowest)) add_key(physics, "lowest", settings.lowest);
@@ -208,7 +208,7 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-void print(const XmlNode& node, std::size_t depth, std::string& text) {
+void print_node(const XmlNode& node, std::size_t depth, std::string& text) {
   const std::string indent(2 * depth, ' ');
   text += indent + "<" + node.name;
   for (const auto& [name, value] : node.attributes) text += " " + name + "=\"" + escaped(value) + "\"";
@@ -219,7 +219,7 @@ void print(const XmlNode& node, std::size_t depth, std::string& text) {
   text += ">" + escaped(node.text);
   if (!node.children.empty()) {
     text += "\n";
-    for (const XmlNode& child : node.children) print(child, depth + 1, text);
+    for (const XmlNode& child : node.children) print_node(child, depth + 1, text);
     text += indent;
   }
   text += "</" + node.name + ">\n";
@@ -231,7 +231,7 @@ XmlNode sdf_of(const World& world, const std::filesystem::path& folder) { return
 
 std::string xml_text(const XmlNode& root) {
   std::string text = "<?xml version=\"1.0\"?>\n";
-  print(root, 0, text);
+  print_node(root, 0, text);
   return text;
 }
 

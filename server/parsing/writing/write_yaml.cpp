@@ -79,8 +79,7 @@ std::string list_item(const XmlNode& node, const ElementSchema& schema) {
 }
 
 std::string key_of_child(const std::string& name, const ElementSchema& schema) {
-  constexpr std::string_view prefix = "cohort:";
-  if (schema.is_extension() && name.starts_with(prefix)) return name.substr(prefix.size());
+  if (schema.is_extension() && has_prefix(name)) return std::string(without_prefix(name));
   const bool would_be_an_attribute = schema.takes_anything() && schema.has_attribute(name);
   return would_be_an_attribute ? "\"=" + name + "\"" : name;
 }

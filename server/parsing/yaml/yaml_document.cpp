@@ -27,7 +27,7 @@ bool has_control_character(std::string_view text) {
 }
 
 /// Builds the tree from yaml-cpp's events. Its own nodes know neither where an alias stands nor that a key came twice.
-class TreeBuilder : public YAML::EventHandler {
+class YamlBuilder : public YAML::EventHandler {
  public:
   YamlPtr root() const { return root_; }
 
@@ -81,7 +81,7 @@ class TreeBuilder : public YAML::EventHandler {
   YamlPtr root_;
 };
 
-void TreeBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
+void YamlBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
   const auto found = anchored_.find(anchor);
   if (found == anchored_.end()) throw Refused{mark.line + 1, "this alias stands for something that it is a part of"};
   const YamlPtr& meant = found->second;
@@ -94,7 +94,7 @@ void TreeBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
   put(meant, YAML::NullAnchor);
 }
 
-void TreeBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+void YamlBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                            const std::string& value) {
   if (has_control_character(value)) throw Refused{mark.line + 1, "there is a control character in this text"};
   const auto node = make(YamlNode::Kind::scalar, mark);
@@ -103,7 +103,7 @@ void TreeBuilder::OnScalar(const YAML::Mark& mark, const std::string& tag, YAML:
   put(node, anchor);
 }
 
-void TreeBuilder::put(YamlPtr node, YAML::anchor_t anchor) {
+void YamlBuilder::put(YamlPtr node, YAML::anchor_t anchor) {
   if (anchor != YAML::NullAnchor) anchored_[anchor] = node;
   if (open_.empty()) {
     root_ = std::move(node);
@@ -149,7 +149,7 @@ YamlDocument parse_yaml(std::string_view text) {
   try {
     std::istringstream stream{std::string(text)};
     YAML::Parser parser(stream);
-    TreeBuilder tree;
+    YamlBuilder tree;
     if (!parser.HandleNextDocument(tree) || !tree.root()) {
       document.error = {0, "there is nothing in this file"};
       return document;

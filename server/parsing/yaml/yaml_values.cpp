@@ -13,7 +13,7 @@ bool has_several_numbers(ExtensionValue value) {
 }
 
 // The text of a value; of a list of numbers, all of them. Empty if it is something else.
-std::string text_of(const YamlNode& node, const ExtensionKey& key) {
+std::string text_of_value(const YamlNode& node, const ExtensionKey& key) {
   if (node.is_scalar()) return std::string(trimmed(node.text));
   std::string text;
   if (!node.is_list() || !has_several_numbers(key.value)) return text;
@@ -37,7 +37,7 @@ KeyValues read_values(const YamlNode& node, const std::string& path, const Exten
   const YamlMap map(node, path, names_of_keys(part), report);
   KeyValues values;
   const auto take = [&](const YamlNode& value, const std::string& where, const ExtensionKey& key) {
-    const std::string text = text_of(value, key);
+    const std::string text = text_of_value(value, key);
     if (std::optional<KeyValues::Value> parsed = parse_value(text, key))
       values.add(key.name, *std::move(parsed));
     else

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "server/core/infinity.hpp"
+#include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
 namespace {
-
-// Further from the origin a body has left the world [m].
-constexpr double furthest = 1e6;
 
 // False for velocities from which the next step would leave the numbers [m/s or rad/s].
 bool is_sensible(const double* velocities, int count) {
@@ -131,7 +130,6 @@ void Assembly::look_around(const Member& member, std::vector<std::uint32_t>& nea
                            std::vector<std::uint32_t>& candidates) {
   Multibody& multibody = *member.multibody;
   if (member.parts.empty() && multibody.treels().empty()) return;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   geometry::Bounds around{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
   for (const Part& part : member.parts) around.include(scene.bounds(part.solid).grown_by(Collision::margin));
   const Pose& X_WS = multibody.segment_pose(0);
@@ -187,7 +185,7 @@ void Assembly::integrate(std::uint32_t index, const Problem& problem) {
   multibody.integrate(problem.equations(anchors.index_of_member[index]).velocity(), step);
   if (member.record) member.record->finish(multibody, gravity, step);
   const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
-  member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest;
+  member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest_from_origin;
   place_solids_of(member);
 }
 

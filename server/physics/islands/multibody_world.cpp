@@ -9,8 +9,8 @@
 namespace cohort::physics {
 namespace {
 
-constexpr std::size_t bodies_a_chunk = 16;
-constexpr std::size_t islands_a_chunk = 8;
+constexpr std::size_t members_at_once = 16;
+constexpr std::size_t islands_at_once = 8;
 
 }  // namespace
 
@@ -148,7 +148,7 @@ void MultibodyWorld::step() {
 
 void MultibodyWorld::detect() {
   const std::vector<Member>& members = assembly_.members;
-  workers_.for_each_chunk(members.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+  workers_.for_each_chunk(members.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
     Memory& memory = memory_[worker];
     for (std::size_t i = begin; i < end; ++i)
       if (members[i].is_active) assembly_.look_around(members[i], memory.near, memory.candidates);
@@ -170,7 +170,7 @@ void MultibodyWorld::solve_islands() {
     const std::size_t bodies = islands_.members(island).size();
     return bodies >= LargeIslandSolver::least_bodies && !is_solved_directly(assembly_.settings, bodies);
   };
-  workers_.for_each_chunk(islands_.count(), islands_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+  workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
       if (!is_large(island)) memory_[worker].solver.solve(assembly_, islands_.members(island));
   });

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/physics/world/corrections.hpp"
+
 namespace cohort::physics {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double correction_share = 0.2;  // of a gap or a twist, taken away by one step
 // Nothing is pulled together with more than this, however far apart it came.
 constexpr double most_linear_correction = 0.5;   // [m/s]
 constexpr double most_angular_correction = 5.0;  // [rad/s]

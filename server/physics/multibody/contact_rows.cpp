@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/physics/world/corrections.hpp"
+
 namespace cohort::physics {
 namespace {
-
-// Share of the overlap that one step takes away, and how fast it may at the most [m/s].
-constexpr double correction_share = 0.2;
-constexpr double max_correction_velocity = 0.3;
-// Slower than this nothing bounces [m/s]: what rests would never come to rest.
-constexpr double least_bounce = 0.05;
 
 struct Tangents {
   Eigen::Vector3d first;
@@ -78,9 +74,7 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
                     double step) {
   const int normal = problem.row_count();
   Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, point.impulse.data());
-  // Apart: may close the gap within the step. Overlapping: pushed out gently.
-  push.target =
-      point.gap > 0.0 ? -point.gap / step : std::min(max_correction_velocity, -point.gap * correction_share / step);
+  push.target = separating_velocity(point.gap, step);
   push.set_limits(0.0, unlimited);
   if (surfaces.restitution > 0.0) {
     const double approach = -problem.velocity_before(push, a, b);

@@ -5,11 +5,11 @@
 
 #include "server/physics/multibody/multibody.hpp"
 #include "server/physics/multibody/rows.hpp"
+#include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
 namespace {
 
-constexpr double correction_share = 0.2;  // of an overshoot, taken away by one step
 // Of what a motor can brake with, the least that is counted on, however much gravity takes of it.
 constexpr double least_braking_share = 0.1;
 

@@ -3,15 +3,13 @@
 #include <algorithm>
 
 #include "server/physics/multibody/rows.hpp"
+#include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
 namespace {
 
 // A ground point counts from this far above the surface, so that landing is seen before it happens [m].
 constexpr double reach = 0.01;
-// Share of a ground point's depth that one step takes away, and how fast it may at the most [m/s].
-constexpr double correction_share = 0.2;
-constexpr double max_correction_velocity = 0.3;
 
 constexpr std::array sides{Side::left, Side::right};
 
@@ -80,9 +78,7 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
       under[side] = anchors.of(ground.solid);
       friction[side] = std::min(friction[side], ground.friction);
       Row& row = problem.add_force_row(hull, under[side], point.position_W, ground.normal_W, &point.impulse);
-      // Above the surface: may close the gap within the step. Below: pushed out gently.
-      row.target = ground.gap > 0.0 ? -ground.gap / step
-                                    : std::min(max_correction_velocity, -ground.gap * correction_share / step);
+      row.target = separating_velocity(ground.gap, step);
       row.set_limits(0.0, unlimited);
     }
     begin[side + 1] = problem.row_count();

@@ -16,7 +16,7 @@ constexpr double least_shared_height = 1e-4;
 // Of a plane or a mesh: what is level up to this is ground, what is upright up to this is a wall [rad] or [m].
 constexpr double level = 1e-3;
 
-constexpr std::size_t members_a_chunk = 32;
+constexpr std::size_t colliders_a_chunk = 32;
 
 bool is_before(const PlanarPair& one, const PlanarPair& two) { return one.a != two.a ? one.a < two.a : one.b < two.b; }
 
@@ -80,7 +80,7 @@ void PlanarCollision::detect(WorkerPool& workers) {
       discs_.push_back({place.centre_W.x(), place.centre_W.y(), place.radius, member});
   }
   grid_.build(discs_);
-  workers.for_each_chunk(members_.size(), members_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+  workers.for_each_chunk(members_.size(), colliders_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
     for (std::size_t member = begin; member < end; ++member)
       if (members_[member].is_active && members_[member].solid_count > 0)
         find_pairs(static_cast<std::uint32_t>(member), memory_[worker]);

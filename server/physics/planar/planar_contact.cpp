@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "server/core/plane_vectors.hpp"
+
 namespace cohort::physics {
 namespace {
 
@@ -14,7 +16,6 @@ using geometry::Footprint;
 constexpr double coincident = 1e-12;
 
 bool is_disc(const Footprint& footprint) { return footprint.half.x() == 0.0 && footprint.half.y() == 0.0; }
-Vector2d left_of(const Vector2d& vector) { return {-vector.y(), vector.x()}; }
 Vector2d across(const Footprint& footprint) { return left_of(footprint.axis); }
 
 std::array<Vector2d, 4> corners_of(const Footprint& footprint) {

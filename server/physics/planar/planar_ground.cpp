@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "server/core/plane_vectors.hpp"
+
 namespace cohort::physics {
 namespace {
 
 using Eigen::Vector2d;
-
-Vector2d left_of(const Vector2d& forward) { return {-forward.y(), forward.x()}; }
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 double speed_along(const Vector2d& direction, double lever, const PlanarVelocity& velocity) {
   return direction.x() * velocity.x + direction.y() * velocity.y + lever * velocity.spin;

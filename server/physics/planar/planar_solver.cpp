@@ -3,6 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "server/core/plane_vectors.hpp"
+#include "server/physics/world/corrections.hpp"
+
 namespace cohort::physics {
 namespace {
 
@@ -10,17 +13,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// As in the full model: the share of an overlap or of a gap in a connection that one step takes away, and how fast it
-// may push out what overlaps [m/s].
-constexpr double correction_share = 0.2;
-constexpr double max_correction_velocity = 0.3;
-// Slower than this nothing bounces [m/s].
-constexpr double least_bounce = 0.05;
 // A pass that changes no velocity by more ends the iteration [m/s or rad/s].
 constexpr double tolerance = 1e-9;
-
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-Vector2d left_of(const Vector2d& vector) { return {-vector.y(), vector.x()}; }
 
 double along(const Vector2d& direction, double lever, const PlanarVelocity& velocity) {
   return direction.x() * velocity.x + direction.y() * velocity.y + lever * velocity.spin;
@@ -73,9 +67,7 @@ void PlanarSolver::add_contact(const Anchors::Part& part_a, const Anchors::Part&
 
   const Vector3d point_W(point.position_W.x(), point.position_W.y(), z);
   const Vector2d by_joints = (joint_velocity(part_a, point_W) - joint_velocity(part_b, point_W)).head<2>();
-  // Apart: may close the gap within the step. Overlapping: pushed out gently.
-  double target =
-      point.gap > 0.0 ? -point.gap / step : std::min(max_correction_velocity, -point.gap * correction_share / step);
+  double target = separating_velocity(point.gap, step);
   if (surfaces.restitution > 0.0) {
     const double approach = along(rows.normal_W, rows.normal_lever_b, *rows.b.velocity) -
                             along(rows.normal_W, rows.normal_lever_a, *rows.a.velocity) - rows.normal_W.dot(by_joints);

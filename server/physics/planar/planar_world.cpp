@@ -4,14 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "server/physics/world/corrections.hpp"
+
 namespace cohort::physics {
 namespace {
 
 constexpr std::size_t members_a_chunk = 64;
 constexpr std::size_t islands_a_chunk = 32;
-
-// Further from the origin a body has left the world [m].
-constexpr double furthest = 1e6;
 
 // The links of one body, as a MotionRecord looks at them.
 struct LinksOf {
@@ -177,7 +176,7 @@ void PlanarWorld::move(std::uint32_t index) {
   if (member.record) member.record->after(LinksOf{planar_, index}, planar_.model(index).link_count());
   place_solids(index);
   const PlanarPlace& place = planar_.place(index);
-  member.is_inside = std::abs(place.x) < furthest && std::abs(place.y) < furthest &&
+  member.is_inside = std::abs(place.x) < furthest_from_origin && std::abs(place.y) < furthest_from_origin &&
                      planar_.segment_in_body(index, 0).position.z() >= description_.physics.lowest;
 }
 

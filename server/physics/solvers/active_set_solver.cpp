@@ -8,11 +8,6 @@ namespace cohort::physics {
 namespace {
 
 constexpr int most_rows = 16;
-constexpr int most_guesses = 6;
-// Each row gives way by this share of its own response: four legs on the floor have no unique loads without.
-constexpr double give = 1e-5;
-constexpr double velocity_tolerance = 1e-10;  // [m/s or rad/s]
-constexpr double impulse_tolerance = 1e-12;   // [N s or N m s]
 
 enum class Place : std::uint8_t { between, lower, upper };
 
@@ -62,6 +57,12 @@ class Guessing {
   }
 
  private:
+  static constexpr int most_guesses = 6;
+  // Each row gives way by this share of its own response: four legs on the floor have no unique loads without.
+  static constexpr double give = 1e-5;
+  static constexpr double velocity_tolerance = 1e-10;  // [m/s or rad/s]
+  static constexpr double impulse_tolerance = 1e-12;   // [N s or N m s]
+
   const Row& row_at(int i) const { return rows_[static_cast<std::size_t>(i)]; }
 
   // From the impulses as they are. False if that moved the limit of a row that is at it.

@@ -8,12 +8,6 @@
 namespace cohort::physics {
 namespace {
 
-// Solutions after the first, each with the friction limits that follow from the normal impulses of the one before.
-constexpr int most_solutions = 8;
-constexpr double limit_tolerance = 1e-9;  // [N s or N m s]
-// Each row gives way by this share of its own response, or redundant rows would have no solution.
-constexpr double give = 1e-6;
-
 class DirectSolver {
  public:
   explicit DirectSolver(Problem& problem) : problem_(problem), count_(problem.row_count()), size_(index(count_)) {}
@@ -30,6 +24,12 @@ class DirectSolver {
   }
 
  private:
+  // Solutions after the first, each with the friction limits that follow from the normal impulses of the one before.
+  static constexpr int most_solutions = 8;
+  static constexpr double limit_tolerance = 1e-9;  // [N s or N m s]
+  // Each row gives way by this share of its own response, or redundant rows would have no solution.
+  static constexpr double give = 1e-6;
+
   static std::size_t index(int i) { return static_cast<std::size_t>(i); }
   const Row& row_at(int i) const { return problem_.rows()[index(i)]; }
 

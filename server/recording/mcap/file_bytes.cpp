@@ -13,7 +13,7 @@
 namespace cohort::recording {
 namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& reason) {
+[[noreturn]] void refuse_to_read(const std::filesystem::path& path, const std::string& reason) {
   throw FileError("the recording " + path.string() + " cannot be read: " + reason);
 }
 
@@ -24,11 +24,11 @@ std::string reason_of(int error) { return std::generic_category().message(error)
 FileBytes::FileBytes(std::filesystem::path path) : path_(std::move(path)) {
   // Not blocking, so that a pipe that nobody writes to is refused below.
   descriptor_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor_ < 0) refuse(path_, reason_of(errno));
+  if (descriptor_ < 0) refuse_to_read(path_, reason_of(errno));
   struct stat status {};
   if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
     close(descriptor_);
-    refuse(path_, "it is no file");
+    refuse_to_read(path_, "it is no file");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
 }

@@ -1,10 +1,9 @@
 #include "server/session/server/clients.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <stdexcept>
 
+#include "client_sdk/src/this_process.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/session/roster.hpp"
 
@@ -14,12 +13,6 @@ namespace {
 // What a client may ask for and how many there may be, so that no stranger fills the memory or costs a tick's time.
 constexpr std::size_t most_selectors = 4096;
 constexpr std::size_t most_clients = 8192;
-
-std::string host_name() {
-  char name[256] = {};
-  ::gethostname(name, sizeof(name) - 1);
-  return name;
-}
 
 }  // namespace
 

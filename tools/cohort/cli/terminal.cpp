@@ -15,8 +15,6 @@ using Seconds = std::chrono::duration<double>;
 constexpr std::chrono::seconds line_interval{2};            // where lines cannot be rewritten
 constexpr std::chrono::milliseconds worth_mentioning{300};  // a wait
 
-double seconds(std::chrono::nanoseconds duration) { return Seconds(duration).count(); }
-
 std::string awaited_text(const session::Progress& progress) {
   std::string text = "waiting for " + progress.awaited.front();
   if (progress.awaited.size() > 1) text += fmt::format(" and {} more", progress.awaited.size() - 1);
@@ -24,8 +22,8 @@ std::string awaited_text(const session::Progress& progress) {
   return text;
 }
 
-std::string microseconds(std::chrono::nanoseconds duration) {
-  return fmt::format("{:.0f}", std::chrono::duration<double, std::micro>(duration).count());
+std::string whole_microseconds(std::chrono::nanoseconds duration) {
+  return fmt::format("{:.0f}", microseconds(duration));
 }
 
 double percent(std::uint64_t part, std::uint64_t whole) {
@@ -93,12 +91,14 @@ void Terminal::summary(const session::RunResult& result, double cpu_seconds) {
   if (!result.stop_reason.empty()) std::printf("stopped           by %s\n", result.stop_reason.c_str());
   std::printf("real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0,
               wall, cpu_seconds);
-  std::printf("barrier latency   p50 %s us, p99 %s us, max %s us\n", microseconds(result.barrier.quantile(0.5)).c_str(),
-              microseconds(result.barrier.quantile(0.99)).c_str(), microseconds(result.barrier.max()).c_str());
+  std::printf(
+      "barrier latency   p50 %s us, p99 %s us, max %s us\n", whole_microseconds(result.barrier.quantile(0.5)).c_str(),
+      whole_microseconds(result.barrier.quantile(0.99)).c_str(), whole_microseconds(result.barrier.max()).c_str());
   if (result.lateness.count() > 0)
     std::printf("tick lateness     p50 %s us, p99 %s us, max %s us\n",
-                microseconds(result.lateness.quantile(0.5)).c_str(),
-                microseconds(result.lateness.quantile(0.99)).c_str(), microseconds(result.lateness.max()).c_str());
+                whole_microseconds(result.lateness.quantile(0.5)).c_str(),
+                whole_microseconds(result.lateness.quantile(0.99)).c_str(),
+                whole_microseconds(result.lateness.max()).c_str());
   std::printf("contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
               percent(result.touches.obstacles, result.touches.robot_ticks),
               percent(result.touches.robots, result.touches.robot_ticks));

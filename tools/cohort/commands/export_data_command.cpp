@@ -38,8 +38,8 @@ int export_data(const ExportDataCommand& command, Log& log) {
   const recording::Recording recording(command.file);
   if (!recording.damage().empty()) log.warning(recording.damage());
   data::Selection selection{.robots = selected_names(recording, command.robots)};
-  selection.from = start_of(command.part);
-  selection.to = end_of(command.part);
+  selection.from = start_of_part(command.part);
+  selection.to = end_of_part(command.part);
   if (!command.hdf5.empty()) check_writable("the tables", command.hdf5);
   const auto sink = command.csv.empty() ? data::hdf5_tables(command.hdf5) : data::csv_tables(command.csv);
   const std::uint64_t rows = data::write_tables(recording, selection, *sink);

@@ -16,10 +16,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds for_ever{std::chrono::hours{24 * 365}};
-constexpr milliseconds for_a_reply{30'000};
 constexpr milliseconds until_it_knows{1'000};
-constexpr milliseconds poll_interval{50};
+constexpr milliseconds asks_again_after{50};
 constexpr milliseconds until_a_notice{2'000};
 
 // As an experiment would say it; JSON is YAML too.
@@ -82,7 +80,7 @@ class LiveRecording {
         file_->write(std::as_bytes(std::span(part.bytes)));
         size_ += part.bytes.size();
         if (part.is_last) return finish(part);
-        if (part.bytes.empty()) std::this_thread::sleep_for(poll_interval);
+        if (part.bytes.empty()) std::this_thread::sleep_for(asks_again_after);
       }
     } catch (const recording::FileError& error) {
       log_.error(fmt::format("{}. 'cohort recover' closes what is there", error.what()));

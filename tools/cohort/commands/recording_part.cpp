@@ -20,18 +20,18 @@ void add_part_options(CommandLine line, RecordingPart& part) {
       .type_name("S");
 }
 
-std::chrono::nanoseconds start_of(const RecordingPart& part) { return nanoseconds(part.from); }
+std::chrono::nanoseconds start_of_part(const RecordingPart& part) { return nanoseconds(part.from); }
 
-std::chrono::nanoseconds end_of(const RecordingPart& part) {
+std::chrono::nanoseconds end_of_part(const RecordingPart& part) {
   return part.to ? nanoseconds(*part.to) : std::chrono::nanoseconds::max();
 }
 
 bool replay_part(recording::Replay& replay, const RecordingPart& part, Log& log, const std::atomic<bool>& stop,
                  const std::function<void()>& visit) {
   ReplayProgress progress(log);
-  bool goes_on = replay.seek(start_of(part));
-  if (!goes_on || replay.recorded().log_time > end_of(part)) throw std::invalid_argument(nothing_in_part);
-  for (; goes_on && replay.recorded().log_time <= end_of(part); goes_on = replay.advance()) {
+  bool goes_on = replay.seek(start_of_part(part));
+  if (!goes_on || replay.recorded().log_time > end_of_part(part)) throw std::invalid_argument(nothing_in_part);
+  for (; goes_on && replay.recorded().log_time <= end_of_part(part); goes_on = replay.advance()) {
     if (stop) return false;
     progress.at(replay.recorded().log_time, "replayed");
     visit();

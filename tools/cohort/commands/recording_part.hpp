@@ -21,8 +21,8 @@ void add_part_options(CommandLine line, RecordingPart& part);
 
 inline constexpr const char* nothing_in_part = "the recording has nothing in the time that is asked for";
 
-std::chrono::nanoseconds start_of(const RecordingPart& part);
-std::chrono::nanoseconds end_of(const RecordingPart& part);
+std::chrono::nanoseconds start_of_part(const RecordingPart& part);
+std::chrono::nanoseconds end_of_part(const RecordingPart& part);
 
 /// Calls `visit` at each boundary of the part, and shows where it is. False if it was stopped. Throws
 /// std::invalid_argument if there is no boundary in the part.

@@ -65,8 +65,8 @@ int report(const recording::Verification& found, const ReplayCommand& command, L
 
 int verify(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
   ReplayProgress progress(log);
-  const recording::Verification found =
-      recording::verify(replay, start_of(command.part), end_of(command.part), [&](std::chrono::nanoseconds log_time) {
+  const recording::Verification found = recording::verify(
+      replay, start_of_part(command.part), end_of_part(command.part), [&](std::chrono::nanoseconds log_time) {
         if (!command.quiet) progress.at(log_time, "replayed");
         return !stop;
       });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -10,6 +11,10 @@
 
 /// Options that several commands have.
 namespace cohort::tool {
+
+/// How long a server is waited for.
+inline constexpr std::chrono::milliseconds for_ever{std::chrono::hours{24 * 365}};
+inline constexpr std::chrono::milliseconds for_a_reply{30'000};
 
 /// Where a server is, and who asks.
 struct Connection {

@@ -10,11 +10,6 @@
 namespace cohort::tool {
 namespace {
 
-double seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
-double microseconds(std::chrono::nanoseconds duration) {
-  return std::chrono::duration<double, std::micro>(duration).count();
-}
-
 nlohmann::ordered_json quantiles(const lockstep::LatencyHistogram& histogram) {
   return {{"p50", microseconds(histogram.quantile(0.5))},
           {"p99", microseconds(histogram.quantile(0.99))},

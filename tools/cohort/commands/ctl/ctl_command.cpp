@@ -24,8 +24,6 @@ using wire::Request;
 using wire::ResultCode;
 
 constexpr milliseconds for_a_server{5'000};
-constexpr milliseconds for_a_reply{30'000};
-constexpr milliseconds for_ever{std::chrono::hours{24 * 365}};
 constexpr milliseconds for_status{2'000};
 constexpr milliseconds watch_interval{500};
 

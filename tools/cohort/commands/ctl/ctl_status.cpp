@@ -10,9 +10,6 @@
 namespace cohort::tool {
 namespace {
 
-double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nanoseconds); }
-double microseconds(std::int64_t nanoseconds) { return 1e-3 * static_cast<double>(nanoseconds); }
-
 std::string speed_text(double speed) { return speed == 0.0 ? "max" : fmt::format("{:g}", speed); }
 
 // `0..3,7`: in the words that select them.
@@ -34,7 +31,8 @@ std::string awaited_text(const wire::SimulationStatus& status) {
   std::string text = "waiting for " + status.awaited.front();
   if (status.awaited_count > 1) text += fmt::format(" and {} more", status.awaited_count - 1);
   for (const wire::ControllerStatus& each : status.controllers)
-    if (each.awaited) return text + fmt::format(": {}, {:.1f} s", each.label, seconds(status.waiting_ns));
+    if (each.awaited)
+      return text + fmt::format(": {}, {:.1f} s", each.label, seconds(std::chrono::nanoseconds(status.waiting_ns)));
   return text;
 }
 
@@ -56,7 +54,8 @@ std::string status_text(const wire::Reply& reply) {
   std::string text = fmt::format("{}   {}   run {}, seed {}   {}\n", status.experiment, word_of(reply.state), reply.run,
                                  status.seed, counted(status.robots, "robot"));
   text += fmt::format("tick {}   {:.2f} of {:.2f} s simulated   {:.2f} x real time (speed {})   hash {:016x}\n",
-                      reply.tick, seconds(reply.time_ns), seconds(status.duration_ns), status.real_time_factor,
+                      reply.tick, seconds(std::chrono::nanoseconds(reply.time_ns)),
+                      seconds(std::chrono::nanoseconds(status.duration_ns)), status.real_time_factor,
                       speed_text(status.speed), status.state_hash);
   if (const std::string awaited = awaited_text(status); !awaited.empty()) text += awaited + "\n";
   if (status.controllers.empty()) return text + "no controller\n";
@@ -65,11 +64,13 @@ std::string status_text(const wire::Reply& reply) {
   text += fmt::format("\n{:<{}}  {:<14} {:>10} {:>9} {:>7} {:>9} {:>9} {:>9} {:>7}\n", "controller", width, "robots",
                       "due tick", "awaited", "late", "p50 us", "p99 us", "rejected", "resent");
   for (const wire::ControllerStatus& each : status.controllers)
-    text += fmt::format("{:<{}}  {:<14} {:>10} {:>9} {:>7} {:>9.0f} {:>9.0f} {:>9} {:>7}{}\n", each.label, width,
-                        ranges_of(each.robots), each.due_tick,
-                        each.awaited ? fmt::format("{:.1f} s", seconds(each.awaited_ns)) : "-", each.late,
-                        microseconds(each.answer_p50_ns), microseconds(each.answer_p99_ns), each.rejected, each.resent,
-                        each.alive ? "" : "  gone or silent");
+    text +=
+        fmt::format("{:<{}}  {:<14} {:>10} {:>9} {:>7} {:>9.0f} {:>9.0f} {:>9} {:>7}{}\n", each.label, width,
+                    ranges_of(each.robots), each.due_tick,
+                    each.awaited ? fmt::format("{:.1f} s", seconds(std::chrono::nanoseconds(each.awaited_ns))) : "-",
+                    each.late, microseconds(std::chrono::nanoseconds(each.answer_p50_ns)),
+                    microseconds(std::chrono::nanoseconds(each.answer_p99_ns)), each.rejected, each.resent,
+                    each.alive ? "" : "  gone or silent");
   return text;
 }
 
@@ -80,19 +81,20 @@ std::string status_json(const wire::Reply& reply, int indent) {
   const wire::SimulationStatus& status = reply.status.front();
   nlohmann::ordered_json controllers = nlohmann::ordered_json::array();
   for (const wire::ControllerStatus& each : status.controllers)
-    controllers.push_back(
-        {{"label", each.label},
-         {"client", fmt::format("{:016x}", each.client)},
-         {"robots", each.robots},
-         {"alive", each.alive},
-         {"awaited", each.awaited},
-         {"awaited_s", seconds(each.awaited_ns)},
-         {"due_tick", each.due_tick},
-         {"answers", each.answers},
-         {"late", each.late},
-         {"rejected", each.rejected},
-         {"resent", each.resent},
-         {"answer_us", {{"p50", microseconds(each.answer_p50_ns)}, {"p99", microseconds(each.answer_p99_ns)}}}});
+    controllers.push_back({{"label", each.label},
+                           {"client", fmt::format("{:016x}", each.client)},
+                           {"robots", each.robots},
+                           {"alive", each.alive},
+                           {"awaited", each.awaited},
+                           {"awaited_s", seconds(std::chrono::nanoseconds(each.awaited_ns))},
+                           {"due_tick", each.due_tick},
+                           {"answers", each.answers},
+                           {"late", each.late},
+                           {"rejected", each.rejected},
+                           {"resent", each.resent},
+                           {"answer_us",
+                            {{"p50", microseconds(std::chrono::nanoseconds(each.answer_p50_ns))},
+                             {"p99", microseconds(std::chrono::nanoseconds(each.answer_p99_ns))}}}});
   json.update(nlohmann::ordered_json{{"experiment", status.experiment},
                                      {"seed", status.seed},
                                      {"started", status.started},
@@ -104,7 +106,7 @@ std::string status_json(const wire::Reply& reply, int indent) {
                                      {"robots", status.robots},
                                      {"awaited", status.awaited},
                                      {"awaited_count", status.awaited_count},
-                                     {"waiting_s", seconds(status.waiting_ns)},
+                                     {"waiting_s", seconds(std::chrono::nanoseconds(status.waiting_ns))},
                                      {"controllers", controllers}});
   return json.dump(indent) + "\n";
 }

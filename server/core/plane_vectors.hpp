@@ -1,0 +1,14 @@
+#pragma once
+
+#include <Eigen/Core>
+
+/// Vectors of a plane that is seen from above: x to the front, y to the left.
+namespace cohort {
+
+/// Of (a, 0) and (b, 0) the product's height: positive if b is to the left of a.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Turned by a quarter turn to the left.
+inline Eigen::Vector2d left_of(const Eigen::Vector2d& vector) { return {-vector.y(), vector.x()}; }
+
+}  // namespace cohort

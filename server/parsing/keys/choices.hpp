@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+/// The words that may be written for the values of an enum, in its order.
+namespace cohort::parsing {
+
+inline constexpr std::string_view fidelities[] = {"articulated", "treel", "planar"};
+inline constexpr std::string_view solvers[] = {"iterative", "direct", "hybrid"};
+inline constexpr std::string_view headings[] = {"random", "fixed", "towards", "away", "along"};
+inline constexpr std::string_view late_policies[] = {"wait", "hold", "zero", "detach", "stop"};
+inline constexpr std::string_view quantities[] = {"position", "pose",        "heading",     "velocity",
+                                                  "count",    "quarantined", "joint_force", "joint_torque"};
+
+/// The value of a word that is one of `words`.
+template <class Enum>
+Enum choice_of(std::span<const std::string_view> words, std::string_view word) {
+  const auto found = std::ranges::find(words, word);
+  if (found == words.end()) throw std::logic_error("no meaning for the choice " + std::string(word));
+  return static_cast<Enum>(found - words.begin());
+}
+
+template <class Enum>
+std::string word_for(std::span<const std::string_view> words, Enum value) {
+  return std::string(words[static_cast<std::size_t>(value)]);
+}
+
+}  // namespace cohort::parsing

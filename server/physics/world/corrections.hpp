@@ -1,0 +1,22 @@
+#pragma once
+
+#include <algorithm>
+
+/// How fast what came apart or into each other is put right, for both kinds of world.
+namespace cohort::physics {
+
+/// Share of an overlap, of an overshoot or of a gap in a connection that one step takes away.
+inline constexpr double correction_share = 0.2;
+/// Slower than this nothing bounces [m/s]: what rests would never come to rest.
+inline constexpr double least_bounce = 0.05;
+/// Further from the origin a body has left the world [m].
+inline constexpr double furthest_from_origin = 1e6;
+
+/// Velocity with which two surfaces that are `gap` [m] apart have to come apart at least [m/s]: they may close a gap
+/// within the step, and an overlap is pushed out gently.
+inline double separating_velocity(double gap, double step) {
+  constexpr double gentle = 0.3;
+  return gap > 0.0 ? -gap / step : std::min(gentle, -gap * correction_share / step);
+}
+
+}  // namespace cohort::physics

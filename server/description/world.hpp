@@ -38,8 +38,15 @@ enum class Solver {
   hybrid,     ///< direct for islands of few bodies, iterative for others
 };
 
+/// How bodies come by their velocities, and answer impulses: two ways to the same numbers. Planar bodies need neither.
+enum class Dynamics {
+  bullet,  ///< bodies of Bullet and its articulated-body algorithm
+  cohort,  ///< our own mass matrix and its factors
+};
+
 struct PhysicsSettings {
   Fidelity fidelity = Fidelity::treel;
+  Dynamics dynamics = Dynamics::cohort;
   Solver solver = Solver::iterative;
   std::uint32_t iterations = 10;                             ///< of the iterative solver, at the most
   std::uint32_t direct_bodies = 4;                           ///< hybrid: the largest island that is solved directly

@@ -75,6 +75,10 @@ constexpr ExtensionKey uniform[] = {
 constexpr ExtensionKey physics[] = {
     {"fidelity", choice, "", "treel", "how much of a model is simulated: `articulated`, `treel` or `planar`", false,
      fidelities},
+    {"dynamics", choice, "", "cohort",
+     "how bodies come by their velocities: `bullet`, with its articulated bodies, or `cohort`, with our own mass "
+     "matrix; without meaning in `planar`",
+     false, dynamics_kinds},
     {"solver", choice, "", "iterative", "of joints and contacts: `iterative`, `direct` or `hybrid`", false, solvers},
     {"iterations", count, "1", "10", "of the iterative solver, at the most"},
     {"direct_bodies", count, "1", "4", "`hybrid`: the most bodies that are solved directly together"},

@@ -101,6 +101,7 @@ class WorldWriter {
     const PhysicsSettings& settings = world_.physics;
     XmlNode& physics = add(world, prefixed("physics"));
     add_key(physics, "fidelity", word_for(fidelities, settings.fidelity));
+    add_key(physics, "dynamics", word_for(dynamics_kinds, settings.dynamics));
     add_key(physics, "solver", word_for(solvers, settings.solver));
     add_key(physics, "iterations", static_cast<std::uint64_t>(settings.iterations));
     add_key(physics, "direct_bodies", static_cast<std::uint64_t>(settings.direct_bodies));

@@ -8,6 +8,7 @@
 #pragma GCC diagnostic ignored "-Wpedantic"
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigLCP.h>
 #include <btBulletCollisionCommon.h>
 #pragma GCC diagnostic pop
@@ -23,5 +24,11 @@ inline btTransform to_bullet(const Pose& pose) {
 }
 
 inline Eigen::Vector3d to_eigen(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+inline Eigen::Quaterniond to_eigen(const btQuaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+inline Eigen::Matrix3d to_eigen(const btMatrix3x3& m) {
+  Eigen::Matrix3d rows;
+  rows << m[0].x(), m[0].y(), m[0].z(), m[1].x(), m[1].y(), m[1].z(), m[2].x(), m[2].y(), m[2].z();
+  return rows;
+}
 
 }  // namespace cohort::physics

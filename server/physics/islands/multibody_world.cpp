@@ -67,7 +67,7 @@ std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_inde
   try {
     std::unique_ptr<Mechanism> made =
         known ? nullptr : std::make_unique<Mechanism>(model, description_.physics.fidelity);
-    auto multibody = std::make_unique<Multibody>(made ? *made : *known, X_WM, body);
+    auto multibody = std::make_unique<Multibody>(made ? *made : *known, description_.physics.dynamics, X_WM, body);
     if (made) known = std::move(made);
     return multibody;
   } catch (const std::invalid_argument& error) {

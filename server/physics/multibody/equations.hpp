@@ -2,15 +2,16 @@
 
 #include <vector>
 
+#include "server/physics/multibody/joint_axes.hpp"
+#include "server/physics/multibody/mass_matrix.hpp"
 #include "server/physics/multibody/multibody.hpp"
 
 namespace cohort::physics {
 
 /// The equations of motion of one multibody over one step: its velocities without any impulse, and how an impulse
-/// changes them. Composite rigid bodies and recursive Newton-Euler for the mass matrix and the bias force, and its
-/// factors L'DL along the branches of the tree (Featherstone, "Rigid body dynamics algorithms", 2008, chapters 5, 6 and
-/// 8.6), in world axes about the body's reference point. Damping and springs of the joints are implicit: they are part
-/// of the matrix, and so stable at any stiffness; so is what the rotors of geared motors resist (chapter 9.6).
+/// changes them, by the dynamics that the body has: Bullet's, or our own mass matrix. Damping and springs of the joints
+/// are implicit: they are part of the inertia, and so stable at any stiffness; so is what the rotors of geared motors
+/// resist (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6).
 ///
 /// One object serves many bodies one after the other; it keeps its memory.
 class Equations {
@@ -41,39 +42,23 @@ class Equations {
   void respond(const double* jacobian, double* response) const;
 
  private:
-  struct Spatial {  // of a velocity or an acceleration; of a force: the torque and the force
-    Eigen::Vector3d angular;
-    Eigen::Vector3d linear;
-  };
-  struct Work {  // of one segment
-    Spatial velocity;
-    Spatial acceleration;
-    Spatial force;
-    Eigen::Matrix3d inertia;  // about the reference
-    Eigen::Vector3d moment;   // mass times the centre's offset from the reference
-    double mass = 0.0;
-  };
-
-  void move_outwards(const Eigen::Vector3d& gravity);
-  void gather_inwards();
-  void take_free_root(const Work& whole);
-  void take_joint(int dof, const Work& beyond);
+  void find_efforts(double step);
+  void solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step);
+  void solve_by_bullet(const Eigen::Vector3d& gravity, double step);
   void add_generalised(int segment, const Spatial& force, double* jacobian) const;
-  void factorise();
-  void invert();
-  void solve(double* x) const;
 
   const Multibody* body_ = nullptr;
   const Mechanism* mechanism_ = nullptr;
   int size_ = 0;
   std::ptrdiff_t stride_ = 0;
-  std::vector<Work> work_;
-  std::vector<Spatial> axes_;    // by dof; those of a free root stay unused
-  std::vector<double> matrix_;   // size_ x stride_, lower triangle: the mass matrix, then its factors
-  std::vector<double> inverse_;  // of the mass matrix, size_ x stride_
+  std::vector<Spatial> axes_;          // by dof
+  std::vector<double> efforts_;        // of dampers and springs, by dof
+  std::vector<double> added_inertia_;  // by them and by rotors, by dof
+  MassMatrix matrix_;
+  std::vector<double> inverse_;  // size_ x stride_: by dof, the response to a unit impulse along it
   bool is_inverted_ = false;     // whether inverse_ is of this body
-  std::vector<double> bias_;
   std::vector<double> velocity_;
+  std::vector<double> response_;
 };
 
 }  // namespace cohort::physics

@@ -52,7 +52,7 @@ double JointRows::velocity_towards_target(const Motor& motor, const Row& row, co
                                           const Multibody& body, double step) {
   const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(motor.dof)];
   if (dof.coordinate < 0) return 0.0;
-  const double way = std::clamp(motor.target, dof.axis.lower, dof.axis.upper) - body.coordinates()[dof.coordinate];
+  const double way = std::clamp(motor.target, dof.axis.lower, dof.axis.upper) - body.coordinate(dof);
   const double direction = way < 0.0 ? -1.0 : 1.0;
   // What the motor can do, less what gravity and inertia do to the joint in this direction.
   const double by_motor = row.inverse > 0.0 ? motor.max_effort / row.inverse : 0.0;
@@ -77,7 +77,7 @@ void JointRows::add_rows(Problem& problem, int index, const Multibody& body, dou
   // One-sided rows, as a contact is: inactive until a step could pass the limit.
   for (Limit& limit : limits_) {
     const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(limit.dof)];
-    const double position = body.coordinates()[dof.coordinate];
+    const double position = body.coordinate(dof);
     const double velocity = body.velocities()[limit.dof];
     // The velocity that just closes the gap, or that takes back a share of an overshoot.
     const auto target = [&](double gap) { return (gap > 0.0 ? gap : correction_share * gap) / step; };

@@ -1,5 +1,7 @@
 #include "server/physics/multibody/mechanism.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include "server/physics/multibody/rotation.hpp"
 
 namespace cohort::physics {
@@ -55,7 +57,35 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   for (const description::Device& device : model.devices)
     if (const auto motor = description::motor_limits(device); motor && joints_[motor->joint].dofs > 0)
       dofs_[static_cast<std::size_t>(joints_[motor->joint].first_dof)].rotor_inertia = motor->rotor_inertia;
+  turn_to_principal_axes();
   find_light_segments();
+}
+
+void Mechanism::turn_to_principal_axes() {
+  constexpr double rounding = 1e-13;
+  for (std::size_t s = 0; s < segments_.size(); ++s) {
+    Segment& segment = segments_[s];
+    const Eigen::Matrix3d diagonal = segment.inertia_S.diagonal().asDiagonal();
+    if ((segment.inertia_S - diagonal).cwiseAbs().maxCoeff() <= rounding * diagonal.trace()) {
+      segment.inertia_S = diagonal;
+      continue;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(segment.inertia_S);
+    Eigen::Matrix3d axes = solver.eigenvectors();
+    if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
+    const Eigen::Quaterniond turn(axes);
+    const Eigen::Quaterniond back = turn.conjugate();
+    segment.principal_axes = turn;
+    segment.inertia_S = solver.eigenvalues().asDiagonal();
+    segment.centre_S = back * segment.centre_S;
+    segment.axis_S = back * segment.axis_S;
+    segment.X_PS.orientation *= turn;
+    const Pose to_segment{Eigen::Vector3d::Zero(), back};
+    for (Segment& other : segments_)
+      if (other.parent == static_cast<int>(s)) other.X_PS = to_segment * other.X_PS;
+    for (LinkPlace& link : links_)
+      if (link.segment == static_cast<int>(s)) link.X_SL = to_segment * link.X_SL;
+  }
 }
 
 void Mechanism::find_light_segments() {

@@ -11,11 +11,14 @@ namespace cohort::physics {
 /// How a segment moves against its parent. `free`: not tied to anything; `anchored`: tied to the world.
 enum class Motion { free, anchored, revolute, prismatic, ball };
 
-/// Links welded together, which move as one. Frame S: at the joint above, or the root link's.
+/// Links welded together, which move as one. Frame S: where the joint above is, or the root link, turned to the
+/// principal axes of its mass.
 struct Segment {
   int parent = -1;  ///< -1: none; `X_PS` is then in the model's frame
   Motion motion = Motion::free;
-  Pose X_PS;               ///< where all coordinates are zero
+  Pose X_PS;  ///< where all coordinates are zero
+  /// From the joint above, or the root link, to S.
+  Eigen::Quaterniond principal_axes = Eigen::Quaterniond::Identity();
   Eigen::Vector3d axis_S;  ///< of a revolute or prismatic joint
   int first_dof = 0;
   int dofs = 0;
@@ -24,7 +27,7 @@ struct Segment {
 
   double mass = 0.0;                                    ///< may be zero: the middle of a universal joint
   Eigen::Vector3d centre_S = Eigen::Vector3d::Zero();   ///< of mass
-  Eigen::Matrix3d inertia_S = Eigen::Matrix3d::Zero();  ///< about the centre of mass
+  Eigen::Matrix3d inertia_S = Eigen::Matrix3d::Zero();  ///< about the centre of mass, diagonal
 };
 
 /// Where a segment that a joint holds is: `X_WS` with its coordinates at zero, `coordinates` its own.
@@ -87,6 +90,7 @@ class Mechanism {
   void add_link(std::size_t link, const std::vector<char>& welded);
   int add_segment(int parent, Motion motion, const Pose& X_PS, const Eigen::Vector3d& axis_S,
                   const description::JointAxis* axis);
+  void turn_to_principal_axes();
   void find_light_segments();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
 

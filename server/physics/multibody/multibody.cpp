@@ -15,19 +15,14 @@ Eigen::Quaterniond ball_rotation(const double* coordinates) {
 
 }  // namespace
 
-Multibody::Multibody(const Mechanism& mechanism, const Pose& X_WM, std::uint32_t body)
+Multibody::Multibody(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM, std::uint32_t body)
     : mechanism_(&mechanism),
       body_(body),
-      X_WM_(X_WM),
-      coordinates_(mechanism.zero_coordinates()),
-      velocities_(static_cast<std::size_t>(mechanism.dof_count()), 0.0),
+      bullet_(dynamics == description::Dynamics::bullet ? std::make_unique<BulletBody>(mechanism) : nullptr),
+      state_(bullet_ ? BodyState(mechanism, bullet_->memory()) : BodyState(mechanism)),
       X_WS_(mechanism.segments().size()),
       joints_(mechanism) {
-  const Segment& root = mechanism.segments()[0];
-  const Pose X_WS = X_WM * root.X_PS;
-  root_rotation_ = X_WS.orientation;
-  reference_W_ = mechanism.has_free_root() ? X_WS * root.centre_S : X_WS.position;
-  update_poses();
+  place(X_WM);
   build_devices();
 }
 
@@ -85,13 +80,14 @@ void Multibody::update_poses() {
   for (std::size_t s = 0; s < X_WS_.size(); ++s) {
     const Segment& segment = mechanism_->segments()[s];
     if (segment.motion == Motion::free) {
-      X_WS_[s] = {reference_W_ - root_rotation_ * segment.centre_S, root_rotation_};
+      const Eigen::Quaterniond rotation = state_.root_rotation();
+      X_WS_[s] = {reference() - rotation * segment.centre_S, rotation};
       continue;
     }
     const Pose& X_WP = segment.parent < 0 ? X_WM_ : X_WS_[static_cast<std::size_t>(segment.parent)];
-    X_WS_[s] = moved_by_joint(segment, X_WP * segment.X_PS, coordinates_.data() + segment.first_coordinate);
+    X_WS_[s] = moved_by_joint(segment, X_WP * segment.X_PS, state_.coordinates(segment.first_coordinate));
   }
-  if (!mechanism_->has_free_root()) reference_W_ = X_WS_[0].position;
+  if (!mechanism_->has_free_root()) state_.set_reference(X_WS_[0].position);
 }
 
 Pose Multibody::link_pose(std::size_t link) const {
@@ -107,14 +103,14 @@ Twist Multibody::link_twist(std::size_t link) const {
   for (int s = place.segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
     const Segment& segment = mechanism_->segments()[static_cast<std::size_t>(s)];
     const Pose& X_WS = segment_pose(s);
-    const double* v = velocities_.data() + segment.first_dof;
+    const double* v = velocities() + segment.first_dof;
     Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();
     Eigen::Vector3d pivot_W = X_WS.position;
     switch (segment.motion) {
       case Motion::anchored: break;
       case Motion::free:
         angular_W = {v[0], v[1], v[2]};
-        pivot_W = reference_W_;
+        pivot_W = reference();
         twist.linear_W += Eigen::Vector3d(v[3], v[4], v[5]);
         break;
       case Motion::revolute: angular_W = v[0] * (X_WS.orientation * segment.axis_S); break;
@@ -129,38 +125,48 @@ Twist Multibody::link_twist(std::size_t link) const {
 
 double Multibody::joint_position(std::size_t joint) const {
   const Mechanism::JointPlace& place = mechanism_->joint(joint);
-  return place.dofs == 0 ? 0.0 : coordinates_[static_cast<std::size_t>(place.first_coordinate)];
+  return place.dofs == 0 ? 0.0 : *state_.coordinates(place.first_coordinate);
 }
 
 double Multibody::joint_velocity(std::size_t joint) const {
   const Mechanism::JointPlace& place = mechanism_->joint(joint);
-  return place.dofs == 0 ? 0.0 : velocities_[static_cast<std::size_t>(place.first_dof)];
+  return place.dofs == 0 ? 0.0 : velocities()[place.first_dof];
 }
 
 void Multibody::place(const Pose& X_WM) {
   const Segment& root = mechanism_->segments()[0];
   const Pose X_WS = X_WM * root.X_PS;
   X_WM_ = X_WM;
-  root_rotation_ = X_WS.orientation;
-  reference_W_ = mechanism_->has_free_root() ? X_WS * root.centre_S : X_WS.position;
+  state_.set_root_rotation(X_WS.orientation);
+  state_.set_reference(mechanism_->has_free_root() ? X_WS * root.centre_S : X_WS.position);
   stop();
   update_poses();
 }
 
 void Multibody::set_root_twist(const Twist& twist) {
-  const Eigen::Vector3d to_reference_W = reference_W_ - link_pose(0).position;
+  const Eigen::Vector3d to_reference_W = reference() - link_pose(0).position;
   const Eigen::Vector3d linear_W = twist.linear_W + twist.angular_W.cross(to_reference_W);
-  for (std::size_t i = 0; i < 3; ++i) {
-    velocities_[i] = twist.angular_W[static_cast<Eigen::Index>(i)];
-    velocities_[3 + i] = linear_W[static_cast<Eigen::Index>(i)];
-  }
+  std::copy_n(twist.angular_W.data(), 3, state_.velocities());
+  std::copy_n(linear_W.data(), 3, state_.velocities() + 3);
 }
 
 void Multibody::set_joint_state(std::size_t joint, std::span<const double> coordinates,
                                 std::span<const double> velocities) {
   const Mechanism::JointPlace& place = mechanism_->joint(joint);
-  std::copy(coordinates.begin(), coordinates.end(), coordinates_.begin() + place.first_coordinate);
-  std::copy(velocities.begin(), velocities.end(), velocities_.begin() + place.first_dof);
+  double* const v = state_.velocities() + place.first_dof;
+  std::copy(velocities.begin(), velocities.end(), v);
+  constexpr int dofs_of_ball = 3;
+  if (place.dofs == dofs_of_ball) {
+    const Eigen::Quaterniond& axes = mechanism_->segments()[static_cast<std::size_t>(place.segment)].principal_axes;
+    const Eigen::Quaterniond to_axes = axes.conjugate();
+    const Eigen::Quaterniond rotation = to_axes * ball_rotation(coordinates.data()) * axes;
+    std::copy_n(rotation.coeffs().data(), 4, state_.coordinates(place.first_coordinate));
+    const Eigen::Vector3d turned = to_axes * Eigen::Vector3d(v[0], v[1], v[2]);
+    std::copy_n(turned.data(), 3, v);
+  } else {
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      *state_.coordinates(place.first_coordinate + static_cast<int>(i)) = coordinates[i];
+  }
   update_poses();
 }
 
@@ -196,9 +202,8 @@ TrackState Multibody::track(std::size_t device, Side side) const {
   for (std::size_t i = 0; i < wheels.dofs[s].size(); ++i) {
     const int dof = wheels.dofs[s][i];
     const double sense = wheels.senses[s][i];
-    const auto coordinate = static_cast<std::size_t>(mechanism_->dofs()[static_cast<std::size_t>(dof)].coordinate);
-    state.position += sense * coordinates_[coordinate] * wheels.radius;
-    state.velocity += sense * velocities_[static_cast<std::size_t>(dof)] * wheels.radius;
+    state.position += sense * coordinate(mechanism_->dofs()[static_cast<std::size_t>(dof)]) * wheels.radius;
+    state.velocity += sense * velocities()[dof] * wheels.radius;
     if (last_step_ > 0.0) state.traction += sense * joints_.motor_impulse(dof) / last_step_ / wheels.radius;
   }
   if (const auto count = static_cast<double>(wheels.dofs[s].size()); count > 0.0) {
@@ -218,34 +223,36 @@ void Multibody::add_rows(Problem& problem, int index, const Anchors& anchors, do
 void Multibody::turn_freely(double step) {
   const Eigen::Matrix3d& inertia_S = mechanism_->segments()[0].inertia_S;
   const Eigen::Matrix3d inverse_S = inertia_S.inverse();
-  const Eigen::Map<Eigen::Vector3d> angular_W(velocities_.data());
-  const Eigen::Vector3d momentum_W = root_rotation_ * (inertia_S * (root_rotation_.conjugate() * angular_W));
-  const auto turned_by = [&](const Eigen::Vector3d& turn) { return (rotation_by(turn) * root_rotation_).normalized(); };
+  const Eigen::Map<const Eigen::Vector3d> angular_W(velocities());
+  const Eigen::Quaterniond before = state_.root_rotation();
+  const Eigen::Vector3d momentum_W = before * (inertia_S * (before.conjugate() * angular_W));
+  const auto turned_by = [&](const Eigen::Vector3d& turn) { return (rotation_by(turn) * before).normalized(); };
   const auto velocity_at = [&](const Eigen::Quaterniond& rotation) -> Eigen::Vector3d {
     return rotation * (inverse_S * (rotation.conjugate() * momentum_W));
   };
   const Eigen::Vector3d middle_W = velocity_at(turned_by(0.5 * step * angular_W));
-  root_rotation_ = turned_by(step * middle_W);
-  const Eigen::Vector3d new_angular_W = velocity_at(root_rotation_);
-  std::copy_n(new_angular_W.data(), 3, velocities_.begin());
+  const Eigen::Quaterniond after = turned_by(step * middle_W);
+  const Eigen::Vector3d new_angular_W = velocity_at(after);
+  state_.set_root_rotation(after);
+  std::copy_n(new_angular_W.data(), 3, state_.velocities());
 }
 
 void Multibody::integrate(const double* velocities, double step) {
-  std::copy_n(velocities, velocities_.size(), velocities_.begin());
+  std::copy_n(velocities, mechanism_->dof_count(), state_.velocities());
   last_step_ = step;
   for (const Segment& segment : mechanism_->segments()) {
-    const double* v = velocities_.data() + segment.first_dof;
-    double* coordinates = coordinates_.data() + segment.first_coordinate;
+    const double* v = state_.velocities() + segment.first_dof;
+    double* coordinates = state_.coordinates(segment.first_coordinate);
     switch (segment.motion) {
       case Motion::anchored: break;
       case Motion::free:
         if (mechanism_->is_free_body()) {
           turn_freely(step);
-          reference_W_ += step * Eigen::Vector3d(v[3], v[4], v[5]);
-          break;
+        } else {
+          const Eigen::Quaterniond turn = rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]));
+          state_.set_root_rotation((turn * state_.root_rotation()).normalized());
         }
-        root_rotation_ = (rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2])) * root_rotation_).normalized();
-        reference_W_ += step * Eigen::Vector3d(v[3], v[4], v[5]);
+        state_.set_reference(reference() + step * Eigen::Vector3d(v[3], v[4], v[5]));
         break;
       case Motion::revolute:
       case Motion::prismatic: coordinates[0] += step * v[0]; break;

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "server/geometry/scene.hpp"
+#include "server/physics/multibody/body_state.hpp"
+#include "server/physics/multibody/bullet_body.hpp"
 #include "server/physics/multibody/joint_rows.hpp"
 #include "server/physics/multibody/mechanism.hpp"
 #include "server/physics/multibody/track_rows.hpp"
@@ -20,7 +23,7 @@ class Multibody {
  public:
   /// The mechanism is shared and must outlive this; X_WM places the model with all its joints at zero. Throws
   /// std::invalid_argument for a device that cannot be simulated.
-  Multibody(const Mechanism& mechanism, const Pose& X_WM, std::uint32_t body);
+  Multibody(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM, std::uint32_t body);
   Multibody(const Multibody&) = delete;
   Multibody& operator=(const Multibody&) = delete;
 
@@ -28,12 +31,15 @@ class Multibody {
   std::uint32_t body() const { return body_; }
 
   // The state: what decides how the body goes on.
-  const double* coordinates() const { return coordinates_.data(); }
-  const double* velocities() const { return velocities_.data(); }
+  const double* velocities() const { return state_.velocities(); }
+  double coordinate(const Dof& dof) const { return *state_.coordinates(dof.coordinate); }
   /// Where the spatial velocities of this body are taken: the centre of mass of the root segment, or the origin of a
   /// root that is tied to the world [m].
-  const Eigen::Vector3d& reference() const { return reference_W_; }
+  Eigen::Vector3d reference() const { return state_.reference(); }
+  /// What has the state and its dynamics, nullptr if they are our own.
+  BulletBody* bullet() const { return bullet_.get(); }
 
+  const std::vector<Pose>& segment_poses() const { return X_WS_; }
   const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
   Pose link_pose(std::size_t link) const;  ///< X_WL
   Twist link_twist(std::size_t link) const;
@@ -43,7 +49,7 @@ class Multibody {
   /// Puts the model at X_WM, at rest, with its joints as they are.
   void place(const Pose& X_WM);
   /// All velocities become zero.
-  void stop() { std::fill(velocities_.begin(), velocities_.end(), 0.0); }
+  void stop() { std::fill_n(state_.velocities(), mechanism_->dof_count(), 0.0); }
   void set_root_twist(const Twist& twist);
   void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
 
@@ -68,10 +74,7 @@ class Multibody {
   /// Calls `visit` for each number of the state, always in the same order.
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit) {
-    for (int i = 0; i < 3; ++i) visit(self.reference_W_[i]);
-    for (int i = 0; i < 4; ++i) visit(self.root_rotation_.coeffs()[i]);
-    for (auto& coordinate : self.coordinates_) visit(coordinate);
-    for (auto& velocity : self.velocities_) visit(velocity);
+    BodyState::visit(self.state_, visit);
     JointRows::visit_state(self.joints_, visit);
     for (auto& treel : self.treels_) TrackRows::visit_state(treel, visit);
     visit(self.last_step_);
@@ -99,10 +102,8 @@ class Multibody {
   const Mechanism* mechanism_;
   std::uint32_t body_;
   Pose X_WM_;  // of a root that is tied to the world
-  Eigen::Vector3d reference_W_;
-  Eigen::Quaterniond root_rotation_;  // of a free root
-  std::vector<double> coordinates_;
-  std::vector<double> velocities_;
+  std::unique_ptr<BulletBody> bullet_;
+  BodyState state_;
   std::vector<Pose> X_WS_;  // follow from the state
   JointRows joints_;
   std::vector<Drive> drives_;  // by device

@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include "server/core/random.hpp"
+#include "server/physics/multibody/equations.hpp"
+#include "tests/support/small_world.hpp"
+
+// Bullet's articulated bodies and our own mass matrix give the same velocities and the same answers to impulses,
+// whatever the mechanism and its state.
+namespace cohort::testing {
+namespace {
+
+using description::Dynamics;
+using description::JointType;
+using Eigen::Vector3d;
+
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : random_(seed, "dynamics", "draws") {}
+  double between(double low, double high) { return low + (high - low) * random_.uniform(0, next_++); }
+  Vector3d vector(double half_width) {
+    return {between(-half_width, half_width), between(-half_width, half_width), between(-half_width, half_width)};
+  }
+  Eigen::Quaterniond rotation() {
+    return Eigen::Quaterniond(between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)).normalized();
+  }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(between(0.0, static_cast<double>(count))); }
+
+ private:
+  RandomStream random_;
+  std::uint32_t next_ = 0;
+};
+
+// One to ten links in a tree, whose centres and axes lie anywhere; every other one is tied to the world.
+description::Model random_mechanism(Draws& draws) {
+  constexpr JointType types[] = {JointType::revolute, JointType::prismatic, JointType::ball, JointType::universal,
+                                 JointType::fixed};
+  description::Model model;
+  const bool is_free = draws.between(0, 1) < 0.6;
+  const std::size_t links = 1 + draws.below(10);
+  for (std::size_t i = 0; i < links; ++i) {
+    description::Link& link = model.links.emplace_back();
+    link.name = "link_" + std::to_string(i);
+    link.X_ML = {draws.vector(0.3), draws.rotation()};
+    link.inertial.mass = draws.between(0.05, 2.0);
+    link.inertial.X_LI = {draws.vector(0.05), draws.rotation()};
+    // Of a solid box, so that no axis has more than the other two together.
+    const Vector3d squares =
+        Vector3d(draws.between(0.02, 0.2), draws.between(0.02, 0.2), draws.between(0.02, 0.2)).cwiseAbs2();
+    link.inertial.inertia = (link.inertial.mass / 12.0 *
+                             Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
+                                .asDiagonal();
+    if (i == 0 && is_free) continue;
+    description::Joint& joint = model.joints.emplace_back();
+    joint.name = "joint_" + std::to_string(i);
+    joint.type = types[draws.below(std::size(types))];
+    joint.parent = i == 0 ? description::Joint::world : draws.below(i);
+    joint.child = i;
+    joint.X_LJ = {draws.vector(0.1), draws.rotation()};
+    for (description::JointAxis* axis : {&joint.axis, &joint.second_axis}) {
+      axis->direction = draws.vector(1.0).normalized();
+      if (draws.between(0, 1) < 0.5) axis->damping = draws.between(0.0, 0.5);
+      if (draws.between(0, 1) < 0.3) axis->spring_stiffness = draws.between(1.0, 1000.0);
+      axis->spring_reference = draws.between(-0.5, 0.5);
+    }
+    const bool turns = joint.type == JointType::revolute || joint.type == JointType::universal;
+    if (joint.type == JointType::universal) {
+      joint.second_axis.direction = joint.axis.direction.unitOrthogonal();
+    } else if (turns && draws.between(0, 1) < 0.5) {
+      description::EffortMotor motor;
+      motor.name = joint.name + "_motor";
+      motor.joint = model.joints.size() - 1;
+      motor.rotor_inertia = draws.between(1e-5, 1e-2);
+      model.devices.emplace_back(motor);
+    }
+  }
+  return model;
+}
+
+void set_random_state(physics::Multibody& body, Draws& draws) {
+  if (body.mechanism().has_free_root()) body.set_root_twist({draws.vector(10.0), draws.vector(3.0)});
+  for (std::size_t j = 0; j < body.mechanism().model().joints.size(); ++j) {
+    const int dofs = body.mechanism().joint(j).dofs;
+    std::vector<double> coordinates;
+    std::vector<double> velocities;
+    for (int i = 0; i < dofs; ++i) {
+      coordinates.push_back(draws.between(-1.5, 1.5));
+      velocities.push_back(draws.between(-10.0, 10.0));
+    }
+    if (dofs == 3) {
+      const Eigen::Quaterniond rotation = draws.rotation();
+      coordinates.assign(rotation.coeffs().data(), rotation.coeffs().data() + 4);
+    }
+    body.set_joint_state(j, coordinates, velocities);
+  }
+}
+
+using Numbers = Eigen::Map<const Eigen::VectorXd>;
+
+TEST(Dynamics, BulletsAndOursAgreeOnRandomMechanisms) {
+  constexpr double most = 1e-10;
+  constexpr double step = 0.01;
+  const Vector3d gravity(0.3, -0.2, -9.81);
+  int mechanisms = 0;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Draws model_draws(seed);
+    const description::Model model = random_mechanism(model_draws);
+    const physics::Mechanism mechanism(model, description::Fidelity::articulated);
+    if (mechanism.dof_count() == 0) continue;
+    ++mechanisms;
+    const Pose X_WM{model_draws.vector(5.0), model_draws.rotation()};
+    physics::Multibody bullets(mechanism, Dynamics::bullet, X_WM, 0);
+    physics::Multibody ours(mechanism, Dynamics::cohort, X_WM, 0);
+    physics::Equations of_bullets;
+    physics::Equations of_ours;
+    for (std::uint64_t state = 0; state < 4; ++state) {
+      for (physics::Multibody* body : {&bullets, &ours}) {
+        Draws draws(1000 * seed + state);
+        set_random_state(*body, draws);
+      }
+      of_bullets.set_up(bullets, gravity, step);
+      of_ours.set_up(ours, gravity, step);
+      const Eigen::Index size = of_ours.size();
+      const Numbers expected(of_ours.velocity(), size);
+      const Numbers before(ours.velocities(), size);
+      const double scale = 1.0 + (expected - before).norm();
+      EXPECT_LT((Numbers(of_bullets.velocity(), size) - expected).norm(), most * scale);
+      EXPECT_EQ(Numbers(bullets.velocities(), size), before) << "the state stays as it is";
+
+      Draws draws(seed);
+      for (std::size_t s = 0; s < mechanism.segments().size(); ++s) {
+        std::vector<double> jacobian(static_cast<std::size_t>(of_ours.stride()), 0.0);
+        std::vector<double> response = jacobian;
+        std::vector<double> expected_response = jacobian;
+        of_ours.add_force(static_cast<int>(s), X_WM.position + draws.vector(0.5), draws.vector(1.0), jacobian.data());
+        of_ours.add_torque(static_cast<int>(s), draws.vector(1.0), jacobian.data());
+        of_bullets.respond(jacobian.data(), response.data());
+        of_ours.respond(jacobian.data(), expected_response.data());
+        const Numbers by_ours(expected_response.data(), size);
+        EXPECT_LT((Numbers(response.data(), size) - by_ours).norm(), most * (1e-3 + by_ours.norm()));
+      }
+    }
+  }
+  EXPECT_GT(mechanisms, 400);
+}
+
+}  // namespace
+}  // namespace cohort::testing

@@ -13,7 +13,7 @@
 
 #include "tests/support/patience.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr std::size_t sensors_size = 104;
@@ -108,4 +108,4 @@ std::array<int, 2> avoid_obstacles(const Bytes& sensors) {
   return {full_speed - 3 * right, full_speed - 3 * left};
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

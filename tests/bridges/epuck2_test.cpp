@@ -7,7 +7,7 @@
 #include "tests/bridges/epuck2_program.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr const char* shipped = COHORT_SOURCE_DIR "/worlds/experiments/epuck2.yaml";
@@ -334,4 +334,4 @@ TEST_F(Epuck2Bridge, RobotsMayHaveAddressesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -3,7 +3,7 @@
 #include "tests/support/process.hpp"
 
 // What `cohort bench lockstep` prints and writes. How long anything takes is nobody's guarantee.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -95,4 +95,4 @@ TEST(BenchLockstep, RefusesAPlacementThatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

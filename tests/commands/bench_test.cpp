@@ -7,7 +7,7 @@
 #include "tests/support/process.hpp"
 
 // What `cohort bench` prints and writes. How long anything takes is nobody's guarantee.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -255,4 +255,4 @@ TEST(Bench, AnEngineThatIsNotInThisBuildIsRefusedWithItsPackage) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

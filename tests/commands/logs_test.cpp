@@ -6,7 +6,7 @@
 
 #include "tests/commands/small_experiment.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using nlohmann::json;
@@ -167,4 +167,4 @@ TEST(Logs, AWorldsWarningsAreToldWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -14,7 +14,7 @@
 #include "tests/commands/small_experiment.hpp"
 #include "tools/processes/children.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // A line of /proc/PID/status with a mask of signals.
@@ -260,4 +260,4 @@ TEST_F(ChildrenTest, ReadNothingAndInheritNoDescriptors) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

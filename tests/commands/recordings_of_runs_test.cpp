@@ -3,7 +3,7 @@
 #include "server/recording/recording.hpp"
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // `cohort` and these arguments.
@@ -169,4 +169,4 @@ TEST_F(Recordings, ThatAreNoneAreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -5,7 +5,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 const std::string up = "\033[A";
@@ -88,4 +88,4 @@ TEST(Parameters, MistakesAreFoundBeforeAnythingRunsWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

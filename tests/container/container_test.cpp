@@ -5,14 +5,13 @@
 #include "tests/support/file_lock.hpp"
 #include "tests/support/http.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_bytes = 300'000'000;
 const std::string demo = "/usr/share/cohort/worlds/experiments/obstacle_avoidance.yaml";
-const std::string image = "localhost/cohort:" COHORT_VERSION;
 const std::string sdk_image = "localhost/cohort-sdk:" COHORT_VERSION;
 
 constexpr const char* install_list = ": tools/install-packages tools/packages-container.txt";
@@ -207,4 +206,4 @@ TEST_F(Container, OfAViewShowsTheRunOfTheComposeFilesInTheHostsBrowser) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

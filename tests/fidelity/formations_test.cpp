@@ -3,7 +3,7 @@
 #include "server/core/random.hpp"
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
@@ -144,4 +144,4 @@ INSTANTIATE_TEST_SUITE_P(Formations, EverySolver,
                                            description::Solver::hybrid));
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,21 +2,12 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Joint;
 using description::JointType;
 using Eigen::Vector3d;
-
-constexpr double g = 9.81;
-
-description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
-  description::World world;
-  world.name = "empty";
-  world.step = step;
-  return world;
-}
 
 // A bob on a rod of length 1 m without mass, hung up at the origin of the model.
 description::Model pendulum(JointType type, double mass = 2.0) {
@@ -301,4 +292,4 @@ TEST(Joints, AWheelWithoutAMotorRollsDownASlopeAsItsInertiaSays) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

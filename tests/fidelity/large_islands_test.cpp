@@ -9,7 +9,7 @@
 #include "server/physics/islands/large_island_solver.hpp"
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
@@ -167,4 +167,4 @@ TEST(IslandParts, OfBodiesThatOnlyShareOneAreStillFull) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

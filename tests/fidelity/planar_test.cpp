@@ -3,7 +3,7 @@
 #include "server/core/random.hpp"
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Box;
@@ -12,7 +12,6 @@ using description::Fidelity;
 using Eigen::Vector3d;
 using physics::Side;
 
-constexpr double g = 9.81;
 constexpr std::size_t turret = 1;
 
 description::World planar_world(double friction = 1.0) {
@@ -363,4 +362,4 @@ TEST(Planar, AConnectionBreaksWhereItBearsLess) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

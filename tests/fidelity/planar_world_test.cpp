@@ -4,7 +4,7 @@
 
 // What a world keeps to with planar bodies as with any others: the same bits, snapshots, quarantine, and what it
 // refuses.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Box;
@@ -254,4 +254,4 @@ TEST(PlanarWorld, ABodyFixedToTheWorldStaysAndIsInTheWay) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Box;
@@ -115,4 +115,4 @@ TEST(Population, RobotsComeAndGoInMidRunTheSameForAnyNumberOfWorkers) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
@@ -98,4 +98,4 @@ TEST(Snapshot, OfAnotherWorldOrCutOffIsRefused) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

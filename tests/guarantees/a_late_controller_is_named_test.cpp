@@ -7,7 +7,7 @@
 #include "idl/wire.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // Watches a run as any observer does, so that a test can act in the midst of it.
@@ -95,4 +95,4 @@ TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -8,7 +8,7 @@
 #include "tests/support/controlled_run.hpp"
 
 // Whoever controls a run does it between ticks, and the ticks keep their bits.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using wire::Operation;
@@ -321,4 +321,4 @@ TEST(ControlAtTickBoundariesOnly, WithoutAServerItSaysWhatToLookFor) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

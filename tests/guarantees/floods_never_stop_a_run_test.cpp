@@ -11,7 +11,7 @@
 #include "idl/wire.hpp"
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // Ticks of a run as an observer sees them.
@@ -140,4 +140,4 @@ TEST(FloodsNeverStopARun, OfFramesToAClientThatNeverReads) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

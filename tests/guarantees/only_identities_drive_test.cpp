@@ -9,7 +9,7 @@
 #include "tests/support/sbot_layout.hpp"
 
 // With security an identity drives its own robots, and nobody else has any effect.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr std::uint64_t blue_id = 0xb1e;  // of the client that these tests play themselves
@@ -238,4 +238,4 @@ TEST(OnlyIdentitiesDrive, AndAServerOnANetworkWithoutSecurityWarns) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

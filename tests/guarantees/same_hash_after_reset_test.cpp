@@ -5,7 +5,7 @@
 
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 std::string hash_in(const std::filesystem::path& summary) {
@@ -58,4 +58,4 @@ TEST(SameHashAfterReset, AClientWhoseRobotsAreNotInTheNextExperimentIsRefusedThe
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 TEST(SameHashAnyPlacement, InProcessOneProcessAndAProcessForEachRobotGiveTheSameBits) {
@@ -112,4 +112,4 @@ TEST(SameHashAnyPlacement, TheSameRunTwiceInARowGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -11,7 +11,7 @@
 #include "tests/support/process.hpp"
 #include "tests/support/sbot_layout.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr std::uint64_t own_id = 0xabcdef;  // of a client that these tests play themselves
@@ -170,4 +170,4 @@ INSTANTIATE_TEST_SUITE_P(All, FaultyHolder,
                          [](const auto& fault) { return fault.param.first + std::to_string(fault.index); });
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -13,7 +13,7 @@
 #include "server/simulation/simulation.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // The whole minute of the demo, watched at every tick.
@@ -116,4 +116,4 @@ TEST_F(DemoRun, HasTheHashThatTheReadmeAndItsPictureSay) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

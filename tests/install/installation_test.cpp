@@ -7,7 +7,7 @@
 #include "tests/support/http.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,4 +179,4 @@ TEST_F(Installation, MayBeMoved) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -7,7 +7,7 @@
 #include "client_sdk/src/control_client.hpp"
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// A served field of robots with its controllers, for tests that control it.
 class ControlledRun {
@@ -74,4 +74,4 @@ inline std::string reference(const FieldOfRobots& field, const std::vector<std::
   return run_experiment(field.file(), arguments)["state_hash"];
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -4,7 +4,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// An experiment of its own: s-bots on a plane that keep out of each other's way. `team` has more lines for their one
 /// team, such as `mode: free`, in the form `, KEY: VALUE`.
@@ -52,4 +52,4 @@ inline std::vector<nlohmann::json> events_of(const nlohmann::json& summary, cons
   return events;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

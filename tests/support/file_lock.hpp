@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// Among all processes one at a time has a file while this lives.
 class FileLock {
@@ -22,4 +22,4 @@ class FileLock {
   int file_;
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

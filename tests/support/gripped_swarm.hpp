@@ -3,7 +3,7 @@
 #include "server/core/random.hpp"
 #include "tests/support/lifting.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// Robots in a square, not quite where a grid would have them, each holding on to some of its neighbours as they stand.
 struct GrippedSwarm {
@@ -94,4 +94,4 @@ struct GrippedSwarm {
   }
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -13,7 +13,7 @@
 
 #include "tests/support/patience.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using std::chrono::steady_clock;
@@ -108,4 +108,4 @@ std::string free_port() {
   return std::to_string(ntohs(address.sin_port));
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

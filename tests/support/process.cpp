@@ -13,7 +13,7 @@
 #include <sstream>
 #include <thread>
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // Apart from the domains that `cohort run` takes by itself (1 to 59) and those of tests/support/free_domain.hpp (60 to
@@ -187,4 +187,4 @@ std::string reference_hash(double seconds) {
   return summary.value("state_hash", "no summary");
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -13,10 +13,9 @@
 #include "tests/support/patience.hpp"
 
 /// Running `cohort` as users do, from tests.
-namespace cohort::testing {
+namespace cohort::test {
 
 using namespace std::chrono_literals;
-using test::patience;
 
 /// A folder that is gone with this.
 class ScratchFolder {
@@ -108,4 +107,4 @@ nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process
 /// has to reach.
 std::string reference_hash(double seconds);
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

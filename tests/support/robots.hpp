@@ -3,7 +3,9 @@
 #include "server/description/world.hpp"
 
 /// Small worlds, described in code: what the tests of physics, sensing and simulation stand on.
-namespace cohort::testing {
+namespace cohort::test {
+
+inline constexpr double g = 9.81;  // [m/s^2]
 
 inline description::Inertial solid_cylinder(double mass, double radius, double length, double z) {
   const double across = mass * (3.0 * radius * radius + length * length) / 12.0;
@@ -47,6 +49,8 @@ inline description::Model tracked_robot(double noise = 0.0) {
   return model;
 }
 
+inline constexpr std::size_t first_reading = 6;  // of the ring, in the observation of `tracked_robot`
+
 inline description::Model static_shape(const std::string& name, const description::Shape& shape,
                                        description::Surface surface = {1.0, 0.0}) {
   description::Model model;
@@ -70,6 +74,13 @@ inline std::uint32_t place(description::World& world, const description::Model& 
   return body;
 }
 
+inline description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
+  description::World world;
+  world.name = "empty";
+  world.step = step;
+  return world;
+}
+
 inline description::World world_with_floor(double friction = 1.0) {
   description::World world;
   world.name = "test";
@@ -77,4 +88,4 @@ inline description::World world_with_floor(double friction = 1.0) {
   return world;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

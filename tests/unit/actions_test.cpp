@@ -12,13 +12,7 @@ namespace cohort {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::at;
-using testing::loose;
-using testing::place;
-using testing::solid_box;
-using testing::static_shape;
-using testing::tracked_robot;
-using testing::world_with_floor;
+using namespace test;
 
 const std::string crate_sdf = R"(<sdf version="1.9" xmlns:cohort="https://cohort-sim.org/sdf/1"><model name="crate">
 <link name="body">

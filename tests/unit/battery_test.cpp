@@ -5,11 +5,10 @@
 namespace cohort {
 namespace {
 
-using testing::at;
-using testing::SensingWorld;
+using namespace test;
 
 description::Model fed_robot(double capacity, double idle_power, double efficiency = 1.0) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   description::Battery battery;
   battery.name = "battery";
   battery.capacity = capacity;

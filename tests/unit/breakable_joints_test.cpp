@@ -10,12 +10,8 @@ namespace cohort {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace test;
 using Eigen::Vector3d;
-using testing::at;
-using testing::loose;
-using testing::place;
-using testing::solid_box;
-using testing::static_shape;
 
 constexpr double mass = 2.0;
 constexpr double gravity = 9.81;
@@ -25,7 +21,7 @@ class BreakableJoints : public ::testing::Test {
  protected:
   BreakableJoints() {
     description::World& world = experiment_.world;
-    world = testing::world_with_floor();
+    world = world_with_floor();
     world.gravity = {0, 0, -gravity};
     beam_ = place(world, static_shape("beam", description::Box{{1.0, 0.1, 0.1}}), "beam", at(0, 0, 1.0));
     box_ = place(world, box("box"), "box", at(0, 0, 0.7));

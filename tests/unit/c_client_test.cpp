@@ -12,8 +12,7 @@
 namespace cohort {
 namespace {
 
-using test::CountingController;
-using test::eventually;
+using namespace test;
 
 // A loop in the way of firmware, on a thread of its own so that the test can be the server.
 class CClientTest : public testing::Test {
@@ -40,7 +39,7 @@ class CClientTest : public testing::Test {
       cohort_next(client, &event);
       error = cohort_last_error();
     });
-    if (coming.wait_for(test::patience) != std::future_status::ready) {
+    if (coming.wait_for(patience) != std::future_status::ready) {
       ADD_FAILURE() << "no event came";
       std::abort();
     }
@@ -72,8 +71,8 @@ class CClientTest : public testing::Test {
     cohort_answer(client);  // changes nothing
   }
 
-  test::CapturedStderr told;
-  test::FakeServer server;
+  CapturedStderr told;
+  FakeServer server;
   CohortClient* client = nullptr;
   CohortObservationChannel reading{};
   CohortCommandChannel doubled{};
@@ -134,13 +133,13 @@ TEST_F(CClientTest, ClosingInTheMiddleOfATickLeavesWithoutAnAnswerAndIsNoFailure
 }
 
 TEST(CClientAlone, CanBeClosedWhileItWaitsForAServer) {
-  const CohortOptions options = {nullptr, test::find_empty_domain(), nullptr, nullptr, nullptr};
+  const CohortOptions options = {nullptr, find_empty_domain(), nullptr, nullptr, nullptr};
   cohort_close(cohort_connect(&options));
   cohort_close(nullptr);
 }
 
 TEST(CClientAlone, OptionsThatCannotBeUsedAreSaid) {
-  const test::CapturedStderr told;
+  const CapturedStderr told;
   const CohortOptions nobody = {nullptr, 0, ",", nullptr, nullptr};
   EXPECT_EQ(cohort_connect(&nobody), nullptr);
   EXPECT_STREQ(cohort_last_error(), "the options name no robot");

@@ -13,7 +13,7 @@
 namespace cohort {
 namespace {
 
-using test::CountingController;
+using namespace test;
 
 // What the callbacks of the controller under test do; C's have no closures.
 struct Script {

@@ -9,17 +9,14 @@
 namespace cohort {
 namespace {
 
+using namespace test;
 using description::Marker;
-using testing::at;
-using testing::SensingWorld;
-using testing::static_shape;
-
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double eye = 0.075;  // height of the camera and of the LEDs: the middle of the turret
 constexpr double turret_radius = 0.058;
 
 description::Model seeing_robot(std::size_t capacity = 8) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   model.devices.push_back(
       description::OmnidirectionalCamera{"camera", 1, {{0, 0, 0.02}}, 2.0, -1.0, 1.0, capacity, {}});
   model.devices.push_back(description::LedRing{"leds", 1, {{0, 0, 0.02}}, 8, 0.0, pi / 4.0, turret_radius, 0.0});
@@ -128,7 +125,7 @@ TEST(OmnidirectionalCamera, HasNoiseOnPlacesAndNoneOnCountsAndColors) {
 }
 
 description::Model filming_robot(std::size_t width, std::size_t height) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   description::PanoramicCamera camera;
   camera.name = "film";
   camera.link = 1;

@@ -18,8 +18,7 @@
 namespace cohort {
 namespace {
 
-using test::CountingController;
-using test::eventually;
+using namespace test;
 
 // A client on a thread of its own, stopped at the latest when this goes.
 class RunningClient {
@@ -36,7 +35,7 @@ class RunningClient {
 
   // How it ended; empty if it goes on.
   std::optional<ClientEnd> end() {
-    if (end_.wait_for(test::patience) != std::future_status::ready) return std::nullopt;
+    if (end_.wait_for(patience) != std::future_status::ready) return std::nullopt;
     return end_.get();
   }
 
@@ -69,8 +68,8 @@ class ClientTest : public testing::TestWithParam<bool> {
   }
   using Values = std::vector<double>;
 
-  test::CapturedStderr told;  // what the user is told
-  test::FakeServer server;
+  CapturedStderr told;  // what the user is told
+  FakeServer server;
   std::optional<RunningClient> client;
 };
 
@@ -202,7 +201,7 @@ TEST(ClientAlone, LongStepsAreNotLeftToTheThreadOfDds) {
   const ControllerKind slow{
       "slow",
       [&] { return OwnedController(new SlowController(threads), [](Controller* controller) { delete controller; }); }};
-  test::FakeServer server;
+  FakeServer server;
   ClientOptions options;
   options.domain = server.domain();
   options.inline_step = true;
@@ -225,11 +224,11 @@ TEST(ClientAlone, LongStepsAreNotLeftToTheThreadOfDds) {
 }
 
 TEST(ClientAlone, WaitsForAServerSaysSoAndFindsItWhenItComes) {
-  const std::uint32_t domain = test::find_empty_domain();
-  const test::CapturedStderr told;
+  const std::uint32_t domain = find_empty_domain();
+  const CapturedStderr told;
   RunningClient client(domain, false);
   ASSERT_TRUE(eventually([&] { return told.contains("waiting for a server at 127.0.0.1, domain"); }));
-  auto participant = test::take_free_domain(domain, domain).server;
+  auto participant = take_free_domain(domain, domain).server;
   std::atomic<bool> joined{false};
   wire::Reader<wire::Join> joins(participant,
                                  {[&](const wire::Join&, const wire::Sender&) { joined = true; }, nullptr});
@@ -237,8 +236,8 @@ TEST(ClientAlone, WaitsForAServerSaysSoAndFindsItWhenItComes) {
 }
 
 TEST(ClientAlone, CanBeStoppedWhileItWaitsForAServer) {
-  const test::CapturedStderr told;
-  RunningClient client(test::find_empty_domain(), false);
+  const CapturedStderr told;
+  RunningClient client(find_empty_domain(), false);
   client.stop = true;
   EXPECT_EQ(client.end(), ClientEnd::interrupted);
 }

@@ -13,12 +13,9 @@
 namespace cohort::session {
 namespace {
 
-using testing::at;
-using testing::place;
-using testing::tracked_robot;
-using testing::world_with_floor;
-using Receipt = RequestLedger::Receipt;
 using namespace std::chrono_literals;
+using namespace test;
+using Receipt = RequestLedger::Receipt;
 
 TEST(Playback, MakesTheStepsOfSeveralOneAfterTheOther) {
   Playback playback(PlaybackState::paused);

@@ -9,11 +9,7 @@ namespace cohort {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::at;
-using testing::place;
-using testing::static_shape;
-using testing::tracked_robot;
-using testing::world_with_floor;
+using namespace test;
 
 description::Model loose_box(const std::string& name, double mass = 2.0, double edge = 0.2) {
   description::Model model;

@@ -60,7 +60,7 @@ const std::string dae_instance =
 std::string mesh(const std::string& uri, const std::string& rest = "") {
   return "<mesh>\n<uri>" + uri + "</uri>" + rest + "</mesh>";
 }
-std::string heightmap(const std::string& uri, const std::string& rest = "<size>4 2 1</size>") {
+std::string height_image(const std::string& uri, const std::string& rest = "<size>4 2 1</size>") {
   return "<heightmap>\n<uri>" + uri + "</uri>" + rest + "</heightmap>";
 }
 std::string moving(const std::string& geometry) {
@@ -201,9 +201,9 @@ TEST_F(Shapes, ASubmeshIsSaidToBeIgnored) {
 
 TEST_F(Shapes, AHeightmapHasAHeightForEachPixelTheUpperEdgeFarthestAlongY) {
   const World world =
-      read(static_model(collision(heightmap("ridge.png",
-                                            "<size>4 2 0.5</size><pos>1 2 3</pos><texture>"
-                                            "<size>1</size><diffuse>x</diffuse><normal>x</normal></texture>"))));
+      read(static_model(collision(height_image("ridge.png",
+                                               "<size>4 2 0.5</size><pos>1 2 3</pos><texture>"
+                                               "<size>1</size><diffuse>x</diffuse><normal>x</normal></texture>"))));
   const HeightGrid& grid = *std::get<Heightmap>(collision_of(world).shape).grid;
   EXPECT_EQ(grid.columns, 3u);
   EXPECT_EQ(grid.rows, 2u);
@@ -216,7 +216,7 @@ TEST_F(Shapes, AHeightmapHasAHeightForEachPixelTheUpperEdgeFarthestAlongY) {
 
 TEST_F(Shapes, AHeightmapMayHaveSixteenBits) {
   write_png<png_uint_16>("fine.png", PNG_FORMAT_LINEAR_Y, 2, 2, {0, 1, 256, 65535});
-  const World world = read(static_model(collision(heightmap("fine.png", "<size>1 1 65535</size>"))));
+  const World world = read(static_model(collision(height_image("fine.png", "<size>1 1 65535</size>"))));
   const HeightGrid& grid = *std::get<Heightmap>(collision_of(world).shape).grid;
   EXPECT_EQ(grid.heights, (std::vector<double>{256, 65535, 0, 1}));
 }
@@ -226,7 +226,7 @@ TEST_F(Shapes, NothingIsPrintedAboutBrokenFiles) {
   testing::internal::CaptureStdout();
   for (const char* const file : {"broken.dae", "nan.stl", "no_triangle.obj"})
     problems_of([&] { read(static_model(collision(mesh(file)))); });
-  problems_of([&] { read(static_model(collision(heightmap("not.png")))); });
+  problems_of([&] { read(static_model(collision(height_image("not.png")))); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
@@ -243,36 +243,37 @@ std::string still(const std::string& geometry) { return static_model(collision(g
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, FlawOfAShape,
-    testing::Values(Flaw{still("<polyline><point>0 0</point><height>1</height></polyline>"), 2, in_geometry,
-                         "<polyline> is not supported; expected box, sphere, cylinder, capsule, ellipsoid, mesh, plane "
-                         "or heightmap"},
-                    Flaw{still("<capsule>\n<radius>0</radius><length>1</length></capsule>"), 3,
-                         in_geometry + "/capsule/radius", "expected a size > 0"},
-                    Flaw{still("<capsule><radius>1</radius>\n<length>-1</length></capsule>"), 3,
-                         in_geometry + "/capsule/length", "expected a size > 0"},
-                    Flaw{still("<ellipsoid>\n<radii>1 0 1</radii></ellipsoid>"), 3, in_geometry + "/ellipsoid/radii",
-                         "expected a size > 0"},
-                    Flaw{still(mesh("none.obj")), 3, in_mesh, "there is no such file"},
-                    Flaw{still(mesh("robots")), 3, in_mesh, "this is a folder"},
-                    Flaw{still(mesh("model://bt/box.obj")), 3, in_mesh, "there is no model 'bt'"},
-                    Flaw{still(mesh("https://somewhere/box.obj")), 3, in_mesh, "cannot be fetched"},
-                    Flaw{still(mesh("box.step")), 3, in_mesh, "expected .stl, .obj or .dae"},
-                    Flaw{still(mesh("broken.dae")), 3, in_mesh, "cannot be read: "},
-                    Flaw{still(mesh("nan.stl")), 3, in_mesh, "a vertex is not finite"},
-                    Flaw{still(mesh("no_triangle.obj")), 3, in_mesh, "has no triangles"},
-                    Flaw{moving(mesh("flat.obj")), 3, in_mesh, "is flat"},
-                    Flaw{still(mesh("box.obj", "\n<scale>1 0 1</scale>")), 4, in_geometry + "/mesh/scale", "not zero"},
-                    Flaw{still(mesh("box.obj", "\n<scale>1 1</scale>")), 4, in_geometry + "/mesh/scale",
-                         "cannot have the value '1 1'"},
-                    Flaw{moving(heightmap("ridge.png")), 2, in_geometry + "/heightmap",
-                         "a heightmap needs <static>true</static>"},
-                    Flaw{still(heightmap("ridge.png", "\n<size>1 1 0</size>")), 4, in_geometry + "/heightmap/size",
-                         "expected a size > 0"},
-                    Flaw{still(heightmap("none.png")), 3, in_heightmap, "there is no such file"},
-                    Flaw{still(heightmap("not.png")), 3, in_heightmap, "expected a PNG image"},
-                    Flaw{still(heightmap("colours.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
-                    Flaw{still(heightmap("glass.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
-                    Flaw{still(heightmap("dot.png")), 3, in_heightmap, "at least 2 by 2 pixels"}));
+    testing::Values(
+        Flaw{still("<polyline><point>0 0</point><height>1</height></polyline>"), 2, in_geometry,
+             "<polyline> is not supported; expected box, sphere, cylinder, capsule, ellipsoid, mesh, plane "
+             "or heightmap"},
+        Flaw{still("<capsule>\n<radius>0</radius><length>1</length></capsule>"), 3, in_geometry + "/capsule/radius",
+             "expected a size > 0"},
+        Flaw{still("<capsule><radius>1</radius>\n<length>-1</length></capsule>"), 3, in_geometry + "/capsule/length",
+             "expected a size > 0"},
+        Flaw{still("<ellipsoid>\n<radii>1 0 1</radii></ellipsoid>"), 3, in_geometry + "/ellipsoid/radii",
+             "expected a size > 0"},
+        Flaw{still(mesh("none.obj")), 3, in_mesh, "there is no such file"},
+        Flaw{still(mesh("robots")), 3, in_mesh, "this is a folder"},
+        Flaw{still(mesh("model://bt/box.obj")), 3, in_mesh, "there is no model 'bt'"},
+        Flaw{still(mesh("https://somewhere/box.obj")), 3, in_mesh, "cannot be fetched"},
+        Flaw{still(mesh("box.step")), 3, in_mesh, "expected .stl, .obj or .dae"},
+        Flaw{still(mesh("broken.dae")), 3, in_mesh, "cannot be read: "},
+        Flaw{still(mesh("nan.stl")), 3, in_mesh, "a vertex is not finite"},
+        Flaw{still(mesh("no_triangle.obj")), 3, in_mesh, "has no triangles"},
+        Flaw{moving(mesh("flat.obj")), 3, in_mesh, "is flat"},
+        Flaw{still(mesh("box.obj", "\n<scale>1 0 1</scale>")), 4, in_geometry + "/mesh/scale", "not zero"},
+        Flaw{still(mesh("box.obj", "\n<scale>1 1</scale>")), 4, in_geometry + "/mesh/scale",
+             "cannot have the value '1 1'"},
+        Flaw{moving(height_image("ridge.png")), 2, in_geometry + "/heightmap",
+             "a heightmap needs <static>true</static>"},
+        Flaw{still(height_image("ridge.png", "\n<size>1 1 0</size>")), 4, in_geometry + "/heightmap/size",
+             "expected a size > 0"},
+        Flaw{still(height_image("none.png")), 3, in_heightmap, "there is no such file"},
+        Flaw{still(height_image("not.png")), 3, in_heightmap, "expected a PNG image"},
+        Flaw{still(height_image("colours.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
+        Flaw{still(height_image("glass.png")), 3, in_heightmap, "expected a grey PNG image of 8 or 16 bits"},
+        Flaw{still(height_image("dot.png")), 3, in_heightmap, "at least 2 by 2 pixels"}));
 
 // ---- Convex hulls ----
 

@@ -12,7 +12,7 @@ namespace cohort::view {
 namespace {
 
 using namespace std::chrono_literals;
-using test::eventually;
+using namespace test;
 using Values = std::vector<double>;
 
 // Two wheels, and two values that rest at 0.5.
@@ -145,7 +145,7 @@ class DriversTest : public testing::Test {
     return answer ? answer->values : Values();
   }
 
-  test::FakeServer server;
+  FakeServer server;
   std::optional<Drivers> drivers{std::in_place, Drivers::Options{.domain = server.domain()}};
   std::uint64_t client = 0;  // that was accepted last
   std::uint64_t tick = 0;

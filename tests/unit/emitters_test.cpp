@@ -10,19 +10,14 @@ namespace cohort {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace test;
 using description::Light;
 using description::Sound;
-using testing::at;
-using testing::SensingWorld;
-using testing::static_shape;
-
-constexpr double pi = std::numbers::pi;
-
-double sigmoid(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }
+using std::numbers::pi;
 
 // A robot with tracks that also has 8 light sensors 10 cm high, microphones, LEDs and a loudspeaker.
 description::Model beacon_robot(double led_intensity = 0.0) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   model.devices.push_back(description::LightSensors{"light", 1, {{0, 0, 0.045}}, 8, 0.0, pi / 4.0, 0.5, {}});
   model.devices.push_back(description::Microphones{
       "microphones", 1, {{0.03, 0, 0.045}, {-0.03, 0, 0.045}}, {{200, 400}, {400, 800}}, 2.0, {}});
@@ -174,7 +169,7 @@ TEST(GroundSensors, SeeTheGroundAndTheEdgeOfATable) {
   world.world().instances.clear();
   world.world().models.clear();
   world.add(static_shape("table", description::Box{{1.0, 1.0, 0.5}}), "table", at(0, 0, -0.25));
-  description::Model robot = testing::tracked_robot();
+  description::Model robot = tracked_robot();
   robot.devices.push_back(description::GroundSensors{"ground", 0, {{0.05, 0, 0.01}, {-0.05, 0, 0.01}}, 0.04, {}});
   world.add(robot, "robot", at(0.47, 0, 0));
   EXPECT_EQ(world.read(0, "ground/0/reading"), 0.0) << "beyond the edge";

@@ -58,12 +58,12 @@ TEST(Figures, APictureHasADotForEachMeasuredPoint) {
 }
 
 TEST(Figures, OfTheDocumentsAreWhatTheProgramDraws) {
-  const testing::ScratchFolder folder;
-  const testing::Ended ended = testing::run_to_end({COHORT_BUILD_DIR "/bin/cohort_figures", (folder / "").string()});
+  const test::ScratchFolder folder;
+  const test::Ended ended = test::run_to_end({COHORT_BUILD_DIR "/bin/cohort_figures", (folder / "").string()});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
   for (const Page& page : pages()) {
     const std::string file = page.name + ".svg";
-    EXPECT_TRUE(testing::read_file(folder / file) == testing::read_file(COHORT_SOURCE_DIR "/docs/images/sbot/" + file))
+    EXPECT_TRUE(test::read_file(folder / file) == test::read_file(COHORT_SOURCE_DIR "/docs/images/sbot/" + file))
         << file << " is not what cohort_figures draws now: cohort_figures docs/images/sbot draws it again";
   }
 }

@@ -5,10 +5,8 @@
 #include <numbers>
 
 #include "server/core/infinity.hpp"
-#include "server/core/random.hpp"
-#include "server/geometry/convex_hull.hpp"
 #include "server/geometry/mesh_surface.hpp"
-#include "server/geometry/scene.hpp"
+#include "tests/support/random_scene.hpp"
 
 // Shapes that are not centred solids of a few numbers: meshes and height maps.
 namespace cohort::geometry {
@@ -19,11 +17,6 @@ using description::Heightmap;
 using description::Mesh;
 using description::TriangleMesh;
 using Eigen::Vector3d;
-
-Vector3d random_vector(const RandomStream& random, std::uint64_t n, double half_width) {
-  return {half_width * (2 * random.uniform(n, 0) - 1), half_width * (2 * random.uniform(n, 1) - 1),
-          half_width * (2 * random.uniform(n, 2) - 1)};
-}
 
 Mesh mesh_of(TriangleMesh triangles, bool convex) {
   return {std::make_shared<const TriangleMesh>(std::move(triangles)), convex};

@@ -6,21 +6,15 @@
 #include <set>
 
 #include "server/core/infinity.hpp"
-#include "server/core/random.hpp"
 #include "server/geometry/ray_fan.hpp"
-#include "server/geometry/scene.hpp"
+#include "tests/support/random_scene.hpp"
 
 namespace cohort::geometry {
 namespace {
 
 using Eigen::Vector3d;
 
-Vector3d random_vector(const RandomStream& random, std::uint64_t n, double half_width) {
-  return {half_width * (2 * random.uniform(n, 0) - 1), half_width * (2 * random.uniform(n, 1) - 1),
-          half_width * (2 * random.uniform(n, 2) - 1)};
-}
-
-Pose random_pose(const RandomStream& random, std::uint64_t n, double half_width) {
+Pose turned_pose(const RandomStream& random, std::uint64_t n, double half_width) {
   const Vector3d axis = random_vector(random, n + 1'000'000, 1.0).normalized();
   return {random_vector(random, n, half_width),
           Eigen::Quaterniond(Eigen::AngleAxisd(6.0 * random.uniform(n, 3), axis))};
@@ -132,7 +126,7 @@ TEST(Bounds, OfCapsulesAndEllipsoidsTouchThemOnEverySide) {
   const RandomStream random(13, "geometry_test", "bounds");
   for (const Shape& shape : {Shape(description::Capsule{0.3, 0.6}), Shape(description::Ellipsoid{{0.3, 0.6, 0.9}})})
     for (std::uint64_t n = 0; n < 10; ++n) {
-      const Pose X_WC = random_pose(random, n, 1.0);
+      const Pose X_WC = turned_pose(random, n, 1.0);
       const Bounds bounds = bounds_of(shape, X_WC);
       for (int axis = 0; axis < 3; ++axis) {
         double highest = -10.0;
@@ -158,11 +152,11 @@ class RandomScene : public ::testing::Test {
       const std::vector<Shape> shapes = {description::Box{{size, 0.1, 0.2}}, description::Sphere{0.05},
                                          description::Cylinder{0.06, 0.1}};
       scene.add(
-          {shapes[n % 50 == 1 ? 0 : n % 3], {}, static_cast<std::uint32_t>(n), moves, random_pose(random, n, 1.5)});
+          {shapes[n % 50 == 1 ? 0 : n % 3], {}, static_cast<std::uint32_t>(n), moves, turned_pose(random, n, 1.5)});
     }
     scene.add({description::Plane{}, {}, 400, false, {{0, 0, -1.4}}});
     scene.build();
-    for (std::uint32_t n = 0; n < 400; n += 2) scene.set_pose(n, random_pose(random, n + 9000, 1.5));
+    for (std::uint32_t n = 0; n < 400; n += 2) scene.set_pose(n, turned_pose(random, n + 9000, 1.5));
     scene.update();
   }
 

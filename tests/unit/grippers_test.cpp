@@ -10,8 +10,7 @@
 namespace cohort {
 namespace {
 
-using testing::at;
-using testing::SensingWorld;
+using namespace test;
 
 constexpr double radius = 0.058;
 constexpr double half_angle = 0.6;
@@ -20,7 +19,7 @@ constexpr int closing_ticks = 60;
 
 // A robot with tracks whose turret has a gripper in front and a ring around it.
 description::Model gripping_robot(double breaking_force = std::numeric_limits<double>::infinity()) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   description::Gripper gripper;
   gripper.name = "gripper";
   gripper.link = 1;
@@ -201,7 +200,7 @@ TEST(Grippers, WithABeamSeeWhateverIsBetweenTheirSides) {
   const auto sees = [&](double x, double y) {
     SensingWorld world;
     world.add(model, "robot", at(0, 0, 0));
-    world.add(testing::static_shape("post", description::Cylinder{0.004, 0.2}), "post", at(radius + x, y, 0.1));
+    world.add(static_shape("post", description::Cylinder{0.004, 0.2}), "post", at(radius + x, y, 0.1));
     return world.read(0, "gripper/0/grippable") == 1.0;
   };
   EXPECT_TRUE(sees(0.0075, 0.0));
@@ -233,7 +232,7 @@ TEST(Grippers, HoldOnToACollisionThatIsGrippableAndToNoOther) {
   for (const bool is_grippable : {true, false}) {
     SensingWorld world;
     world.add(gripping_robot(), "robot", at(0, 0, 0));
-    description::Model box = testing::static_shape("box", description::Box{{0.1, 0.3, 0.2}});
+    description::Model box = static_shape("box", description::Box{{0.1, 0.3, 0.2}});
     box.links[0].collisions[0].surface.is_grippable = is_grippable;
     world.add(box, "box", at(radius + 0.05 + 0.01, 0, 0.1));
     world.command(0, "gripper/0/opening", {0.0});

@@ -8,14 +8,13 @@
 namespace cohort {
 namespace {
 
-using testing::at;
-using testing::SensingWorld;
+using namespace test;
 
 constexpr double turret_inertia = 0.3 * 0.058 * 0.058 / 2.0;  // about its axis [kg m^2]
 
 // The robot with tracks, another motor on its turret.
 description::Model robot_with(const description::Device& motor) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   model.devices[1] = motor;
   model.devices.push_back(description::TorqueSensor{"torque", 0});
   return model;

@@ -8,12 +8,10 @@
 namespace cohort::sensing {
 namespace {
 
-using testing::at;
-using testing::SensingWorld;
-using testing::static_shape;
+using namespace test;
 
 description::Model robot_with_light_sensors(double led_intensity = 0.0) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   model.devices.push_back(description::LightSensors{"light", 1, {{0.01, 0, 0.045}}, 8, 0.0, 0.785, 0.5, {}});
   model.devices.push_back(description::LedRing{"leds", 1, {{0, 0, 0.045}}, 8, 0.0, 0.785, 0.05, led_intensity});
   return model;

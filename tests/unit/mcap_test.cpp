@@ -9,11 +9,7 @@
 namespace cohort::recording {
 namespace {
 
-using test::bytes_of;
-using test::messages_of;
-using test::said;
-using test::small_recording;
-using test::TemporaryFile;
+using namespace test;
 
 std::vector<std::string> all_said(int count) {
   std::vector<std::string> texts;
@@ -42,7 +38,7 @@ TEST(Mcap, WhatIsWrittenIsRead) {
   EXPECT_EQ(*reader.channel("/odd"), (Channel{2, 1, "/odd", "cdr", {{"offered_qos_profiles", ""}}}));
   EXPECT_EQ(reader.channel("/none"), nullptr);
   EXPECT_EQ(messages_of(reader), all_said(10));
-  EXPECT_EQ(test::text_of(reader.attachment("world.sdf").data), "<sdf version='1.9'/>");
+  EXPECT_EQ(text_of(reader.attachment("world.sdf").data), "<sdf version='1.9'/>");
   EXPECT_EQ(reader.attachments().front().media_type, "application/xml");
   EXPECT_EQ(reader.metadata("run")->entries, (StringMap{{"seed", "7"}, {"experiment", "demo"}}));
   EXPECT_FALSE(reader.metadata("walk").has_value());

@@ -8,12 +8,10 @@
 namespace cohort {
 namespace {
 
-using testing::at;
-using testing::SensingWorld;
-using testing::static_shape;
+using namespace test;
 
 description::Model talking_robot(double range = 2.0, std::size_t capacity = 4) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   model.devices.push_back(description::RangeAndBearing{"rab", 1, {{0, 0, 0.03}}, range, 2, capacity, {}});
   return model;
 }
@@ -107,7 +105,7 @@ TEST(RangeAndBearing, GoesOnFromASnapshotBetweenTwoDeliveries) {
 TEST(ClimateSensor, ReadsTheAirAndTheSourcesAround) {
   SensingWorld world;
   world.world().climate = {290.0, 0.4};
-  description::Model robot = testing::tracked_robot();
+  description::Model robot = tracked_robot();
   robot.devices.push_back(description::ClimateSensor{"climate", 0, {0, 0, 0.1}, {}});
   world.add(robot, "robot", at(0, 0, 0));
   world.add_emitter("stove", description::ClimateSource{30.0, -0.2, 0.5}, at(0.8, 0, 0.7));

@@ -9,14 +9,10 @@
 namespace cohort {
 namespace {
 
+using namespace test;
 using description::ForceTorqueSensor;
 using description::Model;
-using testing::at;
-using testing::Sensed;
-using testing::turned;
-
-constexpr double pi = std::numbers::pi;
-constexpr double g = 9.81;
+using std::numbers::pi;
 constexpr double step = 0.01;
 
 description::Imu imu(const Pose& X_LS = {}) {
@@ -120,8 +116,8 @@ TEST(AccelerometerSensor, MeasuresGravityAlongItsAxesAndNothingInFreeFall) {
 Model hanging(ForceTorqueSensor sensor) {
   Model model;
   model.name = "hanging";
-  model.links.push_back({"base", {}, testing::solid_box(1.0, {0.1, 0.1, 0.1}), {}});
-  description::Link bob{"bob", at(0, 0, 0, 0.5 * pi), testing::solid_box(2.0, {0.1, 0.1, 0.1}), {}};
+  model.links.push_back({"base", {}, solid_box(1.0, {0.1, 0.1, 0.1}), {}});
+  description::Link bob{"bob", at(0, 0, 0, 0.5 * pi), solid_box(2.0, {0.1, 0.1, 0.1}), {}};
   bob.inertial.X_LI.position.x() = 0.3;
   model.links.push_back(bob);
   description::Joint to_world, joint;

@@ -15,9 +15,8 @@
 namespace cohort {
 namespace {
 
-using test::FlatArena;
-
-constexpr double pi = std::numbers::pi;
+using namespace test;
+using std::numbers::pi;
 
 wire::RobotDescription sbot() {
   wire::RobotDescription description{.model = "sbot"};

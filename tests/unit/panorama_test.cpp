@@ -14,8 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Image = std::vector<std::optional<RayHit>>;
-
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<double> even_elevations(std::size_t rows, double least, double most) {
   std::vector<double> elevations;
@@ -29,13 +28,6 @@ Image image_of(const Panorama& panorama, const Scene& scene, const Pose& X_WS, d
   Image image(panorama.columns() * panorama.rows());
   panorama.cast(Outlines(scene), X_WS, range, ignored_body, image);
   return image;
-}
-
-Scene scene_of(const Shape& shape, const Pose& X_WC) {
-  Scene scene;
-  scene.add({shape, {}, 0, !is_ground(shape), X_WC});
-  scene.build();
-  return scene;
 }
 
 TEST(Panorama, SeesASphereInTheDirectionsWithinItsAngularRadius) {

@@ -7,11 +7,7 @@
 namespace cohort::physics {
 namespace {
 
-using testing::at;
-using testing::place;
-using testing::static_shape;
-using testing::tracked_robot;
-using testing::world_with_floor;
+using namespace test;
 
 constexpr std::size_t drive = 0;  // device index of the tracked robot's treel drive
 
@@ -197,8 +193,8 @@ TEST(World, HoldsAJointAtItsLimit) {
   description::World description;
   description::Model arm;
   arm.name = "arm";
-  arm.links.push_back({"base", {}, testing::solid_cylinder(1000.0, 1.0, 1.0, 0.0), {}});
-  arm.links.push_back({"rod", {{0, 0, 0}}, testing::solid_cylinder(0.1, 0.01, 0.1, -0.1), {}});
+  arm.links.push_back({"base", {}, solid_cylinder(1000.0, 1.0, 1.0, 0.0), {}});
+  arm.links.push_back({"rod", {{0, 0, 0}}, solid_cylinder(0.1, 0.01, 0.1, -0.1), {}});
   description::Joint hinge;
   hinge.name = "hinge";
   hinge.type = description::JointType::revolute;

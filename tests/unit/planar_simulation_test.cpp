@@ -7,14 +7,11 @@
 namespace cohort {
 namespace {
 
-using testing::at;
-using testing::place;
-using testing::static_shape;
-using testing::tracked_robot;
+using namespace test;
 
 description::Experiment crowd(description::Fidelity fidelity) {
   description::Experiment experiment;
-  experiment.world = testing::world_with_floor();
+  experiment.world = world_with_floor();
   experiment.world.physics.fidelity = fidelity;
   experiment.duration = std::chrono::seconds(1);
   for (int i = 0; i < 9; ++i)
@@ -27,7 +24,7 @@ description::Experiment crowd(description::Fidelity fidelity) {
   return experiment;
 }
 
-constexpr std::size_t first_reading = 6, sensors = 15;
+constexpr std::size_t sensors = 15;
 
 TEST(PlanarSimulation, SeesWhatTheFullModelSeesFromTheSamePoses) {
   const description::Experiment planar_experiment = crowd(description::Fidelity::planar);

@@ -21,11 +21,11 @@
 namespace cohort::tool {
 namespace {
 
-using cohort::testing::at;
-using cohort::testing::place;
-using cohort::testing::static_shape;
-using cohort::testing::tracked_robot;
-using cohort::testing::world_with_floor;
+using cohort::test::at;
+using cohort::test::place;
+using cohort::test::static_shape;
+using cohort::test::tracked_robot;
+using cohort::test::world_with_floor;
 
 constexpr double robot_radius = 0.058;  // of tracked_robot()
 
@@ -286,7 +286,7 @@ TEST(Plot, ShowsWhichLampsShineAtTheEnd) {
     lamp.is_static = true;
     lamp.links.push_back({"link", {}, {}, {}});
     lamp.emitters.push_back({name, 0, {}, is_on, description::Light{}});
-    testing::place(world, lamp, name, testing::at(x, 0, 0.3));
+    test::place(world, lamp, name, test::at(x, 0, 0.3));
   };
   EXPECT_EQ(count(run(world, 1).plot(), "lamp, o"), 0u);
   add_lamp("shining", -0.5, true);

@@ -10,8 +10,7 @@ namespace cohort::tool {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::at;
-using testing::place;
+using namespace test;
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -23,13 +22,12 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(PrintedTable, HasWhatABreakableJointExertsAtBothEnds) {
   description::Experiment experiment;
   description::World& world = experiment.world;
-  world = testing::world_with_floor();
+  world = world_with_floor();
   world.gravity = {0, 0, -10.0};
-  const std::uint32_t beam =
-      place(world, testing::static_shape("beam", description::Box{{1.0, 0.1, 0.1}}), "beam", at(0, 0, 1));
+  const std::uint32_t beam = place(world, static_shape("beam", description::Box{{1.0, 0.1, 0.1}}), "beam", at(0, 0, 1));
   const Eigen::Vector3d size = Eigen::Vector3d::Constant(0.2);
   const std::uint32_t box =
-      place(world, testing::loose("box", description::Box{size}, testing::solid_box(2.0, size)), "box", at(0, 0, 0.5));
+      place(world, loose("box", description::Box{size}, solid_box(2.0, size)), "box", at(0, 0, 0.5));
   description::BreakableJoint joint{"hook", box, 0, beam, 0};
   joint.X_LP = Pose{};
   world.breakable_joints.push_back(joint);

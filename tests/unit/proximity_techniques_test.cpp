@@ -11,19 +11,16 @@
 namespace cohort {
 namespace {
 
+using namespace test;
 using description::ProximityTechnique;
-using testing::at;
-using testing::SensingWorld;
-using testing::static_shape;
-
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double ring_radius = 0.058;
 constexpr double range = 0.2;
 constexpr double cone = 40.0 * pi / 180.0;
 constexpr double ring_height = 0.075;
 
 description::Model robot_with(ProximityTechnique technique, const description::Samples& samples = {}) {
-  description::Model model = testing::tracked_robot();
+  description::Model model = tracked_robot();
   auto& ring = std::get<description::ProximityRing>(model.devices[4]);
   ring.first_bearing = 0.0;
   ring.technique = technique;
@@ -232,8 +229,6 @@ TEST(Samples, OfARingThatAreTakenInTheSimulatorStandForIt) {
     }
 }
 
-double sigmoid(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }
-
 TEST(Samples, StandInForSquareAndCosineOfLightAndSound) {
   description::Samples samples;  // two readings that fall linearly from 1 and 2 at 0 m to 0 at 2 m, all round
   samples.distances = {0.0, 2.0};
@@ -242,7 +237,7 @@ TEST(Samples, StandInForSquareAndCosineOfLightAndSound) {
   samples.readings = {1.0, 2.0, 0.0, 0.0};
   const auto shared = std::make_shared<const description::Samples>(samples);
   SensingWorld world;
-  description::Model robot = testing::tracked_robot();
+  description::Model robot = tracked_robot();
   description::LightSensors light{"light", 1, {{0, 0, 0.045}}, 2, 0.0, pi, 0.5, {}};
   light.samples = shared;
   description::Microphones ears{"ears", 1, {{0, 0, 0.045}, {0, 0, 0.045}}, {{0, 500}}, 2.0, {}};

@@ -16,10 +16,7 @@
 namespace cohort::recording {
 namespace {
 
-using test::bytes_of;
-using test::messages_of;
-using test::said;
-using test::TemporaryFile;
+using namespace test;
 
 void write_one(RecordingFile& file, ChannelId channel, int i, Importance importance = Importance::essential) {
   const Timestamp time(static_cast<std::uint64_t>(i));
@@ -166,7 +163,7 @@ TEST(RecordingFile, AKilledProcessLeavesWhatIsOlderThanTheFlushInterval) {
     for (int i = 0; i < 10; ++i) write_one(recording, channel, i);
     for (;;) pause();
   });
-  const auto end = std::chrono::steady_clock::now() + test::patience;
+  const auto end = std::chrono::steady_clock::now() + patience;
   while ((!std::filesystem::exists(file.path()) || messages_on_disk(file.path()) < 10) &&
          std::chrono::steady_clock::now() < end)
     usleep(1000);
@@ -191,7 +188,7 @@ TEST(RecordingFile, AProcessKilledWhileItWritesLeavesNoGap) {
         if (recording.queued() > 1'000'000) usleep(100);
       }
     });
-    const auto end = std::chrono::steady_clock::now() + test::patience;
+    const auto end = std::chrono::steady_clock::now() + patience;
     while ((!std::filesystem::exists(file.path()) || messages_on_disk(file.path()) < 1000) &&
            std::chrono::steady_clock::now() < end)
       usleep(100);

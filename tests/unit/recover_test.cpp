@@ -11,11 +11,7 @@
 namespace cohort::recording {
 namespace {
 
-using test::messages_of;
-using test::said;
-using test::small_recording;
-using test::TemporaryFile;
-using test::write_bytes;
+using namespace test;
 
 std::vector<std::string> said_from(int first, int end) {
   std::vector<std::string> texts;
@@ -87,7 +83,7 @@ TEST(Recover, ADamagedChunkIsLeftOutWithItsMessagesCounted) {
     const TemporaryFile file(bytes);
     const McapReader reader(file.path());
     MessageStream stream = reader.messages();
-    for (int i = 0; i < 8; ++i) EXPECT_EQ(test::text_of(stream.next()->data), said(i));
+    for (int i = 0; i < 8; ++i) EXPECT_EQ(text_of(stream.next()->data), said(i));
     try {
       stream.next();
       ADD_FAILURE() << "the chunk is damaged";
@@ -171,7 +167,7 @@ TEST(Recover, InPlaceAWholeFileIsLeftAsItIsAndADamagedOneMended) {
   const Bytes bytes = small_recording(20);
   const TemporaryFile file(bytes);
   EXPECT_TRUE(recover(file.path(), file.path()).was_whole());
-  EXPECT_EQ(test::read_bytes(file.path()), bytes);
+  EXPECT_EQ(read_bytes(file.path()), bytes);
 
   write_bytes(file.path(), ByteView(bytes).first(bytes.size() - 20));
   EXPECT_FALSE(recover(file.path(), file.path()).was_whole());
@@ -183,12 +179,12 @@ TEST(Recover, InPlaceAWholeFileIsLeftAsItIsAndADamagedOneMended) {
   const ByteView nothing = ByteView(bytes).first(40);
   write_bytes(file.path(), nothing);
   EXPECT_THROW(recover(file.path(), file.path()), McapError);
-  EXPECT_EQ(test::read_bytes(file.path()), Bytes(nothing.begin(), nothing.end()));
+  EXPECT_EQ(read_bytes(file.path()), Bytes(nothing.begin(), nothing.end()));
 }
 
 TEST(Recover, RefusesWhatIsNoRecordingOrIsBeingRecorded) {
   const TemporaryFile target;
-  const TemporaryFile text(test::bytes_of("something else"));
+  const TemporaryFile text(bytes_of("something else"));
   EXPECT_THROW(recover(text.path(), target.path()), McapError);
   EXPECT_THROW(recover("/no_such_folder/run.mcap", target.path()), FileError);
   EXPECT_THROW(recover("/tmp", target.path()), FileError);

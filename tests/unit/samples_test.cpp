@@ -17,8 +17,7 @@ namespace {
 
 using description::Samples;
 using parsing::read_samples;
-
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const std::string header = "distance [m],angle [rad],reading_0 [1],reading_1 [1]\n";
 
 std::filesystem::path written(const std::string& text) {

@@ -10,7 +10,7 @@ namespace cohort::viewing {
 namespace {
 
 description::Experiment shipped(const std::string& name) {
-  return parsing::read_experiment(testing::shipped_experiments / (name + ".yaml"));
+  return parsing::read_experiment(test::shipped_experiments / (name + ".yaml"));
 }
 
 TEST(SceneOfAWorld, HasEveryObjectWithItsVisuals) {

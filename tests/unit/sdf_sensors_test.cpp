@@ -9,15 +9,11 @@
 namespace cohort {
 namespace {
 
+using namespace test;
 using description::Box;
 using description::Device;
 using description::Model;
-using testing::at;
-using testing::noise_on;
-using testing::Sensed;
-using testing::turned;
-
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 description::Lidar lidar(std::size_t columns, double bearing, std::size_t rows = 1, double elevation = 0.0) {
   description::Lidar result;
@@ -126,7 +122,7 @@ TEST(NoiseOfAnElement, IsOnThatValueOfEachChannelAlone) {
 
 // Two collisions: a foot that stands on the floor, and a hat that touches nothing.
 Model standing(std::size_t collision) {
-  Model model = testing::loose("standing", Box{{0.2, 0.2, 0.2}}, testing::solid_box(2.0, {0.2, 0.2, 0.2}));
+  Model model = loose("standing", Box{{0.2, 0.2, 0.2}}, solid_box(2.0, {0.2, 0.2, 0.2}));
   model.links[0].collisions.push_back({"hat", {{0, 0, 0.2}}, Box{{0.1, 0.1, 0.1}}, {}});
   model.devices.push_back(description::ContactSensor{"touch", 0, collision});
   return model;
@@ -149,15 +145,14 @@ TEST(ContactSensor, FeelsNothingOfOtherCollisionsOfItsLink) {
 
 TEST(ContactSensor, FeelsWhatStandsOnIt) {
   Sensed sensed(standing(1), at(0, 0, 0.1));
-  sensed.small.add(testing::loose("load", Box{{0.1, 0.1, 0.1}}, testing::solid_box(0.5, {0.1, 0.1, 0.1})),
-                   at(0, 0, 0.4));
+  sensed.small.add(loose("load", Box{{0.1, 0.1, 0.1}}, solid_box(0.5, {0.1, 0.1, 0.1})), at(0, 0, 0.4));
   sensed.small.run(1.0);
   EXPECT_EQ(sensed.value("touching"), 1.0);
   EXPECT_NEAR(sensed.value("force"), 0.5 * 9.81, 0.01);
 }
 
 TEST(ContactSensor, OfAPlanarBodyFeelsTheWallThatItIsDrivenInto) {
-  Model robot = testing::tracked_robot();
+  Model robot = tracked_robot();
   robot.devices.insert(robot.devices.begin(), description::ContactSensor{"touch", 1, 0});
   for (Device& device : robot.devices)
     if (auto* const encoder = std::get_if<description::TreelEncoder>(&device)) encoder->drive = 1;

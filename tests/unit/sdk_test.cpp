@@ -17,7 +17,7 @@
 namespace cohort {
 namespace {
 
-using test::CountingController;
+using namespace test;
 
 // What `call` throws, as text.
 template <class Error, class Call>

@@ -15,8 +15,7 @@ namespace cohort::wire {
 namespace {
 
 namespace fs = std::filesystem;
-using test::eventually;
-using testing::Keys;
+using namespace test;
 
 class Door {
  public:
@@ -71,7 +70,7 @@ class SecureDomain : public ::testing::Test {
   std::uint32_t domain() const { return reserved_.number(); }
 
  private:
-  const testing::ReservedDomain reserved_;
+  const ReservedDomain reserved_;
 };
 
 class ProtectedDomain : public SecureDomain, public ::testing::WithParamInterface<const char*> {};
@@ -183,7 +182,7 @@ TEST(Identities, WhatIsMissingOrMixedUpIsNamed) {
   EXPECT_EQ(read_doors(keys.folder() + "/server").back().name, "blue");
   fs::remove(keys.client_folder("red") + "/key.pem");
   expect_wire_error([&] { keys.client("red"); }, "red/key.pem: No such file");
-  testing::write_file(keys.client_folder("blue") + "/identity", "name: blue\ndoor: 999\n");
+  write_file(keys.client_folder("blue") + "/identity", "name: blue\ndoor: 999\n");
   expect_wire_error([&] { keys.client("blue"); }, "expected a door from 0 to 119, not '999'");
   fs::remove_all(keys.folder() + "/server/observer");
   expect_wire_error([&] { read_doors(keys.folder()); }, "no door for observers");

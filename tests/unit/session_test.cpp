@@ -11,10 +11,7 @@
 namespace cohort::session {
 namespace {
 
-using testing::at;
-using testing::place;
-using testing::tracked_robot;
-using testing::world_with_floor;
+using namespace test;
 using Robots = std::vector<std::uint32_t>;
 
 constexpr std::size_t observation_size = 21;

@@ -22,13 +22,6 @@ std::vector<double> shadows(const Scene& scene, const Vector3d& p_WR, double hea
   return distances;
 }
 
-Scene scene_of(const Shape& shape, const Pose& X_WC) {
-  Scene scene;
-  scene.add({shape, {}, 0, !is_ground(shape), X_WC});
-  scene.build();
-  return scene;
-}
-
 TEST(ShadowRing, SeesACircleBetweenItsTangents) {
   const Scene scene = scene_of(description::Cylinder{1.0, 2.0}, {{2, 0, 0}});
   const std::vector<double> distances = shadows(scene, {0, 0, 0});

@@ -12,13 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-Scene scene_of(const Shape& shape, const Pose& X_WC) {
-  Scene scene;
-  scene.add({shape, {}, 0, !is_ground(shape), X_WC});
-  scene.build();
-  return scene;
-}
-
 bool sees(const Scene& scene, const Vector3d& source, const Vector3d& receiver, double range = infinity,
           std::uint32_t source_body = Scene::no_body, std::uint32_t receiver_body = Scene::no_body) {
   const Outlines outlines(scene);

@@ -9,11 +9,7 @@
 namespace cohort {
 namespace {
 
-using testing::at;
-using testing::place;
-using testing::static_shape;
-using testing::tracked_robot;
-using testing::world_with_floor;
+using namespace test;
 
 description::Experiment experiment_of(description::World world, description::Policy policy = {}) {
   description::Experiment experiment;
@@ -26,7 +22,7 @@ description::Experiment experiment_of(description::World world, description::Pol
 }
 
 // In the order of the model's devices: turret, treel encoder, ring; and treel drive, turret motor.
-constexpr std::size_t turret_position = 0, left_position = 2, left_velocity = 3, first_reading = 6;
+constexpr std::size_t turret_position = 0, left_position = 2, left_velocity = 3;
 constexpr std::size_t command_left = 0;
 
 TEST(Simulation, DescribesItsRobotsByChannel) {

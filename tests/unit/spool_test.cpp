@@ -12,8 +12,7 @@
 namespace cohort::recording {
 namespace {
 
-using test::bytes_of;
-using test::text_of;
+using namespace test;
 
 std::string fetched(Spool& spool, std::uint64_t offset, std::size_t most = 1000) {
   const auto part = spool.fetch(offset, most);
@@ -75,7 +74,7 @@ TEST(Spool, OfARecordingEndsItWhenTooMuchWaits) {
   RecordingFile recording(spool, {.mcap = {.chunk_size = 500, .compress = false}, .most_essential_queued = 10'000});
   const ChannelId channel = recording.add_channel("/commands", 0, "cdr");
   int accepted = 0;
-  while (recording.write_message(channel, 0, {}, {}, bytes_of(test::said(accepted)), Importance::essential)) {
+  while (recording.write_message(channel, 0, {}, {}, bytes_of(said(accepted)), Importance::essential)) {
     ++accepted;
     ASSERT_LT(accepted, 10'000);
   }
@@ -87,10 +86,10 @@ TEST(Spool, OfARecordingEndsItWhenTooMuchWaits) {
     file.insert(file.end(), part->bytes.begin(), part->bytes.end());
   }
   recording.close();
-  const test::TemporaryFile kept(file);
+  const TemporaryFile kept(file);
   const McapReader reader(kept.path());
   EXPECT_TRUE(reader.is_complete()) << reader.damage();
-  EXPECT_EQ(test::messages_of(reader).size(), static_cast<std::size_t>(accepted));
+  EXPECT_EQ(messages_of(reader).size(), static_cast<std::size_t>(accepted));
 }
 
 }  // namespace

@@ -10,24 +10,21 @@ namespace cohort {
 namespace {
 
 using namespace std::chrono_literals;
+using namespace test;
 using description::Effect;
-using testing::at;
-using testing::SensingWorld;
-using testing::static_shape;
 using Sentences = std::vector<std::string>;
 
 // Two robots that can open a gate, and a box.
 class UserActions : public ::testing::Test {
  protected:
   UserActions() {
-    description::Model robot = testing::tracked_robot();
+    description::Model robot = tracked_robot();
     robot.devices.push_back(description::UserAction{"open"});
     robot.devices.push_back(description::UserAction{"call"});
     world_.add(robot, "a", at(0, 0, 0));
     world_.add(robot, "b", at(0, 1, 0));
     gate_ = world_.add(static_shape("gate", description::Box{{0.1, 1.0, 0.4}}), "gate", at(0.5, 0, 0.2));
-    box_ = world_.add(testing::loose("box", description::Box{{0.2, 0.2, 0.2}},
-                                     testing::solid_box(2.0, Eigen::Vector3d::Constant(0.2))),
+    box_ = world_.add(loose("box", description::Box{{0.2, 0.2, 0.2}}, solid_box(2.0, Eigen::Vector3d::Constant(0.2))),
                       "box", at(-1, 0, 0.1));
   }
   void react(const std::string& action, std::vector<std::uint32_t> robots, std::size_t object, Effect effect,
@@ -247,12 +244,10 @@ EmitterChange changed(std::optional<Value> EmitterChange::*what, Value value) {
   return change;
 }
 
-double sigmoid(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }
-
 class EventsForEmitters : public ::testing::Test {
  protected:
   EventsForEmitters() {
-    description::Model robot = testing::tracked_robot();
+    description::Model robot = tracked_robot();
     robot.devices.push_back(description::LightSensors{"light", 1, {{0, 0, 0.045}}, 8, 0.0, 0.785, 0.5, {}});
     robot.devices.push_back(
         description::Microphones{"microphones", 1, {{0, 0, 0.045}}, {{200, 400}, {400, 800}}, 2.0, {}});

@@ -24,7 +24,7 @@
 namespace cohort::wire {
 namespace {
 
-using test::eventually;
+using namespace test;
 
 // Messages as they can be kept and compared: views become vectors.
 std::string show(const std::string& text) { return "'" + text + "'"; }
@@ -162,7 +162,7 @@ class WireTest : public testing::Test {
     }
   }
 
-  test::FreeDomain free = test::take_free_domain();
+  FreeDomain free = take_free_domain();
   Participant client;
 };
 
@@ -477,7 +477,7 @@ TEST(WireTestProcess, DISABLED_JoinsAndStays) {
 }
 
 TEST(WireLiveliness, AKilledClientIsNoticedByTheLeaseOfItsJoin) {
-  auto free = test::take_free_domain();
+  auto free = take_free_domain();
   std::atomic<bool> joined{false};
   std::atomic<bool> dead{false};
   std::atomic<std::uint32_t> reports_matched{0};

@@ -190,8 +190,8 @@ TEST(Lifting, AnArmLiftsARobotAndDoesNotSag) {
   const double arm = 0.05 * g * 0.5 * arm_length * std::cos(0.5);
   const Vector3d joint = world.link_pose(lifter, arm_link).position;
   const Vector3d chassis = world.link_pose(lifted, 0) * Vector3d(0, 0, 0.033);
-  const Vector3d turret = world.link_pose(lifted, 1) * Vector3d(0, 0, 0.02);
-  const double robot = g * (0.4 * (chassis - joint).x() + 0.3 * (turret - joint).x());
+  const Vector3d held = world.link_pose(lifted, 1) * Vector3d(0, 0, 0.02);
+  const double robot = g * (0.4 * (chassis - joint).x() + 0.3 * (held - joint).x());
   EXPECT_NEAR(world.joint_effort(lifter, elevation_joint), -(arm + robot), 1e-3);
 }
 

@@ -13,7 +13,6 @@ struct GrippedSwarm {
     Pose X_Pa, X_Pb;  // the frame of the connection in the link of either end
   };
   static constexpr int side = 5;
-  static constexpr std::size_t turret = 1;
 
   SmallWorld small;
   std::size_t gripping_link;

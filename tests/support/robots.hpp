@@ -17,6 +17,8 @@ inline description::Inertial solid_cylinder(double mass, double radius, double l
   return inertial;
 }
 
+inline constexpr std::size_t turret = 1;  // the link of `tracked_robot`
+
 /// A robot with tracks, a turret on a motor, encoders and a ring of 15 proximity sensors.
 inline description::Model tracked_robot(double noise = 0.0) {
   using namespace description;
@@ -47,6 +49,24 @@ inline description::Model tracked_robot(double noise = 0.0) {
   }
   model.devices.push_back(ring);
   return model;
+}
+
+/// A wheel on the first link of a model that drives along x; returns its joint.
+inline std::size_t add_wheel(description::Model& model, const Eigen::Vector3d& p_MW, double radius, double width,
+                             double mass) {
+  description::Joint joint;
+  joint.name = "wheel_" + std::to_string(model.links.size());
+  joint.type = description::JointType::revolute;
+  joint.parent = 0;
+  joint.child = model.links.size();
+  joint.axis.direction = Eigen::Vector3d::UnitZ();  // of the lying wheel: y of the model
+  const Eigen::Quaterniond lying(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
+  model.links.push_back({joint.name,
+                         {p_MW, lying},
+                         solid_cylinder(mass, radius, width, 0.0),
+                         {{"tyre", {}, description::Cylinder{radius, width}, {0.9, 0}}}});
+  model.joints.push_back(joint);
+  return model.joints.size() - 1;
 }
 
 inline constexpr std::size_t first_reading = 6;  // of the ring, in the observation of `tracked_robot`

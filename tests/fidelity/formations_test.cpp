@@ -125,20 +125,18 @@ TEST_P(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
 }
 
 // Each solver on the same chain: all hold it together.
-class EverySolver : public ::testing::TestWithParam<description::Solver> {};
+class EverySolver : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, EverySolver,
+                         ::testing::Values(treel, Physics{.solver = description::Solver::direct}, hybrid), name_of);
 
 TEST_P(EverySolver, HoldsAChainOfFour) {
-  Chain chain({.solver = GetParam()}, 4);
+  Chain chain(GetParam(), 4);
   for (int tick = 0; tick < 300; ++tick) {
     chain.drive_at_random(tick);
     chain.small.world().step();
     ASSERT_LT(chain.gap(), 2e-3) << "at tick " << tick;
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Formations, EverySolver,
-                         ::testing::Values(description::Solver::iterative, description::Solver::direct,
-                                           description::Solver::hybrid));
 
 }  // namespace
 }  // namespace cohort::test

@@ -7,7 +7,7 @@
 #include "server/core/random.hpp"
 #include "server/physics/islands/island_parts.hpp"
 #include "server/physics/islands/large_island_solver.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/physics.hpp"
 
 namespace cohort::test {
 namespace {
@@ -28,9 +28,9 @@ struct Raft {
   SmallWorld small;
   std::vector<std::uint32_t> robots;
 
-  Raft(int edge, unsigned threads) : small(world_with_floor(), threads) {
+  Raft(const Physics& physics, int edge, unsigned threads) : small(physics.world(), threads) {
     for (int y = 0; y < edge; ++y)
-      for (int x = 0; x < edge; ++x) robots.push_back(small.add(tracked_robot(), at(spacing * x, spacing * y, 0)));
+      for (int x = 0; x < edge; ++x) robots.push_back(small.add(physics.robot(), at(spacing * x, spacing * y, 0)));
     const auto robot = [&](int x, int y) {
       return robots[static_cast<std::size_t>(y) * static_cast<std::size_t>(edge) + static_cast<std::size_t>(x)];
     };
@@ -56,12 +56,12 @@ struct CrowdedBoard {
   std::uint32_t board = 0;
   std::vector<std::uint32_t> robots;
 
-  explicit CrowdedBoard(unsigned threads) : small(world_with_floor(), threads) {
+  CrowdedBoard(const Physics& physics, unsigned threads) : small(physics.world(), threads) {
     const Vector3d size(1.6, 1.6, 0.01);
     board = small.add(loose("board", description::Box{size}, solid_box(50.0, size)), at(0.72, 0.72, 0.005));
     for (int y = 0; y < 11; ++y)
       for (int x = 0; x < 11; ++x)
-        robots.push_back(small.add(tracked_robot(), at(0.145 * x - 0.06, 0.145 * y, x == 0 ? 0.006 : 0.01)));
+        robots.push_back(small.add(physics.robot(), at(0.145 * x - 0.06, 0.145 * y, x == 0 ? 0.006 : 0.01)));
   }
   std::uint64_t run(int ticks) {
     for (int tick = 0; tick < ticks; ++tick) {
@@ -72,21 +72,25 @@ struct CrowdedBoard {
   }
 };
 
-TEST(LargeIslands, HaveTheSameBitsForAnyNumberOfThreads) {
-  const std::uint64_t expected = Raft(12, 1).run(60);
-  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(Raft(12, threads).run(60), expected) << threads;
+class LargeIslands : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, LargeIslands, ::testing::Values(articulated, treel), name_of);
+
+TEST_P(LargeIslands, HaveTheSameBitsForAnyNumberOfThreads) {
+  const std::uint64_t expected = Raft(GetParam(), 12, 1).run(60);
+  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(Raft(GetParam(), 12, threads).run(60), expected) << threads;
 }
 
-TEST(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
-  CrowdedBoard one(1);
+TEST_P(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
+  CrowdedBoard one(GetParam(), 1);
   const std::uint64_t expected = one.run(100);
   EXPECT_NEAR(one.small.position(one.board).z(), 0.005, 1e-3);
   for (const std::uint32_t robot : one.robots) EXPECT_GT(one.small.up(robot).z(), 0.95);
-  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(CrowdedBoard(threads).run(100), expected) << threads;
+  for (const unsigned threads : {2u, 4u, 8u})
+    EXPECT_EQ(CrowdedBoard(GetParam(), threads).run(100), expected) << threads;
 }
 
-TEST(LargeIslands, HoldTogetherAsSmallOnesDo) {
-  Raft raft(12, 2);
+TEST_P(LargeIslands, HoldTogetherAsSmallOnesDo) {
+  Raft raft(GetParam(), 12, 2);
   raft.run(200);
   for (std::size_t i = 1; i < raft.robots.size(); ++i) {
     if (i % 12 == 0) continue;
@@ -97,9 +101,9 @@ TEST(LargeIslands, HoldTogetherAsSmallOnesDo) {
   for (const std::uint32_t robot : raft.robots) EXPECT_GT(raft.small.up(robot).z(), 0.99);
 }
 
-TEST(LargeIslands, GoOnWithoutABodyThatBreaks) {
+TEST_P(LargeIslands, GoOnWithoutABodyThatBreaks) {
   const auto broken_run = [](unsigned threads) {
-    Raft raft(11, threads);
+    Raft raft(GetParam(), 11, threads);
     raft.run(10);
     const std::uint32_t broken = raft.robots[60];
     raft.small.world().set_root_twist(broken, {Vector3d::Zero(), Vector3d(1e9, 0, 0)});

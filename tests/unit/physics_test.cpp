@@ -232,28 +232,6 @@ TEST(World, TurnsAnInertiaWithProductsIntoItsPrincipalAxes) {
   EXPECT_LT(world->link_pose(index, 0).orientation.angularDistance(X_WM.orientation), 1e-7);
 }
 
-TEST(World, GivesTheSameBitsForAnyNumberOfWorkers) {
-  const auto hash_with = [](unsigned threads) {
-    description::World description = world_with_floor();
-    for (int i = 0; i < 60; ++i) {
-      const int row = i / 8;
-      place(description, tracked_robot(), "r" + std::to_string(i), at(0.14 * (i % 8), 0.14 * row, 0, 0.7 * i));
-    }
-    WorkerPool workers(threads);
-    const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
-    for (std::uint32_t body = 1; body <= 60; ++body) command(*world, body, {0.05 + 0.002 * body, 0.2 - 0.002 * body});
-    run(*world, 200);
-    StateHash hash;
-    for (std::uint32_t body = 0; body < world->body_count(); ++body) world->hash_body(body, hash);
-    world->hash_contacts(hash);
-    return hash.value();
-  };
-  const std::uint64_t expected = hash_with(1);
-  EXPECT_EQ(hash_with(2), expected);
-  EXPECT_EQ(hash_with(4), expected);
-  EXPECT_EQ(hash_with(8), expected);
-}
-
 TEST(Islands, HoldsWhatIsLinkedInTheOrderOfTheLeastMember) {
   Islands islands;
   islands.reset(8);

@@ -40,7 +40,7 @@ class Simulated {
   nlohmann::json summary() {
     EXPECT_EQ(server_.wait_for_exit(), 0) << server_.output();
     EXPECT_EQ(bridge_->wait_for_exit(), 0) << bridge_->output();
-    return nlohmann::json::parse(read_file(folder_ / "summary.json"), nullptr, false);
+    return read_json(folder_ / "summary.json");
   }
 
  private:

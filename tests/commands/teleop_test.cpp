@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 
 #include "tests/support/process.hpp"
 
@@ -25,11 +24,6 @@ std::vector<std::string> teleop(const ScratchFolder& folder, const std::string& 
   std::ofstream(file) << keys;
   return {"/bin/bash", "-c",
           "exec " + cohort_program() + " teleop --robots 0 --domain " + domain.text() + " < " + file.string()};
-}
-
-std::string hash_in(const std::filesystem::path& summary) {
-  std::ifstream in(summary);
-  return nlohmann::json::parse(in, nullptr, false).value("state_hash", "no summary");
 }
 
 TEST(Teleop, TheKeysThatAPersonPressesAreTheCommandsOfTheRobot) {

@@ -60,10 +60,7 @@ class Container : public ::testing::Test {
     return json.is_object() ? json.value("tick", std::uint64_t{0}) : 0;
   }
   static bool reaches(const Containers& containers, std::uint64_t tick) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (tick_of(containers) < tick)
-      if (std::chrono::steady_clock::now() > deadline) return false;
-    return true;
+    return eventually([&] { return tick_of(containers) >= tick; });
   }
 
   static inline std::optional<std::string> missing;

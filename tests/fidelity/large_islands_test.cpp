@@ -15,20 +15,30 @@ namespace {
 using Eigen::Vector3d;
 using physics::IslandParts;
 
-void drive_at_random(SmallWorld& small, const std::vector<std::uint32_t>& robots, int tick) {
-  const RandomStream random(1, "island", "drive");
-  for (const std::uint32_t robot : robots)
-    small.drive(robot, 0.4 * random.uniform(tick / 10, 2 * robot) - 0.2,
-                0.4 * random.uniform(tick / 10, 2 * robot + 1) - 0.2);
-}
+// Robots that drive about at random.
+struct DrivenRobots {
+  DrivenRobots(const Physics& physics, unsigned threads) : small(physics.world(), threads) {}
 
-// Robots in a square, each held to the one before it in its row and in its column.
-struct Raft {
-  static constexpr double spacing = 0.13;
   SmallWorld small;
   std::vector<std::uint32_t> robots;
 
-  Raft(const Physics& physics, int edge, unsigned threads) : small(physics.world(), threads) {
+  std::uint64_t run(int ticks) {
+    const RandomStream random(1, "island", "drive");
+    for (int tick = 0; tick < ticks; ++tick) {
+      for (const std::uint32_t robot : robots)
+        small.drive(robot, 0.4 * random.uniform(tick / 10, 2 * robot) - 0.2,
+                    0.4 * random.uniform(tick / 10, 2 * robot + 1) - 0.2);
+      small.world().step();
+    }
+    return hash_of(small.world());
+  }
+};
+
+// Robots in a square, each held to the one before it in its row and in its column.
+struct Raft : DrivenRobots {
+  static constexpr double spacing = 0.13;
+
+  Raft(const Physics& physics, int edge, unsigned threads) : DrivenRobots(physics, threads) {
     for (int y = 0; y < edge; ++y)
       for (int x = 0; x < edge; ++x) robots.push_back(small.add(physics.robot(), at(spacing * x, spacing * y, 0)));
     const auto robot = [&](int x, int y) {
@@ -41,34 +51,18 @@ struct Raft {
       }
     }
   }
-  std::uint64_t run(int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-      drive_at_random(small, robots, tick);
-      small.world().step();
-    }
-    return hash_of(small.world());
-  }
 };
 
 // A loose board with robots that drive about on it and push each other; some stand half on it, half on the floor.
-struct CrowdedBoard {
-  SmallWorld small;
+struct CrowdedBoard : DrivenRobots {
   std::uint32_t board = 0;
-  std::vector<std::uint32_t> robots;
 
-  CrowdedBoard(const Physics& physics, unsigned threads) : small(physics.world(), threads) {
+  CrowdedBoard(const Physics& physics, unsigned threads) : DrivenRobots(physics, threads) {
     const Vector3d size(1.6, 1.6, 0.01);
     board = small.add(loose("board", description::Box{size}, solid_box(50.0, size)), at(0.72, 0.72, 0.005));
     for (int y = 0; y < 11; ++y)
       for (int x = 0; x < 11; ++x)
         robots.push_back(small.add(physics.robot(), at(0.145 * x - 0.06, 0.145 * y, x == 0 ? 0.006 : 0.01)));
-  }
-  std::uint64_t run(int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-      drive_at_random(small, robots, tick);
-      small.world().step();
-    }
-    return hash_of(small.world());
   }
 };
 

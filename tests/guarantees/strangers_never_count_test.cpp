@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <thread>
@@ -15,8 +14,6 @@ namespace cohort::test {
 namespace {
 
 constexpr std::uint64_t own_id = 0xabcdef;  // of a client that these tests play themselves
-
-nlohmann::json read_json(const std::filesystem::path& file) { return nlohmann::json::parse(std::ifstream(file)); }
 
 // How often commands were rejected, by reason.
 std::map<std::string, std::uint64_t> rejections(const nlohmann::json& summary) {

@@ -39,10 +39,7 @@ class ControlledRun {
   /// Asks until the status has what `condition` wants; false if it does not in time.
   template <class Condition>
   bool comes_to(Condition condition) const {
-    const auto until = std::chrono::steady_clock::now() + patience;
-    while (std::chrono::steady_clock::now() < until)
-      if (condition(status())) return true;
-    return false;
+    return eventually([&] { return condition(status()); });
   }
   /// The run's summary, once all are gone.
   nlohmann::json finish() {

@@ -3,33 +3,19 @@
 #include <sys/types.h>
 
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tests/support/files.hpp"
 #include "tests/support/patience.hpp"
 
 /// Running `cohort` as users do, from tests.
 namespace cohort::test {
 
 using namespace std::chrono_literals;
-
-/// A folder that is gone with this.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder();
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A program in a process group of its own, killed with all that it started when this is gone.
 class Process {
@@ -90,8 +76,9 @@ class ReservedDomain {
   int lock_ = -1;
 };
 
-void write_file(const std::filesystem::path& file, const std::string& text);
-std::string read_file(const std::filesystem::path& file);
+nlohmann::json read_json(const std::filesystem::path& file);
+/// Of the run with this summary.
+std::string hash_in(const std::filesystem::path& summary);
 
 std::string cohort_program();
 /// A controller of tests/commands/.

@@ -25,7 +25,7 @@ class ObserversNeverCount : public InABrowser {
       browser.signal(SIGKILL);
     }
     ASSERT_EQ(run.wait_for_exit(), 0) << run.output();
-    const auto summary = nlohmann::json::parse(read_file(scratch / "summary.json"));
+    const auto summary = read_json(scratch / "summary.json");
     EXPECT_EQ(summary["state_hash"], reference_hash(20));
     EXPECT_TRUE(view.process().running());
   }

@@ -57,10 +57,8 @@ teams:
   }
   // The view has left its robot, and the run went on since it was as `before`.
   void expect_let_go(const nlohmann::json& before) const {
-    const auto until = std::chrono::steady_clock::now() + patience;
-    auto now = status();
-    while (has_view(now) && std::chrono::steady_clock::now() < until) now = status();
-    EXPECT_FALSE(has_view(now)) << now;
+    nlohmann::json now;
+    EXPECT_TRUE(eventually([&] { return !has_view(now = status()); })) << now;
     EXPECT_GT(now["tick"].get<std::uint64_t>(), before["tick"].get<std::uint64_t>());
   }
   void drives(const std::string& scenario) {

@@ -1,6 +1,5 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -13,6 +12,7 @@
 #include "client_sdk/src/controller_host.hpp"
 #include "client_sdk/src/plugin_loader.hpp"
 #include "tests/support/counting_controller.hpp"
+#include "tests/support/files.hpp"
 
 namespace cohort {
 namespace {
@@ -176,9 +176,6 @@ TEST_F(ControllerHostTest, AFrameThatDoesNotFitTheDescriptionsIsRefused) {
 
 class PluginLoaderTest : public testing::Test {
  protected:
-  PluginLoaderTest() { std::filesystem::create_directories(folder); }
-  ~PluginLoaderTest() override { std::filesystem::remove_all(folder); }
-
   // A shared object made of C source; false without a compiler at hand.
   bool compile(const std::string& name, const std::string& source) {
     std::ofstream(folder / "source.c") << source;
@@ -187,8 +184,8 @@ class PluginLoaderTest : public testing::Test {
     return std::system(command.c_str()) == 0;
   }
 
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("cohort_plugins_" + std::to_string(::getpid()));
+  ScratchFolder scratch;
+  std::filesystem::path folder = scratch.path();
 };
 
 TEST_F(PluginLoaderTest, APluginThatIsNowhereIsAnsweredWithThePlacesTried) {

@@ -1,10 +1,10 @@
 #include "server/core/processors.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <thread>
+
+#include "tests/support/files.hpp"
 
 namespace cohort {
 namespace {
@@ -14,21 +14,14 @@ namespace fs = std::filesystem;
 // A machine as the kernel shows it. The quotas are of less than one core, so that any machine has more.
 class Machine {
  public:
-  Machine() : root_(fs::path(::testing::TempDir()) / ("cohort_processors_" + std::to_string(getpid()))) {
-    fs::remove_all(root_);
-  }
-  Machine(const Machine&) = delete;
-  Machine& operator=(const Machine&) = delete;
-  ~Machine() { fs::remove_all(root_); }
-
   void write(const fs::path& file, const std::string& text) const {
-    fs::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file) << text;
+    fs::create_directories((root_.path() / file).parent_path());
+    test::write_file(root_.path() / file, text);
   }
-  unsigned processors() const { return available_processors(root_); }
+  unsigned processors() const { return available_processors(root_.path()); }
 
  private:
-  fs::path root_;
+  test::ScratchFolder root_;
 };
 
 const unsigned cores = std::max(1u, std::thread::hardware_concurrency());

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -18,11 +16,6 @@
 
 namespace cohort::description {
 namespace {
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // An element without its lines, with its attributes in order and its white space as one blank: what a round trip keeps.
 std::string canonical(const parsing::XmlNode& node) {
@@ -142,8 +135,9 @@ std::string sdf(const std::string& content) {
 INSTANTIATE_TEST_SUITE_P(
     Sdf, WrittenAsYaml,
     ::testing::Values(
-        text_of(source / "worlds/arenas/obstacles.sdf"), text_of(source / "worlds/robots/sbot/model.sdf"),
-        sdf("<world name='w'/>"), sdf("<world name='null'><gravity> 0  0\n-1 </gravity></world>"),
+        test::read_file(source / "worlds/arenas/obstacles.sdf"),
+        test::read_file(source / "worlds/robots/sbot/model.sdf"), sdf("<world name='w'/>"),
+        sdf("<world name='null'><gravity> 0  0\n-1 </gravity></world>"),
         sdf("<world name='it: &quot;is&quot; #1 \\ &#10;[a]'><model name='-'/><model name='a:'/><model "
             "name='größer'/></world>"),
         sdf("<world name='w'><model name='a'/><include><uri>model://x</uri></include><model name='b'/></world>"),
@@ -163,7 +157,7 @@ class YamlDescription : public Description {
 };
 
 TEST_F(YamlDescription, AWorldIsTheSameInBothSpellings) {
-  const std::string text = text_of(source / "worlds/arenas/obstacles.sdf");
+  const std::string text = test::read_file(source / "worlds/arenas/obstacles.sdf");
   const World from_sdf = parsing::read_world(write("world.sdf", text), 7);
   const World from_yaml =
       parsing::read_world(write("same.yaml", parsing::yaml_of_sdf(parsing::outline_xml(text).root)), 7);
@@ -184,10 +178,10 @@ TEST_F(YamlDescription, TheManualsWorldIsTheSameInBothSpellingsAndTheOneInWorlds
     const std::size_t begin = text.find(fence) + fence.size();
     return text.substr(begin, text.find("```", begin) - begin);
   };
-  const std::string readme = text_of(source / "worlds/README.md");
+  const std::string readme = test::read_file(source / "worlds/README.md");
   EXPECT_EQ(as_xml(block(readme, "yaml")), canonical(parsing::outline_xml(block(readme, "xml")).root));
   EXPECT_EQ(read_yaml(block(readme, "yaml")).robots.size(), 8u);
-  EXPECT_EQ(read_yaml(block(text_of(source / "docs/worlds.md"), "yaml")).robots.size(), 8u);
+  EXPECT_EQ(read_yaml(block(test::read_file(source / "docs/worlds.md"), "yaml")).robots.size(), 8u);
 }
 
 TEST_F(YamlDescription, AnArenaTakesTenLines) {

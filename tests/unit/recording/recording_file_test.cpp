@@ -163,10 +163,7 @@ TEST(RecordingFile, AKilledProcessLeavesWhatIsOlderThanTheFlushInterval) {
     for (int i = 0; i < 10; ++i) write_one(recording, channel, i);
     for (;;) pause();
   });
-  const auto end = std::chrono::steady_clock::now() + patience;
-  while ((!std::filesystem::exists(file.path()) || messages_on_disk(file.path()) < 10) &&
-         std::chrono::steady_clock::now() < end)
-    usleep(1000);
+  eventually([&] { return std::filesystem::exists(file.path()) && messages_on_disk(file.path()) >= 10; });
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   const McapReader reader(file.path());
@@ -188,10 +185,7 @@ TEST(RecordingFile, AProcessKilledWhileItWritesLeavesNoGap) {
         if (recording.queued() > 1'000'000) usleep(100);
       }
     });
-    const auto end = std::chrono::steady_clock::now() + patience;
-    while ((!std::filesystem::exists(file.path()) || messages_on_disk(file.path()) < 1000) &&
-           std::chrono::steady_clock::now() < end)
-      usleep(100);
+    eventually([&] { return std::filesystem::exists(file.path()) && messages_on_disk(file.path()) >= 1000; });
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const std::vector<std::string> messages = messages_of(McapReader(file.path()));

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/support/files.hpp"
 #include "tests/support/robots.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/drawing/outline.hpp"
@@ -429,10 +429,7 @@ TEST(OutputFile, CheckingLeavesNoTrace) {
   EXPECT_FALSE(std::filesystem::exists(file));
   write_file("the plot", file, "kept");
   check_writable("the plot", file);
-  std::ifstream in(file);
-  std::string text;
-  in >> text;
-  EXPECT_EQ(text, "kept");
+  EXPECT_EQ(test::read_file(file), "kept");
   std::filesystem::remove(file);
 }
 

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
+#include "tests/support/files.hpp"
 #include "tests/support/small_world.hpp"
 
 namespace cohort::tool {
@@ -11,13 +10,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using namespace test;
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 TEST(PrintedTable, HasWhatABreakableJointExertsAtBothEnds) {
   description::Experiment experiment;

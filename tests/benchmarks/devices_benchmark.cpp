@@ -17,20 +17,20 @@ namespace {
 constexpr double half_width = 5.0;
 constexpr std::uint32_t sources = 24;
 constexpr std::uint32_t leds_a_robot = 8;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 class Swarm {
  public:
   Swarm(std::uint32_t robots, const std::vector<description::Device>& devices, std::uint32_t lamps,
         std::uint32_t tones) {
-    description::Model robot = testing::tracked_robot();
+    description::Model robot = test::tracked_robot();
     robot.devices = devices;
     for (std::uint32_t n = 0; n < robots; ++n)
-      testing::place(description_, robot, "robot" + std::to_string(n), place(n, 0.0));
+      test::place(description_, robot, "robot" + std::to_string(n), place(n, 0.0));
     for (const double side : {-half_width, half_width}) {
       const description::Shape wall = description::Box{{0.02, 2.0 * half_width, 0.3}};
-      testing::place(description_, testing::static_shape("wall", wall), "wall", testing::at(side, 0, 0.15));
-      testing::place(description_, testing::static_shape("wall", wall), "wall", testing::at(0, side, 0.15, pi / 2.0));
+      test::place(description_, test::static_shape("wall", wall), "wall", test::at(side, 0, 0.15));
+      test::place(description_, test::static_shape("wall", wall), "wall", test::at(0, side, 0.15, pi / 2.0));
     }
     for (std::uint32_t n = 0; n < lamps; ++n) add_emitter(description::Light{}, place(100'000 + n, 0.2));
     for (std::uint32_t n = 0; n < tones; ++n) add_emitter(description::Sound{400.0, 1.0}, place(200'000 + n, 0.2));
@@ -69,8 +69,8 @@ class Swarm {
  private:
   Pose place(std::uint64_t n, double z) const {
     const double reach = half_width - 0.12;
-    return testing::at(reach * (2.0 * random_.uniform(n, 0) - 1.0), reach * (2.0 * random_.uniform(n, 1) - 1.0), z,
-                       6.0 * random_.uniform(n, 2));
+    return test::at(reach * (2.0 * random_.uniform(n, 0) - 1.0), reach * (2.0 * random_.uniform(n, 1) - 1.0), z,
+                    6.0 * random_.uniform(n, 2));
   }
   void add_emitter(const decltype(description::Emitter::what)& what, const Pose& X_WM) {
     description::Model model;
@@ -78,12 +78,12 @@ class Swarm {
     model.is_static = true;
     model.links.push_back({"link", {}, {}, {}});
     model.emitters.push_back({"emitter", 0, {}, true, what});
-    testing::place(description_, model, "emitter", X_WM);
+    test::place(description_, model, "emitter", X_WM);
   }
 
   RandomStream random_{1, "devices_benchmark", "places"};
   WorkerPool workers_{1};
-  description::World description_ = testing::world_with_floor();
+  description::World description_ = test::world_with_floor();
   std::unique_ptr<physics::World> world_;
   std::unique_ptr<emission::Emitters> emitters_;
   std::unique_ptr<gripping::Grippers> grippers_;

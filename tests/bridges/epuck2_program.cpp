@@ -13,7 +13,7 @@
 
 #include "tests/support/patience.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr std::size_t sensors_size = 104;
@@ -22,9 +22,9 @@ constexpr std::size_t sensors_size = 104;
 
 EpuckProgram::EpuckProgram(std::uint16_t port, const std::string& address)
     : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-  const timeval patience{test::patience.count(), 0};
-  ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+  const timeval at_most{test::patience.count(), 0};
+  ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &at_most, sizeof at_most);
+  ::setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &at_most, sizeof at_most);
   sockaddr_in robot{};
   robot.sin_family = AF_INET;
   robot.sin_port = htons(port);
@@ -108,4 +108,4 @@ std::array<int, 2> avoid_obstacles(const Bytes& sensors) {
   return {full_speed - 3 * right, full_speed - 3 * left};
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace cohort::testing {
+namespace cohort::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -45,4 +45,4 @@ std::array<int, 8> proximity(const Bytes& sensors);
 /// Obstacle avoidance after Braitenberg: speeds of the left and right wheel [steps/s] from the proximity sensors.
 std::array<int, 2> avoid_obstacles(const Bytes& sensors);
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -7,7 +7,7 @@
 #include "tests/bridges/epuck2_program.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr const char* shipped = COHORT_SOURCE_DIR "/worlds/experiments/epuck2.yaml";
@@ -40,7 +40,7 @@ class Simulated {
   nlohmann::json summary() {
     EXPECT_EQ(server_.wait_for_exit(), 0) << server_.output();
     EXPECT_EQ(bridge_->wait_for_exit(), 0) << bridge_->output();
-    return nlohmann::json::parse(read_file(folder_ / "summary.json"), nullptr, false);
+    return read_json(folder_ / "summary.json");
   }
 
  private:
@@ -334,4 +334,4 @@ TEST_F(Epuck2Bridge, RobotsMayHaveAddressesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

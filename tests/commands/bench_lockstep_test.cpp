@@ -3,7 +3,7 @@
 #include "tests/support/process.hpp"
 
 // What `cohort bench lockstep` prints and writes. How long anything takes is nobody's guarantee.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -21,7 +21,7 @@ Measured measure(std::vector<std::string> arguments, bool draws = true) {
   if (draws) arguments.insert(arguments.end(), {"--svg", (folder / "graph.svg").string()});
   Measured measured{run_to_end(arguments), {}, {}};
   EXPECT_EQ(measured.ended.exit_code, 0) << measured.ended.err;
-  measured.json = Json::parse(read_file(folder / "results.json"), nullptr, false);
+  measured.json = read_json(folder / "results.json");
   if (draws) measured.svg = read_file(folder / "graph.svg");
   return measured;
 }
@@ -95,4 +95,4 @@ TEST(BenchLockstep, RefusesAPlacementThatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

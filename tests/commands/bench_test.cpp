@@ -2,12 +2,11 @@
 
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include "tests/support/process.hpp"
 
 // What `cohort bench` prints and writes. How long anything takes is nobody's guarantee.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -24,7 +23,7 @@ Measured measure(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--repetitions", "2", "--json", file});
   Measured measured{run_to_end(arguments), {}};
   EXPECT_EQ(measured.ended.exit_code, 0) << measured.ended.err;
-  measured.json = Json::parse(read_file(file), nullptr, false);
+  measured.json = read_json(file);
   return measured;
 }
 
@@ -51,13 +50,6 @@ void expect_spread(const Json& spread) {
   EXPECT_GT(spread.value("min", 0.0), 0.0) << spread;
   EXPECT_LE(spread.value("min", 0.0), spread.value("median", 0.0)) << spread;
   EXPECT_LE(spread.value("median", 0.0), spread.value("max", 0.0)) << spread;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
 }
 
 TEST(Bench, MeasuresEveryEngineThatIsThereOnTheSameCrowd) {
@@ -176,7 +168,7 @@ Measured measure_thesis(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), {"--budget", "0.01", "--json", file});
   Measured measured{run_to_end(arguments), {}};
   EXPECT_EQ(measured.ended.exit_code, 0) << measured.ended.err;
-  measured.json = Json::parse(read_file(file), nullptr, false);
+  measured.json = read_json(file);
   return measured;
 }
 
@@ -255,4 +247,4 @@ TEST(Bench, AnEngineThatIsNotInThisBuildIsRefusedWithItsPackage) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

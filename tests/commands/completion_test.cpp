@@ -5,7 +5,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 std::string script_for(const std::string& shell) {
@@ -94,4 +94,4 @@ TEST(ManPage, HasEveryCommandAndIsWithoutMistakes) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

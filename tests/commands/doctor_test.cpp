@@ -11,7 +11,7 @@
 #include "tests/support/version_2.hpp"
 
 // Each fault is brought about, and has to be found.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -236,4 +236,4 @@ TEST(Doctor, FindsThatFewFilesMayBeOpen) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -7,7 +7,7 @@
 
 // What a user reads who made a mistake: one message that says where it is and what to do, exit code 2, and nothing
 // started.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -300,4 +300,4 @@ TEST(Help, TellsTheVersionAndHowThisWasBuilt) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -5,7 +5,7 @@
 #include "tests/support/controlled_run.hpp"
 
 // `cohort record`: a run that goes on, recorded by somebody else.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 class LiveRecordings : public ::testing::Test {
@@ -157,4 +157,4 @@ TEST_F(LiveRecordings, AreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

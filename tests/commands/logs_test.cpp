@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <regex>
-#include <sstream>
 
 #include "tests/commands/small_experiment.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using nlohmann::json;
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 // The objects of a log; fails where a line is something else.
 std::vector<json> parsed(const std::string& log) {
@@ -167,4 +159,4 @@ TEST(Logs, AWorldsWarningsAreToldWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -9,12 +9,11 @@
 #include <csignal>
 #include <fstream>
 #include <mutex>
-#include <thread>
 
 #include "tests/commands/small_experiment.hpp"
 #include "tools/processes/children.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // A line of /proc/PID/status with a mask of signals.
@@ -24,16 +23,6 @@ bool has_signal(pid_t pid, const std::string& mask, int number) {
     if (line.starts_with(mask + ":"))
       return (std::stoull(line.substr(mask.size() + 1), nullptr, 16) >> (number - 1) & 1) != 0;
   return false;
-}
-
-template <class Condition>
-bool eventually(Condition&& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(5ms);
-  }
-  return true;
 }
 
 class NoProcessIsLeftBehind : public ::testing::Test {
@@ -54,7 +43,7 @@ class NoProcessIsLeftBehind : public ::testing::Test {
   void expect_an_orderly_end() {
     EXPECT_EQ(run->wait_for_exit(), 130) << run->output();
     EXPECT_NE(run->output().find("state hash"), std::string::npos) << run->output();
-    EXPECT_FALSE(nlohmann::json::parse(read_file(experiment / "summary.json")).empty());
+    EXPECT_FALSE(read_json(experiment / "summary.json").empty());
     expect_nothing_left();
   }
 
@@ -107,7 +96,7 @@ TEST_F(NoProcessIsLeftBehind, WhenItsTerminalIsClosed) {
   int status = 0;
   ASSERT_EQ(waitpid(pid, &status, 0), pid);
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 130) << status;
-  EXPECT_FALSE(nlohmann::json::parse(read_file(experiment / "summary.json")).empty());
+  EXPECT_FALSE(read_json(experiment / "summary.json").empty());
   expect_nothing_left();
 }
 
@@ -260,4 +249,4 @@ TEST_F(ChildrenTest, ReadNothingAndInheritNoDescriptors) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -3,20 +3,13 @@
 #include "server/recording/recording.hpp"
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // `cohort` and these arguments.
 Ended cohort(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), cohort_program());
   return run_to_end(arguments);
-}
-
-std::vector<std::string> lines_of(const std::filesystem::path& file) {
-  std::vector<std::string> lines;
-  std::istringstream text(read_file(file));
-  for (std::string line; std::getline(text, line);) lines.push_back(line);
-  return lines;
 }
 
 // Two robots that drive for two seconds, recorded.
@@ -96,21 +89,21 @@ TEST_F(Recordings, HoldWhatIsAskedFor) {
 TEST_F(Recordings, BecomeTables) {
   const std::string file = record("run.mcap", {"--record-observations", "10"});
   ASSERT_EQ(cohort({"export-data", file, "--csv", *this / "tables"}).exit_code, 0);
-  const auto poses = lines_of(*this / "tables/trajectories.csv");
+  const auto poses = lines_of(read_file(*this / "tables/trajectories.csv"));
   ASSERT_EQ(poses.size(), 1u + 2 * 21);
   EXPECT_EQ(poses[0], "run,time,object,x,y,z,qx,qy,qz,qw");
   EXPECT_TRUE(poses[2].starts_with("0,0,swarm/sbot_1,")) << poses[2];
-  const auto commands = lines_of(*this / "tables/commands_sbot.csv");
+  const auto commands = lines_of(read_file(*this / "tables/commands_sbot.csv"));
   ASSERT_EQ(commands.size(), 3u);
   EXPECT_TRUE(commands[0].starts_with("run,time,robot,treel_left_velocity,treel_right_velocity,")) << commands[0];
   EXPECT_TRUE(commands[1].starts_with("0,0,swarm/sbot_0,0.1,0.1,")) << commands[1];
-  EXPECT_EQ(lines_of(*this / "tables/observations_sbot.csv").size(), 1u + 2 * 21);
-  EXPECT_EQ(lines_of(*this / "tables/ticks.csv").size(), 202u);
+  EXPECT_EQ(lines_of(read_file(*this / "tables/observations_sbot.csv")).size(), 1u + 2 * 21);
+  EXPECT_EQ(lines_of(read_file(*this / "tables/ticks.csv")).size(), 202u);
 
   ASSERT_EQ(
       cohort({"export-data", file, "--csv", *this / "part", "--robots", "1", "--from", "1", "--to", "1.5"}).exit_code,
       0);
-  const auto part = lines_of(*this / "part/observations_sbot.csv");
+  const auto part = lines_of(read_file(*this / "part/observations_sbot.csv"));
   ASSERT_EQ(part.size(), 1u + 6);
   EXPECT_TRUE(part[1].starts_with("0,1,swarm/sbot_1,")) << part[1];
 
@@ -124,8 +117,8 @@ TEST_F(Recordings, GiveTheSameRowsForAPart) {
                  {"--controllers", "inprocess", "--duration", "12", "--record", *this / "run.mcap"});
   ASSERT_EQ(cohort({"export-data", *this / "run.mcap", "--csv", *this / "whole"}).exit_code, 0);
   ASSERT_EQ(cohort({"export-data", *this / "run.mcap", "--csv", *this / "part", "--from", "6"}).exit_code, 0);
-  const auto whole = lines_of(*this / "whole/commands_sbot.csv");
-  const auto part = lines_of(*this / "part/commands_sbot.csv");
+  const auto whole = lines_of(read_file(*this / "whole/commands_sbot.csv"));
+  const auto part = lines_of(read_file(*this / "part/commands_sbot.csv"));
   ASSERT_GT(part.size(), 100u);
   ASSERT_GT(whole.size(), part.size());
   EXPECT_TRUE(std::equal(part.rbegin(), part.rend() - 1, whole.rbegin()));
@@ -169,4 +162,4 @@ TEST_F(Recordings, ThatAreNoneAreRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -5,7 +5,7 @@
 #include "tests/support/recordings.hpp"
 
 // `cohort recover` as its users see it.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using recording::Bytes;
@@ -72,4 +72,4 @@ TEST(RecoverCommand, RefusesWhatItCannotReadOrWrite) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -4,7 +4,7 @@
 
 #include "tests/commands/small_experiment.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 std::size_t times(const std::string& text, const std::string& part) {
@@ -97,4 +97,4 @@ TEST(Restarts, AControllerWhoseRobotsSomebodyElseTookOverIsLetGo) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

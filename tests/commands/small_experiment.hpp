@@ -4,7 +4,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// Robots `r0` and `r1`, which float, in one team; files of its own to spoil.
 class SmallExperiment {
@@ -65,4 +65,4 @@ class SmallExperiment {
   ScratchFolder folder_;
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iterator>
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 const std::string up = "\033[A";
@@ -25,11 +24,6 @@ std::vector<std::string> teleop(const ScratchFolder& folder, const std::string& 
   std::ofstream(file) << keys;
   return {"/bin/bash", "-c",
           "exec " + cohort_program() + " teleop --robots 0 --domain " + domain.text() + " < " + file.string()};
-}
-
-std::string hash_in(const std::filesystem::path& summary) {
-  std::ifstream in(summary);
-  return nlohmann::json::parse(in, nullptr, false).value("state_hash", "no summary");
 }
 
 TEST(Teleop, TheKeysThatAPersonPressesAreTheCommandsOfTheRobot) {
@@ -88,4 +82,4 @@ TEST(Parameters, MistakesAreFoundBeforeAnythingRunsWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -3,7 +3,7 @@
 #include "tests/commands/small_experiment.hpp"
 
 // What users do with worlds: write them back, read about them, print what happens in them.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 TEST(Export, WritesAWorldThatRunsToTheSameHash) {
@@ -107,4 +107,4 @@ TEST(Print, WritesATableToStandardOutputOrToAFile) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

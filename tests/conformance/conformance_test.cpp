@@ -6,7 +6,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr const char* avoidance = COHORT_BUILD_DIR "/lib/controllers/obstacle_avoidance.so";
@@ -163,4 +163,4 @@ TEST_F(Conformance, FramesAndAnswersOfAThousandRobotsGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -7,7 +7,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// Runs to its end, however long that takes: ctest has a limit. All that it writes is in `out`.
 inline Ended run_for_long(std::vector<std::string> command, const Process::Environment& environment = {}) {
@@ -27,4 +27,4 @@ inline std::optional<std::string> make_base(const std::filesystem::path& folder)
   return std::nullopt;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

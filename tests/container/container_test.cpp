@@ -5,14 +5,13 @@
 #include "tests/support/file_lock.hpp"
 #include "tests/support/http.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t most_bytes = 300'000'000;
 const std::string demo = "/usr/share/cohort/worlds/experiments/obstacle_avoidance.yaml";
-const std::string image = "localhost/cohort:" COHORT_VERSION;
 const std::string sdk_image = "localhost/cohort-sdk:" COHORT_VERSION;
 
 constexpr const char* install_list = ": tools/install-packages tools/packages-container.txt";
@@ -61,10 +60,7 @@ class Container : public ::testing::Test {
     return json.is_object() ? json.value("tick", std::uint64_t{0}) : 0;
   }
   static bool reaches(const Containers& containers, std::uint64_t tick) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (tick_of(containers) < tick)
-      if (std::chrono::steady_clock::now() > deadline) return false;
-    return true;
+    return eventually([&] { return tick_of(containers) >= tick; });
   }
 
   static inline std::optional<std::string> missing;
@@ -207,4 +203,4 @@ TEST_F(Container, OfAViewShowsTheRunOfTheComposeFilesInTheHostsBrowser) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

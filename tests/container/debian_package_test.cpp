@@ -3,7 +3,7 @@
 #include "tests/container/base.hpp"
 #include "tests/support/http.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ TEST(DebianPackage, InstallsOnACleanDebianAndRunsTheDemoToTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -7,12 +7,10 @@
 #include <sstream>
 #include <utility>
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::string image = "localhost/cohort:" COHORT_VERSION;
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
   to.insert(to.end(), more.begin(), more.end());
@@ -172,4 +170,4 @@ bool Containers::is_healthy(const std::string& name) const {
   return podman_({"healthcheck", "run", full(name)}).exit_code == 0;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -6,7 +6,9 @@
 
 #include "tests/container/base.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
+
+inline const std::string image = "localhost/cohort:" COHORT_VERSION;
 
 /// podman with images, networks and settings of its own, in the build's folder: the machine's are left alone.
 class Podman {
@@ -63,4 +65,4 @@ class Containers {
   std::vector<std::string> names_;
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

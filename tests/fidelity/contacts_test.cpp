@@ -2,14 +2,12 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Box;
 using description::Sphere;
 using Eigen::Vector3d;
-
-constexpr double g = 9.81;
 
 SmallWorld on_slope(double slope, double friction) {
   description::World world;
@@ -155,4 +153,4 @@ TEST(Contacts, MomentumStaysInACollision) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

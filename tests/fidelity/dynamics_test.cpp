@@ -6,7 +6,7 @@
 
 // Bullet's articulated bodies and our own mass matrix give the same velocities and the same answers to impulses,
 // whatever the mechanism and its state.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Dynamics;
@@ -145,4 +145,4 @@ TEST(Dynamics, BulletsAndOursAgreeOnRandomMechanisms) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

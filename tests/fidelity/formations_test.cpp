@@ -1,27 +1,23 @@
 #include <gtest/gtest.h>
 
 #include "server/core/random.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/physics.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
 using physics::Side;
 
-constexpr double spacing = 0.13;
-constexpr std::size_t turret = 1;
-
 // Robots in a row, each turret held to the one before.
 struct Chain {
+  static constexpr double spacing = 0.13;
   SmallWorld small;
   std::vector<std::uint32_t> robots;
   std::vector<std::uint32_t> connections;
 
-  explicit Chain(int count, const physics::ConnectionLimits& limits = {},
-                 description::Solver solver = description::Solver::iterative) {
-    small.description.physics.solver = solver;
-    for (int i = 0; i < count; ++i) robots.push_back(small.add(tracked_robot(), at(spacing * i, 0, 0)));
+  Chain(const Physics& physics, int count, const physics::ConnectionLimits& limits = {}) : small(physics.world()) {
+    for (int i = 0; i < count; ++i) robots.push_back(small.add(physics.robot(), at(spacing * i, 0, 0)));
     for (std::size_t i = 1; i < robots.size(); ++i)
       connections.push_back(
           small.world().connect(robots[i - 1], turret, {{0.5 * spacing, 0, 0.02}}, robots[i], turret, limits));
@@ -48,8 +44,11 @@ struct Chain {
   }
 };
 
-TEST(Formations, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetres) {
-  Chain chain(25);
+class Formations : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, Formations, every_physics, name_of);
+
+TEST_P(Formations, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetres) {
+  Chain chain(GetParam(), 25);
   for (int tick = 0; tick < 1000; ++tick) {
     chain.drive_at_random(tick);
     chain.small.world().step();
@@ -58,8 +57,8 @@ TEST(Formations, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetres)
   for (const std::uint32_t robot : chain.robots) EXPECT_GT(chain.small.up(robot).z(), 0.99);
 }
 
-TEST(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
-  Chain chain(128);
+TEST_P(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
+  Chain chain(GetParam(), 128);
   for (int tick = 0; tick < 300; ++tick) {
     chain.drive_at_random(tick);
     chain.small.world().step();
@@ -67,8 +66,8 @@ TEST(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
   EXPECT_LT(chain.gap(), 3e-3);
 }
 
-TEST(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
-  Chain chain(2);
+TEST_P(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
+  Chain chain(GetParam(), 2);
   // One pulls with all it has, the other is held by the world.
   const auto held = chain.small.world().connect(chain.robots[0], 0, {}, 0, 0);
   chain.small.drive(chain.robots[1], 0.2, 0.2);
@@ -81,8 +80,8 @@ TEST(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
   EXPECT_NEAR(chain.small.world().connection_wrench(held).force_W.x() + own, -pull, 0.01);
 }
 
-TEST(Formations, AConnectionBreaksWhereItBearsLess) {
-  Chain chain(3, {.force = 1.0});
+TEST_P(Formations, AConnectionBreaksWhereItBearsLess) {
+  Chain chain(GetParam(), 3, {.force = 1.0});
   chain.small.drive(chain.robots[0], -0.2, -0.2);
   chain.small.drive(chain.robots[2], 0.2, 0.2);
   std::vector<std::uint32_t> broken;
@@ -96,8 +95,8 @@ TEST(Formations, AConnectionBreaksWhereItBearsLess) {
   EXPECT_GT(chain.gap(), 0.1);
 }
 
-TEST(Formations, TwoThatLetGoOfEachOtherDriveApart) {
-  Chain chain(2);
+TEST_P(Formations, TwoThatLetGoOfEachOtherDriveApart) {
+  Chain chain(GetParam(), 2);
   chain.small.run(0.5);
   chain.small.world().disconnect(chain.connections[0]);
   chain.small.drive(chain.robots[0], -0.1, -0.1);
@@ -106,32 +105,32 @@ TEST(Formations, TwoThatLetGoOfEachOtherDriveApart) {
   EXPECT_NEAR(chain.gap(), 0.4, 0.03);
 }
 
-TEST(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
-  for (const description::Fidelity fidelity : {description::Fidelity::treel, description::Fidelity::planar})
-    for (const bool is_moved : {false, true}) {
-      SmallWorld small;
-      small.description.physics.fidelity = fidelity;
-      const std::uint32_t wall = small.add(static_shape("wall", description::Box{{0.1, 1, 1}}), at(0.5, 0, 0.5));
-      const std::uint32_t robot = small.add(tracked_robot(), at(0, 0, 0));
-      const std::uint32_t connection = small.world().connect(robot, 0, {}, wall, 0);
-      small.drive(robot, -0.1, -0.1);
-      small.run(0.5);
-      EXPECT_NEAR(small.position(robot).x(), 0.0, 0.01);
-      if (is_moved)
-        small.world().place_body(wall, at(0.6, 0, 0.5));
-      else
-        small.world().remove_body(wall);
-      EXPECT_FALSE(small.world().is_connected(connection));
-      small.run(1.0);
-      EXPECT_LT(small.position(robot).x(), -0.05);
-    }
+TEST_P(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
+  for (const bool is_moved : {false, true}) {
+    SmallWorld small(GetParam().world());
+    const std::uint32_t wall = small.add(static_shape("wall", description::Box{{0.1, 1, 1}}), at(0.5, 0, 0.5));
+    const std::uint32_t robot = small.add(GetParam().robot(), at(0, 0, 0));
+    const std::uint32_t connection = small.world().connect(robot, 0, {}, wall, 0);
+    small.drive(robot, -0.1, -0.1);
+    small.run(0.5);
+    EXPECT_NEAR(small.position(robot).x(), 0.0, 0.01);
+    if (is_moved)
+      small.world().place_body(wall, at(0.6, 0, 0.5));
+    else
+      small.world().remove_body(wall);
+    EXPECT_FALSE(small.world().is_connected(connection));
+    small.run(1.0);
+    EXPECT_LT(small.position(robot).x(), -0.05);
+  }
 }
 
 // Each solver on the same chain: all hold it together.
-class EverySolver : public ::testing::TestWithParam<description::Solver> {};
+class EverySolver : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, EverySolver,
+                         ::testing::Values(treel, Physics{.solver = description::Solver::direct}, hybrid), name_of);
 
 TEST_P(EverySolver, HoldsAChainOfFour) {
-  Chain chain(4, {}, GetParam());
+  Chain chain(GetParam(), 4);
   for (int tick = 0; tick < 300; ++tick) {
     chain.drive_at_random(tick);
     chain.small.world().step();
@@ -139,9 +138,5 @@ TEST_P(EverySolver, HoldsAChainOfFour) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formations, EverySolver,
-                         ::testing::Values(description::Solver::iterative, description::Solver::direct,
-                                           description::Solver::hybrid));
-
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -4,15 +4,13 @@
 
 #include "tests/support/gripped_swarm.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 TEST(Motors, TheRotorResistsAsMuchInertiaMore) {
   constexpr double rotor_inertia = 0.003;
   constexpr double torque = 0.02;
-  description::World empty;
-  empty.name = "empty";
-  SmallWorld small(std::move(empty));
+  SmallWorld small(empty_world());
   small.description.gravity.setZero();
   description::Model model = loose("wheel", description::Sphere{0.05}, solid_sphere(0.5, 0.05));
   model.joints.push_back({});
@@ -67,4 +65,4 @@ TEST(GrippedGroups, OfArmsThatLiftEachOtherGainNoEnergy) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -17,31 +17,31 @@
 namespace cohort {
 namespace {
 
-using testing::ShippedExperiment;
+using namespace test;
 
 constexpr std::size_t turret = 1;
 
 // The path, without its extension, of an experiment that ships, with `to` for `from` in it or in its arena.
-std::string changed_experiment(const testing::ScratchFolder& folder, const std::string& experiment,
-                               const std::string& arena, const std::string& from, const std::string& to) {
-  const std::filesystem::path worlds = testing::shipped_experiments.parent_path();
+std::string changed_experiment(const ScratchFolder& folder, const std::string& experiment, const std::string& arena,
+                               const std::string& from, const std::string& to) {
+  const std::filesystem::path worlds = shipped_experiments.parent_path();
   std::filesystem::create_directory_symlink(worlds / "robots", folder / "robots");
   bool is_changed = false;
   for (const std::string& file : {"arenas/" + arena + ".yaml", "experiments/" + experiment + ".yaml"}) {
-    std::string text = testing::read_file(worlds / file);
+    std::string text = read_file(worlds / file);
     if (const std::size_t at = text.find(from); at != std::string::npos) {
       text.replace(at, from.size(), to);
       is_changed = true;
     }
     std::filesystem::create_directories((folder / file).parent_path());
-    testing::write_file(folder / file, text);
+    write_file(folder / file, text);
   }
   EXPECT_TRUE(is_changed) << from;
   return folder / ("experiments/" + experiment);
 }
 
 TEST(Chain, OfOneFallsIntoTheTrough) {
-  const testing::ScratchFolder folder;
+  const ScratchFolder folder;
   const std::string alone = changed_experiment(folder, "chain", "wide_trough", "count: 4", "count: 1");
   const ShippedExperiment run(alone, 1);
   EXPECT_EQ(run.simulation.robot_count(), 1u);
@@ -99,7 +99,7 @@ TEST_P(Lifting, AnSbotHoldsAnotherInTheAirAndPutsItDownAgain) {
 }
 
 TEST(Lifting, AloneTipsOver) {
-  const testing::ScratchFolder folder;
+  const ScratchFolder folder;
   const std::string alone = changed_experiment(folder, "lifting", "lifting", "anchor/*, controller: lifting",
                                                "anchor/*, controller: constant");
   double least_upright = 1.0;
@@ -187,12 +187,11 @@ TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndToget
   constexpr int ticks_a_pull = 200, ticks = 60000;
   const description::World shipped = parsing::read_world_or_model(COHORT_SOURCE_DIR "/worlds/robots/sbot/model.sdf", 1);
   const RandomStream random(1, "swarm", "pull");
-  testing::SensingWorld world(2);
+  SensingWorld world(2);
   for (int i = 0; i < side * side; ++i) {
     const double yaw = 2.0 * M_PI * random.uniform(0, static_cast<std::uint32_t>(i));
     const int column = i % side, row = i / side;
-    world.add(shipped.robot_model(0), "robot_" + std::to_string(i),
-              testing::at(spacing * column, spacing * row, 0.0, yaw));
+    world.add(shipped.robot_model(0), "robot_" + std::to_string(i), at(spacing * column, spacing * row, 0.0, yaw));
   }
   const Simulation& simulation = world.simulation();
   const auto gripping = [&] {

@@ -4,20 +4,12 @@
 
 #include "tests/support/gripped_swarm.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
 using physics::ConnectionGive;
 using physics::Wrench;
-
-constexpr double g = 9.81;
-
-description::World empty_world() {
-  description::World world;
-  world.name = "empty";
-  return world;
-}
 
 // A box of 0.5 kg that a connection holds to the world at its middle, without gravity.
 struct HeldBox {
@@ -145,18 +137,9 @@ TEST(Give, IsSavedAndRestored) {
   give.holding_torque.z() = 0.01;
   HeldBox held(give);
   held.push({3.0, 0, 0}, {0, 0, 0.02}, 0.1);
-  SnapshotWriter writer;
-  held.small.world().save(writer);
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> restored = physics::make_world(held.small.description, workers);
-  SnapshotReader reader(writer.bytes());
-  restored->restore(reader);
-  const auto hash_of = [](const physics::World& world) {
-    StateHash hash;
-    world.hash_body(1, hash);
-    world.hash_contacts(hash);
-    return hash.value();
-  };
+  restore_from(held.small.world(), *restored);
   for (int i = 0; i < 100; ++i) {
     ASSERT_EQ(hash_of(*restored), hash_of(held.small.world())) << "at step " << i;
     restored->step();
@@ -207,8 +190,8 @@ TEST(Lifting, AnArmLiftsARobotAndDoesNotSag) {
   const double arm = 0.05 * g * 0.5 * arm_length * std::cos(0.5);
   const Vector3d joint = world.link_pose(lifter, arm_link).position;
   const Vector3d chassis = world.link_pose(lifted, 0) * Vector3d(0, 0, 0.033);
-  const Vector3d turret = world.link_pose(lifted, 1) * Vector3d(0, 0, 0.02);
-  const double robot = g * (0.4 * (chassis - joint).x() + 0.3 * (turret - joint).x());
+  const Vector3d held = world.link_pose(lifted, 1) * Vector3d(0, 0, 0.02);
+  const double robot = g * (0.4 * (chassis - joint).x() + 0.3 * (held - joint).x());
   EXPECT_NEAR(world.joint_effort(lifter, elevation_joint), -(arm + robot), 1e-3);
 }
 
@@ -231,4 +214,4 @@ TEST(Lifting, ARobotThatTwoOthersHoldBackLiftsAFourth) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

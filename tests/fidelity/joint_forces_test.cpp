@@ -4,21 +4,13 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Joint;
 using description::JointType;
 using Eigen::Vector3d;
 using physics::Wrench;
-
-constexpr double g = 9.81;
-
-description::World empty_world() {
-  description::World world;
-  world.name = "empty";
-  return world;
-}
 
 Joint joint(const std::string& name, JointType type, std::size_t parent, std::size_t child, const Vector3d& axis) {
   Joint joint;
@@ -215,13 +207,10 @@ TEST(JointForces, WhatNobodyAskedForAndWhatWasRestoredTellsNothing) {
   small.run(0.01);
   EXPECT_GT(small.world().joint_wrench(body, 0).force_W.z(), 1.0);
 
-  SnapshotWriter writer;
-  small.world().save(writer);
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> restored = physics::make_world(small.description, workers);
   restored->record(body);
-  SnapshotReader reader(writer.bytes());
-  restored->restore(reader);
+  restore_from(small.world(), *restored);
   EXPECT_EQ(restored->joint_wrench(body, 0).force_W, Vector3d::Zero());
   restored->step();
   small.world().step();
@@ -259,4 +248,4 @@ TEST(Acceleration, OfAPointThatGoesRoundIsTowardsTheMiddle) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

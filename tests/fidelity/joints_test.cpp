@@ -2,21 +2,12 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Joint;
 using description::JointType;
 using Eigen::Vector3d;
-
-constexpr double g = 9.81;
-
-description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
-  description::World world;
-  world.name = "empty";
-  world.step = step;
-  return world;
-}
 
 // A bob on a rod of length 1 m without mass, hung up at the origin of the model.
 description::Model pendulum(JointType type, double mass = 2.0) {
@@ -249,25 +240,11 @@ description::Model four_wheels() {
   description::Inertial chassis = solid_box(2.0, {0.3, 0.2, 0.1});
   chassis.X_LI.position = {0, 0, 0.08};
   model.links.push_back({"chassis", {}, chassis, {}});
-  for (const double x : {0.1, -0.1}) {
+  for (const double x : {0.1, -0.1})
     for (const double y : {0.12, -0.12}) {
-      const Eigen::Quaterniond lying(Eigen::AngleAxisd(-M_PI / 2, Vector3d::UnitX()));
-      const std::string name = "wheel_" + std::to_string(model.links.size());
-      const Pose X_ML{{x, y, 0.05}, lying};
-      model.links.push_back({name,
-                             X_ML,
-                             solid_cylinder(0.2, 0.05, 0.03, 0.0),
-                             {{"tyre", {}, description::Cylinder{0.05, 0.03}, {0.9, 0}}}});
-      Joint joint;
-      joint.name = name + "_axle";
-      joint.type = JointType::revolute;
-      joint.parent = 0;
-      joint.child = model.links.size() - 1;
-      joint.axis.direction = Vector3d::UnitZ();  // of the lying wheel: y of the rover
-      model.joints.push_back(joint);
-      model.devices.push_back(description::VelocityMotor{name, model.joints.size() - 1, 20.0, 0.5});
+      const std::size_t wheel = add_wheel(model, {x, y, 0.05}, 0.05, 0.03, 0.2);
+      model.devices.push_back(description::VelocityMotor{model.joints[wheel].name, wheel, 20.0, 0.5});
     }
-  }
   return model;
 }
 
@@ -301,4 +278,4 @@ TEST(Joints, AWheelWithoutAMotorRollsDownASlopeAsItsInertiaSays) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

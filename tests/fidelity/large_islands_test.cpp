@@ -7,39 +7,40 @@
 #include "server/core/random.hpp"
 #include "server/physics/islands/island_parts.hpp"
 #include "server/physics/islands/large_island_solver.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/physics.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
 using physics::IslandParts;
 
-constexpr double spacing = 0.13;
-constexpr std::size_t turret = 1;
+// Robots that drive about at random.
+struct DrivenRobots {
+  DrivenRobots(const Physics& physics, unsigned threads) : small(physics.world(), threads) {}
 
-std::uint64_t hash_of(const SmallWorld& small, const physics::World& world) {
-  StateHash hash;
-  for (std::uint32_t body = 0; body < small.description.instances.size(); ++body) world.hash_body(body, hash);
-  world.hash_contacts(hash);
-  return hash.value();
-}
-
-void drive_at_random(SmallWorld& small, const std::vector<std::uint32_t>& robots, int tick) {
-  const RandomStream random(1, "island", "drive");
-  for (const std::uint32_t robot : robots)
-    small.drive(robot, 0.4 * random.uniform(tick / 10, 2 * robot) - 0.2,
-                0.4 * random.uniform(tick / 10, 2 * robot + 1) - 0.2);
-}
-
-// Robots in a square, each held to the one before it in its row and in its column.
-struct Raft {
   SmallWorld small;
   std::vector<std::uint32_t> robots;
 
-  Raft(int edge, unsigned threads) : small(world_with_floor(), threads) {
+  std::uint64_t run(int ticks) {
+    const RandomStream random(1, "island", "drive");
+    for (int tick = 0; tick < ticks; ++tick) {
+      for (const std::uint32_t robot : robots)
+        small.drive(robot, 0.4 * random.uniform(tick / 10, 2 * robot) - 0.2,
+                    0.4 * random.uniform(tick / 10, 2 * robot + 1) - 0.2);
+      small.world().step();
+    }
+    return hash_of(small.world());
+  }
+};
+
+// Robots in a square, each held to the one before it in its row and in its column.
+struct Raft : DrivenRobots {
+  static constexpr double spacing = 0.13;
+
+  Raft(const Physics& physics, int edge, unsigned threads) : DrivenRobots(physics, threads) {
     for (int y = 0; y < edge; ++y)
-      for (int x = 0; x < edge; ++x) robots.push_back(small.add(tracked_robot(), at(spacing * x, spacing * y, 0)));
+      for (int x = 0; x < edge; ++x) robots.push_back(small.add(physics.robot(), at(spacing * x, spacing * y, 0)));
     const auto robot = [&](int x, int y) {
       return robots[static_cast<std::size_t>(y) * static_cast<std::size_t>(edge) + static_cast<std::size_t>(x)];
     };
@@ -50,65 +51,53 @@ struct Raft {
       }
     }
   }
-  std::uint64_t run(int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-      drive_at_random(small, robots, tick);
-      small.world().step();
-    }
-    return hash_of(small, small.world());
-  }
 };
 
 // A loose board with robots that drive about on it and push each other; some stand half on it, half on the floor.
-struct CrowdedBoard {
-  SmallWorld small;
+struct CrowdedBoard : DrivenRobots {
   std::uint32_t board = 0;
-  std::vector<std::uint32_t> robots;
 
-  explicit CrowdedBoard(unsigned threads) : small(world_with_floor(), threads) {
+  CrowdedBoard(const Physics& physics, unsigned threads) : DrivenRobots(physics, threads) {
     const Vector3d size(1.6, 1.6, 0.01);
     board = small.add(loose("board", description::Box{size}, solid_box(50.0, size)), at(0.72, 0.72, 0.005));
     for (int y = 0; y < 11; ++y)
       for (int x = 0; x < 11; ++x)
-        robots.push_back(small.add(tracked_robot(), at(0.145 * x - 0.06, 0.145 * y, x == 0 ? 0.006 : 0.01)));
-  }
-  std::uint64_t run(int ticks) {
-    for (int tick = 0; tick < ticks; ++tick) {
-      drive_at_random(small, robots, tick);
-      small.world().step();
-    }
-    return hash_of(small, small.world());
+        robots.push_back(small.add(physics.robot(), at(0.145 * x - 0.06, 0.145 * y, x == 0 ? 0.006 : 0.01)));
   }
 };
 
-TEST(LargeIslands, HaveTheSameBitsForAnyNumberOfThreads) {
-  const std::uint64_t expected = Raft(12, 1).run(60);
-  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(Raft(12, threads).run(60), expected) << threads;
+class LargeIslands : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, LargeIslands, ::testing::Values(articulated, treel), name_of);
+
+TEST_P(LargeIslands, HaveTheSameBitsForAnyNumberOfThreads) {
+  const std::uint64_t expected = Raft(GetParam(), 12, 1).run(60);
+  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(Raft(GetParam(), 12, threads).run(60), expected) << threads;
 }
 
-TEST(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
-  CrowdedBoard one(1);
+TEST_P(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
+  CrowdedBoard one(GetParam(), 1);
   const std::uint64_t expected = one.run(100);
   EXPECT_NEAR(one.small.position(one.board).z(), 0.005, 1e-3);
   for (const std::uint32_t robot : one.robots) EXPECT_GT(one.small.up(robot).z(), 0.95);
-  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(CrowdedBoard(threads).run(100), expected) << threads;
+  for (const unsigned threads : {2u, 4u, 8u})
+    EXPECT_EQ(CrowdedBoard(GetParam(), threads).run(100), expected) << threads;
 }
 
-TEST(LargeIslands, HoldTogetherAsSmallOnesDo) {
-  Raft raft(12, 2);
+TEST_P(LargeIslands, HoldTogetherAsSmallOnesDo) {
+  Raft raft(GetParam(), 12, 2);
   raft.run(200);
   for (std::size_t i = 1; i < raft.robots.size(); ++i) {
     if (i % 12 == 0) continue;
     const double distance =
         (raft.small.position(raft.robots[i], turret) - raft.small.position(raft.robots[i - 1], turret)).norm();
-    EXPECT_NEAR(distance, spacing, 2e-3) << i;
+    EXPECT_NEAR(distance, Raft::spacing, 2e-3) << i;
   }
   for (const std::uint32_t robot : raft.robots) EXPECT_GT(raft.small.up(robot).z(), 0.99);
 }
 
-TEST(LargeIslands, GoOnWithoutABodyThatBreaks) {
+TEST_P(LargeIslands, GoOnWithoutABodyThatBreaks) {
   const auto broken_run = [](unsigned threads) {
-    Raft raft(11, threads);
+    Raft raft(GetParam(), 11, threads);
     raft.run(10);
     const std::uint32_t broken = raft.robots[60];
     raft.small.world().set_root_twist(broken, {Vector3d::Zero(), Vector3d(1e9, 0, 0)});
@@ -167,4 +156,4 @@ TEST(IslandParts, OfBodiesThatOnlyShareOneAreStillFull) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -4,23 +4,22 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Joint;
 using description::JointType;
 using Eigen::Vector3d;
 
-constexpr double g = 9.81;
-constexpr double arm_mass = 0.4;
-constexpr double arm_length = 0.2;  // from the hinge to the centre of mass
+constexpr double moved_mass = 0.4;
+constexpr double lever = 0.2;  // from the hinge to the centre of mass
 
 // A mass on a hinge about y, or on a rail along x, that a motor drives.
 description::Model driven(JointType type, double max_velocity, double max_effort) {
   description::Model model;
   model.name = "driven";
-  description::Inertial inertial = solid_box(arm_mass, {0.02, 0.02, 0.02});
-  if (type == JointType::revolute) inertial.X_LI.position.x() = arm_length;
+  description::Inertial inertial = solid_box(moved_mass, {0.02, 0.02, 0.02});
+  if (type == JointType::revolute) inertial.X_LI.position.x() = lever;
   model.links.push_back({"arm", {}, inertial, {}});
   Joint joint;
   joint.name = "joint";
@@ -31,13 +30,6 @@ description::Model driven(JointType type, double max_velocity, double max_effort
   model.joints.push_back(joint);
   model.devices.push_back(description::VelocityMotor{"motor", 0, max_velocity, max_effort});
   return model;
-}
-
-description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
-  description::World world;
-  world.name = "empty";
-  world.step = step;
-  return world;
 }
 
 TEST(Motors, GoToAPositionNoFasterThanTheyMayAndStay) {
@@ -61,7 +53,7 @@ TEST(Motors, ThatAreWeakBrakeInTimeForTheirPosition) {
   for (const auto step : {1, 10, 20}) {
     SmallWorld small(empty_world(std::chrono::milliseconds(step)));
     // 1 m/s^2 to speed up and to brake: it never gets to its greatest velocity.
-    const auto body = small.add(driven(JointType::prismatic, 5.0, arm_mass * 1.0), at(0, 0, 0));
+    const auto body = small.add(driven(JointType::prismatic, 5.0, moved_mass * 1.0), at(0, 0, 0));
     physics::World& world = small.world();
     world.set_joint_position_target(body, 0, 1.0);
     double greatest = 0.0;
@@ -79,7 +71,7 @@ TEST(Motors, ThatAreWeakBrakeInTimeForTheirPosition) {
 }
 
 TEST(Motors, HoldAnArmAgainstItsWeightWithoutSagging) {
-  const double moment = arm_mass * g * arm_length;
+  const double moment = moved_mass * g * lever;
   for (const double strength : {1.1, 10.0}) {
     SmallWorld small(empty_world());
     const auto body = small.add(driven(JointType::revolute, 2.0, strength * moment), at(0, 0, 0));
@@ -126,12 +118,12 @@ TEST(Motors, GiveAnEffortThatIsToldNoMoreThanTheyMay) {
   physics::World& world = small.world();
   world.set_joint_effort_target(body, 0, 1.5);
   small.run(0.5);
-  EXPECT_NEAR(world.joint_velocity(body, 0), 0.5 * 1.5 / arm_mass, 1e-9) << "a = F / m";
+  EXPECT_NEAR(world.joint_velocity(body, 0), 0.5 * 1.5 / moved_mass, 1e-9) << "a = F / m";
   EXPECT_NEAR(world.joint_effort(body, 0), 1.5, 1e-12);
   world.set_joint_effort_target(body, 0, -7.0);
   const double before = world.joint_velocity(body, 0);
   small.run(0.1);
-  EXPECT_NEAR(world.joint_velocity(body, 0) - before, -0.1 * 2.0 / arm_mass, 1e-9);
+  EXPECT_NEAR(world.joint_velocity(body, 0) - before, -0.1 * 2.0 / moved_mass, 1e-9);
   EXPECT_NEAR(world.joint_effort(body, 0), -2.0, 1e-12);
   world.set_joint_effort_target(body, 0, 0.0);
   const double rolling = world.joint_velocity(body, 0);
@@ -169,39 +161,31 @@ TEST(Motors, InThePlaneGoToTheirPositionAndStayWhereAnEffortIsTold) {
 }
 
 TEST(Motors, WhatTheyAreToldIsSavedAndIsPartOfTheHash) {
-  const auto hash_of = [](const physics::World& world, std::uint32_t body) {
-    StateHash hash;
-    world.hash_body(body, hash);
-    return hash.value();
-  };
   for (const description::Fidelity fidelity : {description::Fidelity::treel, description::Fidelity::planar}) {
     SmallWorld small;
     small.description.physics.fidelity = fidelity;
     const auto robot = small.add(tracked_robot(), at(0, 0, 0));
     small.world().set_joint_velocity_target(robot, 0, 0.3);
-    const auto velocity = hash_of(small.world(), robot);
+    const auto velocity = hash_of(small.world());
     small.world().set_joint_effort_target(robot, 0, 0.3);
-    const auto effort = hash_of(small.world(), robot);
+    const auto effort = hash_of(small.world());
     small.world().set_joint_position_target(robot, 0, 0.3);
-    const auto position = hash_of(small.world(), robot);
+    const auto position = hash_of(small.world());
     EXPECT_NE(velocity, position);
     EXPECT_NE(velocity, effort);
     EXPECT_NE(position, effort);
     small.run(0.05);
-    SnapshotWriter writer;
-    small.world().save(writer);
     WorkerPool workers(1);
     const std::unique_ptr<physics::World> restored = physics::make_world(small.description, workers);
-    SnapshotReader reader(writer.bytes());
-    restored->restore(reader);
+    restore_from(small.world(), *restored);
     for (int i = 0; i < 50; ++i) {
       restored->step();
       small.world().step();
-      ASSERT_EQ(hash_of(*restored, robot), hash_of(small.world(), robot)) << "at step " << i;
+      ASSERT_EQ(hash_of(*restored), hash_of(small.world())) << "at step " << i;
     }
     EXPECT_NEAR(restored->joint_position(robot, 0), 0.3, 1e-6);
   }
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

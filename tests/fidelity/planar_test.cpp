@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "server/core/random.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/physics.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Box;
@@ -11,15 +11,6 @@ using description::Cylinder;
 using description::Fidelity;
 using Eigen::Vector3d;
 using physics::Side;
-
-constexpr double g = 9.81;
-constexpr std::size_t turret = 1;
-
-description::World planar_world(double friction = 1.0) {
-  description::World world = world_with_floor(friction);
-  world.physics.fidelity = Fidelity::planar;
-  return world;
-}
 
 description::Model disc(double mass, double radius, description::Surface surface = {}) {
   return loose("disc", Cylinder{radius, 0.04}, solid_cylinder(mass, radius, 0.04, 0.0), surface);
@@ -34,7 +25,7 @@ double heading(SmallWorld& small, std::uint32_t body) {
 }
 
 TEST(Planar, ARobotDrivesAtTheCommandedSpeed) {
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0, 0.7));
   small.drive(robot, 0.1, 0.1);
   small.run(0.5);
@@ -47,7 +38,7 @@ TEST(Planar, ARobotDrivesAtTheCommandedSpeed) {
 }
 
 TEST(Planar, ARobotTurnsAsItsTracksDiffer) {
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.drive(robot, -0.02, 0.06);
   small.run(0.5);
@@ -58,7 +49,7 @@ TEST(Planar, ARobotTurnsAsItsTracksDiffer) {
 }
 
 TEST(Planar, ARobotToldToStandStillStandsStill) {
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.run(10.0);
   EXPECT_EQ(small.position(robot), Vector3d::Zero());
@@ -66,7 +57,7 @@ TEST(Planar, ARobotToldToStandStillStandsStill) {
 
 TEST(Planar, AWallStopsARobotAndItsTractionIsLimited) {
   for (const double friction : {1.0, 0.1}) {
-    SmallWorld small(planar_world(friction));
+    SmallWorld small(planar.world(friction));
     const auto robot = small.add(tracked_robot(), at(0, 0, 0));
     small.add(static_shape("wall", Box{{0.1, 2, 0.3}}), at(0.25, 0, 0.15));
     small.drive(robot, 0.1, 0.1);
@@ -84,7 +75,7 @@ TEST(Planar, AWallStopsARobotAndItsTractionIsLimited) {
 }
 
 TEST(Planar, APlaneThatStandsUprightIsAWall) {
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.add(static_shape("wall", description::Plane{-Vector3d::UnitX()}), at(0.2, 0, 0));
   small.drive(robot, 0.1, 0.1);
@@ -93,7 +84,7 @@ TEST(Planar, APlaneThatStandsUprightIsAWall) {
 }
 
 TEST(Planar, WhatIsLowerThanABodyIsNoWall) {
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.add(static_shape("step", Box{{0.1, 2, 0.01}}), at(0.25, 0, 0.005));
   small.add(static_shape("bridge", Box{{0.1, 2, 0.1}}), at(0.25, 0, 0.2));
@@ -103,7 +94,7 @@ TEST(Planar, WhatIsLowerThanABodyIsNoWall) {
 }
 
 TEST(Planar, RobotsInACrowdNeverPassThroughEachOther) {
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   std::vector<std::uint32_t> robots;
   for (int i = 0; i < 36; ++i) robots.push_back(small.add(tracked_robot(), at(0.13 * (i % 6), 0.13 * (i / 6), 0, i)));
   for (const double x : {-0.15, 0.8}) small.add(static_shape("wall", Box{{0.1, 2, 0.3}}), at(x, 0.3, 0.15));
@@ -124,7 +115,7 @@ TEST(Planar, RobotsInACrowdNeverPassThroughEachOther) {
 }
 
 TEST(Planar, MomentumStaysInACollisionOfDiscs) {
-  SmallWorld small(planar_world(0.0));
+  SmallWorld small(planar.world(0.0));
   const description::Surface bouncy{0.5, 0.9};
   const auto one = small.add(disc(1.0, 0.05, bouncy), at(-0.5, 0, 0.02));
   const auto two = small.add(disc(3.0, 0.05, bouncy), at(0, 0.03, 0.02));
@@ -146,7 +137,7 @@ TEST(Planar, MomentumStaysInACollisionOfDiscs) {
 }
 
 TEST(Planar, DiscsBounceByTheirRestitution) {
-  SmallWorld small(planar_world(0.0));
+  SmallWorld small(planar.world(0.0));
   const description::Surface bouncy{0.0, 0.8};
   const auto one = small.add(disc(1.0, 0.05, bouncy), at(-0.5, 0, 0.02));
   const auto two = small.add(disc(1.0, 0.05, bouncy), at(0, 0, 0.02));
@@ -158,7 +149,7 @@ TEST(Planar, DiscsBounceByTheirRestitution) {
 
 TEST(Planar, FrictionStopsASlidingPuck) {
   for (const double direction : {0.0, 0.7, 2.0}) {
-    SmallWorld small(planar_world(0.3));
+    SmallWorld small(planar.world(0.3));
     const auto puck = small.add(disc(0.5, 0.04), at(0, 0, 0.02));
     small.world().set_root_twist(puck, {Vector3d::Zero(), Vector3d(std::cos(direction), std::sin(direction), 0)});
     small.run(1.0);
@@ -170,7 +161,7 @@ TEST(Planar, FrictionStopsASlidingPuck) {
 }
 
 TEST(Planar, FrictionStopsASpinningPuck) {
-  SmallWorld small(planar_world(0.3));
+  SmallWorld small(planar.world(0.3));
   const auto puck = small.add(disc(0.5, 0.04), at(0, 0, 0.02));
   small.world().set_root_twist(puck, {Vector3d(0, 0, 5), Vector3d::Zero()});
   // The torque 2/3 mu m g r on the inertia m r^2 / 2 stops it after w r / (4/3 mu g).
@@ -182,7 +173,7 @@ TEST(Planar, FrictionStopsASpinningPuck) {
 }
 
 TEST(Planar, APairOfMaterialsHasItsOwnFriction) {
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   small.description.materials = {"", "ice", "felt"};
   small.description.material_pairs = {{1, 2, 0.1, 0.0, 0.0}};
   small.description.models[0].links[0].collisions[0].surface.material = 1;
@@ -195,7 +186,7 @@ TEST(Planar, APairOfMaterialsHasItsOwnFriction) {
 }
 
 TEST(Planar, ARobotPushesALooseBox) {
-  SmallWorld small(planar_world(0.3));
+  SmallWorld small(planar.world(0.3));
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   const auto loose_box = small.add(box(0.3, {0.1, 0.1, 0.1}), at(0.15, 0, 0.05));
   small.drive(robot, 0.1, 0.1);
@@ -206,7 +197,7 @@ TEST(Planar, ARobotPushesALooseBox) {
 }
 
 TEST(Planar, ABoxPushedAtItsEdgeTurns) {
-  SmallWorld small(planar_world(0.3));
+  SmallWorld small(planar.world(0.3));
   const auto robot = small.add(tracked_robot(), at(0, 0.06, 0));
   const auto loose_box = small.add(box(0.3, {0.1, 0.2, 0.1}), at(0.15, 0, 0.05));
   small.drive(robot, 0.1, 0.1);
@@ -215,7 +206,7 @@ TEST(Planar, ABoxPushedAtItsEdgeTurns) {
 }
 
 TEST(Planar, BoxesInARowStayBeforeTheWallTheyArePushedAgainst) {
-  SmallWorld small(planar_world(0.1));
+  SmallWorld small(planar.world(0.1));
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   const auto first = small.add(box(0.2, {0.1, 0.1, 0.1}), at(0.12, 0, 0.05));
   const auto second = small.add(box(0.2, {0.1, 0.1, 0.1}), at(0.24, 0.01, 0.05));
@@ -230,7 +221,7 @@ TEST(Planar, BoxesInARowStayBeforeTheWallTheyArePushedAgainst) {
 
 TEST(Planar, ALyingCapsuleIsPushedByItsSideAndByItsEnd) {
   for (const double yaw : {0.0, M_PI / 2}) {
-    SmallWorld small(planar_world(0.3));
+    SmallWorld small(planar.world(0.3));
     const auto robot = small.add(tracked_robot(), at(0, 0, 0));
     Pose X_WM = at(0.2, 0, 0.05, yaw);
     X_WM.orientation = X_WM.orientation * Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitY());
@@ -249,7 +240,7 @@ TEST(Planar, ALyingCapsuleIsPushedByItsSideAndByItsEnd) {
 TEST(Planar, AMotorTurnsItsJointAsCommandedUpToItsLimit) {
   description::Model model = tracked_robot();
   model.joints[0].axis.upper = 1.0;
-  SmallWorld small(planar_world());
+  SmallWorld small(planar.world());
   const auto robot = small.add(model, at(0, 0, 0, 0.3));
   small.world().set_joint_velocity_target(robot, 0, 0.5);
   small.run(1.0);
@@ -266,7 +257,7 @@ TEST(Planar, AMotorTurnsItsJointAsCommandedUpToItsLimit) {
 TEST(Planar, WhatATurretCarriesSweepsAwayWhatIsLoose) {
   description::Model model = tracked_robot();
   model.links[turret].collisions.push_back({"arm", {{0.1, 0, 0.02}}, Box{{0.1, 0.02, 0.02}}, {0.3, 0}});
-  SmallWorld small(planar_world(0.3));
+  SmallWorld small(planar.world(0.3));
   const auto robot = small.add(model, at(0, 0, 0));
   const auto post =
       small.add(loose("post", Cylinder{0.02, 0.2}, solid_cylinder(0.05, 0.02, 0.2, 0.0)), at(0.08, 0.1, 0.1));
@@ -294,73 +285,74 @@ TEST(Planar, GoesWhereTheFullModelGoesOnFreeGround) {
   }
 }
 
-constexpr double spacing = 0.13;
-
-// Robots in a row, each turret held to the one before.
-struct Chain {
-  SmallWorld small{planar_world()};
-  std::vector<std::uint32_t> robots;
-  std::vector<std::uint32_t> connections;
-
-  explicit Chain(int count, const physics::ConnectionLimits& limits = {}) {
-    for (int i = 0; i < count; ++i) robots.push_back(small.add(tracked_robot(), at(spacing * i, 0, 0)));
-    for (std::size_t i = 1; i < robots.size(); ++i)
-      connections.push_back(
-          small.world().connect(robots[i - 1], turret, {{0.5 * spacing, 0, 0.02}}, robots[i], turret, limits));
+// The message with which a world is refused.
+std::string refusal_of(const description::World& world) {
+  WorkerPool workers(1);
+  try {
+    const std::unique_ptr<physics::World> refused = physics::make_world(world, workers);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
   }
-  double gap() {
-    double greatest = 0.0;
-    for (std::size_t i = 1; i < robots.size(); ++i) {
-      const Vector3d a = small.world().link_pose(robots[i - 1], turret) * Vector3d(0.5 * spacing, 0, 0.02);
-      const Vector3d b = small.world().link_pose(robots[i], turret) * Vector3d(-0.5 * spacing, 0, 0.02);
-      greatest = std::max(greatest, (a - b).norm());
-    }
-    return greatest;
-  }
-};
-
-TEST(Planar, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetres) {
-  Chain chain(25);
-  const RandomStream random(1, "chain", "drive");
-  for (int tick = 0; tick < 1000; ++tick) {
-    for (std::size_t i = 0; i < chain.robots.size(); ++i) {
-      const auto draw = static_cast<std::uint32_t>(3 * i);
-      chain.small.drive(chain.robots[i], 0.4 * random.uniform(tick / 20, draw) - 0.2,
-                        0.4 * random.uniform(tick / 20, draw + 1) - 0.2);
-      chain.small.world().set_joint_velocity_target(chain.robots[i], 0,
-                                                    2.0 * random.uniform(tick / 20, draw + 2) - 1.0);
-    }
-    chain.small.world().step();
-    ASSERT_LT(chain.gap(), 2e-3) << "at tick " << tick;
-  }
+  return "";
 }
 
-TEST(Planar, AConnectionReportsTheForceThatGoesThroughIt) {
-  Chain chain(2);
-  const auto held = chain.small.world().connect(chain.robots[0], 0, {}, 0, 0);
-  chain.small.drive(chain.robots[1], 0.2, 0.2);
-  chain.small.run(2.0);
-  const double pull = 2.0 * 0.02 / 0.022;
-  EXPECT_NEAR(chain.small.world().connection_wrench(chain.connections[0]).force_W.x(), pull, 0.01);
-  double own = 0.0;
-  for (const Side side : {Side::left, Side::right}) own += chain.small.world().track(chain.robots[0], 0, side).traction;
-  EXPECT_NEAR(chain.small.world().connection_wrench(held).force_W.x() + own, -pull, 0.01);
+TEST(Planar, RefusesWhatCannotBePlanarByTheNameOfItsModel) {
+  description::World leaning = planar.world();
+  place(leaning, tracked_robot(), "robot", turned(0, 0, 0, Vector3d::UnitX(), 0.002));
+  EXPECT_EQ(refusal_of(leaning), "model 'tracked_robot': a robot that leans cannot be planar");
+
+  description::World slope = planar.world();
+  slope.instances[0].X_WM = turned(0, 0, 0, Vector3d::UnitX(), 0.1);
+  EXPECT_EQ(refusal_of(slope), "model 'floor': a plane that is neither level nor upright cannot be planar");
+
+  description::World moon = planar.world();
+  moon.gravity = {0.0, 1.0, -1.6};
+  EXPECT_EQ(refusal_of(moon), "planar physics needs gravity along -z");
+
+  description::World door = planar.world();
+  description::Model hinged = loose("door", Box{{1, 0.1, 1}}, solid_box(1, {1, 0.1, 1}));
+  description::Joint hinge;
+  hinge.type = description::JointType::revolute;
+  hinge.parent = description::Joint::world;
+  hinge.child = 0;
+  hinged.joints.push_back(hinge);
+  place(door, hinged, "door", at(0, 0, 0.5));
+  EXPECT_EQ(refusal_of(door), "model 'door': a joint that moves against the world cannot be planar");
+
+  description::World hole = planar.world();
+  hole.instances.clear();
+  place(hole, tracked_robot(), "robot", at(0, 0, 0));
+  EXPECT_EQ(refusal_of(hole), "model 'tracked_robot': there is no ground under it, so it cannot be planar");
 }
 
-TEST(Planar, AConnectionBreaksWhereItBearsLess) {
-  Chain chain(3, {.force = 1.0});
-  chain.small.drive(chain.robots[0], -0.2, -0.2);
-  chain.small.drive(chain.robots[2], 0.2, 0.2);
-  std::vector<std::uint32_t> broken;
-  for (int tick = 0; tick < 200; ++tick) {
-    chain.small.world().step();
-    const auto now = chain.small.world().broken_connections();
-    broken.insert(broken.end(), now.begin(), now.end());
-  }
-  EXPECT_FALSE(broken.empty());
-  for (const std::uint32_t connection : broken) EXPECT_FALSE(chain.small.world().is_connected(connection));
-  EXPECT_GT(chain.gap(), 0.1);
+TEST(Planar, ABodyAddedWhereThereIsNoGroundIsRefusedAndTheWorldGoesOn) {
+  SmallWorld small(planar.world());
+  small.description.models.clear();
+  small.description.instances.clear();
+  small.add(static_shape("table", Box{{2, 2, 0.1}}), at(0, 0, -0.05));
+  const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+  EXPECT_THROW(small.world().add_body(1, at(5, 0, 0)), std::invalid_argument);
+  small.drive(robot, 0.1, 0.1);
+  small.run(1.0);
+  EXPECT_GT(small.position(robot).x(), 0.09);
+}
+
+TEST(Planar, ABodyFixedToTheWorldStaysAndIsInTheWay) {
+  SmallWorld small(planar.world());
+  description::Model post = loose("post", Box{{0.1, 0.1, 0.2}}, solid_box(1, {0.1, 0.1, 0.2}));
+  description::Joint weld;
+  weld.type = description::JointType::fixed;
+  weld.parent = description::Joint::world;
+  weld.child = 0;
+  post.joints.push_back(weld);
+  const auto fixed = small.add(post, at(0.25, 0, 0.1, 0.2));
+  const auto robot = small.add(tracked_robot(), at(0, 0, 0));
+  const Vector3d before = small.position(fixed);
+  small.drive(robot, 0.1, 0.1);
+  small.run(2.0);
+  EXPECT_EQ(small.position(fixed), before);
+  EXPECT_LT(small.position(robot).x(), 0.15);
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using description::Box;
@@ -101,7 +101,7 @@ TEST(Scenes, ARobotDrivesUpASlopeAndStandsOnIt) {
   EXPECT_LT((small.position(robot) - settled).norm(), 0.4e-3) << "creep in 5 s";
   // Standing still takes the drives the weight along the slope, shared by both sides.
   const double holding = small.world().track(robot, 0, physics::Side::left).traction;
-  EXPECT_NEAR(2.0 * holding, robot_mass * 9.81 * std::sin(slope), 0.01);
+  EXPECT_NEAR(2.0 * holding, robot_mass * g * std::sin(slope), 0.01);
   small.drive(robot, 0.05, 0.05);
   small.run(4.0);
   EXPECT_NEAR((small.position(robot) - settled).dot(along), 0.2, 0.01);
@@ -173,4 +173,4 @@ TEST(Scenes, SmallThingsLieOnAVeryLargeOneThatMoves) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

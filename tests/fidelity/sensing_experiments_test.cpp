@@ -13,7 +13,7 @@
 namespace cohort {
 namespace {
 
-using testing::ShippedExperiment;
+using namespace test;
 
 // Where robots were, and how upright.
 struct Watch {

@@ -2,7 +2,7 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
@@ -91,7 +91,7 @@ TEST(Shapes, ABallRollsDownAHillOfAHeightMap) {
   const auto ball = small.add(loose("ball", description::Sphere{0.1}, solid_sphere(1.0, 0.1)), at(0.2, 0, 0.085));
   small.run(2.0);
   // a = 5/7 g sin of the angle, along the slope. The edges between the triangles brake it by a tenth.
-  const double expected = 2.0 * 5.0 / 7.0 * 9.81 * std::sin(std::atan(slope));
+  const double expected = 2.0 * 5.0 / 7.0 * g * std::sin(std::atan(slope));
   EXPECT_LT(small.velocity(ball).norm(), expected + 0.01);
   EXPECT_GT(small.velocity(ball).norm(), 0.85 * expected);
 }
@@ -114,10 +114,10 @@ TEST(Shapes, RollingBodiesOfEveryRoundShapeRollAsTheirInertiaSays) {
     const Vector3d normal(std::sin(slope), 0, std::cos(slope));
     const auto body = small.add(loose("body", each.shape, each.inertial), {0.1 * normal, lying});
     small.run(2.0);
-    EXPECT_NEAR(small.velocity(body).norm(), 2.0 * 9.81 * std::sin(slope) / (1.0 + each.k), 0.01)
+    EXPECT_NEAR(small.velocity(body).norm(), 2.0 * g * std::sin(slope) / (1.0 + each.k), 0.01)
         << "shape " << each.shape.index();
   }
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

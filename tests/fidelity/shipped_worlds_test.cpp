@@ -19,7 +19,7 @@ namespace {
 class Shipped {
  public:
   explicit Shipped(const std::string& name, double seconds = 0.0)
-      : run_(name, {}, seconds, [this](const testing::ShippedExperiment& run) { watch(run.simulation); }) {}
+      : run_(name, {}, seconds, [this](const test::ShippedExperiment& run) { watch(run.simulation); }) {}
 
   Eigen::Vector3d position(const std::string& object) const { return run_.position(object); }
   Pose pose(const std::string& object) const { return run_.pose(object); }
@@ -43,7 +43,7 @@ class Shipped {
                                    static_cast<int>(std::floor((X_WL.position.y() + 1.25) / edge))});
     }
   }
-  testing::ShippedExperiment run_;
+  test::ShippedExperiment run_;
 
  public:
   const description::Experiment& experiment = run_.experiment;
@@ -53,7 +53,7 @@ class Shipped {
 
 TEST(ShippedExperiments, AreAllReadAndStepped) {
   std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(testing::shipped_experiments)) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::shipped_experiments)) {
     SCOPED_TRACE(entry.path().string());
     const description::Experiment experiment = parsing::read_experiment(entry.path());
     EXPECT_TRUE(experiment.world.warnings.empty());
@@ -116,7 +116,7 @@ TEST(ShippedExperiments, WheelsRollAsTheTreelDriveThatStandsForThem) {
     double heading = 0.0;   // all that it turned by [rad]
   };
   const auto drive = [](description::Fidelity fidelity) {
-    description::Experiment experiment = parsing::read_experiment(testing::shipped_experiments / "wheels.yaml");
+    description::Experiment experiment = parsing::read_experiment(test::shipped_experiments / "wheels.yaml");
     EXPECT_EQ(experiment.world.physics.fidelity, description::Fidelity::articulated);
     experiment.world.physics.fidelity = fidelity;
     Simulation simulation(experiment, 1);

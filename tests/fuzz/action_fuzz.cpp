@@ -14,13 +14,13 @@ using namespace cohort;
 
 description::Experiment small_experiment() {
   description::Experiment experiment;
-  experiment.world = testing::world_with_floor();
+  experiment.world = test::world_with_floor();
   const Eigen::Vector3d size = Eigen::Vector3d::Constant(0.2);
-  testing::place(experiment.world, testing::loose("box", description::Box{size}, testing::solid_box(2.0, size)), "box",
-                 testing::at(-1, 0, 0.1));
-  description::Model post = testing::static_shape("post", description::Box{size});
+  test::place(experiment.world, test::loose("box", description::Box{size}, test::solid_box(2.0, size)), "box",
+              test::at(-1, 0, 0.1));
+  description::Model post = test::static_shape("post", description::Box{size});
   post.emitters.push_back({"lamp", 0, {}, true, description::Light{}});
-  testing::place(experiment.world, post, "post", testing::at(1, 0, 0.1));
+  test::place(experiment.world, post, "post", test::at(1, 0, 0.1));
   return experiment;
 }
 

@@ -7,7 +7,7 @@
 #include "idl/wire.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // Watches a run as any observer does, so that a test can act in the midst of it.
@@ -19,12 +19,7 @@ class Observer {
                 "view") {}
 
   bool wait_for_tick(std::uint64_t tick) {
-    const auto deadline = std::chrono::steady_clock::now() + patience;
-    while (tick_ < tick) {
-      if (std::chrono::steady_clock::now() > deadline) return false;
-      std::this_thread::sleep_for(1ms);
-    }
-    return true;
+    return eventually([&] { return tick_ >= tick; });
   }
   std::uint64_t tick() const { return tick_; }
 
@@ -82,9 +77,7 @@ TEST_F(DisturbedRun, AControllerStoppedForThreeSecondsBringsTheRunToTheSameBits)
 TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
   const std::string expected = reference_hash(10);
   Process run({cohort_program(), "run", demo_experiment(), "--duration", "10", "--speed", "2.5"});
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (children_of(run.pid()).empty() && std::chrono::steady_clock::now() < deadline)
-    std::this_thread::sleep_for(1ms);
+  eventually([&] { return !children_of(run.pid()).empty(); });
   const auto children = children_of(run.pid());
   ASSERT_EQ(children.size(), 1u);
   ASSERT_TRUE(run.wait_for_output("simulated")) << run.output();
@@ -95,4 +88,4 @@ TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -8,7 +8,7 @@
 #include "tests/support/controlled_run.hpp"
 
 // Whoever controls a run does it between ticks, and the ticks keep their bits.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using wire::Operation;
@@ -186,14 +186,12 @@ class Stranger {
     requests_.write(request);
   }
   std::vector<wire::Reply> received(std::size_t at_least) {
-    const auto until = std::chrono::steady_clock::now() + patience;
-    for (;;) {
-      {
-        const std::lock_guard lock(mutex_);
-        if (received_.size() >= at_least || std::chrono::steady_clock::now() > until) return received_;
-      }
-      std::this_thread::sleep_for(1ms);
-    }
+    const auto replies = [&] {
+      const std::lock_guard lock(mutex_);
+      return received_;
+    };
+    eventually([&] { return replies().size() >= at_least; });
+    return replies();
   }
 
  private:
@@ -321,4 +319,4 @@ TEST(ControlAtTickBoundariesOnly, WithoutAServerItSaysWhatToLookFor) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

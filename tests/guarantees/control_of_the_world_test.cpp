@@ -5,7 +5,7 @@
 #include "tests/support/controlled_run.hpp"
 
 // What is added, removed, moved and pushed.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using wire::Operation;
@@ -146,4 +146,4 @@ TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndC
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

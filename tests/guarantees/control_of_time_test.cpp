@@ -6,7 +6,7 @@
 #include "tests/support/controlled_run.hpp"
 
 // Back to the beginning, to a snapshot, and to what is kept.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using wire::Operation;
@@ -180,4 +180,4 @@ TEST(ControlAtTickBoundariesOnly, SnapshotsOfManyRobotsComeWhole) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

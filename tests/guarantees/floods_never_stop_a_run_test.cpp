@@ -11,7 +11,7 @@
 #include "idl/wire.hpp"
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // Ticks of a run as an observer sees them.
@@ -22,9 +22,7 @@ class Ticks {
         reader_(participant_, {[this](const wire::WorldState& state, const wire::Sender&) { tick_ = state.tick; }, {}},
                 "view") {}
   bool have_begun() const {
-    const auto until = std::chrono::steady_clock::now() + patience;
-    while (tick_ == 0 && std::chrono::steady_clock::now() < until) std::this_thread::sleep_for(1ms);
-    return tick_ > 0;
+    return eventually([&] { return tick_ > 0; });
   }
   double per_second(std::chrono::milliseconds time) const {
     const std::uint64_t before = tick_;
@@ -140,4 +138,4 @@ TEST(FloodsNeverStopARun, OfFramesToAClientThatNeverReads) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -4,7 +4,7 @@
 
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 std::uint64_t tick_of(const nlohmann::json& event) { return event["tick"]; }
@@ -63,4 +63,4 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, AFreeControllerThatIsStoppedHoldsNobodyUp
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 TEST(OneControllerPerRobot, ASecondClaimWaitsWhileTheHolderIsSilentAndIsRefusedByNameOnceItAnswers) {
@@ -34,4 +34,4 @@ TEST(OneControllerPerRobot, AClaimOnARobotThatDoesNotExistIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

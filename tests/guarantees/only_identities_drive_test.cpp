@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <fstream>
 #include <memory>
 
 #include "idl/wire.hpp"
@@ -9,7 +8,7 @@
 #include "tests/support/sbot_layout.hpp"
 
 // With security an identity drives its own robots, and nobody else has any effect.
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr std::uint64_t blue_id = 0xb1e;  // of the client that these tests play themselves
@@ -108,7 +107,7 @@ TEST(OnlyIdentitiesDrive, AndOthersLeaveTheRunItsBitsWhateverTheyTry) {
     }
     EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
     for (const auto& each : outside) EXPECT_EQ(each->output().find("sending"), std::string::npos) << each->output();
-    return nlohmann::json::parse(std::ifstream(folder / "summary.json"));
+    return read_json(folder / "summary.json");
   };
   const auto quiet = run(false);
   const auto attacked = run(true);
@@ -238,4 +237,4 @@ TEST(OnlyIdentitiesDrive, AndAServerOnANetworkWithoutSecurityWarns) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -1,16 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
 
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
-
-std::string hash_in(const std::filesystem::path& summary) {
-  return nlohmann::json::parse(std::ifstream(summary)).value("state_hash", "none");
-}
 
 // Aggregation's controllers remember what they did: a reset has to reach them too.
 TEST(SameHashAfterReset, RunsInARowWithTheSameControllersGiveTheSameBits) {
@@ -58,4 +53,4 @@ TEST(SameHashAfterReset, AClientWhoseRobotsAreNotInTheNextExperimentIsRefusedThe
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

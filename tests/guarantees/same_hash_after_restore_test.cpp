@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml";
@@ -44,4 +44,4 @@ TEST_F(SameHashAfterRestore, SavedAgainItIsTheSameSnapshot) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // Makes the C library believe that the CPU has no fused multiply-add.
@@ -21,4 +21,4 @@ TEST(SameHashAnyCpu, TheCLibraryWithAndWithoutFmaGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

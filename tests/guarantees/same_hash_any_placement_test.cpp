@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 TEST(SameHashAnyPlacement, InProcessOneProcessAndAProcessForEachRobotGiveTheSameBits) {
@@ -59,7 +59,7 @@ wait
   if (hosts.err.find("ermitted") != std::string::npos || hosts.err.find("Unknown device type") != std::string::npos)
     GTEST_SKIP() << "no two hosts here: " << hosts.err;
   ASSERT_EQ(hosts.exit_code, 0) << hosts.err << read_file(folder / "server.out") << read_file(folder / "there.out");
-  const auto summary = nlohmann::json::parse(read_file(folder / "summary.json"), nullptr, false);
+  const auto summary = read_json(folder / "summary.json");
   EXPECT_EQ(summary["state_hash"], reference_hash(10));
   int joined = 0;
   for (const auto& event : summary["events"]) joined += event["kind"] == "joined" ? 1 : 0;
@@ -112,4 +112,4 @@ TEST(SameHashAnyPlacement, TheSameRunTwiceInARowGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

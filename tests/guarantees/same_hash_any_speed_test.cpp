@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 TEST(SameHashAnySpeed, FiveTimesRealTimeAndUnboundedGiveTheSameBits) {
@@ -15,4 +15,4 @@ TEST(SameHashAnySpeed, FiveTimesRealTimeAndUnboundedGiveTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

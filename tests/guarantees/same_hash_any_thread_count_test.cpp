@@ -2,7 +2,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 TEST(SameHashAnyThreadCount, OneTwoFourAndEightThreadsGiveTheSameBits) {
@@ -20,4 +20,4 @@ TEST(SameHashAnyThreadCount, AnotherSeedGivesOtherBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 class SameHashDespitePacketLoss : public ::testing::TestWithParam<const char*> {};
@@ -52,4 +52,4 @@ INSTANTIATE_TEST_SUITE_P(Shares, SameHashDespitePacketLoss, ::testing::Values("0
                          });
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -9,7 +9,7 @@
 #include "tests/support/controlled_run.hpp"
 #include "tests/support/free_domain.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using recording::Commands;
@@ -234,4 +234,4 @@ TEST(SameHashOnReplayOf, AServerThatWasKilled) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -6,7 +6,7 @@
 
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr int robots = 64;
@@ -81,4 +81,4 @@ TEST(SameHashThroughChaos, OfSixtyFourProcessesThatAreKilledStoppedAndLate) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

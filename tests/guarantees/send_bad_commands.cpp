@@ -39,10 +39,10 @@ int main(int argc, char** argv) {
   std::vector<std::uint32_t> all(16);
   std::iota(all.begin(), all.end(), 0u);
   const std::vector<std::uint32_t> first = {0}, nonsense = {99, 3, 3}, none;
-  constexpr std::size_t all_values = 16 * cohort::testing::sbot_command_size;
+  constexpr std::size_t all_values = 16 * cohort::test::sbot_command_size;
   const std::vector<double> nan(all_values, std::nan("")),
       infinite(all_values, std::numeric_limits<double>::infinity()), fast(all_values, 1e9), fitting(all_values, 0.1),
-      fitting_one(cohort::testing::sbot_command_size, 0.1), nothing;
+      fitting_one(cohort::test::sbot_command_size, 0.1), nothing;
   for (int round = 0;; ++round) {
     for (const std::uint64_t ahead : {0u, 1u, 2u, 1000u}) {
       const std::uint64_t at = tick + ahead;

@@ -14,7 +14,7 @@
 namespace {
 
 using namespace cohort;
-using namespace cohort::testing;
+using namespace cohort::test;
 
 constexpr int rows = 10;
 

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <thread>
@@ -11,12 +10,10 @@
 #include "tests/support/process.hpp"
 #include "tests/support/sbot_layout.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 constexpr std::uint64_t own_id = 0xabcdef;  // of a client that these tests play themselves
-
-nlohmann::json read_json(const std::filesystem::path& file) { return nlohmann::json::parse(std::ifstream(file)); }
 
 // How often commands were rejected, by reason.
 std::map<std::string, std::uint64_t> rejections(const nlohmann::json& summary) {
@@ -170,4 +167,4 @@ INSTANTIATE_TEST_SUITE_P(All, FaultyHolder,
                          [](const auto& fault) { return fault.param.first + std::to_string(fault.index); });
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

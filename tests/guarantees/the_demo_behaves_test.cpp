@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include "client_sdk/src/controller_host.hpp"
@@ -13,7 +11,7 @@
 #include "server/simulation/simulation.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 // The whole minute of the demo, watched at every tick.
@@ -107,13 +105,11 @@ TEST_F(DemoRun, HasTheHashThatTheReadmeAndItsPictureSay) {
   char text[17];
   std::snprintf(text, sizeof text, "%016lx", static_cast<unsigned long>(state_hash));
   for (const char* file : {"README.md", "docs/images/obstacle_avoidance.svg"}) {
-    std::ifstream in(std::string(COHORT_SOURCE_DIR "/") + file);
-    const std::string content(std::istreambuf_iterator<char>(in), {});
-    EXPECT_NE(content.find(text), std::string::npos)
+    EXPECT_NE(read_file(std::string(COHORT_SOURCE_DIR "/") + file).find(text), std::string::npos)
         << file << " is out of date: tools/demo --plot docs/images/obstacle_avoidance.svg gives the new picture, hash "
         << text;
   }
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -1,13 +1,12 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <iterator>
 
 #include "tests/support/http.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,11 +20,6 @@ const Process::Environment environment_of_another_cpu = {
 std::string version(int minor) { return std::to_string(COHORT_VERSION_MAJOR) + "." + std::to_string(minor); }
 const std::string this_version = version(COHORT_VERSION_MINOR);
 
-std::string read(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 struct Ended {
   std::optional<int> exit_code;
   std::string output;
@@ -35,10 +29,6 @@ Ended run(const std::vector<std::string>& command) {
   Process process(command, environment);
   const auto exit_code = process.wait_for_exit();
   return {exit_code, process.output()};
-}
-
-std::string hash_in(const fs::path& summary) {
-  return nlohmann::json::parse(read(summary), nullptr, false).value("state_hash", "no summary");
 }
 
 // Cohort, installed into a prefix, and a project that knows nothing else of it.
@@ -139,7 +129,7 @@ TEST_F(Installation, FindPackageAcceptsThisMinorVersionOnly) {
 TEST_F(Installation, ThePackageNamesNoFolderOfTheBuildAndNoneOfOurWarnings) {
   int files = 0;
   for (const auto& entry : fs::directory_iterator(prefix / COHORT_LIB_DIR / "cmake/Cohort")) {
-    const std::string text = read(entry.path());
+    const std::string text = read_file(entry.path());
     for (const char* ours : {COHORT_SOURCE_DIR, COHORT_BUILD_DIR, "-Werror", "-Wall"})
       EXPECT_EQ(text.find(ours), std::string::npos) << entry.path() << " has " << ours;
     ++files;
@@ -179,4 +169,4 @@ TEST_F(Installation, MayBeMoved) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -8,17 +8,12 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
 
 const std::string network_section = "## 6. ";
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 struct Block {
   std::string language;
@@ -62,7 +57,7 @@ class Tutorial : public ::testing::Test {
     home.emplace();
     fs::create_directories(*home / "cohort/build");
     fs::create_directory_symlink(COHORT_BUILD_DIR, *home / "cohort/build/release");
-    const std::string document = read(COHORT_SOURCE_DIR "/docs/tutorial.md");
+    const std::string document = read_file(COHORT_SOURCE_DIR "/docs/tutorial.md");
     const std::size_t network = document.find(network_section);
     ASSERT_NE(network, std::string::npos);
     on_one_host = document.substr(0, network);
@@ -94,14 +89,14 @@ TEST_F(Tutorial, EveryCommandWorksAndGivesTheSameBits) {
   Process reader({"/bin/bash", write_script("one_host.sh", script_of(on_one_host))}, environment(domain));
   ASSERT_EQ(reader.wait_for_exit(), 0) << reader.output();
   EXPECT_EQ(hashes_in(reader.output()), std::vector<std::string>(3, hash)) << reader.output();
-  EXPECT_NE(read(*home / "walls/walls.svg").find(hash), std::string::npos);
-  EXPECT_NE(read(COHORT_SOURCE_DIR "/docs/images/wall_follower.svg").find(hash), std::string::npos)
+  EXPECT_NE(read_file(*home / "walls/walls.svg").find(hash), std::string::npos);
+  EXPECT_NE(read_file(COHORT_SOURCE_DIR "/docs/images/wall_follower.svg").find(hash), std::string::npos)
       << "the picture in the tutorial is of another run";
 }
 
 TEST_F(Tutorial, TheMistakeIsExplainedAsItSays) {
   ASSERT_TRUE(fs::exists(*home / "walls/build/wall_follower.so")) << "the test before builds it";
-  std::string wrong = read(*home / "walls/walls.yaml");
+  std::string wrong = read_file(*home / "walls/walls.yaml");
   wrong.replace(wrong.find("distance:"), 8, "distence");
   std::ofstream(*home / "walls/walls.yaml") << wrong;
   const ReservedDomain domain;
@@ -138,4 +133,4 @@ TEST_F(Tutorial, AnotherHostGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

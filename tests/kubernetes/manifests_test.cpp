@@ -4,7 +4,7 @@
 
 #include "tests/support/node_folder.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -62,4 +62,4 @@ TEST(FilesOfDocker, NameTheImageOfThisVersion) {
 }
 
 }  // namespace
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -14,8 +14,8 @@
 namespace cohort::recording {
 namespace {
 
+using namespace test;
 using nlohmann::json;
-using test::TemporaryFile;
 namespace fs = std::filesystem;
 
 class OfficialReader : public ::testing::Test {
@@ -26,7 +26,7 @@ class OfficialReader : public ::testing::Test {
 
   // What the reader found in the file.
   static json read(const fs::path& file) {
-    const testing::Ended ended = folder.run(script, {file});
+    const Ended ended = folder.run(script, {file});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
     json found = json::parse(ended.out, nullptr, false);
     EXPECT_TRUE(found.is_object()) << ended.out;
@@ -36,8 +36,8 @@ class OfficialReader : public ::testing::Test {
 
  private:
   inline static const std::string script = "read_recording.mjs";
-  inline static const testing::NodeFolder folder{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/recordings",
-                                                 COHORT_NODE_FOLDER};
+  inline static const NodeFolder folder{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/recordings",
+                                        COHORT_NODE_FOLDER};
 };
 
 // Messages are text: a channel without a schema that has to be parsed.
@@ -50,8 +50,7 @@ Bytes text_recording(int count, const McapWriterOptions& options) {
   writer.add_metadata({"run", {{"seed", "7"}, {"experiment", "demo"}}});
   for (int i = 0; i < count; ++i) {
     const Timestamp time(static_cast<std::uint64_t>((i / 3 * 3 + 2 - i % 3) * 1000));  // back and forth
-    writer.write_message(channels[i % 2], static_cast<std::uint32_t>(i), time, time + Timestamp(1),
-                         test::bytes_of(test::said(i)));
+    writer.write_message(channels[i % 2], static_cast<std::uint32_t>(i), time, time + Timestamp(1), bytes_of(said(i)));
     if (i == count / 2) writer.add_attachment({Timestamp(5), Timestamp(6), "snapshot", "text/plain", Bytes(1000)});
   }
   writer.close();
@@ -83,7 +82,7 @@ void expect_text_recording(const json& found, int count) {
     const json& message = found["messages"][i];
     const int sequence = message["sequence"];
     EXPECT_TRUE(i == 0 || found["messages"][i - 1]["log_time"] <= message["log_time"]);
-    EXPECT_EQ(message["message"], test::said(sequence));
+    EXPECT_EQ(message["message"], said(sequence));
     EXPECT_EQ(message["topic"], sequence % 2 == 0 ? "/even" : "/odd");
     EXPECT_EQ(message["log_time"], (sequence / 3 * 3 + 2 - sequence % 3) * 1000);
     EXPECT_EQ(message["publish_time"], message["log_time"].get<int>() + 1);
@@ -122,17 +121,17 @@ TEST_F(OfficialReader, ReadsWhatAThreadWroteAndWhatWasRecovered) {
     const ChannelId channel = recording.add_channel("/t", schema, "text");
     for (int i = 0; i < count; ++i)
       recording.write_message(channel, static_cast<std::uint32_t>(i), Timestamp(static_cast<std::uint64_t>(i)), {},
-                              test::bytes_of(test::said(i)), Importance::essential);
+                              bytes_of(said(i)), Importance::essential);
   }
   EXPECT_EQ(read(file.path())["messages"].size(), static_cast<std::size_t>(count));
 
-  const Bytes bytes = test::read_bytes(file.path());
-  test::write_bytes(file.path(), ByteView(bytes).first(bytes.size() / 2));
+  const Bytes bytes = read_bytes(file.path());
+  write_bytes(file.path(), ByteView(bytes).first(bytes.size() / 2));
   const std::uint64_t kept = recover(file.path(), file.path()).kept.message_count;
   EXPECT_GT(kept, 1000U);
   const json found = read(file.path());
   EXPECT_EQ(found["messages"].size(), kept);
-  EXPECT_EQ(found["messages"].back()["message"], test::said(static_cast<int>(kept) - 1));
+  EXPECT_EQ(found["messages"].back()["message"], said(static_cast<int>(kept) - 1));
 }
 
 // As decoders of ROS's messages give it.
@@ -153,7 +152,7 @@ json as_json(const Value& value) {
 }
 
 template <class Message>
-void write_any(McapWriter& writer, test::AnyMessage& any, std::vector<json>& written) {
+void write_any(McapWriter& writer, AnyMessage& any, std::vector<json>& written) {
   const ChannelId channel = add_ros_channel(writer, "/any", add_ros_schema<Message>(writer));
   for (int i = 0; i < 5; ++i) {
     Message message;
@@ -167,7 +166,7 @@ void write_any(McapWriter& writer, test::AnyMessage& any, std::vector<json>& wri
 TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
   Bytes bytes;
   McapWriter writer([&](ByteView more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
-  test::AnyMessage any;
+  AnyMessage any;
   std::vector<json> written;
   const auto write_all = [&]<class... Message>(std::tuple<Message...>*) {
     (write_any<Message>(writer, any, written), ...);
@@ -188,9 +187,9 @@ TEST_F(OfficialReader, DecodesOurRosMessagesByTheirSchemas) {
 
 // What Cohort records of a run, with its own messages.
 TEST_F(OfficialReader, ReadsARunOfCohort) {
-  const testing::ScratchFolder scratch;
-  testing::run_demo({"--controllers", "inprocess", "--duration", "1", "--record", scratch / "run.mcap",
-                     "--record-observations", "10", "--record-snapshots", "0.5"});
+  const ScratchFolder scratch;
+  run_demo({"--controllers", "inprocess", "--duration", "1", "--record", scratch / "run.mcap", "--record-observations",
+            "10", "--record-snapshots", "0.5"});
   const json found = read(scratch / "run.mcap");
   std::map<std::string, std::vector<json>> messages;  // by topic
   for (const json& message : found["messages"]) messages[message["topic"]].push_back(message["message"]);
@@ -236,13 +235,12 @@ constexpr const char* sensors = R"(world:
 )";
 
 TEST_F(OfficialReader, ReadsStandardSensorsAsRosHasThem) {
-  const testing::ScratchFolder scratch;
-  testing::write_file(scratch / "world.yaml", sensors);
-  testing::write_file(scratch / "experiment.yaml",
-                      "world: world.yaml\nduration: 1\nrecord: {observations: 10, joints: 5}\n"
-                      "teams:\n  - {name: all, robots: robot, controller: constant}\n");
-  testing::run_experiment(scratch / "experiment.yaml",
-                          {"--controllers", "inprocess", "--record", scratch / "run.mcap"});
+  const ScratchFolder scratch;
+  write_file(scratch / "world.yaml", sensors);
+  write_file(scratch / "experiment.yaml",
+             "world: world.yaml\nduration: 1\nrecord: {observations: 10, joints: 5}\n"
+             "teams:\n  - {name: all, robots: robot, controller: constant}\n");
+  run_experiment(scratch / "experiment.yaml", {"--controllers", "inprocess", "--record", scratch / "run.mcap"});
   const json found = read(scratch / "run.mcap");
   std::map<std::string, json> last;  // by topic
   for (const json& message : found["messages"]) last[message["topic"]] = message["message"];

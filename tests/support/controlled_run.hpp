@@ -7,7 +7,7 @@
 #include "client_sdk/src/control_client.hpp"
 #include "tests/support/field_of_robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// A served field of robots with its controllers, for tests that control it.
 class ControlledRun {
@@ -39,10 +39,7 @@ class ControlledRun {
   /// Asks until the status has what `condition` wants; false if it does not in time.
   template <class Condition>
   bool comes_to(Condition condition) const {
-    const auto until = std::chrono::steady_clock::now() + patience;
-    while (std::chrono::steady_clock::now() < until)
-      if (condition(status())) return true;
-    return false;
+    return eventually([&] { return condition(status()); });
   }
   /// The run's summary, once all are gone.
   nlohmann::json finish() {
@@ -74,4 +71,4 @@ inline std::string reference(const FieldOfRobots& field, const std::vector<std::
   return run_experiment(field.file(), arguments)["state_hash"];
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

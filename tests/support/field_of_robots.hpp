@@ -4,7 +4,7 @@
 
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// An experiment of its own: s-bots on a plane that keep out of each other's way. `team` has more lines for their one
 /// team, such as `mode: free`, in the form `, KEY: VALUE`.
@@ -28,7 +28,7 @@ class FieldOfRobots {
   std::string file() const { return (folder_ / "experiment.yaml").string(); }
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
   /// What `serve` writes to `summary.json` here.
-  nlohmann::json summary() const { return nlohmann::json::parse(read_file(folder_ / "summary.json")); }
+  nlohmann::json summary() const { return read_json(folder_ / "summary.json"); }
   std::vector<std::string> serve(const ReservedDomain& domain, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> command = {
         cohort_program(), "serve", file(), "--domain", domain.text(), "--summary", (folder_ / "summary.json").string()};
@@ -52,4 +52,4 @@ inline std::vector<nlohmann::json> events_of(const nlohmann::json& summary, cons
   return events;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

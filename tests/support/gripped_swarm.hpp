@@ -3,7 +3,7 @@
 #include "server/core/random.hpp"
 #include "tests/support/lifting.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// Robots in a square, not quite where a grid would have them, each holding on to some of its neighbours as they stand.
 struct GrippedSwarm {
@@ -13,7 +13,6 @@ struct GrippedSwarm {
     Pose X_Pa, X_Pb;  // the frame of the connection in the link of either end
   };
   static constexpr int side = 5;
-  static constexpr std::size_t turret = 1;
 
   SmallWorld small;
   std::size_t gripping_link;
@@ -94,4 +93,4 @@ struct GrippedSwarm {
   }
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

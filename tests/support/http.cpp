@@ -9,11 +9,10 @@
 #include <array>
 #include <chrono>
 #include <optional>
-#include <thread>
 
 #include "tests/support/patience.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 namespace {
 
 using std::chrono::steady_clock;
@@ -66,12 +65,8 @@ std::string http_get(const std::string& port, const std::string& target, const s
   const std::string connection = headers.find("Connection:") == std::string::npos ? "Connection: close\r\n" : "";
   const std::string request =
       "GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + port + "\r\n" + connection + headers + "\r\n";
-  const auto deadline = steady_clock::now() + test::patience;
-  std::string answer = asked_once(port, request);
-  while (answer.empty() && steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    answer = asked_once(port, request);
-  }
+  std::string answer;
+  eventually([&] { return !(answer = asked_once(port, request)).empty(); }, patience, std::chrono::milliseconds(20));
   return answer;
 }
 
@@ -108,4 +103,4 @@ std::string free_port() {
   return std::to_string(ntohs(address.sin_port));
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

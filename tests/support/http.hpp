@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// What a server at this port of the loopback answers to GET of `target`, status line and headers included, to the end
 /// of the connection or, of a connection that becomes another (101), of the headers. Waits until somebody listens;
@@ -21,4 +21,4 @@ void expect_page(const std::string& port);
 /// A port of the loopback that nobody listens at.
 std::string free_port();
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -7,7 +7,7 @@
 #include "tests/support/process.hpp"
 #include "tools/cohort/commands/security/certificates.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// Identities of one server, as `cohort security init` makes them: observer, red for the robots 0..7 and blue
 /// for 8..15.
@@ -47,4 +47,4 @@ class Keys {
   ScratchFolder folder_;
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,7 +2,7 @@
 
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// Of what `with_arm` adds.
 inline constexpr std::size_t arm_link = 2;
@@ -29,4 +29,4 @@ inline description::Model with_arm(double max_effort = 2.0, double arm_mass = 0.
   return model;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

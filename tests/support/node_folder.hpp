@@ -10,7 +10,7 @@
 #include "tests/support/file_lock.hpp"
 #include "tests/support/process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// A script for node with the packages of npm that it needs, copied from the sources to the build's folder.
 class NodeFolder {
@@ -55,4 +55,4 @@ class NodeFolder {
   std::filesystem::path folder_;
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -1,11 +1,24 @@
 #pragma once
 
 #include <chrono>
+#include <thread>
 
 namespace cohort::test {
 
 /// How long a test waits for something that should happen before it fails: long, since it is never waited for in vain,
 /// and shorter than ctest waits for the test (COHORT_TEST_TIMEOUT).
 inline constexpr std::chrono::seconds patience{COHORT_TEST_PATIENCE};
+
+/// Polls until `condition` holds; false if it does not within `at_most`.
+template <class Condition>
+bool eventually(Condition&& condition, std::chrono::milliseconds at_most = patience,
+                std::chrono::milliseconds pause = std::chrono::milliseconds(1)) {
+  const auto deadline = std::chrono::steady_clock::now() + at_most;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(pause);
+  }
+  return true;
+}
 
 }  // namespace cohort::test

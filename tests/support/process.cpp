@@ -3,33 +3,22 @@
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <fstream>
 #include <sstream>
-#include <thread>
 
-namespace cohort::testing {
+#include "tests/support/file_lock.hpp"
+
+namespace cohort::test {
 namespace {
 
 // Apart from the domains that `cohort run` takes by itself (1 to 59) and those of tests/support/free_domain.hpp (60 to
 // 79), and below those whose ports are ephemeral ones.
 constexpr std::uint32_t first_domain = 80;
 constexpr std::uint32_t last_domain = 99;
-
-template <class Condition>
-bool poll_until(Condition&& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(5ms);
-  }
-  return true;
-}
 
 bool port_is_free(std::uint32_t domain) {
   const int udp = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
@@ -43,23 +32,6 @@ bool port_is_free(std::uint32_t domain) {
 }
 
 }  // namespace
-
-void write_file(const std::filesystem::path& file, const std::string& text) { std::ofstream(file) << text; }
-
-std::string read_file(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-ScratchFolder::ScratchFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "cohort-test-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no scratch folder can be made");
-  path_ = pattern;
-}
-
-ScratchFolder::~ScratchFolder() { std::filesystem::remove_all(path_); }
 
 Process::Process(std::vector<std::string> command, const Environment& environment) {
   std::vector<char*> arguments;
@@ -101,12 +73,12 @@ bool Process::running() {
 }
 
 bool Process::wait_for_output(const std::string& text) {
-  poll_until([&] { return output().find(text) != std::string::npos || !running(); });
+  eventually([&] { return output().find(text) != std::string::npos || !running(); }, patience, 5ms);
   return output().find(text) != std::string::npos;
 }
 
 std::optional<int> Process::wait_for_exit() {
-  poll_until([&] { return !running(); });
+  eventually([&] { return !running(); }, patience, 5ms);
   return exit_code_;
 }
 
@@ -136,7 +108,7 @@ bool is_alive(pid_t pid) {
 }
 
 bool wait_until_gone(pid_t pid) {
-  return poll_until([&] { return !is_alive(pid); });
+  return eventually([&] { return !is_alive(pid); });
 }
 
 std::vector<pid_t> children_of(pid_t parent) {
@@ -151,9 +123,8 @@ std::vector<pid_t> children_of(pid_t parent) {
 ReservedDomain::ReservedDomain() {
   for (std::uint32_t i = 0; i <= last_domain - first_domain; ++i) {
     number_ = first_domain + (static_cast<std::uint32_t>(getpid()) + i) % (last_domain - first_domain + 1);
-    const auto file = std::filesystem::temp_directory_path() / ("cohort-test-domain-" + std::to_string(number_));
-    lock_ = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-    if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0 && port_is_free(number_)) return;
+    lock_ = lock_domain(number_);
+    if (lock_ >= 0 && port_is_free(number_)) return;
     if (lock_ >= 0) close(lock_);
   }
   throw std::runtime_error("no free DDS domain");
@@ -167,6 +138,11 @@ std::string test_controller(const std::string& name) {
 }
 std::string demo_experiment() { return COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml"; }
 
+nlohmann::json read_json(const std::filesystem::path& file) { return nlohmann::json::parse(read_file(file)); }
+std::string hash_in(const std::filesystem::path& summary) {
+  return read_json(summary).value("state_hash", "no summary");
+}
+
 nlohmann::json run_experiment(const std::string& experiment, const std::vector<std::string>& arguments,
                               const Process::Environment& environment) {
   const ScratchFolder folder;
@@ -175,7 +151,7 @@ nlohmann::json run_experiment(const std::string& experiment, const std::vector<s
   command.insert(command.end(), arguments.begin(), arguments.end());
   Process process(command, environment);
   EXPECT_EQ(process.wait_for_exit(), 0) << process.output();
-  return nlohmann::json::parse(read_file(summary), nullptr, false);
+  return read_json(summary);
 }
 
 nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process::Environment& environment) {
@@ -187,4 +163,4 @@ std::string reference_hash(double seconds) {
   return summary.value("state_hash", "no summary");
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

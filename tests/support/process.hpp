@@ -3,34 +3,19 @@
 #include <sys/types.h>
 
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "tests/support/files.hpp"
 #include "tests/support/patience.hpp"
 
 /// Running `cohort` as users do, from tests.
-namespace cohort::testing {
+namespace cohort::test {
 
 using namespace std::chrono_literals;
-using test::patience;
-
-/// A folder that is gone with this.
-class ScratchFolder {
- public:
-  ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder();
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A program in a process group of its own, killed with all that it started when this is gone.
 class Process {
@@ -91,8 +76,9 @@ class ReservedDomain {
   int lock_ = -1;
 };
 
-void write_file(const std::filesystem::path& file, const std::string& text);
-std::string read_file(const std::filesystem::path& file);
+nlohmann::json read_json(const std::filesystem::path& file);
+/// Of the run with this summary.
+std::string hash_in(const std::filesystem::path& summary);
 
 std::string cohort_program();
 /// A controller of tests/commands/.
@@ -108,4 +94,4 @@ nlohmann::json run_demo(const std::vector<std::string>& arguments, const Process
 /// has to reach.
 std::string reference_hash(double seconds);
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -3,15 +3,22 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <numbers>
 #include <vector>
 
 #include "server/core/random.hpp"
 #include "server/geometry/convex_hull.hpp"
 #include "server/geometry/scene.hpp"
 
-/// Scenes at random, of every shape that there is.
+/// Scenes of one solid, and at random of every shape that there is.
 namespace cohort::geometry {
+
+/// Built.
+inline Scene scene_of(const Shape& shape, const Pose& X_WC) {
+  Scene scene;
+  scene.add({shape, {}, 0, !is_ground(shape), X_WC});
+  scene.build();
+  return scene;
+}
 
 inline Eigen::Vector3d random_vector(const RandomStream& random, std::uint64_t n, double half_width) {
   return {half_width * (2 * random.uniform(n, 0) - 1), half_width * (2 * random.uniform(n, 1) - 1),

@@ -3,7 +3,9 @@
 #include "server/description/world.hpp"
 
 /// Small worlds, described in code: what the tests of physics, sensing and simulation stand on.
-namespace cohort::testing {
+namespace cohort::test {
+
+inline constexpr double g = 9.81;  // [m/s^2]
 
 inline description::Inertial solid_cylinder(double mass, double radius, double length, double z) {
   const double across = mass * (3.0 * radius * radius + length * length) / 12.0;
@@ -14,6 +16,8 @@ inline description::Inertial solid_cylinder(double mass, double radius, double l
   inertial.inertia = Eigen::Vector3d(across, across, along).asDiagonal();
   return inertial;
 }
+
+inline constexpr std::size_t turret = 1;  // the link of `tracked_robot`
 
 /// A robot with tracks, a turret on a motor, encoders and a ring of 15 proximity sensors.
 inline description::Model tracked_robot(double noise = 0.0) {
@@ -47,6 +51,26 @@ inline description::Model tracked_robot(double noise = 0.0) {
   return model;
 }
 
+/// A wheel on the first link of a model that drives along x; returns its joint.
+inline std::size_t add_wheel(description::Model& model, const Eigen::Vector3d& p_MW, double radius, double width,
+                             double mass) {
+  description::Joint joint;
+  joint.name = "wheel_" + std::to_string(model.links.size());
+  joint.type = description::JointType::revolute;
+  joint.parent = 0;
+  joint.child = model.links.size();
+  joint.axis.direction = Eigen::Vector3d::UnitZ();  // of the lying wheel: y of the model
+  const Eigen::Quaterniond lying(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitX()));
+  model.links.push_back({joint.name,
+                         {p_MW, lying},
+                         solid_cylinder(mass, radius, width, 0.0),
+                         {{"tyre", {}, description::Cylinder{radius, width}, {0.9, 0}}}});
+  model.joints.push_back(joint);
+  return model.joints.size() - 1;
+}
+
+inline constexpr std::size_t first_reading = 6;  // of the ring, in the observation of `tracked_robot`
+
 inline description::Model static_shape(const std::string& name, const description::Shape& shape,
                                        description::Surface surface = {1.0, 0.0}) {
   description::Model model;
@@ -70,6 +94,13 @@ inline std::uint32_t place(description::World& world, const description::Model& 
   return body;
 }
 
+inline description::World empty_world(std::chrono::nanoseconds step = std::chrono::milliseconds(10)) {
+  description::World world;
+  world.name = "empty";
+  world.step = step;
+  return world;
+}
+
 inline description::World world_with_floor(double friction = 1.0) {
   description::World world;
   world.name = "test";
@@ -77,4 +108,4 @@ inline description::World world_with_floor(double friction = 1.0) {
   return world;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -2,10 +2,10 @@
 
 #include <cstddef>
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// float64 values of a command of the s-bot that ships: tracks, turret, LEDs, loudspeakers and gripper. The tracks come
 /// first.
 inline constexpr std::size_t sbot_command_size = 32;
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

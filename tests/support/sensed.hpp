@@ -11,7 +11,7 @@
 #include "server/sensing/signal_chain.hpp"
 #include "tests/support/small_world.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// A ball of 1 kg, 0.2 m across, that carries one device on its link.
 inline description::Model carrier(const description::Device& device) {
@@ -97,4 +97,4 @@ inline description::Noise noise_on(const std::string& quantity, double deviation
   return noise;
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

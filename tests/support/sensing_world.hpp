@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -8,7 +9,10 @@
 #include "server/simulation/simulation.hpp"
 #include "tests/support/robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
+
+/// What an IR or light sensor reads of the light that arrives.
+inline double sigmoid(double x) { return 2.0 / (1.0 + std::exp(-x)) - 1.0; }
 
 /// A world whose robots are asked and told by the names of channels. Everything is added before the first tick.
 class SensingWorld {
@@ -87,4 +91,4 @@ class SensingWorld {
   std::vector<std::vector<double>> commands_;
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

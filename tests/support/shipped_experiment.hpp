@@ -16,7 +16,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/session/in_process.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 inline const std::filesystem::path shipped_experiments = COHORT_SOURCE_DIR "/worlds/experiments";
 
@@ -107,4 +107,4 @@ class ShippedExperiment {
   session::RunResult result;
 };
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <memory>
 
 #include "server/physics/make_world.hpp"
 #include "tests/support/robots.hpp"
 
-namespace cohort::testing {
+namespace cohort::test {
 
 /// A world that a test puts together and then steps. Bodies are added before the first step.
 class SmallWorld {
@@ -40,6 +42,28 @@ class SmallWorld {
   std::unique_ptr<physics::World> world_;
 };
 
+/// Of the state of every body, and of all contacts and connections.
+inline std::uint64_t hash_of(const physics::World& world) {
+  StateHash hash;
+  for (std::uint32_t body = 0; body < world.body_count(); ++body) world.hash_body(body, hash);
+  world.hash_contacts(hash);
+  return hash.value();
+}
+inline std::uint64_t hash_of(const physics::World& world, std::span<const std::uint32_t> bodies) {
+  StateHash hash;
+  for (const std::uint32_t body : bodies) world.hash_body(body, hash);
+  return hash.value();
+}
+
+/// `restored`, a new world of the same description, goes on from a snapshot of `world`.
+inline void restore_from(const physics::World& world, physics::World& restored) {
+  SnapshotWriter writer;
+  world.save(writer);
+  SnapshotReader reader(writer.bytes());
+  restored.restore(reader);
+  EXPECT_TRUE(reader.is_at_end());
+}
+
 /// The principal moments of inertia of a solid box about its centre [kg m^2].
 inline description::Inertial solid_box(double mass, const Eigen::Vector3d& size) {
   const Eigen::Vector3d squares = size.cwiseProduct(size);
@@ -71,4 +95,4 @@ inline Pose turned(double x, double y, double z, const Eigen::Vector3d& axis, do
   return {{x, y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()))};
 }
 
-}  // namespace cohort::testing
+}  // namespace cohort::test

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "server/description/input_error.hpp"
 #include "server/description/world.hpp"
 #include "server/parsing/world/read_world.hpp"
+#include "tests/support/files.hpp"
 
 /// What the tests of descriptions share: worlds written on the spot, and the flaws that they are to be reported for.
 namespace cohort::description {
@@ -22,16 +21,14 @@ inline const std::filesystem::path source = COHORT_SOURCE_DIR;
 /// A folder of its own with the s-bot beside it, so that model://sbot is found.
 class Description : public ::testing::Test {
  protected:
-  Description() : folder_(std::filesystem::temp_directory_path() / ("cohort_description_" + std::to_string(getpid()))) {
-    std::filesystem::remove_all(folder_);
+  Description() {
     std::filesystem::create_directories(folder_ / "robots");
     std::filesystem::copy(source / "worlds/robots/sbot", folder_ / "robots/sbot");
   }
-  ~Description() override { std::filesystem::remove_all(folder_); }
 
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::filesystem::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name) << text;
+    test::write_file(folder_ / name, text);
     return folder_ / name;
   }
   /// The content of <world> starts on line 2.
@@ -50,7 +47,8 @@ class Description : public ::testing::Test {
   }
   World read(const std::string& content) const { return parsing::read_world(write_world(content), 1); }
 
-  std::filesystem::path folder_;
+  test::ScratchFolder scratch_;
+  std::filesystem::path folder_ = scratch_.path();
 };
 
 /// What is wrong with what `read` reads.

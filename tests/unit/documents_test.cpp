@@ -2,25 +2,21 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
 #include <string>
 
+#include "tests/support/files.hpp"
+
 namespace cohort {
 namespace {
-
-std::string read(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::set<std::string> tests_in_the_sources() {
   const std::regex definition(R"(\bTEST(?:_F|_P)?\((\w+),\s*(\w+)\))");
   std::set<std::string> tests;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(COHORT_SOURCE_DIR "/tests")) {
     if (entry.path().extension() != ".cpp") continue;
-    const std::string source = read(entry.path());
+    const std::string source = test::read_file(entry.path());
     for (std::sregex_iterator match(source.begin(), source.end(), definition), end; match != end; ++match)
       tests.insert((*match)[1].str() + "." + (*match)[2].str());
   }
@@ -53,11 +49,11 @@ TEST(Documents, TheSemanticsNameTestsThatExistAndEveryLineHasOne) {
 // Code blocks that begin with the name of a file: each stands in it as it is.
 TEST(Documents, ExcerptsStandInTheFilesThatTheyName) {
   const std::regex block(R"(```cpp\n// ([\w.]+/[\w/.]+)\n([\s\S]*?)```)");
-  const std::string document = read(COHORT_SOURCE_DIR "/docs/contributing.md");
+  const std::string document = test::read_file(COHORT_SOURCE_DIR "/docs/contributing.md");
   int excerpts = 0;
   for (std::sregex_iterator match(document.begin(), document.end(), block), end; match != end; ++match) {
     const std::string file = (*match)[1], excerpt = (*match)[2];
-    EXPECT_NE(read(std::filesystem::path(COHORT_SOURCE_DIR) / file).find(excerpt), std::string::npos)
+    EXPECT_NE(test::read_file(std::filesystem::path(COHORT_SOURCE_DIR) / file).find(excerpt), std::string::npos)
         << "contributing.md shows this of " << file << ":\n"
         << excerpt;
     ++excerpts;

@@ -15,8 +15,8 @@ class WhatThePageShows : public InABrowser {
   void show(const std::string& experiment, const std::string& seconds, const std::string& scenario,
             const std::vector<std::string>& more = {}) {
     const std::filesystem::path recording = scratch / "run.mcap";
-    testing::run_experiment(experiment, {"--controllers", "inprocess", "--duration", seconds, "--record", recording,
-                                         "--record-snapshots", "1"});
+    test::run_experiment(experiment, {"--controllers", "inprocess", "--duration", seconds, "--record", recording,
+                                      "--record-snapshots", "1"});
     const View view({recording});
     std::vector<std::string> arguments = {scenario, view.address()};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -25,7 +25,7 @@ class WhatThePageShows : public InABrowser {
   void show_exhibits(const std::string& scenario) {
     show(COHORT_SOURCE_DIR "/tests/view/exhibits/experiment.yaml", "4", scenario);
   }
-  testing::ScratchFolder scratch;
+  test::ScratchFolder scratch;
 };
 
 TEST_F(WhatThePageShows, IsFilmed) { show_exhibits("films"); }
@@ -47,7 +47,7 @@ TEST_F(WhatThePageShows, HasHillsAsHighAsTheirGround) {
       if (hit && geometry::is_ground(solids.solid(hit->solid).shape)) places.push_back({x, y, 10.0 - hit->distance});
     }
   ASSERT_GT(places.size(), 10u);
-  testing::write_file(scratch / "heights.json", places.dump());
+  test::write_file(scratch / "heights.json", places.dump());
   show(hills, "0.1", "draws_hills", {scratch / "heights.json"});
 }
 

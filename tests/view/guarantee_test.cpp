@@ -6,28 +6,27 @@
 namespace cohort::view {
 namespace {
 
-using testing::Process;
+using namespace test;
 
 class ObserversNeverCount : public InABrowser {
  protected:
   // Runs the demo while a browser looks at it in such a way; its hash is that of a run that nobody looks at.
   static void expect_same_hash_while(const std::string& scenario, bool is_killed) {
-    const testing::ReservedDomain domain;
-    const testing::ScratchFolder scratch;
-    Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--paused",
-                 "--speed", "4", "--duration", "20", "--summary", scratch / "summary.json"});
+    const ReservedDomain domain;
+    const ScratchFolder scratch;
+    Process run({cohort_program(), "run", demo_experiment(), "--domain", domain.text(), "--paused", "--speed", "4",
+                 "--duration", "20", "--summary", scratch / "summary.json"});
     View view({"--domain", domain.text(), "--control"});
     Process browser = start_script("browser.mjs", {scenario, view.address()});
     ASSERT_TRUE(browser.wait_for_output("looking")) << browser.output();
-    ASSERT_EQ(testing::run_to_end({testing::cohort_program(), "ctl", "--domain", domain.text(), "resume"}).exit_code,
-              0);
+    ASSERT_EQ(run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "resume"}).exit_code, 0);
     if (is_killed) {
       ASSERT_TRUE(browser.wait_for_output("seen")) << browser.output();
       browser.signal(SIGKILL);
     }
     ASSERT_EQ(run.wait_for_exit(), 0) << run.output();
-    const auto summary = nlohmann::json::parse(testing::read_file(scratch / "summary.json"));
-    EXPECT_EQ(summary["state_hash"], testing::reference_hash(20));
+    const auto summary = read_json(scratch / "summary.json");
+    EXPECT_EQ(summary["state_hash"], reference_hash(20));
     EXPECT_TRUE(view.process().running());
   }
 };

@@ -6,14 +6,14 @@
 namespace cohort::view {
 namespace {
 
-using testing::Process;
+using namespace test;
 
 // Robots for people, one that a controller drives, and things.
 class Hands : public InABrowser {
  protected:
   void SetUp() override {
     InABrowser::SetUp();
-    testing::write_file(scratch / "world.yaml", R"(world:
+    write_file(scratch / "world.yaml", R"(world:
   name: playground
   gravity: [0, 0, -9.81]
   model:
@@ -31,7 +31,7 @@ class Hands : public InABrowser {
     - {uri: model://sbot, name: others/driven, pose: [-0.6, -0.8, 0, 0, 0, 0]}
     - {uri: model://bar, name: bar, pose: [1, -0.8, 0.05, 0, 0, 0]}
 )");
-    testing::write_file(scratch / "experiment.yaml", R"(world: world.yaml
+    write_file(scratch / "experiment.yaml", R"(world: world.yaml
 duration: 600
 teams:
   - {name: people, robots: people/*, controller: keyboard, mode: free}
@@ -40,15 +40,15 @@ teams:
   }
 
   std::vector<std::string> playground() const {
-    return {testing::cohort_program(), "run", scratch / "experiment.yaml", "--domain", domain.text()};
+    return {cohort_program(), "run", scratch / "experiment.yaml", "--domain", domain.text()};
   }
   std::vector<std::string> ctl(const std::string& command) const {
-    return {testing::cohort_program(), "ctl", "--domain", domain.text(), command};
+    return {cohort_program(), "ctl", "--domain", domain.text(), command};
   }
   nlohmann::json status() const {
     auto command = ctl("status");
     command.emplace_back("--json");
-    return nlohmann::json::parse(testing::run_to_end(std::move(command)).out, nullptr, false);
+    return nlohmann::json::parse(run_to_end(std::move(command)).out, nullptr, false);
   }
   static bool has_view(const nlohmann::json& now) {
     return std::ranges::any_of(now["controllers"], [](const nlohmann::json& each) {
@@ -57,10 +57,8 @@ teams:
   }
   // The view has left its robot, and the run went on since it was as `before`.
   void expect_let_go(const nlohmann::json& before) const {
-    const auto until = std::chrono::steady_clock::now() + testing::patience;
-    auto now = status();
-    while (has_view(now) && std::chrono::steady_clock::now() < until) now = status();
-    EXPECT_FALSE(has_view(now)) << now;
+    nlohmann::json now;
+    EXPECT_TRUE(eventually([&] { return !has_view(now = status()); })) << now;
     EXPECT_GT(now["tick"].get<std::uint64_t>(), before["tick"].get<std::uint64_t>());
   }
   void drives(const std::string& scenario) {
@@ -70,8 +68,8 @@ teams:
     EXPECT_TRUE(run.running()) << run.output();
   }
 
-  testing::ScratchFolder scratch;
-  testing::ReservedDomain domain;
+  ScratchFolder scratch;
+  ReservedDomain domain;
 };
 
 TEST_F(Hands, DriveARobotByKeysAndSliders) { drives("drives_by_keys"); }
@@ -80,7 +78,7 @@ TEST_F(Hands, OfAPageThatFallsSilentLetTheRobotStandAndSomebodyElseTakesIt) { dr
 TEST_F(Hands, AddDragSwitchAndRemoveObjects) { drives("handles_objects"); }
 
 TEST_F(Hands, AreIdleWhereThereIsARecording) {
-  testing::run_demo({"--duration", "0.5", "--record", scratch / "run.mcap"});
+  run_demo({"--duration", "0.5", "--record", scratch / "run.mcap"});
   const View view({scratch / "run.mcap"});
   run_script("hands.mjs", {"offers_no_hands", view.address()});
 }
@@ -114,7 +112,7 @@ TEST_F(Hands, AreToldWhenTheServerQuitsAndTheViewStays) {
   View view({"--domain", domain.text(), "--control"});
   Process script = start_script("hands.mjs", {"drives_on", view.address()});
   ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
-  EXPECT_EQ(testing::run_to_end(ctl("shutdown")).exit_code, 0);
+  EXPECT_EQ(run_to_end(ctl("shutdown")).exit_code, 0);
   EXPECT_EQ(script.wait_for_exit(), 0) << script.output();
   EXPECT_NE(script.output().find("ended: the run is over"), std::string::npos) << script.output();
   EXPECT_TRUE(view.process().running());
@@ -123,8 +121,8 @@ TEST_F(Hands, AreToldWhenTheServerQuitsAndTheViewStays) {
 
 // What `cohort run teleop.yaml --view --control` says is enough to drive.
 TEST_F(Hands, DriveTheRobotThatARunWaitsFor) {
-  Process run({testing::cohort_program(), "run", COHORT_SOURCE_DIR "/worlds/experiments/teleop.yaml", "--view",
-               "--control", "--domain", domain.text()});
+  Process run({cohort_program(), "run", COHORT_SOURCE_DIR "/worlds/experiments/teleop.yaml", "--view", "--control",
+               "--domain", domain.text()});
   ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
   ASSERT_TRUE(run.wait_for_output("choose one of its robots in the browser")) << run.output();
   const std::string output = run.output();

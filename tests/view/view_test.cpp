@@ -9,13 +9,12 @@
 namespace cohort::view {
 namespace {
 
+using namespace test;
 using nlohmann::json;
-using testing::Process;
-using testing::ScratchFolder;
 
 // The demo's first seconds, recorded with a snapshot every second.
 void record_demo(const std::filesystem::path& file, const std::string& seconds) {
-  testing::run_demo({"--duration", seconds, "--record", file, "--record-snapshots", "1"});
+  run_demo({"--duration", seconds, "--record", file, "--record-snapshots", "1"});
 }
 
 // Where the demo's robots are at a time, by the recording.
@@ -45,24 +44,23 @@ class InTheBrowser : public InABrowser {
 
 TEST_F(InTheBrowser, RobotsOfARecordingAreDrawnWhereItSaysTheyAre) {
   record_demo(scratch / "run.mcap", "4");
-  testing::write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 2.5).dump());
+  write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 2.5).dump());
   const View view({scratch / "run.mcap"});
   run_script("browser.mjs", {"draws", view.address(), scratch / "expected.json"});
 }
 
 // Its process goes with the run.
 TEST_F(InTheBrowser, ARunBringsItsView) {
-  Process run(
-      {testing::cohort_program(), "run", testing::demo_experiment(), "--view", "--control", "--duration", "600"});
+  Process run({cohort_program(), "run", demo_experiment(), "--view", "--control", "--duration", "600"});
   ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
   const std::string output = run.output();
   const std::size_t begin = output.find("http://");
   run_script("browser.mjs", {"steers_server", output.substr(begin, output.find('\n', begin) - begin)});
-  const std::vector<pid_t> children = testing::children_of(run.pid());
+  const std::vector<pid_t> children = children_of(run.pid());
   EXPECT_GE(children.size(), 2u) << "the controllers and the view";
   run.signal(SIGINT);
   EXPECT_EQ(run.wait_for_exit(), 130) << run.output();
-  for (const pid_t child : children) EXPECT_TRUE(testing::wait_until_gone(child));
+  for (const pid_t child : children) EXPECT_TRUE(wait_until_gone(child));
 }
 
 TEST_F(InTheBrowser, ARecordingIsSteeredByMouseKeysAndConsole) {
@@ -90,25 +88,25 @@ TEST_F(InTheBrowser, ALostConnectionIsFoundAgain) {
 }
 
 TEST_F(InTheBrowser, ARunningServerIsSeenAndSteered) {
-  const testing::ReservedDomain domain;
-  Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",
-               "--duration", "600"});
+  const ReservedDomain domain;
+  Process run(
+      {cohort_program(), "run", demo_experiment(), "--domain", domain.text(), "--speed", "1", "--duration", "600"});
   const View view({"--domain", domain.text(), "--control"});
   run_script("browser.mjs", {"steers_server", view.address()});
 }
 
 TEST_F(InTheBrowser, ARunningServerGoesBackInTimeAndTellsWhatHappens) {
-  const testing::ReservedDomain domain;
-  Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",
-               "--duration", "60", "--keep-snapshots", "0.5"});
+  const ReservedDomain domain;
+  Process run({cohort_program(), "run", demo_experiment(), "--domain", domain.text(), "--speed", "1", "--duration",
+               "60", "--keep-snapshots", "0.5"});
   const View view({"--domain", domain.text(), "--control"});
   run_script("browser.mjs", {"goes_back", view.address()});
 }
 
 TEST_F(InTheBrowser, WhoMayOnlyLookSteersNothing) {
-  const testing::ReservedDomain domain;
-  Process run({testing::cohort_program(), "run", testing::demo_experiment(), "--domain", domain.text(), "--speed", "1",
-               "--duration", "600"});
+  const ReservedDomain domain;
+  Process run(
+      {cohort_program(), "run", demo_experiment(), "--domain", domain.text(), "--speed", "1", "--duration", "600"});
   const View view({"--domain", domain.text()});
   run_script("browser.mjs", {"only_looks", view.address()});
 }
@@ -116,7 +114,7 @@ TEST_F(InTheBrowser, WhoMayOnlyLookSteersNothing) {
 // So many s-bots on a plane, for a tenth of a second.
 void record_many(const ScratchFolder& folder, int count) {
   const int half = static_cast<int>(std::ceil(0.25 * std::sqrt(count)));
-  testing::write_file(folder / "world.yaml", fmt::format(R"(world:
+  write_file(folder / "world.yaml", fmt::format(R"(world:
   name: field
   model: {{name: ground, static: true, link: {{name: body, collision: {{name: floor, geometry: {{plane: {{normal: [0, 0, 1], size: [3, 3]}}}}}}}}}}
   cohort:physics: {{fidelity: planar}}
@@ -126,18 +124,18 @@ void record_many(const ScratchFolder& folder, int count) {
     count: {}
     placement: {{uniform: {{min: [-{}, -{}], max: [{}, {}]}}, gap: 0.05}}
 )",
-                                                         count, half, half, half, half));
-  testing::write_file(folder / "many.yaml",
-                      "world: world.yaml\nduration: 0.1\nteams:\n  - {name: swarm, robots: swarm/*, controller: "
-                      "obstacle_avoidance}\n");
-  testing::run_experiment(folder / "many.yaml", {"--controllers", "inprocess", "--record", folder / "run.mcap"});
+                                                count, half, half, half, half));
+  write_file(folder / "many.yaml",
+             "world: world.yaml\nduration: 0.1\nteams:\n  - {name: swarm, robots: swarm/*, controller: "
+             "obstacle_avoidance}\n");
+  run_experiment(folder / "many.yaml", {"--controllers", "inprocess", "--record", folder / "run.mcap"});
 }
 
 class ManyRobotsInTheBrowser : public InTheBrowser, public ::testing::WithParamInterface<int> {};
 
 TEST_P(ManyRobotsInTheBrowser, AreDrawnAtOnce) {
   record_many(scratch, GetParam());
-  testing::write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 0.05).dump());
+  write_file(scratch / "expected.json", robots_at(scratch / "run.mcap", 0.05).dump());
   const View view({scratch / "run.mcap"});
   run_script("browser.mjs", {"draws_many", view.address(), scratch / "expected.json"});
 }

@@ -23,12 +23,12 @@ class Viewing : public ::testing::Test {
   static bool has_browser() { return !std::string(COHORT_CHROMIUM).empty(); }
 
   /// Starts a script, whose arguments these are.
-  static testing::Process start_script(const std::string& script, std::vector<std::string> arguments) {
-    return testing::Process(scripts.command(script, std::move(arguments)), environment());
+  static test::Process start_script(const std::string& script, std::vector<std::string> arguments) {
+    return test::Process(scripts.command(script, std::move(arguments)), environment());
   }
   /// Runs it to its end, however long all of it takes; it says itself what is wrong, and what it waits for in vain.
   static void run_script(const std::string& name, std::vector<std::string> arguments) {
-    testing::Process script = start_script(name, std::move(arguments));
+    test::Process script = start_script(name, std::move(arguments));
     while (script.running()) script.wait_for_exit();
     EXPECT_EQ(script.wait_for_exit(), 0) << script.output();
   }
@@ -47,28 +47,28 @@ class Viewing : public ::testing::Test {
       const std::size_t begin = address_.rfind(':') + 1;
       return address_.substr(begin, address_.find('/', begin) - begin);
     }
-    testing::Process& process() { return process_; }
+    test::Process& process() { return process_; }
 
    private:
     static std::vector<std::string> with_port(std::vector<std::string> arguments) {
-      std::vector<std::string> command = {testing::cohort_program(), "view"};
+      std::vector<std::string> command = {test::cohort_program(), "view"};
       command.insert(command.end(), arguments.begin(), arguments.end());
       if (std::ranges::find(arguments, "--port") == arguments.end()) command.insert(command.end(), {"--port", "0"});
       return command;
     }
-    testing::Process process_;
+    test::Process process_;
     std::string address_;
   };
 
  private:
   // A script is less patient than we are, to say itself what did not come.
-  static testing::Process::Environment environment() {
-    const auto theirs = std::chrono::milliseconds(testing::patience) / 2;
+  static test::Process::Environment environment() {
+    const auto theirs = std::chrono::milliseconds(test::patience) / 2;
     return {{"COHORT_CHROMIUM", COHORT_CHROMIUM}, {"COHORT_PATIENCE", std::to_string(theirs.count())}};
   }
 
-  inline static const testing::NodeFolder scripts{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/view",
-                                                  COHORT_NODE_FOLDER};
+  inline static const test::NodeFolder scripts{COHORT_NODE, COHORT_NPM, COHORT_SOURCE_DIR "/tests/view",
+                                               COHORT_NODE_FOLDER};
 };
 
 /// A test that needs a browser.

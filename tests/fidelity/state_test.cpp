@@ -1,0 +1,97 @@
+// The state of a world, whatever its physics: the same bits for any number of threads, and from a snapshot on.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/physics.hpp"
+
+namespace cohort::test {
+namespace {
+
+// All that has a state: robots that push each other, loose things of shapes with and without a closed form of contact,
+// a wall, joints with limits and friction, and robots that hold each other, leave and come.
+struct BusyWorld {
+  SmallWorld small;
+  std::uint32_t robots;
+  std::uint32_t bond = 0, added = 0;
+
+  BusyWorld(const Physics& physics, unsigned threads)
+      : small(physics.world(), threads), robots(physics == planar ? 150 : 60) {  // several for each thread
+    for (std::uint32_t i = 0; i < robots; ++i)
+      small.add(physics.robot(), at(0.14 * (i % 12), 0.14 * (i / 12), 0, 0.7 * i));
+    auto hull = std::make_shared<description::TriangleMesh>();
+    hull->vertices = {{0, 0, 0.1}, {0.1, 0, -0.05}, {-0.05, 0.09, -0.05}, {-0.05, -0.09, -0.05}};
+    const description::Shape shapes[] = {description::Cylinder{0.05, 0.1}, description::Box{{0.1, 0.06, 0.1}},
+                                         description::Ellipsoid{{0.08, 0.06, 0.05}}, description::Sphere{0.05},
+                                         description::Mesh{hull, true}};
+    for (int i = 0; i < 12; ++i)
+      small.add(loose("loose", shapes[i % (physics == planar ? 3 : 5)], solid_sphere(0.2, 0.06)),
+                at(-0.15, 0.14 * i, physics == planar || i % 2 == 0 ? 0.05 : 0.25, 0.3 * i));
+    small.add(static_shape("wall", description::Box{{0.1, 3, 0.3}}), at(-0.4, 0.8, 0.15));
+  }
+  void step(int tick) {
+    if (tick == 0) {
+      bond = small.world().connect(1, turret, {{0.07, 0, 0}}, 2, turret, {.force = 50.0});
+      small.world().connect(3, turret, {{0.07, 0, 0}}, 4, turret);
+    }
+    if (tick == 50) small.world().remove_body(9);
+    if (tick == 60) added = small.world().add_body(1, at(-0.8, -0.5, 0));
+    if (tick == 70) small.world().disconnect(bond);
+    for (std::uint32_t body = 1; body < small.world().body_count(); ++body) {
+      if (!small.world().is_active(body) || (body > robots && body != added)) continue;
+      const double turn = 0.05 * std::sin(0.03 * tick + body);
+      small.drive(body, -0.1 + turn, -0.1 - turn);
+      small.world().set_joint_velocity_target(body, 0, 0.5);
+    }
+    small.world().step();
+  }
+};
+
+class State : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, State, every_physics, name_of);
+
+TEST_P(State, HasTheSameBitsForAnyNumberOfThreads) {
+  const auto hash_with = [](unsigned threads) {
+    BusyWorld busy(GetParam(), threads);
+    for (int tick = 0; tick < 300; ++tick) busy.step(tick);
+    EXPECT_FALSE(busy.small.world().is_active(9));
+    EXPECT_EQ(busy.added, busy.small.description.instances.size());
+    EXPECT_GT((busy.small.position(busy.added) - Eigen::Vector3d(-0.8, -0.5, 0)).norm(), 0.05);
+    return hash_of(busy.small.world());
+  };
+  const std::uint64_t expected = hash_with(1);
+  for (const unsigned threads : {2u, 4u, 8u}) EXPECT_EQ(hash_with(threads), expected) << threads;
+}
+
+TEST_P(State, RestoredFromASnapshotGoesOnWithTheSameBits) {
+  BusyWorld busy(GetParam(), 1);
+  for (int tick = 0; tick < 150; ++tick) busy.step(tick);
+  BusyWorld restored(GetParam(), 2);
+  restore_from(busy.small.world(), restored.small.world());
+  restored.added = busy.added;
+  ASSERT_EQ(hash_of(restored.small.world()), hash_of(busy.small.world()));
+  ASSERT_EQ(restored.small.world().contacts().size(), busy.small.world().contacts().size());
+  EXPECT_GT(busy.small.world().contacts().size(), 10u) << "there is something to keep";
+  for (int tick = 150; tick < 300; ++tick) {
+    busy.step(tick);
+    restored.step(tick);
+    ASSERT_EQ(hash_of(restored.small.world()), hash_of(busy.small.world())) << "at tick " << tick;
+  }
+}
+
+TEST_P(State, OfAnotherWorldOrCutOffIsRefused) {
+  BusyWorld busy(GetParam(), 1);
+  busy.step(0);
+  SnapshotWriter writer;
+  busy.small.world().save(writer);
+  SmallWorld another(GetParam().world());
+  SnapshotReader reader(writer.bytes());
+  EXPECT_THROW(another.world().restore(reader), SnapshotError);
+  for (const std::size_t length : {std::size_t{0}, writer.bytes().size() / 2, writer.bytes().size() - 1}) {
+    BusyWorld cut(GetParam(), 1);
+    SnapshotReader short_reader(std::span(writer.bytes()).first(length));
+    EXPECT_THROW(cut.small.world().restore(short_reader), SnapshotError) << length << " bytes";
+  }
+}
+
+}  // namespace
+}  // namespace cohort::test

@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "idl/wire.hpp"
+#include "tests/support/free_domain.hpp"
+#include "tests/support/keys.hpp"
+
+// Who gets in at a door of the server, tried with real participants and real certificates.
+namespace cohort::wire {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace test;
+
+class Door {
+ public:
+  Door(std::uint32_t domain, const Identity& identity)
+      : participant(Participant::server(domain, "127.0.0.1", identity)),
+        joins(participant, {[this](const Join& join, const Sender&) { process = join.process; }, {}}),
+        states(participant, "view") {}
+
+  Participant participant;
+  std::atomic<std::uint32_t> process = 0;  // of the Join that came last
+  Reader<Join> joins;
+  Writer<WorldState> states;
+};
+
+class Joining {
+ public:
+  Joining(std::uint32_t domain, const std::optional<Identity>& identity, std::uint32_t process)
+      : participant(Participant::client(domain, "127.0.0.1", identity)), joins(participant) {
+    joins.write({.client = process, .process = process});
+  }
+  Participant participant;
+  Writer<Join> joins;
+};
+
+// What Cyclone DDS has to say while this lives.
+class Told {
+ public:
+  Told() {
+    set_dds_log([](std::string_view message, DdsLogKind kind) noexcept {
+      const std::lock_guard lock(mutex);
+      if (kind == DdsLogKind::refusal) refusals.emplace_back(message);
+    });
+  }
+  Told(const Told&) = delete;
+  Told& operator=(const Told&) = delete;
+  ~Told() { set_dds_log(nullptr); }
+  // How many have all these texts in them.
+  static std::size_t count(const std::vector<std::string>& texts) {
+    const std::lock_guard lock(mutex);
+    return static_cast<std::size_t>(std::ranges::count_if(refusals, [&](const std::string& refusal) {
+      return std::ranges::all_of(texts, [&](const auto& text) { return refusal.find(text) != std::string::npos; });
+    }));
+  }
+
+ private:
+  static inline std::mutex mutex;
+  static inline std::vector<std::string> refusals;
+};
+
+class SecureDomain : public ::testing::Test {
+ protected:
+  std::uint32_t domain() const { return reserved_.number(); }
+
+ private:
+  const ReservedDomain reserved_;
+};
+
+class ProtectedDomain : public SecureDomain, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(ProtectedDomain, AClientGetsInAtItsOwnDoorAndNowhereElse) {
+  const Keys keys(GetParam());
+  Door red(domain(), keys.door("red"));
+  Door blue(domain(), keys.door("blue"));
+  const Joining client(domain(), keys.client("red"), 7);
+  EXPECT_TRUE(eventually([&] { return red.process == 7; }));
+  EXPECT_EQ(blue.joins.matched(), 0u);
+  EXPECT_EQ(red.participant.identity()->name, "red");
+  EXPECT_EQ(red.participant.identity()->robots, std::vector<std::string>{"0..7"});
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ProtectedDomain, ::testing::Values("sign", "encrypt"),
+                         [](const auto& protection) { return std::string(protection.param); });
+
+TEST_F(SecureDomain, WhoHasOtherCertificatesIsRefusedAndBothSidesAreToldOnce) {
+  const Told told;
+  const Keys keys, others;
+  Door red(domain(), keys.door("red"));
+  Door blue(domain(), keys.door("blue"));
+  const Joining of_another_making(domain(), others.client("red"), 1);
+  const Joining disguised(domain(), read_identity(keys.disguise("red", "blue")), 2);
+  EXPECT_TRUE(eventually([] { return Told::count({"OU=red/CN=client", "unable to get local issuer"}) > 0; }));
+  EXPECT_TRUE(eventually([] { return Told::count({"OU=red/CN=server", "signature failure"}) > 0; }));
+  // Two who came later are in when they are not.
+  const Joining first(domain(), keys.client("red"), 3), second(domain(), keys.client("blue"), 4);
+  EXPECT_TRUE(eventually([&] { return red.process == 3 && blue.process == 4; }));
+  EXPECT_EQ(red.joins.matched(), 1u);
+  EXPECT_EQ(blue.joins.matched(), 1u);
+  EXPECT_EQ(of_another_making.joins.matched() + disguised.joins.matched(), 0u);
+  EXPECT_EQ(Told::count({"OU=red/CN=server", "signature failure"}), 1u) << "though it is tried every second";
+}
+
+TEST_F(SecureDomain, WhoHasNoCertificatesNeitherWritesNorReads) {
+  const Keys keys;
+  Door door(domain(), keys.door("observer"));
+  Participant plain = Participant::client(domain());
+  Writer<Join> joins(plain);
+  joins.write({.client = 1, .process = 1});
+  const Reader<WorldState> looking_on(plain, {[](const WorldState&, const Sender&) {}, {}}, "view");
+  Participant observer = Participant::client(domain(), "127.0.0.1", keys.client("observer"));
+  std::atomic<bool> sees = false;
+  const Reader<WorldState> states(observer, {[&](const WorldState&, const Sender&) { sees = true; }, {}}, "view");
+  EXPECT_TRUE(eventually([&] {
+    door.states.write({.run = 1});
+    return sees.load();
+  }));
+  EXPECT_EQ(looking_on.matched() + joins.matched() + door.joins.matched(), 0u);
+  EXPECT_EQ(door.states.matched(), 1u);
+}
+
+TEST_F(SecureDomain, AProgramIsToldWhatItsIdentityMayNotDo) {
+  const Keys keys;
+  Participant observer = Participant::client(domain(), "127.0.0.1", keys.client("observer"));
+  EXPECT_THROW(Writer<Command>{observer}, WireError);
+  Participant red = Participant::client(domain(), "127.0.0.1", keys.client("red"));
+  const Writer<Command> commands(red);
+  const auto look_on = [&] { Reader<WorldState>(red, {[](const WorldState&, const Sender&) {}, {}}, "view"); };
+  EXPECT_THROW(look_on(), WireError);
+  const auto admits_in = [&](const std::string& partition) {
+    Reader<Admit>(red, {[](const Admit&, const Sender&) {}, {}}, partition);
+  };
+  EXPECT_NO_THROW(admits_in(partition_of(1)));
+  EXPECT_THROW(admits_in("another"), WireError) << "partitions of permissions count too";
+}
+
+TEST_F(SecureDomain, ACertificateThatIsOverIsNamed) {
+  const Keys keys("sign", 0);
+  try {
+    Door(domain(), keys.door("red"));
+    FAIL() << "it is accepted";
+  } catch (const WireError& error) {
+    EXPECT_NE(std::string(error.what()).find("expired"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("server/red"), std::string::npos) << error.what();
+  }
+}
+
+void expect_wire_error(const std::function<void()>& action, const std::string& text) {
+  try {
+    action();
+    ADD_FAILURE() << "no error; expected " << text;
+  } catch (const WireError& error) {
+    EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
+  }
+}
+
+TEST(Identities, FilesAreTheirOwnersAloneAndTheAuthoritysKeyIsGone) {
+  const Keys keys;
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(keys.folder())) {
+    EXPECT_EQ(entry.path().filename().string().find("authority_key"), std::string::npos);
+    if (!entry.is_regular_file()) continue;
+    EXPECT_EQ(entry.status().permissions(), fs::perms::owner_read | fs::perms::owner_write) << entry.path();
+    ++files;
+  }
+  EXPECT_EQ(files, 6 * 6);
+}
+
+TEST(Identities, WhatIsMissingOrMixedUpIsNamed) {
+  const Keys keys;
+  expect_wire_error([&] { read_identity(keys.folder()); }, "give the folder of one");
+  expect_wire_error([&] { read_identity("/nowhere"); }, "/nowhere/identity: No such file");
+  expect_wire_error([&] { read_doors(keys.client_folder("red")); }, "no door for observers");
+  expect_wire_error([&] { Participant::client(0, "127.0.0.1", keys.door("red")); }, "is the server's");
+  EXPECT_EQ(read_doors(keys.folder()).size(), 3u);
+  EXPECT_EQ(read_doors(keys.folder() + "/server").back().name, "blue");
+  fs::remove(keys.client_folder("red") + "/key.pem");
+  expect_wire_error([&] { keys.client("red"); }, "red/key.pem: No such file");
+  write_file(keys.client_folder("blue") + "/identity", "name: blue\ndoor: 999\n");
+  expect_wire_error([&] { keys.client("blue"); }, "expected a door from 0 to 119, not '999'");
+  fs::remove_all(keys.folder() + "/server/observer");
+  expect_wire_error([&] { read_doors(keys.folder()); }, "no door for observers");
+}
+
+}  // namespace
+}  // namespace cohort::wire

@@ -1,0 +1,162 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/sensed.hpp"
+
+/// Sensors that ask physics for accelerations and for what goes through joints, against closed forms.
+namespace cohort {
+namespace {
+
+using namespace test;
+using description::ForceTorqueSensor;
+using description::Model;
+using std::numbers::pi;
+constexpr double step = 0.01;
+
+description::Imu imu(const Pose& X_LS = {}) {
+  description::Imu result;
+  result.name = "imu";
+  result.X_LS = X_LS;
+  return result;
+}
+
+void expect_near(const Eigen::Vector3d& value, const Eigen::Vector3d& expected, double tolerance) {
+  EXPECT_LT((value - expected).norm(), tolerance) << value.transpose() << ", expected " << expected.transpose();
+}
+
+TEST(ImuSensor, AtRestMeasuresGravityUpwardsAndNoRotation) {
+  Sensed sensed(imu(), at(0, 0, 0.1, 0.8));
+  expect_near(sensed.vector("linear_acceleration"), {0, 0, g}, 1e-12);  // before the first step
+  sensed.small.run(1.0);
+  expect_near(sensed.vector("linear_acceleration"), {0, 0, g}, 1e-3);
+  expect_near(sensed.vector("angular_velocity"), {0, 0, 0}, 1e-6);
+}
+
+TEST(ImuSensor, InFreeFallMeasuresNothing) {
+  Sensed sensed(imu({{0.1, 0.2, 0.3}}), at(0, 0, 50));
+  sensed.read();
+  sensed.small.run(0.5);
+  expect_near(sensed.vector("linear_acceleration"), {0, 0, 0}, 1e-9);
+}
+
+TEST(ImuSensor, SharesGravityOutToItsAxesAsItLeans) {
+  Sensed sensed(imu(turned(0, 0, 0, {1, 0, 0}, 0.3)), turned(0, 0, 1, {0, 0, 1}, 1.7));
+  expect_near(sensed.vector("linear_acceleration"), {0, g * std::sin(0.3), g * std::cos(0.3)}, 1e-12);
+}
+
+// The mean over a step of h of a point that goes round: the velocities before and after are w r long and w h apart, so
+// that in the axes at the end it is w r / h (-sin(w h), 1 - cos(w h)), which is -w^2 r for small w h.
+TEST(ImuSensor, MeasuresTheCentripetalAccelerationOfItsPlace) {
+  constexpr double w = 3.0, r = 0.4;
+  Sensed sensed(imu({{r, 0, 0}}));
+  sensed.small.description.gravity.setZero();
+  sensed.read();
+  sensed.small.world().set_root_twist(sensed.body, {{0, 0, w}, {0, 0, 0}});
+  sensed.small.run(0.5);
+  expect_near(sensed.vector("linear_acceleration"),
+              w * r / step * Eigen::Vector3d(-std::sin(w * step), 1.0 - std::cos(w * step), 0.0), 1e-9);
+  expect_near(sensed.vector("angular_velocity"), {0, 0, w}, 1e-12);
+}
+
+TEST(ImuSensor, GivesAngularVelocityInItsOwnAxes) {
+  Sensed sensed(imu(turned(0, 0, 0, {1, 0, 0}, 0.5 * pi)));
+  sensed.small.world().set_root_twist(sensed.body, {{0.1, 0.2, 0.3}, {0, 0, 0}});
+  expect_near(sensed.vector("angular_velocity"), {0.1, 0.3, -0.2}, 1e-12);
+}
+
+// Turned by `yaw` about z.
+void expect_yaw(Sensed& sensed, double yaw) {
+  EXPECT_NEAR(sensed.value("orientation", 0), 0.0, 1e-9);
+  EXPECT_NEAR(sensed.value("orientation", 1), 0.0, 1e-9);
+  EXPECT_NEAR(sensed.value("orientation", 2), std::sin(0.5 * yaw), 1e-9);
+  EXPECT_NEAR(sensed.value("orientation", 3), std::cos(0.5 * yaw), 1e-9);
+}
+
+TEST(ImuSensor, GivesItsOrientationRelativeToThatAtFirst) {
+  Sensed sensed(imu(), at(0, 0, 50, 0.7));
+  expect_yaw(sensed, 0.0);
+  sensed.small.world().set_root_twist(sensed.body, {{0, 0, 0.5}, {0, 0, 0}});
+  sensed.small.run(1.0);
+  expect_yaw(sensed, 0.5);
+}
+
+TEST(ImuSensor, GivesItsOrientationInTheFrameThatIsAskedFor) {
+  description::Imu in_world = imu();
+  in_world.is_relative_to_world = true;
+  Sensed sensed(in_world, at(0, 0, 1, 0.7));
+  expect_yaw(sensed, 0.7);
+  in_world.reference_rpy = {0, 0, 0.2};
+  Sensed turned_frame(in_world, at(0, 0, 1, 0.7));
+  expect_yaw(turned_frame, 0.5);
+  in_world.is_relative_to_world = false;
+  Sensed turned_from_first(in_world, at(0, 0, 1, 0.7));
+  expect_yaw(turned_from_first, -0.2);
+}
+
+TEST(ImuSensor, WithoutOrientationHasNoChannelForIt) {
+  description::Imu sensor = imu();
+  sensor.has_orientation = false;
+  Sensed sensed(sensor);
+  ASSERT_EQ(sensed.channels().size(), 2u);
+  expect_near(sensed.vector("linear_acceleration"), {0, 0, g}, 1e-12);
+}
+
+TEST(AccelerometerSensor, MeasuresGravityAlongItsAxesAndNothingInFreeFall) {
+  const Pose X_LS = turned(0, 0, 0, {0, 1, 0}, 0.4);
+  Sensed sensed(description::Accelerometer{"a", 0, X_LS}, at(0, 0, 50));
+  expect_near(sensed.vector("acceleration"), {-g * std::sin(0.4), 0, g * std::cos(0.4)}, 1e-12);
+  sensed.small.run(0.1);
+  expect_near(sensed.vector("acceleration"), {0, 0, 0}, 1e-9);
+}
+
+// A bob of 2 kg, 0.3 m along x from the fixed joint that holds it; the joint is turned about z in the bob, and the bob
+// about z in the world.
+Model hanging(ForceTorqueSensor sensor) {
+  Model model;
+  model.name = "hanging";
+  model.links.push_back({"base", {}, solid_box(1.0, {0.1, 0.1, 0.1}), {}});
+  description::Link bob{"bob", at(0, 0, 0, 0.5 * pi), solid_box(2.0, {0.1, 0.1, 0.1}), {}};
+  bob.inertial.X_LI.position.x() = 0.3;
+  model.links.push_back(bob);
+  description::Joint to_world, joint;
+  to_world.name = "to_world";
+  to_world.parent = description::Joint::world;
+  to_world.child = 0;
+  joint.name = "joint";
+  joint.parent = 0;
+  joint.child = 1;
+  joint.X_LJ = at(0, 0, 0, 0.5 * pi);
+  model.joints = {to_world, joint};
+  sensor.name = "wrench";
+  sensor.joint = 1;
+  model.devices.push_back(sensor);
+  return model;
+}
+
+TEST(ForceTorqueSensor, MeasuresTheWeightThatHangsOnAJointInTheAxesThatAreAskedFor) {
+  using Frame = ForceTorqueSensor::Frame;
+  constexpr double weight = 2.0 * g, moment = 0.3 * weight;
+  // In the world the bob is 0.3 m along y: its weight turns it about -x. These are the axes of the parent.
+  const auto check = [&](const ForceTorqueSensor& sensor, const Eigen::Vector3d& torque, double sign) {
+    Sensed sensed(hanging(sensor), at(0, 0, 1));
+    sensed.read();
+    sensed.small.run(0.1);
+    expect_near(sensed.vector("force"), {0, 0, -sign * weight}, 1e-6);
+    expect_near(sensed.vector("torque"), sign * torque, 1e-6);
+  };
+  check({"", 0, {}, Frame::parent, true}, {-moment, 0, 0}, 1.0);
+  check({"", 0, {}, Frame::parent, false}, {-moment, 0, 0}, -1.0);
+  check({"", 0, {}, Frame::child, true}, {0, moment, 0}, 1.0);
+  check({"", 0, {}, Frame::sensor, true}, {moment, 0, 0}, 1.0);                      // a quarter turn further
+  check({"", 0, at(0, 0, 0, 0.5 * pi), Frame::sensor, true}, {0, -moment, 0}, 1.0);  // and one more
+}
+
+TEST(ForceTorqueSensor, OfABodyAtWhoseJointNothingPullsIsZeroBeforeTheFirstStep) {
+  Sensed sensed(hanging({}), at(0, 0, 1));
+  EXPECT_EQ(sensed.vector("force"), Eigen::Vector3d::Zero().eval());
+}
+
+}  // namespace
+}  // namespace cohort

@@ -1,0 +1,217 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "server/session/exchange.hpp"
+#include "server/session/in_process.hpp"
+#include "server/session/roster.hpp"
+#include "server/session/run_events.hpp"
+#include "tests/support/robots.hpp"
+
+namespace cohort::session {
+namespace {
+
+using namespace test;
+using Robots = std::vector<std::uint32_t>;
+
+constexpr std::size_t observation_size = 21;
+constexpr std::size_t left_position = 2;
+const std::vector<double> forward = {0.2, 0.2, 0.0};
+
+// Robots in a row, one team for each policy.
+description::Experiment experiment_of(const std::vector<description::Policy>& policies) {
+  description::Experiment experiment;
+  experiment.world = world_with_floor();
+  experiment.duration = std::chrono::milliseconds(100);
+  for (std::uint32_t robot = 0; robot < policies.size(); ++robot) {
+    place(experiment.world, tracked_robot(), "robot_" + std::to_string(robot), at(0.0, robot, 0.0));
+    experiment.teams.push_back({"team_" + std::to_string(robot), {robot}, "none", policies[robot]});
+  }
+  return experiment;
+}
+
+TEST(Exchange, ACommandActsInTheStepThatFollowsItsFrame) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  exchange.open({});
+  EXPECT_EQ(exchange.take(Robots{0}, 0, Robots{0}, forward).accepted, 1u);
+  ASSERT_TRUE(exchange.barrier().complete());
+  exchange.apply();
+  simulation.step();
+  EXPECT_GT(simulation.observation(0)[left_position], 0.0) << "it moves within [0, 1)";
+}
+
+TEST(Exchange, AnAnswerActsExactlyItsDelayLaterAndNeutralValuesUntilThen) {
+  const auto experiment = experiment_of({{1, 0, 3, description::OnLate::wait, {}}});
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  std::vector<std::uint64_t> moving_from;
+  for (std::uint64_t tick = 0; tick < 5; ++tick) {
+    exchange.open({});
+    exchange.take(Robots{0}, tick, Robots{0}, forward);
+    ASSERT_TRUE(exchange.barrier().complete());
+    exchange.apply();
+    const double before = simulation.observation(0)[left_position];
+    simulation.step();
+    if (simulation.observation(0)[left_position] > before + 1e-6) moving_from.push_back(tick);
+  }
+  EXPECT_EQ(moving_from, (std::vector<std::uint64_t>{3, 4}));
+}
+
+TEST(Exchange, FramesHoldTheRobotsThatAreDueAndTheirObservationsAsTheyWere) {
+  const auto experiment =
+      experiment_of({{1, 0, 2, description::OnLate::wait, {}}, {2, 1, 0, description::OnLate::wait, {}}});
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  Exchange::Frame frame;
+  exchange.open({});
+  exchange.fill_frame(frame, Robots{0, 1}, 0);
+  EXPECT_EQ(frame.robots, Robots{0});
+  const std::vector<double> first(frame.values.begin(), frame.values.end());
+  EXPECT_EQ(first.size(), observation_size);
+  exchange.take(Robots{0}, 0, Robots{0}, forward);
+  exchange.apply();
+  simulation.set_command(0, forward);
+  simulation.step();
+
+  exchange.open({});
+  exchange.fill_frame(frame, Robots{0, 1}, 1);
+  EXPECT_EQ(frame.robots, (Robots{0, 1}));
+  EXPECT_EQ(frame.values.size(), 2 * observation_size);
+  exchange.fill_frame(frame, Robots{0, 1}, 0);
+  EXPECT_TRUE(std::ranges::equal(frame.values, first)) << "the frame under way is sent again as it was";
+}
+
+TEST(Exchange, RejectsAnAnswerForOtherRobotsThanItsFrame) {
+  const auto experiment = experiment_of({{}, {}});
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  exchange.open({});
+  const auto taken = exchange.take(Robots{0, 1}, 0, Robots{0}, forward);
+  EXPECT_EQ(taken.accepted, 0u);
+  EXPECT_EQ(taken.rejection->reason, "malformed");
+  EXPECT_FALSE(taken.is_fault);
+  EXPECT_EQ(exchange.barrier().awaited().size(), 2u) << "they can still answer rightly";
+}
+
+TEST(Exchange, ReadsNothingBeyondAnAnswerThatIsTooShort) {
+  const auto experiment = experiment_of({{}, {}});
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  exchange.open({});
+  const auto taken = exchange.take(Robots{0, 1}, 0, Robots{0, 1}, std::vector<double>{0.1, 0.1});
+  EXPECT_EQ(taken.rejection->reason, "wrong_size");
+  EXPECT_TRUE(taken.is_fault);
+  EXPECT_TRUE(taken.ends_run);
+}
+
+TEST(Exchange, AFaultyAnswerUnderZeroGivesNeutralValuesAndTheRunGoesOn) {
+  const auto experiment = experiment_of({{1, 0, 0, description::OnLate::zero, std::chrono::seconds(1)}});
+  Simulation simulation(experiment, 1);
+  simulation.set_command(0, forward);
+  Exchange exchange(simulation);
+  exchange.open({});
+  const auto taken = exchange.take(Robots{0}, 0, Robots{0}, std::vector<double>{9.0, 0.0, 0.0});
+  EXPECT_EQ(taken.rejection->reason, "out_of_range");
+  EXPECT_FALSE(taken.ends_run);
+  ASSERT_TRUE(exchange.barrier().complete());
+  exchange.apply();
+  simulation.step();
+  EXPECT_LT(std::abs(simulation.observation(0)[left_position]), 1e-4) << "at 0.2 m/s it would be 2 mm";
+}
+
+TEST(Roster, SeedsOfControllersDependOnTheExperimentsSeedAndTheRobotsNameOnly) {
+  auto experiment = experiment_of({{}, {}});
+  const Simulation two(experiment, 1);
+  const auto admitted = [](const auto& of, const Simulation& simulation, const Robots& robots) {
+    wire::Admit admit;
+    admit_robots(admit, of, simulation, robots);
+    return admit.robots;
+  };
+  const auto first = admitted(experiment, two, {0, 1});
+  EXPECT_NE(first[0].seed, first[1].seed);
+  const auto alone = experiment_of({{}});
+  const Simulation one(alone, 1);
+  EXPECT_EQ(admitted(alone, one, {0})[0].seed, first[0].seed);
+  experiment.seed = 99;
+  EXPECT_NE(admitted(experiment, two, {0})[0].seed, first[0].seed);
+}
+
+TEST(EventLog, CountsWhatIsTheSameAndIsBounded) {
+  EventLog log;
+  EXPECT_TRUE(log.add(3, "rejected", "stale"));
+  EXPECT_FALSE(log.add(9, "rejected", "stale", 4));
+  ASSERT_EQ(log.events().size(), 1u);
+  EXPECT_EQ(log.events()[0].tick, 3u);
+  EXPECT_EQ(log.events()[0].count, 5u);
+  for (int i = 0; i < 5000; ++i) log.add(10, "rejected", std::to_string(i));
+  EXPECT_EQ(log.events().size(), 1001u);
+  EXPECT_EQ(log.events().back().kind, "more");
+  EXPECT_EQ(log.events().back().count, 5001u - 1000u);
+  EXPECT_TRUE(log.add(11, "joined", "somebody")) << "others have their own room";
+}
+
+TEST(EventLog, TellsWhatHasChangedSince) {
+  EventLog log;
+  log.add(1, "joined", "a");
+  log.add(2, "missed", "b");
+  std::uint64_t revision = 0;
+  EXPECT_EQ(log.changed_since(revision, 10).size(), 2u);
+  EXPECT_EQ(revision, log.revision());
+  EXPECT_TRUE(log.changed_since(revision, 10).empty());
+  log.add(7, "joined", "c");
+  log.add(8, "joined", "a");
+  const std::vector<RunEvent> first = log.changed_since(revision, 1);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].text, "c");
+  const std::vector<RunEvent> second = log.changed_since(revision, 1);
+  ASSERT_EQ(second.size(), 1u);
+  EXPECT_EQ(second[0].text, "a");
+  EXPECT_EQ(second[0].tick, 1u);
+  EXPECT_EQ(second[0].last_tick, 8u);
+  EXPECT_EQ(second[0].count, 2u);
+  EXPECT_EQ(revision, log.revision());
+}
+
+class Straight final : public Controller {
+ public:
+  void start(const Start& start) override {
+    left_ = start.command("treel/left/velocity");
+    right_ = start.command("treel/right/velocity");
+  }
+  void step(const Observation& observation, Command& command) override {
+    if (observation.tick() == 5) throw std::runtime_error("I have had enough");
+    command.set(left_, 0.1);
+    command.set(right_, 0.1);
+  }
+
+ private:
+  CommandChannel left_, right_;
+};
+
+const Plugin straight = {Plugin::current_abi, "Straight", []() -> Controller* { return new Straight; },
+                         [](Controller* controller) { delete controller; }};
+
+TEST(InProcessRun, EndsWithTheMessageOfAControllerThatThrows) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  const std::atomic<bool> stop = false;
+  const RunResult result = run_in_process(experiment, simulation, {kind_of(straight)}, {}, {}, stop);
+  EXPECT_EQ(result.end, RunResult::End::failed);
+  EXPECT_EQ(result.ticks, 5u);
+  EXPECT_NE(result.error.find("robot_0"), std::string::npos) << result.error;
+  EXPECT_NE(result.error.find("I have had enough"), std::string::npos) << result.error;
+}
+
+TEST(InProcessRun, StopsWhenAskedTo) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  const std::atomic<bool> stop = true;
+  const RunResult result = run_in_process(experiment, simulation, {kind_of(straight)}, {}, {}, stop);
+  EXPECT_EQ(result.end, RunResult::End::interrupted);
+  EXPECT_EQ(result.ticks, 0u);
+}
+
+}  // namespace
+}  // namespace cohort::session

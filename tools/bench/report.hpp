@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/accuracy.hpp"
-#include "tools/bench/build_cost.hpp"
-#include "tools/bench/rays.hpp"
+#include "tools/bench/measuring/accuracy.hpp"
+#include "tools/bench/measuring/build_cost.hpp"
+#include "tools/bench/measuring/rays.hpp"
 
 /// Results as tables for people and as JSON; docs/bench.md lists the keys.
 namespace cohort::bench {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "tools/bench/cohort_scene.hpp"
+#include "tools/bench/engines/cohort_scene.hpp"
 
 namespace cohort::bench {
 namespace {

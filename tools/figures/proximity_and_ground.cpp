@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/sensing/take_samples.hpp"
+#include "server/sensing/readings/take_samples.hpp"
 #include "tools/figures/figures.hpp"
 #include "tools/figures/stand.hpp"
 

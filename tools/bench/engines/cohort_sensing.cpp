@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "server/physics/make_world.hpp"
-#include "server/sensing/lamp_view.hpp"
+#include "server/sensing/exteroceptive/lamp_view.hpp"
+#include "server/sensing/readings/take_samples.hpp"
 #include "server/sensing/sensor.hpp"
-#include "server/sensing/take_samples.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tools/bench/engines/cohort_scene.hpp"
 #include "tools/bench/engines/sensing_run.hpp"

@@ -10,7 +10,7 @@
 #include "server/geometry/ray_fan.hpp"
 #include "server/geometry/shadow_ring.hpp"
 #include "server/sensing/placed.hpp"
-#include "server/sensing/sample_table.hpp"
+#include "server/sensing/readings/sample_table.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <optional>
 
-#include "server/sensing/sample_table.hpp"
-#include "server/sensing/saturation.hpp"
+#include "server/sensing/readings/sample_table.hpp"
+#include "server/sensing/readings/saturation.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <optional>
 
-#include "server/sensing/lamp_view.hpp"
+#include "server/sensing/exteroceptive/lamp_view.hpp"
 #include "server/sensing/placed.hpp"
-#include "server/sensing/sample_table.hpp"
-#include "server/sensing/saturation.hpp"
+#include "server/sensing/readings/sample_table.hpp"
+#include "server/sensing/readings/saturation.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {

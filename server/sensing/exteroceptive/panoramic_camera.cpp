@@ -5,7 +5,7 @@
 
 #include "server/core/integer_floor.hpp"
 #include "server/geometry/panorama.hpp"
-#include "server/sensing/markers_in_sight.hpp"
+#include "server/sensing/exteroceptive/markers_in_sight.hpp"
 #include "server/sensing/placed.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 

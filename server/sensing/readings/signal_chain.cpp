@@ -1,4 +1,4 @@
-#include "server/sensing/signal_chain.hpp"
+#include "server/sensing/readings/signal_chain.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "server/sensing/markers_in_sight.hpp"
+#include "server/sensing/exteroceptive/markers_in_sight.hpp"
 
 #include <algorithm>
 #include <cmath>

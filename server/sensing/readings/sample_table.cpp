@@ -1,4 +1,4 @@
-#include "server/sensing/sample_table.hpp"
+#include "server/sensing/readings/sample_table.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "server/sensing/markers_in_sight.hpp"
+#include "server/sensing/exteroceptive/markers_in_sight.hpp"
 #include "server/sensing/placed.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 

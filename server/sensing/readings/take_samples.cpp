@@ -1,4 +1,4 @@
-#include "server/sensing/take_samples.hpp"
+#include "server/sensing/readings/take_samples.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "server/recording/mcap/mcap.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
 #include "tools/view/topics.hpp"
 
 /// Messages of the Foxglove WebSocket protocol, version 1:

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "server/recording/mcap/mcap.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
 
 namespace cohort::view {
 

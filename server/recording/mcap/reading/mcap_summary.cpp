@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "server/recording/mcap/mcap_contents.hpp"
+#include "server/recording/mcap/reading/mcap_contents.hpp"
 
 namespace cohort::recording {
 namespace {

@@ -1,5 +1,5 @@
-#include "server/recording/mcap/crc32.hpp"
-#include "server/recording/mcap/mcap_records.hpp"
+#include "server/recording/mcap/format/crc32.hpp"
+#include "server/recording/mcap/format/mcap_records.hpp"
 
 namespace cohort::recording {
 

@@ -1,11 +1,11 @@
-#include "server/recording/mcap/recover.hpp"
+#include "server/recording/mcap/reading/recover.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <system_error>
 
-#include "server/recording/mcap/disk_file.hpp"
-#include "server/recording/mcap/mcap_writer.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
+#include "server/recording/mcap/writing/mcap_writer.hpp"
 
 namespace cohort::recording {
 namespace {

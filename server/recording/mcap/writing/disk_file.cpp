@@ -1,4 +1,4 @@
-#include "server/recording/mcap/disk_file.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 
 namespace cohort::recording {
 namespace {

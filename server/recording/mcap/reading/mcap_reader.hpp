@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "server/recording/mcap/mcap_contents.hpp"
+#include "server/recording/mcap/reading/mcap_contents.hpp"
 
 namespace cohort::recording {
 

@@ -1,4 +1,4 @@
-#include "server/recording/mcap/message_source.hpp"
+#include "server/recording/mcap/reading/message_source.hpp"
 
 #include <algorithm>
 

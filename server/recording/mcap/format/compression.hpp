@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "server/recording/mcap/mcap.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
 
 /// zstd, the one compression of chunks that Cohort writes.
 namespace cohort::recording {

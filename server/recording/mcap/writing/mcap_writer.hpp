@@ -3,8 +3,8 @@
 #include <functional>
 #include <optional>
 
-#include "server/recording/mcap/compression.hpp"
-#include "server/recording/mcap/mcap.hpp"
+#include "server/recording/mcap/format/compression.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
 
 namespace cohort::recording {
 

@@ -1,9 +1,9 @@
-#include "server/recording/mcap/mcap_blocks.hpp"
+#include "server/recording/mcap/reading/mcap_blocks.hpp"
 
 #include <algorithm>
 
-#include "server/recording/mcap/compression.hpp"
-#include "server/recording/mcap/crc32.hpp"
+#include "server/recording/mcap/format/compression.hpp"
+#include "server/recording/mcap/format/crc32.hpp"
 
 namespace cohort::recording {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <set>
 
-#include "server/recording/mcap/mcap_contents.hpp"
+#include "server/recording/mcap/reading/mcap_contents.hpp"
 
 namespace cohort::recording {
 namespace {

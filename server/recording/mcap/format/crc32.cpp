@@ -1,4 +1,4 @@
-#include "server/recording/mcap/crc32.hpp"
+#include "server/recording/mcap/format/crc32.hpp"
 
 #include <zlib.h>
 

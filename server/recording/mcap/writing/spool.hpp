@@ -7,7 +7,7 @@
 #include <mutex>
 #include <optional>
 
-#include "server/recording/mcap/byte_store.hpp"
+#include "server/recording/mcap/writing/byte_store.hpp"
 
 namespace cohort::recording {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string_view>
 
-#include "server/recording/mcap/mcap.hpp"
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 
 /// Records of MCAP as bytes, and back.
 namespace cohort::recording {

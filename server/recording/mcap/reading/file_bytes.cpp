@@ -1,4 +1,4 @@
-#include "server/recording/mcap/file_bytes.hpp"
+#include "server/recording/mcap/reading/file_bytes.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "server/recording/mcap/crc32.hpp"
+#include "server/recording/mcap/format/crc32.hpp"
 
 namespace cohort::recording {
 namespace {

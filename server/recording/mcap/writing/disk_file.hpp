@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "server/recording/mcap/byte_store.hpp"
+#include "server/recording/mcap/writing/byte_store.hpp"
 
 namespace cohort::recording {
 

@@ -1,4 +1,4 @@
-#include "server/recording/mcap/compression.hpp"
+#include "server/recording/mcap/format/compression.hpp"
 
 #include <zstd.h>
 

@@ -1,8 +1,8 @@
-#include "server/recording/mcap/mcap_records.hpp"
+#include "server/recording/mcap/format/mcap_records.hpp"
 
 #include <stdexcept>
 
-#include "server/recording/mcap/crc32.hpp"
+#include "server/recording/mcap/format/crc32.hpp"
 
 namespace cohort::recording {
 namespace {

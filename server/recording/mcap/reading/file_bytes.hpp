@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "server/recording/mcap/mcap_records.hpp"
+#include "server/recording/mcap/format/mcap_records.hpp"
 
 namespace cohort::recording {
 

@@ -1,8 +1,8 @@
-#include "server/recording/mcap/mcap_reader.hpp"
+#include "server/recording/mcap/reading/mcap_reader.hpp"
 
 #include <algorithm>
 
-#include "server/recording/mcap/message_source.hpp"
+#include "server/recording/mcap/reading/message_source.hpp"
 
 namespace cohort::recording {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/recording/mcap/file_bytes.hpp"
+#include "server/recording/mcap/reading/file_bytes.hpp"
 
 /// Parts of a file that hold messages.
 namespace cohort::recording {

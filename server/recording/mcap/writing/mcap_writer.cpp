@@ -1,11 +1,11 @@
-#include "server/recording/mcap/mcap_writer.hpp"
+#include "server/recording/mcap/writing/mcap_writer.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 
-#include "server/recording/mcap/crc32.hpp"
-#include "server/recording/mcap/mcap_records.hpp"
+#include "server/recording/mcap/format/crc32.hpp"
+#include "server/recording/mcap/format/mcap_records.hpp"
 
 namespace cohort::recording {
 namespace {

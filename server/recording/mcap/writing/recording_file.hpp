@@ -8,8 +8,8 @@
 #include <optional>
 #include <thread>
 
-#include "server/recording/mcap/byte_store.hpp"
-#include "server/recording/mcap/mcap_writer.hpp"
+#include "server/recording/mcap/writing/byte_store.hpp"
+#include "server/recording/mcap/writing/mcap_writer.hpp"
 
 namespace cohort::recording {
 

@@ -1,4 +1,4 @@
-#include "server/recording/mcap/recording_file.hpp"
+#include "server/recording/mcap/writing/recording_file.hpp"
 
 #include <pthread.h>
 #include <sys/resource.h>
@@ -9,8 +9,8 @@
 #include <cstring>
 #include <limits>
 
-#include "server/recording/mcap/disk_file.hpp"
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 
 namespace cohort::recording {
 namespace {

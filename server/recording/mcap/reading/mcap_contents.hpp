@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "server/recording/mcap/mcap_blocks.hpp"
+#include "server/recording/mcap/reading/mcap_blocks.hpp"
 
 /// What is in a file, but for messages and attachments themselves.
 namespace cohort::recording {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "server/recording/mcap/mcap.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
 
 namespace cohort::recording {
 

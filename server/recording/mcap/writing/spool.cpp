@@ -1,8 +1,8 @@
-#include "server/recording/mcap/spool.hpp"
+#include "server/recording/mcap/writing/spool.hpp"
 
 #include <algorithm>
 
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 
 namespace cohort::recording {
 

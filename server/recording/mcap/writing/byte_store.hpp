@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/recording/mcap/mcap.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
 
 namespace cohort::recording {
 

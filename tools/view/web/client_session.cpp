@@ -1,4 +1,4 @@
-#include "tools/view/client_session.hpp"
+#include "tools/view/web/client_session.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

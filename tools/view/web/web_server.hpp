@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/view/messages/topics.hpp"
 #include "tools/view/source.hpp"
-#include "tools/view/topics.hpp"
 
 namespace cohort::view {
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "client_sdk/src/client.hpp"
-#include "tools/view/held_command.hpp"
+#include "tools/view/driving/held_command.hpp"
 #include "tools/view/source.hpp"
 
 namespace cohort::view {

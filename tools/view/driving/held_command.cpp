@@ -1,4 +1,4 @@
-#include "tools/view/held_command.hpp"
+#include "tools/view/driving/held_command.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <chrono>
 
 #include "server/viewing/scene_messages.hpp"
-#include "tools/view/topics.hpp"
-#include "tools/view/view_messages.hpp"
+#include "tools/view/messages/topics.hpp"
+#include "tools/view/messages/view_messages.hpp"
 
 namespace cohort::view {
 

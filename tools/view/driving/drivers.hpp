@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/view/driver.hpp"
+#include "tools/view/driving/driver.hpp"
 #include "tools/view/source.hpp"
 
 namespace cohort::view {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "server/recording/mcap/format/mcap.hpp"
-#include "tools/view/topics.hpp"
+#include "tools/view/messages/topics.hpp"
 
 /// Messages of the Foxglove WebSocket protocol, version 1:
 /// https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md

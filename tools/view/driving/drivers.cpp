@@ -1,4 +1,4 @@
-#include "tools/view/drivers.hpp"
+#include "tools/view/driving/drivers.hpp"
 
 #include <algorithm>
 #include <stdexcept>

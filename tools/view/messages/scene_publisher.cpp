@@ -1,8 +1,8 @@
-#include "tools/view/scene_publisher.hpp"
+#include "tools/view/messages/scene_publisher.hpp"
 
 #include <utility>
 
-#include "tools/view/markers.hpp"
+#include "tools/view/messages/markers.hpp"
 
 namespace cohort::view {
 

@@ -1,4 +1,4 @@
-#include "tools/view/driver.hpp"
+#include "tools/view/driving/driver.hpp"
 
 #include <utility>
 

@@ -11,10 +11,10 @@
 
 #include "client_sdk/src/control_client.hpp"
 #include "idl/wire.hpp"
-#include "tools/view/drivers.hpp"
-#include "tools/view/live_history.hpp"
-#include "tools/view/scene_publisher.hpp"
+#include "tools/view/driving/drivers.hpp"
+#include "tools/view/messages/scene_publisher.hpp"
 #include "tools/view/source.hpp"
+#include "tools/view/sources/live_history.hpp"
 
 namespace cohort::view {
 

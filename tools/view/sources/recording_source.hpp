@@ -9,7 +9,7 @@
 
 #include "server/recording/replay.hpp"
 #include "server/viewing/scene_maker.hpp"
-#include "tools/view/scene_publisher.hpp"
+#include "tools/view/messages/scene_publisher.hpp"
 #include "tools/view/source.hpp"
 
 namespace cohort::view {

@@ -5,7 +5,7 @@
 
 #include "idl/control_messages.hpp"
 #include "server/viewing/run_history.hpp"
-#include "tools/view/view_messages.hpp"
+#include "tools/view/messages/view_messages.hpp"
 
 namespace cohort::view {
 

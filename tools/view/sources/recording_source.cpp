@@ -1,4 +1,4 @@
-#include "tools/view/recording_source.hpp"
+#include "tools/view/sources/recording_source.hpp"
 
 #include <fmt/format.h>
 

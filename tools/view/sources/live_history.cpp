@@ -1,4 +1,4 @@
-#include "tools/view/live_history.hpp"
+#include "tools/view/sources/live_history.hpp"
 
 #include <algorithm>
 #include <span>

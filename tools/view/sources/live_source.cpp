@@ -1,4 +1,4 @@
-#include "tools/view/live_source.hpp"
+#include "tools/view/sources/live_source.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "server/viewing/check_scene.hpp"
-#include "tools/view/control_requests.hpp"
+#include "tools/view/sources/control_requests.hpp"
 
 namespace cohort::view {
 namespace {

@@ -1,10 +1,10 @@
-#include "tools/view/topics.hpp"
+#include "tools/view/messages/topics.hpp"
 
 #include <utility>
 
 #include "server/recording/ros_messages.hpp"
-#include "tools/view/markers.hpp"
-#include "tools/view/view_messages.hpp"
+#include "tools/view/messages/markers.hpp"
+#include "tools/view/messages/view_messages.hpp"
 
 namespace cohort::view {
 namespace {

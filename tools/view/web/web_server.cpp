@@ -1,4 +1,4 @@
-#include "tools/view/web_server.hpp"
+#include "tools/view/web/web_server.hpp"
 
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tools/view/admission.hpp"
-#include "tools/view/client_session.hpp"
+#include "tools/view/web/admission.hpp"
+#include "tools/view/web/client_session.hpp"
 
 namespace cohort::view {
 namespace {

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "tools/view/protocol.hpp"
+#include "tools/view/messages/topics.hpp"
 #include "tools/view/source.hpp"
-#include "tools/view/topics.hpp"
+#include "tools/view/web/protocol.hpp"
 
 namespace cohort::view {
 

@@ -1,4 +1,4 @@
-#include "tools/view/admission.hpp"
+#include "tools/view/web/admission.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "tools/view/markers.hpp"
+#include "tools/view/messages/markers.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "tools/view/protocol.hpp"
+#include "tools/view/web/protocol.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "tools/view/control_requests.hpp"
+#include "tools/view/sources/control_requests.hpp"
 
 #include <algorithm>
 #include <array>

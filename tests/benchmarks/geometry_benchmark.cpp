@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 #include "tools/bench/scenes/bench_scene.hpp"
 #include "tools/bench/scenes/ray_field.hpp"
 

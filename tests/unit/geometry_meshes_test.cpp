@@ -6,9 +6,9 @@
 
 #include "server/core/infinity.hpp"
 #include "server/core/random.hpp"
-#include "server/geometry/convex_hull.hpp"
-#include "server/geometry/mesh_surface.hpp"
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
+#include "server/geometry/shapes/convex_hull.hpp"
+#include "server/geometry/shapes/mesh_surface.hpp"
 
 // Shapes that are not centred solids of a few numbers: meshes and height maps.
 namespace cohort::geometry {

@@ -7,8 +7,8 @@
 
 #include "server/core/infinity.hpp"
 #include "server/core/random.hpp"
-#include "server/geometry/ray_fan.hpp"
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/ray_fan.hpp"
+#include "server/geometry/scene/scene.hpp"
 
 namespace cohort::geometry {
 namespace {

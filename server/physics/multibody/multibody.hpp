@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 #include "server/physics/multibody/joint_rows.hpp"
 #include "server/physics/multibody/mechanism.hpp"
 #include "server/physics/multibody/track_rows.hpp"

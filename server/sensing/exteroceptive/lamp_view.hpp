@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "server/emission/emitters.hpp"
-#include "server/geometry/sight_lines.hpp"
+#include "server/geometry/visibility/sight_lines.hpp"
 #include "server/physics/world/physics_world.hpp"
 #include "server/sensing/shared_view.hpp"
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/geometry/ray_fan.hpp"
+#include "server/geometry/scene/ray_fan.hpp"
 #include "server/sensing/placed.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 

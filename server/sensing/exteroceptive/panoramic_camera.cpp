@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "server/core/integer_floor.hpp"
-#include "server/geometry/panorama.hpp"
+#include "server/geometry/visibility/panorama.hpp"
 #include "server/sensing/exteroceptive/markers_in_sight.hpp"
 #include "server/sensing/placed.hpp"
 #include "server/sensing/sensor_kinds.hpp"

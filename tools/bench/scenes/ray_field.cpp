@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "server/geometry/ray_fan.hpp"
+#include "server/geometry/scene/ray_fan.hpp"
 #include "tools/bench/scenes/bench_scene.hpp"
 
 namespace cohort::bench {

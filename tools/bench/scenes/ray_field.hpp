@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 
 namespace cohort::bench {
 

@@ -1,4 +1,4 @@
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 
 #include <algorithm>
 

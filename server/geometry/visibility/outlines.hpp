@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 
 namespace cohort::geometry {
 

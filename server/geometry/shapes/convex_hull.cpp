@@ -1,4 +1,4 @@
-#include "server/geometry/convex_hull.hpp"
+#include "server/geometry/shapes/convex_hull.hpp"
 
 #include <algorithm>
 #include <cmath>

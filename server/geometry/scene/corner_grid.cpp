@@ -1,4 +1,4 @@
-#include "server/geometry/corner_grid.hpp"
+#include "server/geometry/scene/corner_grid.hpp"
 
 namespace cohort::geometry {
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "server/description/model.hpp"
-#include "server/geometry/corner_grid.hpp"
-#include "server/geometry/grid.hpp"
-#include "server/geometry/mesh_surface.hpp"
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/scene/corner_grid.hpp"
+#include "server/geometry/scene/grid.hpp"
+#include "server/geometry/shapes/mesh_surface.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 
 namespace cohort::geometry {
 

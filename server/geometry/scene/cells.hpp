@@ -8,7 +8,7 @@
 
 #include "server/core/infinity.hpp"
 #include "server/core/integer_floor.hpp"
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 
 namespace cohort::geometry {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/geometry/outlines.hpp"
+#include "server/geometry/visibility/outlines.hpp"
 
 namespace cohort::geometry {
 

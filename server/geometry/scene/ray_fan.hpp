@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 
 namespace cohort::geometry {
 

@@ -1,10 +1,10 @@
-#include "server/geometry/outlines.hpp"
+#include "server/geometry/visibility/outlines.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "server/core/infinity.hpp"
-#include "server/geometry/footprint.hpp"
+#include "server/geometry/shapes/footprint.hpp"
 
 namespace cohort::geometry {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/geometry/ray_fan.hpp"
+#include "server/geometry/scene/ray_fan.hpp"
 
 #include <algorithm>
 

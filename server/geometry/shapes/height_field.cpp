@@ -1,4 +1,4 @@
-#include "server/geometry/height_field.hpp"
+#include "server/geometry/shapes/height_field.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "server/geometry/panorama.hpp"
+#include "server/geometry/visibility/panorama.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "server/core/infinity.hpp"
 #include "server/core/integer_floor.hpp"
 #include "server/core/plane_vectors.hpp"
-#include "server/geometry/rounding.hpp"
+#include "server/geometry/visibility/rounding.hpp"
 
 namespace cohort::geometry {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "server/geometry/outlines.hpp"
+#include "server/geometry/visibility/outlines.hpp"
 
 namespace cohort::geometry {
 

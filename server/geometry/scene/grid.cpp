@@ -1,4 +1,4 @@
-#include "server/geometry/grid.hpp"
+#include "server/geometry/scene/grid.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "server/geometry/mesh_surface.hpp"
+#include "server/geometry/shapes/mesh_surface.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "server/core/infinity.hpp"
-#include "server/geometry/convex_hull.hpp"
+#include "server/geometry/shapes/convex_hull.hpp"
 
 namespace cohort::geometry {
 namespace {

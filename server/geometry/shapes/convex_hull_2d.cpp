@@ -1,4 +1,4 @@
-#include "server/geometry/convex_hull_2d.hpp"
+#include "server/geometry/shapes/convex_hull_2d.hpp"
 
 #include <algorithm>
 #include <utility>

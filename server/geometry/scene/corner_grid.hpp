@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "server/geometry/cells.hpp"
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/scene/cells.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 
 namespace cohort::geometry {
 

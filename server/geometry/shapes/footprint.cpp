@@ -1,11 +1,11 @@
-#include "server/geometry/footprint.hpp"
+#include "server/geometry/shapes/footprint.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "server/core/plane_vectors.hpp"
-#include "server/geometry/convex_hull_2d.hpp"
+#include "server/geometry/shapes/convex_hull_2d.hpp"
 
 namespace cohort::geometry {
 namespace {

@@ -1,12 +1,12 @@
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "server/core/infinity.hpp"
-#include "server/geometry/height_field.hpp"
-#include "server/geometry/mesh_surface.hpp"
+#include "server/geometry/shapes/height_field.hpp"
+#include "server/geometry/shapes/mesh_surface.hpp"
 
 namespace cohort::geometry {
 namespace {

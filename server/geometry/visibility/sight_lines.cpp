@@ -1,4 +1,4 @@
-#include "server/geometry/sight_lines.hpp"
+#include "server/geometry/visibility/sight_lines.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "server/core/infinity.hpp"
 #include "server/core/plane_vectors.hpp"
-#include "server/geometry/rounding.hpp"
+#include "server/geometry/visibility/rounding.hpp"
 
 namespace cohort::geometry {
 namespace {

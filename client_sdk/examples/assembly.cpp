@@ -5,18 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cohort/controller.hpp>
-#include <numbers>
-#include <stdexcept>
-#include <vector>
-
-#include "sbot_senses.hpp"
+#include <cohort/sbot.hpp>
 
 namespace {
 
 constexpr double full_speed = 0.1;       // of a track [m/s]
 constexpr double turning_gain = 0.15;    // of a track, of the angle to the light [m/s]
-constexpr double turret_gain = 5.0;      // [1/s]
 constexpr double arrived = 0.97;         // of the brightest light sensor: some 0.5 m from a lamp of intensity 1
 constexpr double darkness = 0.03;        // what the noise of a sensor may give without any light
 constexpr double in_the_way = 0.5;       // of a proximity sensor: 10 cm
@@ -30,37 +24,20 @@ constexpr double next_to = 0.13;         // of a microphone: one that calls with
 class Assembly final : public cohort::Controller {
  public:
   void start(const cohort::Start& start) override {
-    proximity_ = start.observations("proximity/*/reading");
-    light_ = start.observations("light/*/reading");
-    microphones_ = start.observations("microphones/*/intensity");
-    if (proximity_.size() != 15 || light_.size() != 8)
-      throw std::runtime_error("this controller wants the 15 proximity sensors and the 8 light sensors of an s-bot");
-    grippable_ = start.observation("gripper/0/grippable");
-    gripping_ = start.observation("gripper/0/gripping");
-    turret_position_ = start.observation("turret/0/position");
-    opening_ = start.command("gripper/0/opening");
-    turret_velocity_ = start.command("turret/0/velocity");
-    left_track_ = start.command("treel/left/velocity");
-    right_track_ = start.command("treel/right/velocity");
-    frequency_ = start.command("left_speaker/0/frequency");
-    loudness_ = start.command("left_speaker/0/intensity");
-    colors_ = start.commands("leds/*/color");
-    step_ = std::chrono::duration<double>(start.step).count() * start.period;
+    robot_ = cohort::Sbot(start);
+    step_ = start.seconds_per_step();
     avoiding_for_ = 0.0;
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
-    const bool grips = observation[gripping_] > 0.5;
-    const bool is_closing = grips || observation[grippable_] > 0.5;
-    if (is_closing) command.set(opening_, 0.0);
-    if (grips) {
-      command.set(frequency_, tone);
-      command.set(loudness_, call);
-    }
-    const bool is_member = grips || sbot::hears(observation, microphones_, next_to);
-    for (const cohort::CommandChannel led : colors_) command.set(led, 1.0, is_member ? 0 : 2);  // red or blue
+    const bool grips = robot_.grips(observation);
+    const bool is_closing = grips || robot_.can_grip(observation);
+    if (is_closing) robot_.close_gripper(command);
+    if (grips) robot_.call(command, tone, call);
+    const bool is_member = grips || robot_.hears(observation, next_to);
+    robot_.shine(command, is_member ? cohort::Sbot::Color::red : cohort::Sbot::Color::blue);
 
-    const sbot::Light light = sbot::look(observation, light_);
+    const cohort::Sbot::Light light = robot_.look(observation);
     if (is_member)
       move_as_one(observation, light, command);
     else if (!is_closing)
@@ -69,51 +46,38 @@ class Assembly final : public cohort::Controller {
 
  private:
   // The turret is held, so its motor turns the chassis.
-  void move_as_one(const cohort::Observation& observation, const sbot::Light& light, cohort::Command& command) const {
+  void move_as_one(const cohort::Observation& observation, const cohort::Sbot::Light& light,
+                   cohort::Command& command) const {
     if (light.brightest < darkness || light.brightest > arrived) return;
-    const double off = std::remainder(light.bearing + observation[turret_position_], 2.0 * std::numbers::pi);
-    command.set(turret_velocity_, -turret_gain * off);
+    const double off = robot_.from_chassis(observation, light.bearing);
+    robot_.turn_turret_back(command, off);
     drive(off, command);
   }
 
-  void move_alone(const cohort::Observation& observation, const sbot::Light& light, cohort::Command& command) {
-    command.set(turret_velocity_, -turret_gain * observation[turret_position_]);
-    const double ahead = std::max(observation[proximity_.front()], observation[proximity_.back()]);
-    const double left = std::max(observation[proximity_[1]], observation[proximity_[2]]);
-    const double right = std::max(observation[proximity_[13]], observation[proximity_[12]]);
+  void move_alone(const cohort::Observation& observation, const cohort::Sbot::Light& light, cohort::Command& command) {
+    robot_.align_turret(observation, command);
+    const double ahead = std::max(observation[robot_.proximity.front()], observation[robot_.proximity.back()]);
+    const double left = std::max(observation[robot_.proximity[1]], observation[robot_.proximity[2]]);
+    const double right = std::max(observation[robot_.proximity[13]], observation[robot_.proximity[12]]);
     if (ahead > touching) avoiding_for_ = avoiding_time;
     if (avoiding_for_ > 0.0) {
       avoiding_for_ -= step_;
-      command.set(left_track_, -avoiding_speed);
-      command.set(right_track_, avoiding_speed);
+      robot_.turn(command, 0.0, avoiding_speed);
     } else if (std::max(left, right) > in_the_way) {
       // It may be one to grip: towards it.
       drive(left > right ? 0.5 : -0.5, command);
     } else if (ahead > in_the_way || light.brightest < darkness) {
       drive(0.0, command);
     } else {
-      drive(std::remainder(light.bearing + observation[turret_position_], 2.0 * std::numbers::pi), command);
+      drive(robot_.from_chassis(observation, light.bearing), command);
     }
   }
   void drive(double towards, cohort::Command& command) const {
     const double ahead = full_speed * std::max(0.0, std::cos(towards));
-    command.set(left_track_, ahead - turning_gain * towards);
-    command.set(right_track_, ahead + turning_gain * towards);
+    robot_.turn(command, ahead, turning_gain * towards);
   }
 
-  std::vector<cohort::ObservationChannel> proximity_;
-  std::vector<cohort::ObservationChannel> light_;
-  std::vector<cohort::ObservationChannel> microphones_;
-  cohort::ObservationChannel grippable_;
-  cohort::ObservationChannel gripping_;
-  cohort::ObservationChannel turret_position_;
-  cohort::CommandChannel opening_;
-  cohort::CommandChannel turret_velocity_;
-  cohort::CommandChannel left_track_;
-  cohort::CommandChannel right_track_;
-  cohort::CommandChannel frequency_;
-  cohort::CommandChannel loudness_;
-  std::vector<cohort::CommandChannel> colors_;
+  cohort::Sbot robot_;
   double step_ = 0.0;          // from one answer to the next [s]
   double avoiding_for_ = 0.0;  // [s]
 };

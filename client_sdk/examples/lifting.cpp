@@ -5,17 +5,12 @@
 // It remembers what it is doing; one that takes over in the middle of a run begins by driving ahead.
 
 #include <algorithm>
-#include <cohort/controller.hpp>
-#include <stdexcept>
-#include <vector>
-
-#include "sbot_senses.hpp"
+#include <cohort/sbot.hpp>
 
 namespace {
 
 constexpr double approach_speed = 0.04;  // of a track [m/s]
 constexpr double steering = 0.04;        // towards the one ahead [m/s]
-constexpr double alignment_gain = 5.0;   // of the turret [1/s]
 constexpr double tone = 1000.0;          // [Hz]
 constexpr double call = 0.05;            // what arrives of it at 1 m [1]
 constexpr double silence = 0.005;        // of a microphone: all that call are far away, or nobody does
@@ -26,22 +21,11 @@ constexpr double level = 0.01;           // of the arm, when it is down again [r
 class Lifting final : public cohort::Controller {
  public:
   void start(const cohort::Start& start) override {
-    proximity_ = start.observations("proximity/*/reading");
-    microphones_ = start.observations("microphones/*/intensity");
-    if (proximity_.size() != 15) throw std::runtime_error("this controller wants the 15 proximity sensors of an s-bot");
-    grippable_ = start.observation("gripper/0/grippable");
-    gripping_ = start.observation("gripper/0/gripping");
-    turret_position_ = start.observation("turret/0/position");
-    opening_ = start.command("gripper/0/opening");
+    robot_ = cohort::Sbot(start);
     elevation_ = start.command("elevation/0/position");
-    turret_velocity_ = start.command("turret/0/velocity");
-    left_track_ = start.command("treel/left/velocity");
-    right_track_ = start.command("treel/right/velocity");
-    frequency_ = start.command("left_speaker/0/frequency");
-    loudness_ = start.command("left_speaker/0/intensity");
     angle_ = start.parameters.real("angle", 0.0);
     hold_ = start.parameters.real("hold", 6.0);
-    step_ = std::chrono::duration<double>(start.step).count() * start.period;
+    step_ = start.seconds_per_step();
     state_ = State::approaching;
     calm_for_ = 0.0;
     held_for_ = 0.0;
@@ -49,21 +33,17 @@ class Lifting final : public cohort::Controller {
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
-    calm_for_ = sbot::hears(observation, microphones_, silence) ? 0.0 : calm_for_ + step_;
+    calm_for_ = robot_.hears(observation, silence) ? 0.0 : calm_for_ + step_;
     advance(observation);
     command.set(elevation_, raised_);
-    if (state_ == State::approaching || state_ == State::gripping) {
-      command.set(frequency_, tone);
-      command.set(loudness_, call);
-    }
+    if (state_ == State::approaching || state_ == State::gripping) robot_.call(command, tone, call);
     if (state_ == State::approaching) {
       // The one ahead is on the side where more is seen of it.
-      const double aside = observation[proximity_.front()] - observation[proximity_.back()];
-      command.set(left_track_, approach_speed - steering * aside);
-      command.set(right_track_, approach_speed + steering * aside);
-      command.set(turret_velocity_, -alignment_gain * observation[turret_position_]);
+      const double aside = observation[robot_.proximity.front()] - observation[robot_.proximity.back()];
+      robot_.turn(command, approach_speed, steering * aside);
+      robot_.align_turret(observation, command);
     } else if (state_ != State::done) {
-      command.set(opening_, 0.0);
+      robot_.close_gripper(command);
     }
   }
 
@@ -74,10 +54,10 @@ class Lifting final : public cohort::Controller {
     const double by = lifting_speed * step_;
     switch (state_) {
       case State::approaching:
-        if (observation[grippable_] > 0.5) state_ = State::gripping;
+        if (robot_.can_grip(observation)) state_ = State::gripping;
         break;
       case State::gripping:
-        if (observation[gripping_] > 0.5) state_ = State::waiting;
+        if (robot_.grips(observation)) state_ = State::waiting;
         break;
       case State::waiting:
         if (calm_for_ > calm) state_ = State::lifting;
@@ -94,18 +74,8 @@ class Lifting final : public cohort::Controller {
       case State::done: break;
     }
   }
-  std::vector<cohort::ObservationChannel> proximity_;
-  std::vector<cohort::ObservationChannel> microphones_;
-  cohort::ObservationChannel grippable_;
-  cohort::ObservationChannel gripping_;
-  cohort::ObservationChannel turret_position_;
-  cohort::CommandChannel opening_;
+  cohort::Sbot robot_;
   cohort::CommandChannel elevation_;
-  cohort::CommandChannel turret_velocity_;
-  cohort::CommandChannel left_track_;
-  cohort::CommandChannel right_track_;
-  cohort::CommandChannel frequency_;
-  cohort::CommandChannel loudness_;
   double angle_ = 0.0;  // to lift to [rad]
   double hold_ = 0.0;   // how long [s]
   double step_ = 0.0;   // from one answer to the next [s]

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cohort/controller.hpp>
-#include <stdexcept>
 #include <vector>
 
 namespace {
@@ -24,8 +23,7 @@ constexpr double alignment_gain = 5.0;  // of the turret [1/s]
 class ObstacleAvoidance final : public cohort::Controller {
  public:
   void start(const cohort::Start& start) override {
-    proximity_ = start.observations("proximity/*/reading");
-    if (proximity_.size() != 15) throw std::runtime_error("this controller wants the 15 proximity sensors of an s-bot");
+    proximity_ = start.observations("proximity/*/reading", 15);
     turret_position_ = start.observation("turret/0/position");
     turret_velocity_ = start.command("turret/0/velocity");
     left_track_ = start.command("treel/left/velocity");

@@ -6,18 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cohort/controller.hpp>
+#include <cohort/sbot.hpp>
 #include <numbers>
-#include <stdexcept>
-#include <vector>
-
-#include "sbot_senses.hpp"
 
 namespace {
 
 constexpr double full_speed = 0.12;    // of a track [m/s]
 constexpr double turning_gain = 0.15;  // of a track, of the angle to where it wants to go [m/s]
-constexpr double turret_gain = 5.0;    // [1/s]
 constexpr double in_the_way = 0.6;     // of a proximity sensor: 8 cm
 constexpr double around_time = 1.0;    // that it goes around what is in the way [s]
 constexpr double around = 1.2;         // to its side [rad]
@@ -28,29 +23,16 @@ constexpr double slow_down = 1.0;      // of the angle to the light: from here o
 class Retrieval final : public cohort::Controller {
  public:
   void start(const cohort::Start& start) override {
-    proximity_ = start.observations("proximity/*/reading");
-    light_ = start.observations("light/*/reading");
-    microphones_ = start.observations("microphones/*/intensity");
-    if (proximity_.size() != 15 || light_.size() != 8 || microphones_.size() != 4)
-      throw std::runtime_error(
-          "this controller wants the proximity sensors, light sensors and microphones of an s-bot");
-    grippable_ = start.observation("gripper/0/grippable");
-    gripping_ = start.observation("gripper/0/gripping");
-    turret_position_ = start.observation("turret/0/position");
-    opening_ = start.command("gripper/0/opening");
-    turret_velocity_ = start.command("turret/0/velocity");
-    left_track_ = start.command("treel/left/velocity");
-    right_track_ = start.command("treel/right/velocity");
-    colors_ = start.commands("leds/*/color");
-    step_ = std::chrono::duration<double>(start.step).count() * start.period;
+    robot_ = cohort::Sbot(start);
+    step_ = start.seconds_per_step();
     around_for_ = 0.0;
   }
 
   void step(const cohort::Observation& observation, cohort::Command& command) override {
-    const sbot::Sound sound = sbot::listen(observation, microphones_);
-    const bool grips = observation[gripping_] > 0.5;
-    for (const cohort::CommandChannel led : colors_) command.set(led, 1.0, grips ? 0 : 2);  // red or blue
-    if (grips || (observation[grippable_] > 0.5 && sound.level > call_at_prey)) command.set(opening_, 0.0);
+    const cohort::Sbot::Sound sound = robot_.listen(observation);
+    const bool grips = robot_.grips(observation);
+    robot_.shine(command, grips ? cohort::Sbot::Color::red : cohort::Sbot::Color::blue);
+    if (grips || (robot_.can_grip(observation) && sound.level > call_at_prey)) robot_.close_gripper(command);
     if (grips)
       carry(observation, command);
     else
@@ -58,44 +40,33 @@ class Retrieval final : public cohort::Controller {
   }
 
  private:
-  void approach(const cohort::Observation& observation, const sbot::Sound& sound, cohort::Command& command) {
-    command.set(turret_velocity_, -turret_gain * observation[turret_position_]);
+  void approach(const cohort::Observation& observation, const cohort::Sbot::Sound& sound, cohort::Command& command) {
+    robot_.align_turret(observation, command);
     double ahead = 0.0;
-    for (const std::size_t i : {0u, 1u, 13u, 14u}) ahead = std::max(ahead, observation[proximity_[i]]);
+    for (const std::size_t i : {0u, 1u, 13u, 14u}) ahead = std::max(ahead, observation[robot_.proximity[i]]);
     const bool is_at_prey = sound.level > call_at_prey;
     if (ahead > in_the_way && !is_at_prey) around_for_ = around_time;
     around_for_ = is_at_prey ? 0.0 : std::max(0.0, around_for_ - step_);
     // Others are passed on the right.
-    const double to = sound.bearing + observation[turret_position_] - (around_for_ > 0.0 ? around : 0.0);
+    const double to = sound.bearing() + observation[robot_.turret] - (around_for_ > 0.0 ? around : 0.0);
     drive(std::remainder(to, 2.0 * std::numbers::pi), ahead > in_the_way ? 0.4 : 1.0, command);
   }
 
   // The prey holds the turret, so its motor turns the chassis.
   void carry(const cohort::Observation& observation, cohort::Command& command) const {
-    const sbot::Light light = sbot::look(observation, light_);
+    const cohort::Sbot::Light light = robot_.look(observation);
     if (light.brightest < darkness) return;
-    const double off = std::remainder(light.bearing + observation[turret_position_], 2.0 * std::numbers::pi);
-    command.set(turret_velocity_, -turret_gain * off);
+    const double off = robot_.from_chassis(observation, light.bearing);
+    robot_.turn_turret_back(command, off);
     drive(off, std::abs(off) < slow_down ? 1.0 : 0.0, command);
   }
 
   void drive(double towards, double share, cohort::Command& command) const {
     const double ahead = share * full_speed * std::max(0.0, std::cos(towards));
-    command.set(left_track_, ahead - turning_gain * towards);
-    command.set(right_track_, ahead + turning_gain * towards);
+    robot_.turn(command, ahead, turning_gain * towards);
   }
 
-  std::vector<cohort::ObservationChannel> proximity_;
-  std::vector<cohort::ObservationChannel> light_;
-  std::vector<cohort::ObservationChannel> microphones_;
-  cohort::ObservationChannel grippable_;
-  cohort::ObservationChannel gripping_;
-  cohort::ObservationChannel turret_position_;
-  cohort::CommandChannel opening_;
-  cohort::CommandChannel turret_velocity_;
-  cohort::CommandChannel left_track_;
-  cohort::CommandChannel right_track_;
-  std::vector<cohort::CommandChannel> colors_;
+  cohort::Sbot robot_;
   double step_ = 0.0;        // from one answer to the next [s]
   double around_for_ = 0.0;  // [s]
 };

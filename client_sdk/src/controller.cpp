@@ -71,6 +71,15 @@ std::vector<ObservationChannel> Start::observations(std::string_view pattern) co
   return handles;
 }
 
+std::vector<ObservationChannel> Start::observations(std::string_view pattern, std::size_t count) const {
+  std::vector<ObservationChannel> found = observations(pattern);
+  if (found.size() != count)
+    throw ChannelError("robot '" + name + "' (" + model + ") has " + std::to_string(found.size()) + " " +
+                       std::string(observation_kind) + "s '" + std::string(pattern) + "', and not " +
+                       std::to_string(count));
+  return found;
+}
+
 CommandChannel Start::command(std::string_view name_wanted) const {
   const auto is_it = [&](const ChannelInfo& channel) { return channel.name == name_wanted; };
   return command_handle(*select(*this, command_kind, name_wanted, command_channels, is_it).front());

@@ -9,7 +9,7 @@
 #include "server/core/snapshot.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/world.hpp"
-#include "server/geometry/corner_grid.hpp"
+#include "server/geometry/scene/corner_grid.hpp"
 #include "server/physics/world/physics_world.hpp"
 
 namespace cohort::emission {

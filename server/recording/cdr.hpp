@@ -11,7 +11,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "server/recording/mcap/mcap.hpp"
+#include "server/recording/mcap/format/mcap.hpp"
 
 /// CDR, little-endian, as ROS 2 has it: the encapsulation 00 01 00 00, then the fields, each number at a multiple of
 /// its size from the first byte after the encapsulation (OMG DDSI-RTPS 2.5, 10; CORBA 3.4 part 2, 9.3).

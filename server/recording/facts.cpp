@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "client_sdk/math/portable_math.hpp"
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 
 namespace cohort::recording {
 namespace {

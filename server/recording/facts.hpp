@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/description/experiment.hpp"
-#include "server/recording/mcap/mcap_reader.hpp"
+#include "server/recording/mcap/reading/mcap_reader.hpp"
 
 /// What a recording says of its run beside messages: metadata and attachments.
 namespace cohort::recording {

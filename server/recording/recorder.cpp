@@ -6,7 +6,7 @@
 #include <set>
 
 #include "server/recording/facts.hpp"
-#include "server/recording/mcap/disk_file.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 
 namespace cohort::recording {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "server/description/experiment.hpp"
-#include "server/recording/mcap/recording_file.hpp"
+#include "server/recording/mcap/writing/recording_file.hpp"
 #include "server/recording/ros_messages.hpp"
 #include "server/recording/run_messages.hpp"
 #include "server/recording/standard_sensors.hpp"

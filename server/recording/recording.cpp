@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 
 namespace cohort::recording {
 namespace {

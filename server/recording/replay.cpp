@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 #include "server/simulation/action.hpp"
 
 namespace cohort::recording {

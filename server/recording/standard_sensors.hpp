@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/recording/cdr.hpp"
-#include "server/recording/mcap/recording_file.hpp"
+#include "server/recording/mcap/writing/recording_file.hpp"
 #include "server/recording/ros_messages.hpp"
 #include "server/simulation/simulation.hpp"
 

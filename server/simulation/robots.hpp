@@ -12,8 +12,8 @@
 #include "server/core/channel.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/experiment.hpp"
+#include "server/sensing/readings/signal_chain.hpp"
 #include "server/sensing/sensor.hpp"
-#include "server/sensing/signal_chain.hpp"
 #include "server/simulation/objects.hpp"
 
 namespace cohort {

@@ -2,9 +2,9 @@
 
 #include <numeric>
 
-#include "server/geometry/scene.hpp"
-#include "tools/bench/bench_scene.hpp"
-#include "tools/bench/ray_field.hpp"
+#include "server/geometry/scene/scene.hpp"
+#include "tools/bench/scenes/bench_scene.hpp"
+#include "tools/bench/scenes/ray_field.hpp"
 
 namespace cohort::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "tools/bench/engines.hpp"
+#include "tools/bench/engines/engines.hpp"
 
 namespace cohort::bench {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "server/core/random.hpp"
-#include "server/geometry/panorama.hpp"
-#include "server/geometry/shadow_ring.hpp"
-#include "server/geometry/sight_lines.hpp"
-#include "server/sensing/sample_table.hpp"
+#include "server/geometry/visibility/panorama.hpp"
+#include "server/geometry/visibility/shadow_ring.hpp"
+#include "server/geometry/visibility/sight_lines.hpp"
+#include "server/sensing/readings/sample_table.hpp"
 
 // What sensors ask of the scene: an arena of 10 m x 10 m with a floor, four walls and 1000 robots, discs with a radius
 // of 6 cm.

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "server/recording/mcap/disk_file.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/recordings.hpp"
 

@@ -1,5 +1,5 @@
-#include "server/recording/mcap/mcap_reader.hpp"
-#include "server/recording/mcap/recover.hpp"
+#include "server/recording/mcap/reading/mcap_reader.hpp"
+#include "server/recording/mcap/reading/recover.hpp"
 #include "server/recording/ros_messages.hpp"
 #include "tests/fuzz/fuzz_file.hpp"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <memory>
 
-#include "server/recording/mcap/mcap_writer.hpp"
+#include "server/recording/mcap/writing/mcap_writer.hpp"
 #include "server/recording/replay.hpp"
 #include "tests/support/controlled_run.hpp"
 #include "tests/support/free_domain.hpp"

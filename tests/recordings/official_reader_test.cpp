@@ -3,8 +3,8 @@
 #include <map>
 #include <set>
 
-#include "server/recording/mcap/recording_file.hpp"
-#include "server/recording/mcap/recover.hpp"
+#include "server/recording/mcap/reading/recover.hpp"
+#include "server/recording/mcap/writing/recording_file.hpp"
 #include "server/recording/ros_messages.hpp"
 #include "tests/support/any_message.hpp"
 #include "tests/support/node_folder.hpp"

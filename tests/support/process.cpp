@@ -4,13 +4,13 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <sstream>
 
 #include "tests/support/file_lock.hpp"
+#include "tools/processes/external_program.hpp"
 
 namespace cohort::test {
 namespace {
@@ -33,11 +33,8 @@ bool port_is_free(std::uint32_t domain) {
 
 }  // namespace
 
-Process::Process(std::vector<std::string> command, const Environment& environment) {
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (std::string& argument : command) arguments.push_back(argument.data());
-  arguments.push_back(nullptr);
+Process::Process(const std::vector<std::string>& command, const Environment& environment) {
+  const std::vector<char*> arguments = tool::arguments_of(command);
   const std::string output = (folder_ / "output").string();
   pid_ = fork();
   if (pid_ == 0) {
@@ -68,7 +65,7 @@ bool Process::running() {
   if (exit_code_) return false;
   int status = 0;
   if (waitpid(pid_, &status, WNOHANG) != pid_) return true;
-  exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  exit_code_ = tool::exit_code_of(status);
   return false;
 }
 
@@ -82,7 +79,7 @@ std::optional<int> Process::wait_for_exit() {
   return exit_code_;
 }
 
-Ended run_to_end(std::vector<std::string> command, const Process::Environment& environment) {
+Ended run_to_end(const std::vector<std::string>& command, const Process::Environment& environment) {
   const ScratchFolder folder;
   std::vector<std::string> redirected = {"/bin/sh",
                                          "-c",

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 class Process {
  public:
   using Environment = std::map<std::string, std::string>;
-  explicit Process(std::vector<std::string> command, const Environment& environment = {});
+  explicit Process(const std::vector<std::string>& command, const Environment& environment = {});
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
   ~Process();
@@ -48,7 +48,7 @@ struct Ended {
   std::string out;
   std::string err;
 };
-Ended run_to_end(std::vector<std::string> command, const Process::Environment& environment = {});
+Ended run_to_end(const std::vector<std::string>& command, const Process::Environment& environment = {});
 
 /// Whether a shell finds the program.
 bool is_installed(const std::string& program);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "server/core/random.hpp"
-#include "server/geometry/convex_hull.hpp"
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
+#include "server/geometry/shapes/convex_hull.hpp"
 
 /// Scenes of one solid, and at random of every shape that there is.
 namespace cohort::geometry {

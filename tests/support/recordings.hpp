@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "server/recording/mcap/mcap_reader.hpp"
-#include "server/recording/mcap/mcap_writer.hpp"
+#include "server/recording/mcap/reading/mcap_reader.hpp"
+#include "server/recording/mcap/writing/mcap_writer.hpp"
 
 /// Small recordings for tests.
 namespace cohort::test {

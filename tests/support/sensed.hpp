@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "server/sensing/readings/signal_chain.hpp"
 #include "server/sensing/sensor.hpp"
-#include "server/sensing/signal_chain.hpp"
 #include "tests/support/small_world.hpp"
 
 namespace cohort::test {

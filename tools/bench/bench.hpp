@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/measure.hpp"
+#include "tools/bench/measuring/measure.hpp"
 
 namespace cohort::bench {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/accuracy.hpp"
-#include "tools/bench/build_cost.hpp"
-#include "tools/bench/rays.hpp"
+#include "tools/bench/measuring/accuracy.hpp"
+#include "tools/bench/measuring/build_cost.hpp"
+#include "tools/bench/measuring/rays.hpp"
 
 /// Results as tables for people and as JSON; docs/bench.md lists the keys.
 namespace cohort::bench {
@@ -16,6 +16,7 @@ std::string table(const BuildResult& result);
 std::string table(const RayResult& result);
 std::string table(const AccuracyResult& result);
 
+nlohmann::ordered_json spread_json(const Spread& spread, double unit = 1.0);
 nlohmann::ordered_json to_json(const StepResult& result);
 nlohmann::ordered_json to_json(const BuildResult& result);
 nlohmann::ordered_json to_json(const RayResult& result);

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 #include "server/recording/ros_messages.hpp"
 
 namespace cohort::data {

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "server/geometry/convex_hull_2d.hpp"
+#include "server/geometry/shapes/convex_hull_2d.hpp"
 #include "tools/drawing/outline.hpp"
 #include "tools/drawing/plot_view.hpp"
 #include "tools/drawing/svg.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 
 namespace cohort::tool {
 

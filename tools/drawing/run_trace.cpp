@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "server/core/infinity.hpp"
-#include "server/geometry/footprint.hpp"
+#include "server/geometry/shapes/footprint.hpp"
 
 namespace cohort::tool {
 namespace {

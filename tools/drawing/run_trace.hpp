@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "server/description/world.hpp"
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tools/drawing/viewpoint.hpp"
 

@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,8 @@
 #include <cstring>
 #include <system_error>
 #include <utility>
+
+#include "tools/processes/external_program.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -98,9 +99,7 @@ void Children::join() {
 
 // NOLINTNEXTLINE(readability-make-member-function-const): the child that it changes is one of ours.
 void Children::start(Child& child) {
-  std::vector<char*> arguments;
-  for (std::string& argument : child.command.arguments) arguments.push_back(argument.data());
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = arguments_of(child.command.arguments);
   int output[2] = {-1, -1};
   const bool piped = listener_.wrote && pipe2(output, O_CLOEXEC | O_NONBLOCK) == 0;
   if (piped) fcntl(output[1], F_SETFL, 0);  // that is for the reading end only

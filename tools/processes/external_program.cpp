@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -54,10 +53,7 @@ void read_both(const Pipe& out, const Pipe& err, ProgramResult& result) {
 }  // namespace
 
 ProgramResult run_program(const std::vector<std::string>& command, const std::filesystem::path& folder) {
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<char*> arguments = arguments_of(command);
   Pipe out;
   Pipe err;
   posix_spawn_file_actions_t actions;
@@ -79,7 +75,7 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::fi
   int status = 0;
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.exit_code = exit_code_of(status);
   return result;
 }
 

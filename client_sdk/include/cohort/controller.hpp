@@ -76,11 +76,16 @@ class Start {
   std::vector<ChannelInfo> observation_channels;
   std::vector<ChannelInfo> command_channels;
 
+  /// Simulated, from one step of the controller to the next [s].
+  double seconds_per_step() const { return std::chrono::duration<double>(step).count() * period; }
+
   /// Throws ChannelError if there is no such channel.
   ObservationChannel observation(std::string_view name) const;
   /// All channels that match, in the order of the robot's layout; `*` stands for any run of characters but `/`. Throws
   /// ChannelError if none.
   std::vector<ObservationChannel> observations(std::string_view pattern) const;
+  /// As above; throws ChannelError also if there are more or fewer than `count`.
+  std::vector<ObservationChannel> observations(std::string_view pattern, std::size_t count) const;
   /// Throws ChannelError if there is no such channel.
   CommandChannel command(std::string_view name) const;
   /// As `observations`.

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "server/geometry/convex_hull.hpp"
+#include "server/geometry/shapes/convex_hull.hpp"
 #include "server/parsing/files/height_image.hpp"
 #include "server/parsing/files/mesh_file.hpp"
 

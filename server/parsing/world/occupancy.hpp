@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/geometry/footprint.hpp"
+#include "server/geometry/shapes/footprint.hpp"
 #include "server/parsing/parsing.hpp"
 
 namespace cohort::parsing {

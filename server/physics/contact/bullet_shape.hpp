@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 
 class btCollisionShape;
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 #include "server/physics/contact/bullet_contact.hpp"
 
 namespace cohort::physics {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "server/geometry/shapes.hpp"
+#include "server/geometry/shapes/shapes.hpp"
 
 namespace cohort::physics {
 

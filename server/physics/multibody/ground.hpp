@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 
 namespace cohort::physics {
 

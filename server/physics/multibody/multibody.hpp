@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 #include "server/physics/multibody/body_state.hpp"
 #include "server/physics/multibody/bullet_body.hpp"
 #include "server/physics/multibody/joint_rows.hpp"

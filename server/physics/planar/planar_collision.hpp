@@ -6,7 +6,7 @@
 
 #include "server/core/snapshot.hpp"
 #include "server/core/worker_pool.hpp"
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 #include "server/physics/planar/planar_contact.hpp"
 #include "server/physics/planar/planar_grid.hpp"
 #include "server/physics/world/anchors.hpp"

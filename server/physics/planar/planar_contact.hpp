@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "server/geometry/footprint.hpp"
+#include "server/geometry/shapes/footprint.hpp"
 
 namespace cohort::physics {
 

@@ -10,7 +10,7 @@
 #include "server/core/snapshot.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/world.hpp"
-#include "server/geometry/scene.hpp"
+#include "server/geometry/scene/scene.hpp"
 
 namespace cohort::physics {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/recording/mcap/spool.hpp"
+#include "server/recording/mcap/writing/spool.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/session/run.hpp"
 

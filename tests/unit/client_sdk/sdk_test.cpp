@@ -69,6 +69,13 @@ TEST(StartLookup, AStarStandsForAnyRunOfCharactersButASlash) {
   EXPECT_THROW(start.observations("proximity/*"), ChannelError);
 }
 
+TEST(StartLookup, AsManyChannelsMatchAsTheControllerWants) {
+  const Start start = sbot_start();
+  EXPECT_EQ(start.observations("proximity/*/reading", 15).size(), 15u);
+  EXPECT_TRUE(contains(message_of<ChannelError>([&] { start.observations("proximity/*/reading", 8); }),
+                       "has 15 observation channels 'proximity/*/reading', and not 8"));
+}
+
 TEST(StartLookup, AMisspeltNameIsAnsweredWithTheNearestOnes) {
   const Start start = sbot_start();
   const std::string message = message_of<ChannelError>([&] { start.observation("proximty/3/reading"); });

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "server/core/infinity.hpp"
-#include "server/geometry/mesh_surface.hpp"
+#include "server/geometry/shapes/mesh_surface.hpp"
 #include "tests/support/random_scene.hpp"
 
 // Shapes that are not centred solids of a few numbers: meshes and height maps.

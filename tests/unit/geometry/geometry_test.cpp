@@ -6,7 +6,7 @@
 #include <set>
 
 #include "server/core/infinity.hpp"
-#include "server/geometry/ray_fan.hpp"
+#include "server/geometry/scene/ray_fan.hpp"
 #include "tests/support/random_scene.hpp"
 
 namespace cohort::geometry {

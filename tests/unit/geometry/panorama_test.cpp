@@ -1,4 +1,4 @@
-#include "server/geometry/panorama.hpp"
+#include "server/geometry/visibility/panorama.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/geometry/shadow_ring.hpp"
+#include "server/geometry/visibility/shadow_ring.hpp"
 
 #include <gtest/gtest.h>
 

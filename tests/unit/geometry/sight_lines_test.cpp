@@ -1,4 +1,4 @@
-#include "server/geometry/sight_lines.hpp"
+#include "server/geometry/visibility/sight_lines.hpp"
 
 #include <gtest/gtest.h>
 

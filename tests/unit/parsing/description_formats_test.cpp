@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "server/geometry/convex_hull.hpp"
+#include "server/geometry/shapes/convex_hull.hpp"
 #include "server/parsing/model/mass_properties.hpp"
 #include "server/parsing/model/terrain.hpp"
 #include "server/parsing/world/read_world.hpp"

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "server/core/random.hpp"
-#include "server/geometry/convex_hull.hpp"
-#include "server/geometry/footprint.hpp"
+#include "server/geometry/shapes/convex_hull.hpp"
+#include "server/geometry/shapes/footprint.hpp"
 #include "tests/support/written_worlds.hpp"
 
 // Shapes, and the files that hold some of them.

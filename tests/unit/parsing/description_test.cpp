@@ -14,7 +14,7 @@
 #include "server/description/input_error.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/description/world.hpp"
-#include "server/geometry/footprint.hpp"
+#include "server/geometry/shapes/footprint.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/keys/experiment_keys.hpp"
 #include "server/parsing/keys/extensions.hpp"

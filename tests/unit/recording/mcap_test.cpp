@@ -2,8 +2,8 @@
 
 #include <numeric>
 
-#include "server/recording/mcap/crc32.hpp"
-#include "server/recording/mcap/mcap_records.hpp"
+#include "server/recording/mcap/format/crc32.hpp"
+#include "server/recording/mcap/format/mcap_records.hpp"
 #include "tests/support/recordings.hpp"
 
 namespace cohort::recording {

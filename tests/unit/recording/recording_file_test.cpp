@@ -1,4 +1,4 @@
-#include "server/recording/mcap/recording_file.hpp"
+#include "server/recording/mcap/writing/recording_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
@@ -9,7 +9,7 @@
 
 #include <csignal>
 
-#include "server/recording/mcap/mcap_error.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
 #include "tests/support/patience.hpp"
 #include "tests/support/recordings.hpp"
 

@@ -1,11 +1,11 @@
-#include "server/recording/mcap/recover.hpp"
+#include "server/recording/mcap/reading/recover.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "server/recording/mcap/disk_file.hpp"
-#include "server/recording/mcap/mcap_records.hpp"
+#include "server/recording/mcap/format/mcap_records.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 #include "tests/support/recordings.hpp"
 
 namespace cohort::recording {

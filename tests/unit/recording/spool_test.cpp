@@ -1,11 +1,11 @@
-#include "server/recording/mcap/spool.hpp"
+#include "server/recording/mcap/writing/spool.hpp"
 
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "server/recording/mcap/mcap_error.hpp"
-#include "server/recording/mcap/recording_file.hpp"
+#include "server/recording/mcap/format/mcap_error.hpp"
+#include "server/recording/mcap/writing/recording_file.hpp"
 #include "tests/support/patience.hpp"
 #include "tests/support/recordings.hpp"
 

@@ -1,4 +1,4 @@
-#include "server/sensing/lamp_view.hpp"
+#include "server/sensing/exteroceptive/lamp_view.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "server/core/random.hpp"
-#include "server/sensing/take_samples.hpp"
+#include "server/sensing/readings/take_samples.hpp"
 #include "tests/support/sensing_world.hpp"
 
 /// The ways to measure proximity, against closed forms and each other.

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "server/core/infinity.hpp"
-#include "server/sensing/signal_chain.hpp"
+#include "server/sensing/readings/signal_chain.hpp"
 
 /// What lies between measurement and report, apart from any world.
 namespace cohort::sensing {

@@ -9,7 +9,7 @@
 #include "server/core/random.hpp"
 #include "server/description/input_error.hpp"
 #include "server/parsing/files/sample_file.hpp"
-#include "server/sensing/sample_table.hpp"
+#include "server/sensing/readings/sample_table.hpp"
 
 // Readings of a real sensor: the file, and what lies between them.
 namespace cohort::sensing {

@@ -1,4 +1,4 @@
-#include "tools/view/driver.hpp"
+#include "tools/view/driving/driver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "tests/support/fake_server.hpp"
-#include "tools/view/drivers.hpp"
+#include "tools/view/driving/drivers.hpp"
 
 namespace cohort::view {
 namespace {

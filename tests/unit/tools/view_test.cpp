@@ -3,10 +3,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/view/admission.hpp"
-#include "tools/view/client_session.hpp"
-#include "tools/view/control_requests.hpp"
-#include "tools/view/live_history.hpp"
+#include "tools/view/sources/control_requests.hpp"
+#include "tools/view/sources/live_history.hpp"
+#include "tools/view/web/admission.hpp"
+#include "tools/view/web/client_session.hpp"
 
 namespace cohort::view {
 namespace {

@@ -7,12 +7,12 @@
 #include <thread>
 #include <utility>
 
-#include "tools/bench/clocks.hpp"
 #include "tools/bench/lockstep/lockstep_report.hpp"
 #include "tools/bench/lockstep/lockstep_run.hpp"
 #include "tools/bench/lockstep/lockstep_world.hpp"
 #include "tools/bench/lockstep/look_ahead.hpp"
 #include "tools/bench/lockstep/udp_floor.hpp"
+#include "tools/bench/measuring/clocks.hpp"
 
 namespace cohort::bench {
 namespace {

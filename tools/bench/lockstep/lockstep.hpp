@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/measure.hpp"
+#include "tools/bench/measuring/measure.hpp"
 
 /// What the barrier costs: a server and its client processes in lockstep over DDS, beside raw UDP that moves as many
 /// bytes between as many processes. docs/bench.md says how and why.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "tools/bench/clocks.hpp"
 #include "tools/bench/lockstep/bench_client.hpp"
 #include "tools/bench/lockstep/lockstep_run.hpp"
+#include "tools/bench/measuring/clocks.hpp"
 
 namespace cohort::bench {
 namespace {

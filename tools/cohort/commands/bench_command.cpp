@@ -6,7 +6,7 @@
 #include "tools/bench/bench.hpp"
 #include "tools/bench/lockstep/bench_client.hpp"
 #include "tools/bench/lockstep/lockstep.hpp"
-#include "tools/bench/thesis.hpp"
+#include "tools/bench/thesis/thesis.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 

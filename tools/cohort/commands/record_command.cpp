@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "client_sdk/src/control_client.hpp"
-#include "server/recording/mcap/disk_file.hpp"
-#include "server/recording/mcap/recover.hpp"
+#include "server/recording/mcap/reading/recover.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"

@@ -1,7 +1,7 @@
 #include <iostream>
 
-#include "server/recording/mcap/disk_file.hpp"
-#include "server/recording/mcap/recover.hpp"
+#include "server/recording/mcap/reading/recover.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 

@@ -3,8 +3,8 @@
 #include "server/parsing/files/sample_file.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/read_world.hpp"
-#include "server/sensing/take_samples.hpp"
-#include "tools/cohort/cli/installed_models.hpp"
+#include "server/sensing/readings/take_samples.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 

@@ -7,13 +7,13 @@
 #include <thread>
 
 #include "server/recording/recording.hpp"
-#include "tools/cohort/cli/installed_page.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
-#include "tools/view/admission.hpp"
-#include "tools/view/live_source.hpp"
-#include "tools/view/recording_source.hpp"
-#include "tools/view/web_server.hpp"
+#include "tools/view/sources/live_source.hpp"
+#include "tools/view/sources/recording_source.hpp"
+#include "tools/view/web/admission.hpp"
+#include "tools/view/web/web_server.hpp"
 
 namespace cohort::tool {
 namespace {

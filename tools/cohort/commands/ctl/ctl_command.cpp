@@ -44,7 +44,7 @@ std::vector<char> read_file(const std::filesystem::path& file) {
   return bytes;
 }
 
-// One call of the command.
+// One call of the command. What it throws is why it failed, unless it was interrupted.
 class Ctl {
  public:
   Ctl(CtlCommand command, Log& log, const std::atomic<bool>& stop)
@@ -59,22 +59,25 @@ class Ctl {
 
   int run() {
     const milliseconds patience = command_.timeout ? patience_ : for_a_server;
-    if (!client_.wait_for_server(patience, stop_)) return stop_ ? exit_interrupted : no_server();
+    if (!client_.wait_for_server(patience, stop_)) throw no_server();
     switch (command_.what) {
-      case CtlCommand::What::request: return request();
-      case CtlCommand::What::status: return command_.watch ? watch() : status();
-      case CtlCommand::What::history: return history();
-      case CtlCommand::What::entities: return entities();
-      case CtlCommand::What::save: return save();
-      case CtlCommand::What::load: return load();
+      case CtlCommand::What::request: request(); break;
+      case CtlCommand::What::status:
+        if (command_.watch) return watch();
+        std::fputs(status(2).c_str(), stdout);
+        break;
+      case CtlCommand::What::history: history(); break;
+      case CtlCommand::What::entities: entities(); break;
+      case CtlCommand::What::save: save(); break;
+      case CtlCommand::What::load: load(); break;
     }
-    return exit_usage;
+    return exit_ok;
   }
 
  private:
-  int no_server() {
+  std::runtime_error no_server() const {
     const std::uint32_t domain = command_.connection.domain();
-    log_.error(fmt::format(
+    return std::runtime_error(fmt::format(
         "no server that can be controlled is at {}, domain {}. Is one running there, with this --domain? A run that "
         "starts "
         "its own controllers takes a domain of its own unless it is given one{}. 'cohort doctor --server {} --domain "
@@ -84,27 +87,32 @@ class Ctl {
         command_.connection.secure.empty() ? "; one with --secure needs it here too"
                                            : ", and does its folder have this identity",
         command_.connection.server, domain));
-    return exit_failed;
   }
 
   // Of a request that brought none.
-  int no_reply() {
-    if (stop_) return exit_interrupted;
-    if (client_.server_is_gone()) {
-      log_.error("the server has gone");
-      return exit_failed;
-    }
-    const std::string why = why_it_waits();
-    log_.error(fmt::format("it was not done within {:g} s{}", 1e-3 * static_cast<double>(patience_.count()),
-                           why.empty() ? ": the server does not answer" : ", and will be at the next tick: " + why));
-    return exit_failed;
+  std::runtime_error no_reply() {
+    if (client_.server_is_gone()) return std::runtime_error("the server has gone");
+    const std::string why = stop_ ? std::string() : why_it_waits();
+    return std::runtime_error(
+        fmt::format("it was not done within {:g} s{}", 1e-3 * static_cast<double>(patience_.count()),
+                    why.empty() ? ": the server does not answer" : ", and will be at the next tick: " + why));
+  }
+
+  Reply ask(const Request& request) {
+    if (auto reply = client_.ask(request, patience_, stop_)) return std::move(*reply);
+    throw no_reply();
+  }
+
+  // The same, and the request was done.
+  Reply ask_and_get(const Request& request) {
+    Reply reply = ask(request);
+    if (reply.result != ResultCode::ok) throw std::runtime_error(reply.error_message);
+    return reply;
   }
 
   // What is asked for waits for a boundary, and that for the controllers.
   std::string why_it_waits() {
-    Request request;
-    request.operation = Operation::get_status;
-    const auto reply = client_.ask(request, for_status, stop_);
+    const auto reply = client_.ask({.operation = Operation::get_status}, for_status, stop_);
     if (!reply || reply->status.empty()) return {};
     const wire::SimulationStatus& status = reply->status.front();
     if (status.awaited.empty()) return fmt::format("the run is {}", word_of(reply->state));
@@ -115,22 +123,15 @@ class Ctl {
     return text;
   }
 
-  int request() {
+  void request() {
     if (command_.request.operation == Operation::spawn_entity) take_model();
     const bool quits = command_.request.operation == Operation::set_simulation_state &&
                        command_.request.state == wire::SimulationState::quitting;
     const auto reply = client_.ask(command_.request, patience_, stop_);
-    if (!reply && quits && client_.server_is_gone()) return exit_ok;  // with its last words
-    if (!reply) return no_reply();
-    const bool is_done =
-        reply->result == ResultCode::ok || (command_.request.operation == Operation::set_simulation_state &&
-                                            reply->result == ResultCode::already_in_target_state);
-    if (!is_done) {
-      log_.error(reply->error_message);
-      return exit_failed;
-    }
+    if (!reply && quits && client_.server_is_gone()) return;  // with its last words
+    if (!reply) throw no_reply();
+    if (!reply->is_done()) throw std::runtime_error(reply->error_message);
     std::printf("%s\n", reply->error_message.c_str());
-    return exit_ok;
   }
 
   void take_model() {
@@ -142,85 +143,62 @@ class Ctl {
     command_.request.resource_string.assign(text.begin(), text.end());
   }
 
-  std::optional<Reply> ask_status() {
-    Request request;
-    request.operation = Operation::get_status;
-    return client_.ask(request, patience_, stop_);
-  }
-
-  int status() {
-    const auto reply = ask_status();
-    if (!reply) return no_reply();
-    std::fputs((command_.json ? status_json(*reply, 2) : status_text(*reply)).c_str(), stdout);
-    return exit_ok;
+  std::string status(int indent) {
+    const Reply reply = ask({.operation = Operation::get_status});
+    return command_.json ? status_json(reply, indent) : status_text(reply);
   }
 
   int watch() {
     const bool is_terminal = ::isatty(STDOUT_FILENO) == 1;
     while (!stop_) {
       const auto next = std::chrono::steady_clock::now() + watch_interval;
-      const auto reply = ask_status();
-      if (!reply && client_.server_is_gone() && !stop_) {
+      std::string text;
+      try {
+        text = status(-1);
+      } catch (const std::exception&) {
+        if (!client_.server_is_gone() || stop_) throw;
         log_.notice("the server has gone");
         return exit_ok;
       }
-      if (!reply) return no_reply();
-      const char* const begin = is_terminal && !command_.json ? "\033[H\033[2J" : "";
-      const std::string text = command_.json ? status_json(*reply, -1) : status_text(*reply);
-      std::printf("%s%s%s", begin, text.c_str(), is_terminal || command_.json ? "" : "\n");
+      std::printf("%s%s%s", is_terminal && !command_.json ? "\033[H\033[2J" : "", text.c_str(),
+                  is_terminal || command_.json ? "" : "\n");
       std::fflush(stdout);
       while (!stop_ && std::chrono::steady_clock::now() < next) std::this_thread::sleep_for(milliseconds(20));
     }
     return exit_interrupted;
   }
 
-  int history() {
-    const auto status = ask_status();
-    if (!status || status->status.empty()) return no_reply();
+  void history() {
+    const Reply status = ask({.operation = Operation::get_status});
+    if (status.status.empty()) throw no_reply();
     viewing::RunHistory all;
-    Request request;
-    request.operation = Operation::get_history;
+    Request request{.operation = Operation::get_history};
     for (bool is_complete = false; !is_complete;) {
-      const auto reply = client_.ask(request, patience_, stop_);
-      if (!reply) return no_reply();
-      if (reply->result != ResultCode::ok) {
-        log_.error(reply->error_message);
-        return exit_failed;
-      }
-      add(all, recording::decode<viewing::RunHistory>(std::as_bytes(std::span(reply->data))));
-      is_complete = reply->offset == request.offset || reply->offset >= reply->size;
-      request.offset = reply->offset;
+      const Reply reply = ask_and_get(request);
+      add(all, recording::decode<viewing::RunHistory>(std::as_bytes(std::span(reply.data))));
+      is_complete = reply.offset == request.offset || reply.offset >= reply.size;
+      request.offset = reply.offset;
     }
-    const std::chrono::nanoseconds step(status->status.front().step_ns);
+    const std::chrono::nanoseconds step(status.status.front().step_ns);
     std::fputs((command_.json ? history_json(all, step) : history_text(all, step)).c_str(), stdout);
-    return exit_ok;
   }
 
-  int entities() {
+  void entities() {
     command_.request.operation = Operation::get_entities;
-    const auto reply = client_.ask(command_.request, patience_, stop_);
-    if (!reply) return no_reply();
-    if (reply->result != ResultCode::ok) {
-      log_.error(reply->error_message);
-      return exit_failed;
-    }
-    for (const std::string& name : reply->entities) std::printf("%s\n", name.c_str());
-    return exit_ok;
+    for (const std::string& name : ask_and_get(command_.request).entities) std::printf("%s\n", name.c_str());
   }
 
-  int save() {
+  void save() {
     check_writable("the snapshot", command_.file);
     const std::vector<std::byte> bytes = client_.save(patience_, stop_);
     write_file("the snapshot", command_.file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     std::printf("%s: %zu bytes\n", command_.file.c_str(), bytes.size());
-    return exit_ok;
   }
 
-  int load() {
+  void load() {
     const std::vector<char> bytes = read_file(command_.file);
     const Reply reply = client_.load(std::as_bytes(std::span(bytes)), patience_, stop_);
     std::printf("%s\n", reply.error_message.c_str());
-    return exit_ok;
   }
 
   CtlCommand command_;

@@ -1,4 +1,4 @@
-// What server/viewing/scene_messages.hpp and tools/view/view_messages.hpp say, as rosmsg2-serialization decodes it.
+// What server/viewing/scene_messages.hpp and tools/view/messages/view_messages.hpp say, as rosmsg2-serialization decodes it.
 
 export const none = 0xffffffff;
 

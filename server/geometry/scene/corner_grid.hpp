@@ -1,0 +1,84 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "server/geometry/scene/cells.hpp"
+#include "server/geometry/shapes/shapes.hpp"
+
+namespace cohort::geometry {
+
+/// A uniform grid over the xy plane, hashed, so that it has no edge, for items that are no wider than a cell: each is
+/// in one cell only, that of the lower corner of its bounds, and its bounds with it, so that a query reads a few short
+/// stretches of memory. Built at once; queries may then run from any thread.
+class CornerGrid {
+ public:
+  void set_cell_size(double edge) { cells_.set_size(edge); }
+  double cell_size() const { return cells_.size(); }
+
+  /// `items`: indices; `bounds[item]` must be finite, and at most as wide as a cell along x and y. Equal input gives an
+  /// equal grid, whatever was in it before.
+  void build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds);
+
+  /// Calls `visit(item)` once for each item whose bounds overlap `query`, in an order that depends on the grid's
+  /// content alone. The query may be infinite.
+  template <class Visit>
+  void for_each_overlap(const Bounds& query, Visit&& visit) const {
+    if (entries_.empty()) return;
+    const std::int64_t first = cells_.index_of(std::max(query.lower.x(), extent_.lower.x())) - 1;
+    const std::int64_t last = cells_.index_of(std::min(query.upper.x(), extent_.upper.x()));
+    const std::int64_t last_row = cells_.index_of(std::min(query.upper.y(), extent_.upper.y()));
+    for (std::int64_t row = cells_.index_of(std::max(query.lower.y(), extent_.lower.y())) - 1; row <= last_row; ++row) {
+      for_each_in_row(first, last, row, [&](const Entry& entry) {
+        if (!query.overlaps(entry.bounds)) return;
+        // Another cell of the query may share the bucket.
+        const std::int64_t column = cells_.index_of(entry.bounds.lower.x());
+        if (column >= first && column <= last && cells_.index_of(entry.bounds.lower.y()) == row) visit(entry.item);
+      });
+    }
+  }
+
+  /// Calls `visit(item)` for all items that may be on a ray of unit direction, near ones first, some more than once.
+  /// `visit` returns how far along the ray the search may end, which may shrink from call to call. `range` may be
+  /// infinite.
+  template <class Visit>
+  void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
+                      Visit&& visit) const {
+    if (entries_.empty()) return;
+    double end = cells_.end_of(origin, direction, range, extent_);
+    cells_.for_each_along(origin, direction, [&](std::int64_t column, std::int64_t row) {
+      for (const std::int64_t of_corners : {row - 1, row})
+        for_each_in_row(column - 1, column, of_corners,
+                        [&](const Entry& entry) { end = std::min(end, visit(entry.item)); });
+      return end;
+    });
+  }
+
+ private:
+  struct Entry {
+    Bounds bounds;
+    std::uint32_t item = 0;
+  };
+
+  // All in the buckets of these cells.
+  template <class Visit>
+  void for_each_in_row(std::int64_t first, std::int64_t last, std::int64_t row, Visit&& visit) const {
+    while (first <= last) {
+      const std::int64_t last_in_tile = std::min(last, first | (Cells::tile_edge - 1));
+      const std::size_t bucket = cells_.bucket_of(first, row);
+      const std::uint32_t end = begin_[bucket + static_cast<std::size_t>(last_in_tile - first) + 1];
+      for (std::uint32_t i = begin_[bucket]; i < end; ++i) visit(entries_[i]);
+      first = last_in_tile + 1;
+    }
+  }
+
+  Cells cells_;
+  std::vector<std::uint32_t> begin_;  // of each bucket in entries_, and one past the last
+  std::vector<Entry> entries_;
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of all items
+  std::vector<std::uint32_t> buckets_;                               // of the items, while the grid is built
+};
+
+}  // namespace cohort::geometry

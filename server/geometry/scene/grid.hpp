@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "server/geometry/scene/cells.hpp"
+#include "server/geometry/shapes/shapes.hpp"
+
+namespace cohort::geometry {
+
+/// A uniform grid over the xy plane, hashed, so that it has no edge. Holds items by index, each in every cell that its
+/// bounds touch. Built at once; queries may then run from any thread.
+class Grid {
+ public:
+  void set_cell_size(double edge) { cells_.set_size(edge); }
+
+  /// Cells that `bounds` touches; more than any grid should hold if it is very large.
+  double cells_covered(const Bounds& bounds) const;
+
+  /// `items`: indices; `bounds[item]` must be finite. Equal input gives an equal grid, whatever was in it before.
+  void build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds);
+
+  /// Calls `visit(item)` once for each item of the grid whose bounds overlap `query`, in an order that depends on the
+  /// grid's content alone.
+  template <class Visit>
+  void for_each_overlap(const Bounds& query, const std::vector<Bounds>& bounds, Visit&& visit) const {
+    if (entries_.empty()) return;
+    const std::int64_t first = cells_.index_of(query.lower.x());
+    const std::int64_t last = cells_.index_of(query.upper.x());
+    const std::int64_t first_row = cells_.index_of(query.lower.y());
+    const std::int64_t last_row = cells_.index_of(query.upper.y());
+    for (std::int64_t row = first_row; row <= last_row; ++row)
+      for (std::int64_t column = first; column <= last; ++column) {
+        const std::span<const std::uint32_t> items = bucket(column, row);
+        for (std::size_t i = 0; i < items.size(); ++i) {
+          const std::uint32_t item = items[i];
+          if (i > 0 && items[i - 1] == item) continue;  // two of its cells fell into this bucket
+          const Bounds& other = bounds[item];
+          if (!query.overlaps(other)) continue;
+          // Of the cells that both touch, the lowest one reports.
+          if (std::max(first, cells_.index_of(other.lower.x())) == column &&
+              std::max(first_row, cells_.index_of(other.lower.y())) == row)
+            visit(item);
+        }
+      }
+  }
+
+  /// Calls `visit(item)` for the items of the cells along a ray, near cells first, some items more than once.
+  /// `visit` returns how far along the ray the search may end, which may shrink from call to call. `range` may be
+  /// infinite.
+  template <class Visit>
+  void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
+                      Visit&& visit) const {
+    if (entries_.empty()) return;
+    double end = cells_.end_of(origin, direction, range, extent_);
+    cells_.for_each_along(origin, direction, [&](std::int64_t column, std::int64_t row) {
+      for (const std::uint32_t item : bucket(column, row)) end = std::min(end, visit(item));
+      return end;
+    });
+  }
+
+ private:
+  std::span<const std::uint32_t> bucket(std::int64_t column, std::int64_t row) const {
+    const std::size_t index = cells_.bucket_of(column, row);
+    return {entries_.data() + begin_[index], entries_.data() + begin_[index + 1]};
+  }
+
+  Cells cells_;
+  std::vector<std::uint32_t> begin_;    // of each bucket in entries_, and one past the last
+  std::vector<std::uint32_t> entries_;  // items, ascending within a bucket
+  Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of all items
+};
+
+}  // namespace cohort::geometry

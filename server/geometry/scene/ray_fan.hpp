@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "server/geometry/scene/scene.hpp"
+
+namespace cohort::geometry {
+
+/// Several rays from about one place, as of a ring of sensors: what they may hit is looked for once, and each ray tests
+/// the nearest of it first. For as long as nothing moves.
+class RayFan {
+ public:
+  /// All rays stay inside `region` and start near `centre_W`: the nearer, the faster. Those of `ignored_body` are left
+  /// out.
+  RayFan(const Scene& scene, const Eigen::Vector3d& centre_W, const Bounds& region,
+         std::uint32_t ignored_body = Scene::no_body);
+
+  /// The same as `Scene::cast_ray`, bit for bit.
+  std::optional<RayHit> cast(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range) const;
+
+ private:
+  struct Candidate {
+    double distance = 0.0;  // no point of it is nearer to the centre [m]
+    Scene::Ball ball;
+    std::uint32_t solid = 0;
+  };
+
+  const Scene& scene_;
+  Eigen::Vector3d centre_W_;
+  std::vector<Candidate> candidates_;  // nearest first
+};
+
+}  // namespace cohort::geometry

@@ -1,0 +1,158 @@
+#include "server/geometry/scene/scene.hpp"
+
+#include <algorithm>
+
+#include "server/core/infinity.hpp"
+
+namespace cohort::geometry {
+namespace {
+
+// A solid that touches more cells than this is kept in a list of its own: walls, floors, planes.
+constexpr double most_cells = 64.0;
+
+}  // namespace
+
+std::uint32_t Scene::add(Solid solid) {
+  const auto index = static_cast<std::uint32_t>(solids_.size());
+  bounds_.push_back(bounds_of(solid.shape, solid.X_WC));
+  X_CW_.push_back(solid.X_WC.inverse());
+  constexpr double rounding = 1e-9;
+  balls_.push_back({solid.X_WC.position, radius_of(solid.shape) * (1.0 + rounding) + rounding});
+  const auto* const mesh = std::get_if<description::Mesh>(&solid.shape);
+  surfaces_.push_back(mesh != nullptr ? surface_of(*mesh) : nullptr);
+  is_removed_.push_back(0);
+  solids_.push_back(std::move(solid));
+  return index;
+}
+
+std::shared_ptr<const MeshSurface> Scene::surface_of(const description::Mesh& mesh) {
+  std::shared_ptr<const MeshSurface>& surface = shared_[{mesh.triangles.get(), mesh.convex}];
+  if (!surface) surface = std::make_shared<const MeshSurface>(mesh);
+  return surface;
+}
+
+// As wide as the widest thing that moves, but for the few that are much wider than the others.
+double Scene::choose_cell_size() const {
+  constexpr double much_wider = 4.0;
+  std::vector<double> widths;
+  for (std::uint32_t index = 0; index < solids_.size(); ++index)
+    if (solids_[index].moves) widths.push_back(2.0 * balls_[index].radius);
+  if (widths.empty()) return 1.0;
+  std::sort(widths.begin(), widths.end());
+  const double most = much_wider * widths[widths.size() / 2];
+  return *std::prev(std::upper_bound(widths.begin(), widths.end(), most));
+}
+
+void Scene::build() {
+  const double edge = choose_cell_size();
+  static_grid_.set_cell_size(edge);
+  moving_grid_.set_cell_size(edge);
+  wide_grid_.set_cell_size(edge);
+
+  for (std::vector<std::uint32_t>* list : {&large_, &moving_, &wide_, &large_moving_}) list->clear();
+  std::vector<std::uint32_t> small;
+  for (std::uint32_t index = 0; index < solids_.size(); ++index) {
+    if (is_removed_[index]) continue;
+    const double width = 2.0 * balls_[index].radius;
+    if (!solids_[index].moves) {
+      (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
+    } else {
+      (width <= edge ? moving_ : width * width > most_cells * edge * edge ? large_moving_ : wide_).push_back(index);
+    }
+  }
+  static_grid_.build(small, bounds_);
+  update();
+}
+
+void Scene::update() {
+  moving_grid_.build(moving_, bounds_);
+  wide_grid_.build(wide_, bounds_);
+}
+
+void Scene::remove(std::uint32_t index) {
+  is_removed_[index] = 1;
+  if (!solids_[index].moves) return build();
+  for (std::vector<std::uint32_t>* list : {&moving_, &wide_, &large_moving_}) std::erase(*list, index);
+  update();
+}
+
+void Scene::put_back(std::uint32_t index) {
+  is_removed_[index] = 0;
+  build();
+}
+
+void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
+  solids_[index].X_WC = X_WC;
+  X_CW_[index] = X_WC.inverse();
+  balls_[index].centre_W = X_WC.position;
+  bounds_[index] = bounds_of(solids_[index].shape, X_WC);
+}
+
+double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
+                      const Eigen::Vector3d& direction_W, double range) const {
+  const double reach = best ? best->distance : range;
+  const Eigen::Vector3d origin_C = X_CW_[index] * origin_W;
+  const Eigen::Vector3d direction_C = X_CW_[index].orientation * direction_W;
+  const RayEntry entry = surfaces_[index] ? surfaces_[index]->cast_ray(origin_C, direction_C, reach)
+                                          : geometry::cast_ray(solids_[index].shape, origin_C, direction_C, reach);
+  const bool is_nearer = entry.distance < reach || (entry.distance == reach && (!best || index < best->solid));
+  if (!is_nearer || !(entry.distance < infinity)) return reach;
+  best = RayHit{entry.distance, index, solids_[index].X_WC.orientation * entry.normal};
+  return entry.distance;
+}
+
+std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+                                      std::uint32_t ignored_body) const {
+  std::optional<RayHit> best;
+  const auto test = [&](std::uint32_t index) {
+    const double reach = best ? best->distance : range;
+    if (solids_[index].body == ignored_body || balls_[index].is_missed(origin_W, direction_W, reach)) return reach;
+    return improve(best, index, origin_W, direction_W, range);
+  };
+  for (const std::uint32_t index : large_) test(index);
+  for (const std::uint32_t index : large_moving_) test(index);
+  static_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
+  wide_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
+  moving_grid_.for_each_along(origin_W, direction_W, best ? best->distance : range, test);
+  return best;
+}
+
+bool Scene::is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+                    std::uint32_t ignored_body, std::uint32_t other_ignored_body) const {
+  constexpr double no_further = -1.0;
+  std::optional<RayHit> hit;
+  const auto test = [&](std::uint32_t index) {
+    const std::uint32_t body = solids_[index].body;
+    if (hit || body == ignored_body || body == other_ignored_body ||
+        balls_[index].is_missed(origin_W, direction_W, range))
+      return hit ? no_further : range;
+    improve(hit, index, origin_W, direction_W, range);
+    return hit ? no_further : range;
+  };
+  for (const std::uint32_t index : large_) test(index);
+  for (const std::uint32_t index : large_moving_) test(index);
+  if (!hit) static_grid_.for_each_along(origin_W, direction_W, range, test);
+  if (!hit) wide_grid_.for_each_along(origin_W, direction_W, range, test);
+  if (!hit) moving_grid_.for_each_along(origin_W, direction_W, range, test);
+  return !hit;
+}
+
+std::optional<RayHit> Scene::cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
+                                            const Eigen::Vector3d& direction_W, double range) const {
+  std::optional<RayHit> best;
+  for (const std::uint32_t index : candidates)
+    if (!balls_[index].is_missed(origin_W, direction_W, best ? best->distance : range))
+      improve(best, index, origin_W, direction_W, range);
+  return best;
+}
+
+bool Scene::reaches(std::uint32_t large_solid, const Bounds& query) const {
+  const auto* plane = std::get_if<description::Plane>(&solids_[large_solid].shape);
+  if (plane == nullptr) return bounds_[large_solid].overlaps(query);
+  const Eigen::Vector3d normal_W = solids_[large_solid].X_WC.orientation * plane->normal;
+  const Eigen::Vector3d centre = 0.5 * (query.lower + query.upper);
+  const Eigen::Vector3d half = 0.5 * (query.upper - query.lower);
+  return normal_W.dot(centre - solids_[large_solid].X_WC.position) <= normal_W.cwiseAbs().dot(half);
+}
+
+}  // namespace cohort::geometry

@@ -1,0 +1,139 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "server/description/model.hpp"
+#include "server/geometry/scene/corner_grid.hpp"
+#include "server/geometry/scene/grid.hpp"
+#include "server/geometry/shapes/mesh_surface.hpp"
+#include "server/geometry/shapes/shapes.hpp"
+
+namespace cohort::geometry {
+
+/// One collision shape, placed in the world.
+struct Solid {
+  Shape shape;
+  description::Surface surface;
+  std::uint32_t body = 0;  ///< whose it is; solids of one body do not see each other
+  bool moves = false;
+  Pose X_WC;
+  std::uint32_t link = 0;       ///< of the body's model
+  std::uint32_t collision = 0;  ///< of the link
+  Eigen::Vector3d color = description::default_color();
+};
+
+struct RayHit {
+  double distance = 0.0;  ///< [m], 0 if the ray starts inside the solid
+  std::uint32_t solid = 0;
+  Eigen::Vector3d normal_W;  ///< outward; zero if the ray starts inside
+};
+
+/// Everything solid in the world, for collision, ground contact, sensing and placement alike. Poses are set between
+/// `update` calls; queries are const and run from any thread.
+class Scene {
+ public:
+  static constexpr std::uint32_t no_body = 0xffffffffu;
+
+  /// Adds a solid; `build` must follow before the first query. Returns its index.
+  std::uint32_t add(Solid solid);
+  /// Chooses the cell size and sorts what does not move. After the last `add`; again if more are added later.
+  void build();
+  /// Takes a solid out of all further queries, until `put_back`. Its index is never another one's.
+  void remove(std::uint32_t index);
+  void put_back(std::uint32_t index);
+  bool is_removed(std::uint32_t index) const { return is_removed_[index] != 0; }
+
+  std::size_t size() const { return solids_.size(); }
+  const Solid& solid(std::uint32_t index) const { return solids_[index]; }
+  const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
+
+  /// Moves a solid. Different ones that move may be moved from different threads; after one that does not, `build`.
+  void set_pose(std::uint32_t index, const Pose& X_WC);
+  /// Takes the new poses into the grid.
+  void update();
+
+  /// The first solid along a ray of unit direction and length `range`, which may be infinite, those of `ignored_body`
+  /// left out. Of two at the
+  /// very same distance the one with the lower index, so the answer depends on the scene alone.
+  std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+                                 std::uint32_t ignored_body = no_body) const;
+
+  /// Whether such a ray meets nothing but these two bodies.
+  bool is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
+               std::uint32_t ignored_body, std::uint32_t other_ignored_body = no_body) const;
+
+  /// As `cast_ray`, among `candidates` only.
+  std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,
+                                       const Eigen::Vector3d& direction_W, double range) const;
+
+  /// A ball that holds a solid, around its origin: a ray that misses the ball misses the solid.
+  struct Ball {
+    Eigen::Vector3d centre_W;
+    double radius = 0.0;  ///< [m], infinite for planes and height maps
+
+    /// Whether a ray surely passes beside it on its first `reach`.
+    bool is_missed(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double reach) const {
+      const Eigen::Vector3d offset = centre_W - origin_W;
+      const double along = offset.dot(direction_W);
+      return along < -radius || along > reach + radius || offset.squaredNorm() - along * along > radius * radius;
+    }
+  };
+  const Ball& ball(std::uint32_t index) const { return balls_[index]; }
+
+  /// Makes `best` the solid's hit if that is nearer along the ray, or as near and of a lower index. Returns how far a
+  /// nearer hit may be.
+  double improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
+                 const Eigen::Vector3d& direction_W, double range) const;
+
+  /// Whether a solid's bounds overlap `query`, or, of a plane, it reaches into it.
+  bool reaches_into(std::uint32_t index, const Bounds& query) const {
+    return std::holds_alternative<description::Plane>(solids_[index].shape) ? reaches(index, query)
+                                                                            : bounds_[index].overlaps(query);
+  }
+
+  /// Calls `visit(index)` once for each solid whose bounds overlap `query` (for a plane: that it reaches into).
+  template <class Visit>
+  void for_each_overlap(const Bounds& query, Visit&& visit) const {
+    for_each_static_overlap(query, visit);
+    moving_grid_.for_each_overlap(query, visit);
+    for (const std::uint32_t index : large_moving_)
+      if (bounds_[index].overlaps(query)) visit(index);
+    wide_grid_.for_each_overlap(query, bounds_, visit);
+  }
+  /// The same, of those that do not move.
+  template <class Visit>
+  void for_each_static_overlap(const Bounds& query, Visit&& visit) const {
+    for (const std::uint32_t index : large_)
+      if (reaches(index, query)) visit(index);
+    static_grid_.for_each_overlap(query, bounds_, visit);
+  }
+
+ private:
+  double choose_cell_size() const;
+  std::shared_ptr<const MeshSurface> surface_of(const description::Mesh& mesh);
+  bool reaches(std::uint32_t large_solid, const Bounds& query) const;
+  std::vector<Solid> solids_;
+  std::vector<Pose> X_CW_;  // inverse of each solid's pose
+  std::vector<Bounds> bounds_;
+  std::vector<Ball> balls_;                                   // around each solid
+  std::vector<std::shared_ptr<const MeshSurface>> surfaces_;  // of each solid that is a mesh
+  std::map<std::pair<const description::TriangleMesh*, bool>, std::shared_ptr<const MeshSurface>> shared_;
+  std::vector<char> is_removed_;
+  // What does not move.
+  std::vector<std::uint32_t> large_;  // planes, and what would fill many cells
+  Grid static_grid_;
+  // What moves.
+  std::vector<std::uint32_t> moving_;        // no wider than a cell, in any orientation
+  std::vector<std::uint32_t> wide_;          // the others, but for
+  std::vector<std::uint32_t> large_moving_;  // those that would fill many cells
+  CornerGrid moving_grid_;
+  Grid wide_grid_;
+};
+
+}  // namespace cohort::geometry

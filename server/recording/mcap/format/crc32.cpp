@@ -1,0 +1,12 @@
+#include "server/recording/mcap/format/crc32.hpp"
+
+#include <zlib.h>
+
+namespace cohort::recording {
+
+std::uint32_t crc32(ByteView bytes, std::uint32_t crc) {
+  if (bytes.empty()) return crc;  // zlib takes no bytes at all for a new beginning
+  return static_cast<std::uint32_t>(::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace cohort::recording

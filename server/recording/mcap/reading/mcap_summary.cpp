@@ -1,0 +1,117 @@
+#include <algorithm>
+
+#include "server/recording/mcap/reading/mcap_contents.hpp"
+
+namespace cohort::recording {
+namespace {
+
+constexpr std::uint64_t footer_size = 8 + 8 + 4;
+constexpr std::uint64_t end_size = record_head_size + footer_size + mcap_magic.size();
+
+bool is_magic(ByteView bytes) { return std::ranges::equal(bytes, std::as_bytes(std::span(mcap_magic))); }
+
+struct End {
+  std::uint64_t footer_offset = 0;
+  Footer footer;
+};
+
+End read_end(const FileBytes& file) {
+  if (file.size() < mcap_magic.size() + end_size)
+    file.at(file.size()).fail("the file ends here, before its footer: it was never closed");
+  End end;
+  end.footer_offset = file.size() - end_size;
+  const Bytes bytes = file.read(end.footer_offset, end_size);
+  const Place place = file.at(end.footer_offset);
+  const RecordHead head = read_record_head(bytes, place);
+  if (!is_magic(ByteView(bytes).last(mcap_magic.size())) || head.opcode != Opcode::footer || head.size != footer_size)
+    file.at(file.size()).fail("the file ends here without a footer: it was never closed, or its end is lost");
+  end.footer = read_footer(ByteView(bytes).subspan(record_head_size, footer_size), place);
+  return end;
+}
+
+void check_summary(const FileBytes& file, const End& end) {
+  const Footer& footer = end.footer;
+  const Place place = file.at(end.footer_offset);
+  if (footer.summary_start < mcap_magic.size() || footer.summary_start > end.footer_offset)
+    place.fail("the footer says that the summary begins at byte " + std::to_string(footer.summary_start) +
+               ", which is not in the file before it");
+  const bool has_offsets = footer.summary_offset_start != 0;
+  if (has_offsets &&
+      (footer.summary_offset_start < footer.summary_start || footer.summary_offset_start > end.footer_offset))
+    place.fail("the footer says that the summary's offsets begin at byte " +
+               std::to_string(footer.summary_offset_start) + ", which is not in the summary");
+  constexpr std::uint64_t before_crc = record_head_size + 8 + 8;
+  if (footer.summary_crc != 0 && footer.summary_crc != file.crc(footer.summary_start, end.footer_offset + before_crc))
+    file.at(footer.summary_start).fail("the summary is damaged: its CRC is not that of its bytes");
+}
+
+Block block_of(const ChunkIndex& index, const FileBytes& file, const Place& place) {
+  if (index.length < record_head_size || index.offset > file.size() || index.length > file.size() - index.offset)
+    place.fail("an index says that a chunk of " + std::to_string(index.length) + " bytes begins at byte " +
+               std::to_string(index.offset) + "; the file has " + std::to_string(file.size()));
+  Block block{index.offset, index.length, index.start_time, index.end_time, true, {}};
+  block.channels.reserve(index.message_index_offsets.size());
+  for (const auto& [channel, offset] : index.message_index_offsets) block.channels.push_back(channel);
+  return block;
+}
+
+void add(Contents& contents, const RecordHead& head, ByteView content, const FileBytes& file, const Place& place) {
+  switch (head.opcode) {
+    case Opcode::schema: {
+      Schema schema = read_schema(content, place);
+      if (schema.id != 0) contents.schemas.insert_or_assign(schema.id, std::move(schema));
+      break;
+    }
+    case Opcode::channel: {
+      Channel channel = read_channel(content, place);
+      contents.channels.insert_or_assign(channel.id, std::move(channel));
+      break;
+    }
+    case Opcode::statistics: contents.statistics = read_statistics(content, place); break;
+    case Opcode::chunk_index: contents.blocks.push_back(block_of(read_chunk_index(content, place), file, place)); break;
+    case Opcode::attachment_index: contents.attachments.push_back(read_attachment_index(content, place)); break;
+    case Opcode::metadata_index: contents.metadata.push_back(read_metadata_index(content, place)); break;
+    default: break;
+  }
+}
+
+}  // namespace
+
+void check_magic(const FileBytes& file) {
+  Bytes bytes = file.read(0, std::min<std::uint64_t>(file.size(), mcap_magic.size()));
+  if (is_magic(bytes)) return;
+  const std::string found = bytes.empty() ? "the file is empty" : "the file begins otherwise";
+  file.at(0).fail("this is no MCAP file: it should begin with the bytes 89 4D 43 41 50 30 0D 0A; " + found);
+}
+
+std::optional<Contents> read_summary(const FileBytes& file) {
+  check_magic(file);
+  const End end = read_end(file);
+  if (end.footer.summary_start == 0) return {};
+  check_summary(file, end);
+
+  Contents contents;
+  FileWindow window(file);
+  const auto record = [&](std::uint64_t offset, const auto& use) {
+    const Place place = file.at(offset);
+    const RecordHead head = read_record_head(window.get(offset, record_head_size), place);
+    if (head.size > file.size() - offset - record_head_size)
+      place.fail("a record of " + std::to_string(head.size) + " bytes; the file ends before");
+    use(head, window.get(offset + record_head_size, head.size), place);
+    return offset + record_head_size + head.size;
+  };
+  record(mcap_magic.size(), [&](const RecordHead& head, ByteView content, const Place& place) {
+    if (head.opcode != Opcode::header) place.fail("there should be the file's header");
+    contents.header = read_header(content, place);
+  });
+  const std::uint64_t summary_end =
+      end.footer.summary_offset_start == 0 ? end.footer_offset : end.footer.summary_offset_start;
+  for (std::uint64_t offset = end.footer.summary_start; offset < summary_end;)
+    offset = record(offset, [&](const RecordHead& head, ByteView content, const Place& place) {
+      add(contents, head, content, file, place);
+    });
+  std::ranges::stable_sort(contents.blocks, {}, &Block::offset);
+  return contents;
+}
+
+}  // namespace cohort::recording

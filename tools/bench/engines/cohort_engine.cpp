@@ -1,0 +1,71 @@
+#include <algorithm>
+
+#include "server/physics/make_world.hpp"
+#include "tools/bench/engines/cohort_scene.hpp"
+#include "tools/bench/engines/engines.hpp"
+
+namespace cohort::bench {
+namespace {
+
+class CohortEngine final : public Engine {
+ public:
+  CohortEngine(const Scene& scene, unsigned threads)
+      : robot_(scene.robot),
+        drive_(scene.drive),
+        description_(describe(scene)),
+        first_robot_(static_cast<std::uint32_t>(description_.robots.front())),
+        workers_(threads),
+        world_(physics::make_world(description_, workers_)) {
+    if (!scene.connected) return;
+    const Pose X_LP{{0.5 * scene.connection_length, 0.0, robot_.turret.z - robot_.turret_joint_height}};
+    for (std::uint32_t body = first_robot_ + 1; body < world_->body_count(); ++body)
+      world_->connect(body, turret_link, X_LP, body - 1, turret_link);
+  }
+
+  void set_command(std::uint32_t robot, const Command& command) override {
+    const std::uint32_t body = first_robot_ + robot;
+    if (drive_ == Drive::wheels) {
+      world_->set_joint_velocity_target(body, left_wheel_joint, command.left / robot_.wheel_radius);
+      world_->set_joint_velocity_target(body, right_wheel_joint, command.right / robot_.wheel_radius);
+    } else {
+      world_->set_track_velocity_target(body, treel_drive, physics::Side::left, command.left);
+      world_->set_track_velocity_target(body, treel_drive, physics::Side::right, command.right);
+    }
+    world_->set_joint_velocity_target(body, turret_joint, command.turret);
+  }
+
+  void step() override { world_->step(); }
+
+  Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
+    const Eigen::Vector3d centre_L(0.0, 0.0, robot_.turret.z - robot_.turret_joint_height);
+    return world_->link_pose(first_robot_ + robot, turret_link) * centre_L;
+  }
+
+  std::vector<Touch> touches() const override {
+    std::vector<Touch> touches;
+    for (const physics::Contact& contact : world_->contacts()) {
+      const auto [low, high] = std::minmax(contact.body_a, contact.body_b);  // what is static comes first
+      if (low == ground) continue;
+      touches.push_back({high - first_robot_, low < first_robot_ ? Touch::wall : low - first_robot_});
+    }
+    return touches;
+  }
+
+ private:
+  static constexpr std::uint32_t ground = 0;
+
+  Robot robot_;
+  Drive drive_;
+  description::World description_;
+  std::uint32_t first_robot_;
+  WorkerPool workers_;
+  std::unique_ptr<physics::World> world_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads) {
+  return std::make_unique<CohortEngine>(scene, threads);
+}
+
+}  // namespace cohort::bench

@@ -1,0 +1,61 @@
+#include "tools/bench/engines/engine.hpp"
+
+#include <fmt/format.h>
+
+#include "tools/bench/engines/engines.hpp"
+
+namespace cohort::bench {
+namespace {
+
+using Limitation = std::optional<std::string>;
+
+constexpr std::size_t most_robots_in_mujoco = 512;
+constexpr std::size_t most_connected_in_world_step = 32;
+
+Limitation none(const Scene&) { return std::nullopt; }
+
+Limitation world_step_limitation(const Scene& scene) {
+  if (scene.connected && scene.robots.size() > most_connected_in_world_step)
+    return fmt::format("more than {} connected robots take it seconds a step", most_connected_in_world_step);
+  return std::nullopt;
+}
+
+Limitation mujoco_limitation(const Scene& scene) {
+  if (scene.robots.size() > most_robots_in_mujoco)
+    return fmt::format("its matrices are dense, and those of more than {} robots too large for it",
+                       most_robots_in_mujoco);
+  return std::nullopt;
+}
+
+Limitation enki_limitation(const Scene& scene) {
+  if (scene.connected) return "it has no joints";
+  return std::nullopt;
+}
+
+std::vector<EngineKind> known_engines() {
+  std::vector<EngineKind> kinds = {{"cohort", "", make_cohort_engine, make_cohort_mechanism, none},
+                                   {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
+                                   {"ode-quickstep", "libode-dev", {}, {}, none},
+                                   {"mujoco", "libmujoco-dev", {}, {}, mujoco_limitation},
+                                   {"enki", "libenki-dev", {}, {}, enki_limitation}};
+  // The build defines each as true or false, and links the sources of those that are true.
+  if constexpr (COHORT_BENCH_ODE) {
+    kinds[1].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
+    kinds[2].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
+  }
+  if constexpr (COHORT_BENCH_MUJOCO) {
+    kinds[3].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
+    kinds[3].make_mechanism = make_mujoco_mechanism;
+  }
+  if constexpr (COHORT_BENCH_ENKI) kinds[4].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
+  return kinds;
+}
+
+}  // namespace
+
+const std::vector<EngineKind>& engine_kinds() {
+  static const std::vector<EngineKind> kinds = known_engines();
+  return kinds;
+}
+
+}  // namespace cohort::bench

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/bench/scenes/bench_scene.hpp"
+#include "tools/bench/scenes/driving.hpp"
+#include "tools/bench/scenes/mechanics.hpp"
+
+namespace cohort::bench {
+
+/// Two bodies that touched during the last step: two robots, or a robot and `wall`. The ground does not count.
+struct Touch {
+  static constexpr std::uint32_t wall = 0xffffffffu;
+
+  std::uint32_t robot = 0;
+  std::uint32_t other = wall;
+};
+
+/// A scene in one physics engine.
+class Engine {
+ public:
+  Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+  virtual ~Engine() = default;
+
+  virtual void set_command(std::uint32_t robot, const Command& command) = 0;
+  /// Advances by one step of the scene. Throws std::runtime_error if the engine gives up.
+  virtual void step() = 0;
+  virtual Eigen::Vector3d turret_centre(std::uint32_t robot) const = 0;  ///< in the world [m]
+  /// A pair appears as often as it has contact points.
+  virtual std::vector<Touch> touches() const = 0;
+};
+
+/// An engine that the benchmark knows, whether it is in this build or not.
+struct EngineKind {
+  std::string name;
+  std::string package;  ///< Debian's, which the engine comes with; empty for Cohort
+  /// Empty if the package was not there when this was built. `threads`: for Cohort; the others have one.
+  std::function<std::unique_ptr<Engine>(const Scene&, unsigned threads)> make;
+  /// Empty also if the engine is not compared by its accuracy.
+  std::function<std::unique_ptr<MechanismRun>(const Mechanism&)> make_mechanism;
+  /// Why the engine cannot do this scene, or nothing.
+  std::function<std::optional<std::string>(const Scene&)> limitation;
+};
+
+const std::vector<EngineKind>& engine_kinds();
+
+/// Others are compared to this one.
+inline constexpr const char* reference_engine = "ode-quickstep";
+
+}  // namespace cohort::bench

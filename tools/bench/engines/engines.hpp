@@ -1,0 +1,19 @@
+#pragma once
+
+#include "tools/bench/engines/engine.hpp"
+
+/// What each engine's source file provides; engine.cpp picks those that are in this build.
+namespace cohort::bench {
+
+std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads);
+std::unique_ptr<MechanismRun> make_cohort_mechanism(const Mechanism& mechanism);
+
+enum class OdeStepper { world_step, quick_step };
+std::unique_ptr<Engine> make_ode_engine(const Scene& scene, OdeStepper stepper);
+
+std::unique_ptr<Engine> make_mujoco_engine(const Scene& scene);
+std::unique_ptr<MechanismRun> make_mujoco_mechanism(const Mechanism& mechanism);
+
+std::unique_ptr<Engine> make_enki_engine(const Scene& scene);
+
+}  // namespace cohort::bench

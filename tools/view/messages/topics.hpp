@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "server/recording/mcap/format/mcap.hpp"
+
+namespace cohort::view {
+
+enum class Topic : std::uint8_t { scene, frame, signals, contacts, status, robots, events, transforms, markers };
+inline constexpr std::size_t topic_count = 9;
+
+/// A topic as clients are told of it; its number is its place in `topic_table()`.
+struct TopicInfo {
+  std::string name;
+  std::string schema_name;
+  std::string schema;
+};
+const std::array<TopicInfo, topic_count>& topic_table();
+
+/// A message as it was published; never changed.
+struct Published {
+  std::uint64_t version = 0;  ///< of its topic, counting up from 1
+  std::chrono::nanoseconds time{0};
+  recording::Bytes data;  ///< CDR
+};
+
+/// The newest message of each topic, between the source that publishes and the clients that read. What is published
+/// takes the place of what was there, so nothing grows where nobody reads. Any thread.
+class Topics {
+ public:
+  /// `published` is called on the publisher's thread after each message.
+  explicit Topics(std::function<void()> published = {}) : published_(std::move(published)) {}
+
+  void publish(Topic topic, std::chrono::nanoseconds time, recording::Bytes data);
+  /// Null if there is none yet.
+  std::shared_ptr<const Published> newest(Topic topic) const;
+
+  /// Somebody reads it, or does no longer.
+  void add_reader(Topic topic);
+  void remove_reader(Topic topic);
+  bool is_read(Topic topic) const { return readers_[index_of(topic)] > 0; }
+  /// Higher each time a topic gets a reader.
+  std::uint64_t arrivals() const { return arrivals_; }
+
+ private:
+  static std::size_t index_of(Topic topic) { return static_cast<std::size_t>(topic); }
+
+  std::function<void()> published_;
+  mutable std::mutex mutex_;
+  std::array<std::shared_ptr<const Published>, topic_count> newest_;
+  std::array<std::atomic<int>, topic_count> readers_{};
+  std::atomic<std::uint64_t> arrivals_{0};
+};
+
+}  // namespace cohort::view

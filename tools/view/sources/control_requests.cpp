@@ -1,0 +1,112 @@
+#include "tools/view/sources/control_requests.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace cohort::view {
+namespace {
+
+using wire::Operation;
+using wire::Request;
+using wire::SimulationState;
+
+wire::Vector3 vector_in(const ViewRequest& asked) {
+  if (asked.numbers.size() < 2 || asked.numbers.size() > 3)
+    throw std::invalid_argument("'" + asked.operation + "' needs x, y and perhaps z");
+  return {asked.numbers[0], asked.numbers[1], asked.numbers.size() > 2 ? asked.numbers[2] : 0.0};
+}
+
+// Upright, with its heading about the vertical.
+wire::Pose pose_in(const ViewRequest& asked) {
+  if (asked.numbers.size() < 2 || asked.numbers.size() > 4)
+    throw std::invalid_argument("'" + asked.operation + "' needs x, y, perhaps z, and perhaps a heading");
+  std::array<double, 4> numbers{};
+  std::ranges::copy(asked.numbers, numbers.begin());
+  wire::Pose pose;
+  pose.position = {numbers[0], numbers[1], numbers[2]};
+  pose.orientation = {0.0, 0.0, std::sin(0.5 * numbers[3]), std::cos(0.5 * numbers[3])};
+  return pose;
+}
+
+const std::string& object_in(const ViewRequest& asked) {
+  if (asked.name.empty()) throw std::invalid_argument("'" + asked.operation + "' needs the name of an object");
+  return asked.name;
+}
+
+template <SimulationState state>
+Request to_state(const ViewRequest&) {
+  return {.operation = Operation::set_simulation_state, .state = state};
+}
+
+Request reset(const ViewRequest&) { return {.operation = Operation::reset_simulation}; }
+
+Request step(const ViewRequest& asked) {
+  constexpr double most = 1e9;
+  if (!(asked.number >= 1.0 && asked.number <= most))
+    throw std::invalid_argument("a running world steps ahead, by one tick or more");
+  return {.operation = Operation::step_simulation, .steps = static_cast<std::uint64_t>(asked.number)};
+}
+
+Request speed(const ViewRequest& asked) {
+  if (!(asked.number >= 0.0) || !std::isfinite(asked.number))
+    throw std::invalid_argument("a speed is above 0, or 0 for as fast as it goes");
+  return {.operation = Operation::set_speed, .speed = asked.number};
+}
+
+Request spawn(const ViewRequest& asked) {
+  return {.operation = Operation::spawn_entity,
+          .entity = object_in(asked),
+          .uri = asked.text,
+          .set_pose = true,
+          .pose = pose_in(asked)};
+}
+
+Request remove(const ViewRequest& asked) { return {.operation = Operation::delete_entity, .entity = object_in(asked)}; }
+
+Request move(const ViewRequest& asked) {
+  return {
+      .operation = Operation::set_entity_state, .entity = object_in(asked), .set_pose = true, .pose = pose_in(asked)};
+}
+
+Request light(const ViewRequest& asked) {
+  return {.operation = Operation::set_light, .entity = object_in(asked), .on = asked.number != 0.0};
+}
+
+Request push(const ViewRequest& asked) {
+  constexpr std::int64_t tenth_of_a_second = 100'000'000;
+  return {.operation = Operation::apply_force,
+          .entity = object_in(asked),
+          .force = vector_in(asked),
+          .duration_ns = tenth_of_a_second};
+}
+
+struct ViewOperation {
+  const char* name;
+  Request (*request)(const ViewRequest&);
+};
+constexpr std::array view_operations = {
+    ViewOperation{"play", to_state<SimulationState::playing>},
+    ViewOperation{"pause", to_state<SimulationState::paused>},
+    ViewOperation{"step", step},
+    ViewOperation{"speed", speed},
+    ViewOperation{"reset", reset},
+    ViewOperation{"spawn", spawn},
+    ViewOperation{"remove", remove},
+    ViewOperation{"move", move},
+    ViewOperation{"light", light},
+    ViewOperation{"push", push},
+};
+
+}  // namespace
+
+Request request_of(const ViewRequest& asked) {
+  const auto* const found =
+      std::ranges::find_if(view_operations, [&](const ViewOperation& each) { return asked.operation == each.name; });
+  if (found == view_operations.end())
+    throw std::invalid_argument("'" + asked.operation + "' is nothing that a server can do");
+  return found->request(asked);
+}
+
+}  // namespace cohort::view

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "client_sdk/src/control_client.hpp"
+#include "idl/wire.hpp"
+#include "tools/view/driving/drivers.hpp"
+#include "tools/view/messages/scene_publisher.hpp"
+#include "tools/view/source.hpp"
+#include "tools/view/sources/live_history.hpp"
+
+namespace cohort::view {
+
+struct LiveOptions {
+  std::string server = "127.0.0.1";
+  std::uint32_t domain = 0;
+  std::string secure{};          ///< folder of an observer's identity; empty: without security
+  std::string secure_control{};  ///< folder of an identity that may control
+  std::string secure_drive{};    ///< and of one that may drive robots
+  bool may_control = false;
+};
+
+/// Shows a running server, as any observer may. Requests, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
+/// `spawn`, `remove`, `move`, `light` and `push`; the server says whether they are done. Where it keeps snapshots also
+/// `seek` and steps back: to the last snapshot before, and if the run is paused on from there to the very tick. And
+/// `drive` and `release`, by which whoever looks is the controller of a robot (Drivers).
+class LiveSource final : public Source {
+ public:
+  /// Does not wait for the server. `topics` must outlive this. Throws wire::WireError if its address or the identity
+  /// cannot be used.
+  LiveSource(const LiveOptions& options, Topics& topics);
+  ~LiveSource() override;
+
+  void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
+  void watch(const std::vector<std::uint32_t>& robots) override;
+  void leave(std::uint64_t visitor) override;
+
+ private:
+  using Bytes = recording::Bytes;
+
+  struct ReceivedRequest {
+    ViewRequest request;
+    std::function<void(const Answer&)> answer;
+  };
+  // What came from the server since it was looked at last. Under the lock.
+  struct Arrived {
+    std::optional<Bytes> scene{};
+    Bytes frame{}, signals{}, contacts{}, robots{};
+    bool has_update = false;
+    bool has_other_watched = false;  // robots
+  };
+
+  void on_scene(const wire::SceneDescription& description);
+  void on_update(const wire::SceneUpdate& update);
+  void show_what_arrives();
+  void show(Arrived& arrived);
+  void show_extras();
+  void show_robots();
+  void serve_requests();
+  Answer done(ControlClient& client, const ViewRequest& asked);
+  Answer gone_back(ControlClient& client, std::chrono::nanoseconds time);
+  void ask_status(ControlClient& client);
+  void ask_history(ControlClient& client);
+  void answer_all(const std::string& text);
+  void drive(const ViewRequest& request, std::function<void(const Answer&)> answer);
+  void show_status(const ViewStatus& status);
+  ViewStatus blank_status() const;
+
+  const LiveOptions options_;
+  Topics& topics_;
+  ScenePublisher publisher_;
+  std::atomic<bool> is_stopping_{false};
+  std::atomic<bool> has_server_{false};  // that can be controlled
+  Drivers drivers_;
+
+  std::mutex mutex_;
+  std::condition_variable arrived_changed_;
+  Arrived arrived_;
+  std::vector<std::uint32_t> watched_;
+  std::chrono::nanoseconds time_{0};  // simulated
+
+  std::mutex requests_mutex_;
+  std::condition_variable requests_changed_;
+  std::deque<ReceivedRequest> requests_;
+
+  wire::Participant participant_;
+  wire::Reader<wire::SceneDescription> descriptions_;
+  wire::Reader<wire::SceneUpdate> updates_;
+  // Of the thread that shows: what only some clients read, and how many had come when they got it.
+  Bytes contacts_;
+  Bytes robots_;
+  std::uint64_t arrivals_ = 0;
+  std::uint32_t revision_ = 0;  // of the scene that is shown, and how many links it has
+  std::size_t links_ = 0;
+  // Of the thread that serves requests: what the server said last.
+  LiveHistory history_;
+  wire::SimulationStatus run_;
+  std::chrono::nanoseconds run_time_{0};
+  std::thread shower_;
+  std::thread steward_;
+};
+
+}  // namespace cohort::view

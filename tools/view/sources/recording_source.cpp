@@ -1,0 +1,280 @@
+#include "tools/view/sources/recording_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "server/recording/run_messages.hpp"
+
+namespace cohort::view {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr std::chrono::milliseconds frame_interval{33};
+constexpr double greatest_speed = 1e6;
+constexpr double longest_recording = 9e9;  // [s]; beyond, nanoseconds are no 64 bits
+
+std::chrono::nanoseconds nanoseconds_of(double seconds) {
+  return std::chrono::round<std::chrono::nanoseconds>(Seconds(seconds));
+}
+
+}  // namespace
+
+RecordingSource::RecordingSource(const recording::Recording& recording, Topics& topics, unsigned threads)
+    : recording_(recording), replay_(recording, threads), publisher_(topics), topics_(topics) {
+  const recording::Channel* const boundaries = recording.reader().channel(recording::Boundary::topic);
+  for (const recording::Block& block : recording.reader().blocks())
+    if (boundaries != nullptr) end_ = std::max(end_, Nanoseconds(block.end_time));
+  wanted_.is_playing = true;
+  thread_ = std::thread([this] { run(); });
+}
+
+RecordingSource::~RecordingSource() {
+  is_stopping_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    ++requests_;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void RecordingSource::ask(const ViewRequest& request, std::function<void(const Answer&)> answer) {
+  answer(take(request));
+}
+
+Answer RecordingSource::take(const ViewRequest& request) {
+  const std::lock_guard lock(mutex_);
+  const auto done = [&](std::string text) {
+    ++requests_;
+    changed_.notify_all();
+    return Answer{true, std::move(text)};
+  };
+  if (request.operation == "play") {
+    wanted_.is_playing = true;
+    wanted_.plays_again = true;
+    return done("playing");
+  }
+  if (request.operation == "pause") {
+    wanted_.is_playing = false;
+    ++interruptions_;
+    return done("paused");
+  }
+  if (request.operation == "step") {
+    constexpr double most_steps = 1e6;
+    if (!(std::abs(request.number) <= most_steps)) return {false, "a step is of at most a million ticks"};
+    wanted_.is_playing = false;
+    wanted_.steps += static_cast<std::int64_t>(std::trunc(request.number));
+    return done("stepped");
+  }
+  if (request.operation == "speed") {
+    if (!(request.number >= 0.0 && request.number <= greatest_speed))
+      return {false, "a speed is from 0, which is as fast as it goes, to a million"};
+    wanted_.speed = request.number;
+    return done(request.number > 0.0 ? fmt::format("at {:g} times real time", request.number) : "as fast as it goes");
+  }
+  if (request.operation == "seek") {
+    if (!(request.number >= 0.0 && request.number <= longest_recording))
+      return {false, "a time is in seconds, from 0 on"};
+    wanted_.seek = nanoseconds_of(request.number);
+    ++interruptions_;
+    wanted_.steps = 0;
+    return done(fmt::format("at {:.3f} s", request.number));
+  }
+  return {false, fmt::format("'{}' is nothing that a recording can do: it can play, pause, step, seek and change its "
+                             "speed",
+                             request.operation)};
+}
+
+void RecordingSource::watch(const std::vector<std::uint32_t>& robots) {
+  const std::lock_guard lock(mutex_);
+  wanted_.watched = robots;
+  ++requests_;
+  changed_.notify_all();
+}
+
+void RecordingSource::run() {
+  go_to(Nanoseconds(0));
+  show_events();
+  std::uint64_t arrivals = topics_.arrivals();
+  while (!is_stopping_) {
+    const Clock::time_point next = Clock::now() + frame_interval;
+    Wanted wanted;
+    {
+      const std::lock_guard lock(mutex_);
+      wanted = wanted_;
+      wanted_.seek.reset();
+      wanted_.steps = 0;
+      requests_taken_ = requests_;
+      interruptions_taken_ = interruptions_;
+    }
+    const bool has_requests = wanted.seek || wanted.plays_again || wanted.steps != 0 || wanted.watched != watched_;
+    watched_ = wanted.watched;
+    const bool is_moving = wanted.is_playing && !is_at_end_;
+    act(wanted);
+    if (has_requests || is_moving || arrivals != topics_.arrivals()) show();
+    arrivals = topics_.arrivals();
+    show_status(wanted);
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, next, [&] { return has_newer_request() && !is_moving; });
+  }
+}
+
+void RecordingSource::act(const Wanted& wanted) {
+  if (wanted.plays_again && is_at_end_) go_to(Nanoseconds(0));
+  if (wanted.seek) {
+    pace_.reset();
+    go_to(*wanted.seek);
+  }
+  if (wanted.steps != 0) pace_.reset();
+  if (wanted.steps < 0) step_back(-wanted.steps);
+  for (std::int64_t i = 0; i < wanted.steps && !is_interrupted(); ++i)
+    if (!advance()) break;
+  if (wanted.is_playing && !is_at_end_)
+    play(wanted);
+  else
+    pace_.reset();
+}
+
+// Where a replay can begin that is to come to a time.
+RecordingSource::Nanoseconds RecordingSource::start_before(Nanoseconds log_time) const {
+  Nanoseconds start = recording_.worlds().front().log_time;
+  for (const auto& world : recording_.worlds())
+    if (world.log_time <= log_time) start = std::max(start, world.log_time);
+  for (const Nanoseconds snapshot : recording_.snapshots())
+    if (snapshot <= log_time) start = std::max(start, snapshot);
+  return start;
+}
+
+// In small steps, so that a newer request takes the place of this one.
+void RecordingSource::go_to(Nanoseconds log_time) {
+  const Nanoseconds target = std::min(log_time, end_);
+  const Nanoseconds start = start_before(target);
+  const bool is_ahead = maker_ && log_time_ <= target && start <= log_time_;
+  try {
+    if (!is_ahead) {
+      problem_.clear();
+      maker_.reset();
+      is_new_world_ = false;
+      is_at_end_ = !replay_.seek(start);
+      if (is_at_end_) return;
+      is_new_world_ = true;
+      log_time_ = replay_.recorded().log_time;
+      state_hash_ = replay_.simulation().state_hash();
+    }
+    while (log_time_ < target && !is_interrupted())
+      if (!advance()) return;
+  } catch (const std::exception& error) {
+    problem_ = error.what();
+    is_at_end_ = true;
+  }
+}
+
+void RecordingSource::step_back(std::int64_t ticks) {
+  const Nanoseconds step = replay_.experiment().world.step;
+  go_to(std::max(Nanoseconds(0), log_time_ - step * ticks));
+}
+
+void RecordingSource::play(const Wanted& wanted) {
+  const Clock::time_point begin = Clock::now();
+  if (!pace_ || pace_->speed != wanted.speed) {
+    pace_ = {begin, log_time_, wanted.speed};
+    measured_at_ = begin;
+    real_time_factor_ = wanted.speed;
+  }
+  const Nanoseconds before = log_time_;
+  const double elapsed = Seconds(begin - pace_->wall).count();
+  const Nanoseconds target =
+      wanted.speed > 0.0 ? pace_->time + nanoseconds_of(elapsed * wanted.speed) : Nanoseconds::max();
+  while (log_time_ < target && Clock::now() - begin < frame_interval && !has_newer_request())
+    if (!advance()) break;
+  // What could not be kept up with is not made up for.
+  if (wanted.speed > 0.0 && log_time_ < target) pace_ = {Clock::now(), log_time_, wanted.speed};
+  constexpr double smoothing = 0.05;
+  const double wall = Seconds(begin - std::exchange(measured_at_, begin)).count();
+  if (wall > 0.0) real_time_factor_ += smoothing * (Seconds(log_time_ - before).count() / wall - real_time_factor_);
+}
+
+bool RecordingSource::advance() {
+  if (is_at_end_) return false;
+  try {
+    is_at_end_ = !replay_.advance();
+  } catch (const std::exception& error) {
+    maker_.reset();  // there may be no simulation
+    is_new_world_ = false;
+    problem_ = error.what();
+    is_at_end_ = true;
+  }
+  if (is_at_end_) return false;
+  const recording::RecordedTick& recorded = replay_.recorded();
+  if (recorded.begins) {
+    is_new_world_ = true;
+    run_ = recorded.begins->run;
+  }
+  log_time_ = recorded.log_time;
+  state_hash_ = recorded.state_hash.value_or(0);
+  return true;
+}
+
+void RecordingSource::show_scene() {
+  const Simulation& simulation = replay_.simulation();
+  is_new_world_ = false;
+  const std::uint32_t revision =
+      publisher_.show(viewing::SceneMaker(simulation, 0).scene(replay_.experiment().teams), log_time_);
+  maker_.emplace(simulation, revision);
+}
+
+void RecordingSource::show() {
+  if (is_new_world_ || (maker_ && maker_->is_outdated())) show_scene();
+  if (!maker_) return;
+  publisher_.show(maker_->frame(run_, state_hash_), log_time_);
+  publisher_.show(maker_->signals(), log_time_);
+  if (publisher_.is_read(Topic::contacts)) publisher_.publish(Topic::contacts, maker_->contacts(), log_time_);
+  viewing::SceneRobots robots;
+  robots.robots.reserve(watched_.size());
+  for (const std::uint32_t robot : watched_)
+    if (robot < replay_.simulation().robot_count()) robots.robots.push_back(maker_->robot(robot));
+  if (publisher_.is_read(Topic::robots)) publisher_.publish(Topic::robots, robots, log_time_);
+}
+
+void RecordingSource::show_status(const Wanted& wanted) {
+  ViewStatus status;
+  status.source = "recording";
+  status.name = recording_.file().filename().string();
+  status.may_control = true;
+  status.can_seek = true;
+  status.is_playing = wanted.is_playing && !is_at_end_;
+  status.speed = wanted.speed;
+  status.real_time_factor = status.is_playing ? real_time_factor_ : 0.0;
+  status.time_ns = log_time_.count();
+  status.begin_ns = recording_.worlds().front().log_time.count();
+  status.end_ns = end_.count();
+  status.seekable_from_ns = status.begin_ns;
+  status.seekable_to_ns = status.end_ns;
+  status.note = problem_.empty() ? recording_.damage() : problem_;
+  publisher_.publish(Topic::status, status, log_time_);
+}
+
+void RecordingSource::show_events() {
+  ViewEvents events;
+  const recording::Channel* const channel = recording_.reader().channel(recording::RecordedEvent::topic);
+  if (channel != nullptr) {
+    recording::MessageStream messages = recording_.reader().messages({.channels = {channel->id}});
+    try {
+      while (const auto message = messages.next()) {
+        if (events.events.size() == ViewEvents::most) break;
+        const auto event = recording::decode<recording::RecordedEvent>(message->data);
+        const auto time = static_cast<std::int64_t>(message->log_time.count());
+        events.events.push_back({time, event.tick, event.kind, event.text, event.count, time});
+      }
+    } catch (const std::exception& error) {
+      problem_ = error.what();
+    }
+  }
+  publisher_.publish(Topic::events, events, log_time_);
+}
+
+}  // namespace cohort::view

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "server/recording/replay.hpp"
+#include "server/viewing/scene_maker.hpp"
+#include "tools/view/messages/scene_publisher.hpp"
+#include "tools/view/source.hpp"
+
+namespace cohort::view {
+
+/// Shows a recording: runs its world again, at any speed, from any time. Everybody who looks sees the same. Requests:
+/// `play`, `pause`, `step` (a number of ticks, also backwards), `speed` (0: as fast as it goes) and `seek` (log time
+/// [s]).
+class RecordingSource final : public Source {
+ public:
+  /// Both must outlive this.
+  RecordingSource(const recording::Recording& recording, Topics& topics, unsigned threads);
+  ~RecordingSource() override;
+
+  void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
+  void watch(const std::vector<std::uint32_t>& robots) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Nanoseconds = std::chrono::nanoseconds;
+
+  // What was asked for and not yet done. Under the lock.
+  struct Wanted {
+    bool is_playing = false;
+    bool plays_again = false;  // from the beginning, if it is at the end
+    double speed = 1.0;
+    std::optional<Nanoseconds> seek{};
+    std::int64_t steps = 0;
+    std::vector<std::uint32_t> watched{};
+  };
+
+  Answer take(const ViewRequest& request);
+  void run();
+  void act(const Wanted& wanted);
+  bool has_newer_request() const { return requests_ != requests_taken_ || is_stopping_; }
+  bool is_interrupted() const { return interruptions_ != interruptions_taken_ || is_stopping_; }
+  void go_to(Nanoseconds log_time);
+  void step_back(std::int64_t ticks);
+  void play(const Wanted& wanted);
+  bool advance();
+  void show();
+  void show_scene();
+  void show_status(const Wanted& wanted);
+  void show_events();
+  Nanoseconds start_before(Nanoseconds log_time) const;
+
+  const recording::Recording& recording_;
+  recording::Replay replay_;
+  ScenePublisher publisher_;
+  Topics& topics_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Wanted wanted_;
+  std::atomic<std::uint64_t> requests_{0};
+  std::atomic<std::uint64_t> interruptions_{0};  // of them those that end what is under way
+  std::atomic<bool> is_stopping_{false};
+
+  // Of the thread.
+  std::uint64_t requests_taken_ = 0;
+  std::uint64_t interruptions_taken_ = 0;
+  std::optional<viewing::SceneMaker> maker_;
+  bool is_new_world_ = false;
+  bool is_at_end_ = false;
+  std::string problem_;
+  Nanoseconds log_time_{0};
+  std::uint64_t state_hash_ = 0;
+  std::uint32_t run_ = 0;
+  Nanoseconds end_{0};
+  std::vector<std::uint32_t> watched_;
+  // The pace is counted from here.
+  struct Pace {
+    Clock::time_point wall{};
+    Nanoseconds time{0};
+    double speed = 0.0;
+  };
+  std::optional<Pace> pace_;
+  Clock::time_point measured_at_{};
+  double real_time_factor_ = 0.0;
+  std::thread thread_;
+};
+
+}  // namespace cohort::view

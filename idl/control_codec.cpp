@@ -48,12 +48,6 @@ Pose decode(const cohort_v1_Pose& pose) {
 cohort_v1_Twist encode(const Twist& twist) { return {encode(twist.linear), encode(twist.angular)}; }
 Twist decode(const cohort_v1_Twist& twist) { return {decode(twist.linear), decode(twist.angular)}; }
 
-template <class Element, class Sequence>
-std::vector<Element> to_vector(const Sequence& sequence) {
-  const auto span = to_span(sequence);
-  return {span.begin(), span.end()};
-}
-
 std::vector<char*> lent_all(const std::vector<std::string>& texts) {
   std::vector<char*> result;
   result.reserve(texts.size());
@@ -61,74 +55,120 @@ std::vector<char*> lent_all(const std::vector<std::string>& texts) {
   return result;
 }
 
-cohort_v1_ControllerStatus encode(const ControllerStatus& status) {
-  cohort_v1_ControllerStatus sample{};
-  sample.label = loaned(status.label);
-  sample.client = status.client;
-  loan(status.robots, sample.robots);
-  sample.alive = status.alive;
-  sample.awaited = status.awaited;
-  sample.awaited_ns = status.awaited_ns;
-  sample.due_tick = status.due_tick;
-  sample.answers = status.answers;
-  sample.late = status.late;
-  sample.rejected = status.rejected;
-  sample.resent = status.resent;
-  sample.answer_p50_ns = status.answer_p50_ns;
-  sample.answer_p99_ns = status.answer_p99_ns;
-  return sample;
-}
+// Each message's fields are listed once, beside those of its sample, and copied one way or the other; sequences of
+// texts and structs are not among them.
+struct ToSample {
+  template <class Field, class Sampled>
+  void operator()(const Field& field, Sampled& sampled) const {
+    if constexpr (std::is_arithmetic_v<Field>)
+      sampled = field;
+    else if constexpr (std::is_enum_v<Field>)
+      sampled = static_cast<Sampled>(field);
+    else if constexpr (std::is_same_v<Field, std::string>)
+      sampled = loaned(field);
+    else if constexpr (requires { field.size(); })
+      loan(field, sampled);
+    else
+      sampled = encode(field);
+  }
+};
+struct FromSample {
+  template <class Field, class Sampled>
+  void operator()(Field& field, const Sampled& sampled) const {
+    if constexpr (std::is_arithmetic_v<Field>)
+      field = sampled;
+    else if constexpr (std::is_enum_v<Field>)
+      field = static_cast<Field>(sampled);
+    else if constexpr (std::is_same_v<Field, std::string>)
+      field = to_string(sampled);
+    else if constexpr (requires { field.size(); })
+      field.assign(to_span(sampled).begin(), to_span(sampled).end());
+    else
+      field = wire::decode(sampled);
+  }
+};
 
-ControllerStatus decode(const cohort_v1_ControllerStatus& sample) {
-  return {to_string(sample.label),
-          sample.client,
-          to_vector<std::uint32_t>(sample.robots),
-          sample.alive,
-          sample.awaited,
-          sample.awaited_ns,
-          sample.due_tick,
-          sample.answers,
-          sample.late,
-          sample.rejected,
-          sample.resent,
-          sample.answer_p50_ns,
-          sample.answer_p99_ns};
-}
+constexpr auto copy_controller_status = [](auto& message, auto& sample, auto copy) {
+  copy(message.label, sample.label);
+  copy(message.client, sample.client);
+  copy(message.robots, sample.robots);
+  copy(message.alive, sample.alive);
+  copy(message.awaited, sample.awaited);
+  copy(message.awaited_ns, sample.awaited_ns);
+  copy(message.due_tick, sample.due_tick);
+  copy(message.answers, sample.answers);
+  copy(message.late, sample.late);
+  copy(message.rejected, sample.rejected);
+  copy(message.resent, sample.resent);
+  copy(message.answer_p50_ns, sample.answer_p50_ns);
+  copy(message.answer_p99_ns, sample.answer_p99_ns);
+};
 
-// But for its sequences.
-cohort_v1_SimulationStatus encode(const SimulationStatus& status) {
-  cohort_v1_SimulationStatus sample{};
-  sample.experiment = loaned(status.experiment);
-  sample.seed = status.seed;
-  sample.started = status.started;
-  sample.step_ns = status.step_ns;
-  sample.duration_ns = status.duration_ns;
-  sample.speed = status.speed;
-  sample.real_time_factor = status.real_time_factor;
-  sample.state_hash = status.state_hash;
-  sample.robots = status.robots;
-  sample.awaited_count = status.awaited_count;
-  sample.waiting_ns = status.waiting_ns;
-  return sample;
-}
+constexpr auto copy_status = [](auto& message, auto& sample, auto copy) {
+  copy(message.experiment, sample.experiment);
+  copy(message.seed, sample.seed);
+  copy(message.started, sample.started);
+  copy(message.step_ns, sample.step_ns);
+  copy(message.duration_ns, sample.duration_ns);
+  copy(message.speed, sample.speed);
+  copy(message.real_time_factor, sample.real_time_factor);
+  copy(message.state_hash, sample.state_hash);
+  copy(message.robots, sample.robots);
+  copy(message.awaited_count, sample.awaited_count);
+  copy(message.waiting_ns, sample.waiting_ns);
+};
 
-SimulationStatus decode(const cohort_v1_SimulationStatus& sample) {
-  SimulationStatus status;
-  status.experiment = to_string(sample.experiment);
-  status.seed = sample.seed;
-  status.started = sample.started;
-  status.step_ns = sample.step_ns;
-  status.duration_ns = sample.duration_ns;
-  status.speed = sample.speed;
-  status.real_time_factor = sample.real_time_factor;
-  status.state_hash = sample.state_hash;
-  status.robots = sample.robots;
-  status.awaited_count = sample.awaited_count;
-  status.awaited = to_strings(sample.awaited);
-  status.waiting_ns = sample.waiting_ns;
-  for (const cohort_v1_ControllerStatus& each : to_span(sample.controllers)) status.controllers.push_back(decode(each));
-  return status;
-}
+constexpr auto copy_request = [](auto& message, auto& sample, auto copy) {
+  copy(message.client, sample.client);
+  copy(message.minor, sample.minor);
+  copy(message.number, sample.number);
+  copy(message.operation, sample.operation);
+  copy(message.label, sample.label);
+  copy(message.state, sample.state);
+  copy(message.scope, sample.scope);
+  copy(message.set_seed, sample.set_seed);
+  copy(message.seed, sample.seed);
+  copy(message.steps, sample.steps);
+  copy(message.speed, sample.speed);
+  copy(message.filter, sample.filter);
+  copy(message.entity, sample.entity);
+  copy(message.allow_renaming, sample.allow_renaming);
+  copy(message.uri, sample.uri);
+  copy(message.resource_string, sample.resource_string);
+  copy(message.set_pose, sample.set_pose);
+  copy(message.pose, sample.pose);
+  copy(message.set_twist, sample.set_twist);
+  copy(message.twist, sample.twist);
+  copy(message.on, sample.on);
+  copy(message.set_intensity, sample.set_intensity);
+  copy(message.intensity, sample.intensity);
+  copy(message.set_color, sample.set_color);
+  copy(message.color, sample.color);
+  copy(message.link, sample.link);
+  copy(message.force, sample.force);
+  copy(message.torque, sample.torque);
+  copy(message.duration_ns, sample.duration_ns);
+  copy(message.size, sample.size);
+  copy(message.offset, sample.offset);
+  copy(message.data, sample.data);
+};
+
+constexpr auto copy_reply = [](auto& message, auto& sample, auto copy) {
+  copy(message.client, sample.client);
+  copy(message.number, sample.number);
+  copy(message.operation, sample.operation);
+  copy(message.result, sample.result);
+  copy(message.error_message, sample.error_message);
+  copy(message.state, sample.state);
+  copy(message.run, sample.run);
+  copy(message.tick, sample.tick);
+  copy(message.time_ns, sample.time_ns);
+  copy(message.entity, sample.entity);
+  copy(message.features, sample.features);
+  copy(message.size, sample.size);
+  copy(message.offset, sample.offset);
+  copy(message.data, sample.data);
+};
 
 }  // namespace
 
@@ -163,75 +203,11 @@ const Topic Codec<Request>::topic = {.name = "cohort/v1/request", .type = &cohor
 const Topic Codec<Reply>::topic = {
     .name = "cohort/v1/reply", .type = &cohort_v1_Reply_desc, .transient_local = true, .depth = depth};
 
-Codec<Request>::Outgoing::Outgoing(const Request& message) {
-  sample.client = message.client;
-  sample.minor = message.minor;
-  sample.number = message.number;
-  sample.operation = static_cast<std::uint32_t>(message.operation);
-  sample.label = loaned(message.label);
-  sample.state = static_cast<std::uint32_t>(message.state);
-  sample.scope = message.scope;
-  sample.set_seed = message.set_seed;
-  sample.seed = message.seed;
-  sample.steps = message.steps;
-  sample.speed = message.speed;
-  sample.filter = loaned(message.filter);
-  sample.entity = loaned(message.entity);
-  sample.allow_renaming = message.allow_renaming;
-  sample.uri = loaned(message.uri);
-  sample.resource_string = loaned(message.resource_string);
-  sample.set_pose = message.set_pose;
-  sample.pose = encode(message.pose);
-  sample.set_twist = message.set_twist;
-  sample.twist = encode(message.twist);
-  sample.on = message.on;
-  sample.set_intensity = message.set_intensity;
-  sample.intensity = message.intensity;
-  sample.set_color = message.set_color;
-  sample.color = encode(message.color);
-  sample.link = loaned(message.link);
-  sample.force = encode(message.force);
-  sample.torque = encode(message.torque);
-  sample.duration_ns = message.duration_ns;
-  sample.size = message.size;
-  sample.offset = message.offset;
-  loan(message.data, sample.data);
-}
+Codec<Request>::Outgoing::Outgoing(const Request& message) { copy_request(message, sample, ToSample{}); }
 
 Request Codec<Request>::decode(const Sample& sample) {
   Request message;
-  message.client = sample.client;
-  message.minor = sample.minor;
-  message.number = sample.number;
-  message.operation = static_cast<Operation>(sample.operation);
-  message.label = to_string(sample.label);
-  message.state = static_cast<SimulationState>(sample.state);
-  message.scope = sample.scope;
-  message.set_seed = sample.set_seed;
-  message.seed = sample.seed;
-  message.steps = sample.steps;
-  message.speed = sample.speed;
-  message.filter = to_string(sample.filter);
-  message.entity = to_string(sample.entity);
-  message.allow_renaming = sample.allow_renaming;
-  message.uri = to_string(sample.uri);
-  message.resource_string = to_string(sample.resource_string);
-  message.set_pose = sample.set_pose;
-  message.pose = wire::decode(sample.pose);
-  message.set_twist = sample.set_twist;
-  message.twist = wire::decode(sample.twist);
-  message.on = sample.on;
-  message.set_intensity = sample.set_intensity;
-  message.intensity = sample.intensity;
-  message.set_color = sample.set_color;
-  message.color = wire::decode(sample.color);
-  message.link = to_string(sample.link);
-  message.force = wire::decode(sample.force);
-  message.torque = wire::decode(sample.torque);
-  message.duration_ns = sample.duration_ns;
-  message.size = sample.size;
-  message.offset = sample.offset;
-  message.data = to_vector<std::uint8_t>(sample.data);
+  copy_request(message, sample, FromSample{});
   return message;
 }
 
@@ -244,52 +220,34 @@ Codec<Reply>::Outgoing::Outgoing(const Reply& message)
     auto& names_of_awaited = awaited.emplace_back(lent_all(each.awaited));
     auto& its_controllers = controllers.emplace_back();
     its_controllers.reserve(each.controllers.size());
-    for (const ControllerStatus& controller : each.controllers) its_controllers.push_back(encode(controller));
-    cohort_v1_SimulationStatus& encoded = status.emplace_back(encode(each));
+    for (const ControllerStatus& controller : each.controllers)
+      copy_controller_status(controller, its_controllers.emplace_back(), ToSample{});
+    cohort_v1_SimulationStatus& encoded = status.emplace_back();
+    copy_status(each, encoded, ToSample{});
     loan(names_of_awaited, encoded.awaited);
     loan(its_controllers, encoded.controllers);
   }
-  sample.client = message.client;
-  sample.number = message.number;
-  sample.operation = static_cast<std::uint32_t>(message.operation);
-  sample.result = static_cast<std::uint32_t>(message.result);
-  sample.error_message = loaned(message.error_message);
-  sample.state = static_cast<std::uint32_t>(message.state);
-  sample.run = message.run;
-  sample.tick = message.tick;
-  sample.time_ns = message.time_ns;
-  sample.entity = loaned(message.entity);
-  loan(message.features, sample.features);
+  copy_reply(message, sample, ToSample{});
   loan(spawn_formats, sample.spawn_formats);
   loan(entities, sample.entities);
   loan(states, sample.states);
   loan(status, sample.status);
-  sample.size = message.size;
-  sample.offset = message.offset;
-  loan(message.data, sample.data);
 }
 
 Reply Codec<Reply>::decode(const Sample& sample) {
   Reply message;
-  message.client = sample.client;
-  message.number = sample.number;
-  message.operation = static_cast<Operation>(sample.operation);
-  message.result = static_cast<ResultCode>(sample.result);
-  message.error_message = to_string(sample.error_message);
-  message.state = static_cast<SimulationState>(sample.state);
-  message.run = sample.run;
-  message.tick = sample.tick;
-  message.time_ns = sample.time_ns;
-  message.entity = to_string(sample.entity);
-  message.features = to_vector<std::uint32_t>(sample.features);
+  copy_reply(message, sample, FromSample{});
   message.spawn_formats = to_strings(sample.spawn_formats);
   message.entities = to_strings(sample.entities);
   for (const cohort_v1_EntityState& state : to_span(sample.states))
     message.states.push_back({to_string(state.entity), wire::decode(state.pose), wire::decode(state.twist)});
-  for (const cohort_v1_SimulationStatus& each : to_span(sample.status)) message.status.push_back(wire::decode(each));
-  message.size = sample.size;
-  message.offset = sample.offset;
-  message.data = to_vector<std::uint8_t>(sample.data);
+  for (const cohort_v1_SimulationStatus& sent : to_span(sample.status)) {
+    SimulationStatus& each = message.status.emplace_back();
+    copy_status(each, sent, FromSample{});
+    each.awaited = to_strings(sent.awaited);
+    for (const cohort_v1_ControllerStatus& controller : to_span(sent.controllers))
+      copy_controller_status(each.controllers.emplace_back(), controller, FromSample{});
+  }
   return message;
 }
 

@@ -4,17 +4,9 @@
 #include <stdexcept>
 
 #include "server/core/random.hpp"
+#include "server/core/state_visitors.hpp"
 
 namespace cohort {
-namespace {
-
-template <class PoseType, class Visit>
-void visit_pose(PoseType& pose, Visit&& visit) {
-  for (int i = 0; i < 3; ++i) visit(pose.position[i]);
-  for (int i = 0; i < 4; ++i) visit(pose.orientation.coeffs()[i]);
-}
-
-}  // namespace
 
 std::uint64_t ticks_of(std::chrono::nanoseconds time, std::chrono::nanoseconds step) {
   return static_cast<std::uint64_t>(std::max<std::int64_t>(1, (time + step - std::chrono::nanoseconds(1)) / step));

@@ -6,7 +6,7 @@
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/simulation/simulation.hpp"
-#include "tools/cohort/cli/installed_models.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/running/team_controllers.hpp"

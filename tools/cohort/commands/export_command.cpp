@@ -5,7 +5,7 @@
 #include "server/parsing/sdf/yaml_sdf.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/writing/write_world.hpp"
-#include "tools/cohort/cli/installed_models.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 

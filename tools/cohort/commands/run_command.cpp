@@ -16,7 +16,7 @@
 #include "server/session/exchange.hpp"
 #include "server/session/in_process.hpp"
 #include "server/session/session_snapshot.hpp"
-#include "tools/cohort/cli/installed_models.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"

@@ -4,7 +4,7 @@
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/sensing/readings/take_samples.hpp"
-#include "tools/cohort/cli/installed_models.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
 

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "server/recording/recording.hpp"
-#include "tools/cohort/cli/installed_page.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/view/sources/live_source.hpp"

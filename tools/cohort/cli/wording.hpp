@@ -12,6 +12,9 @@ inline std::string counted(std::size_t count, const std::string& noun) {
 }
 
 inline double seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
+inline std::chrono::nanoseconds nanoseconds(double seconds) {
+  return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
 inline double microseconds(std::chrono::nanoseconds duration) {
   return std::chrono::duration<double, std::micro>(duration).count();
 }

@@ -1,15 +1,9 @@
 #include "tools/cohort/commands/recording_part.hpp"
 
 #include "tools/cohort/cli/replay_progress.hpp"
+#include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {
-namespace {
-
-std::chrono::nanoseconds nanoseconds(double seconds) {
-  return std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
-}
-
-}  // namespace
 
 void add_part_options(CommandLine line, RecordingPart& part) {
   line.add_option("--from", part.from, "Time in the recording to begin at, in simulated seconds (default: 0)")

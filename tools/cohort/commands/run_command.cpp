@@ -60,8 +60,7 @@ double speed_of(const RunCommand& command, const description::Experiment& experi
 // At least one step.
 std::chrono::nanoseconds keep_interval_of(const RunCommand& command, const description::Experiment& experiment) {
   if (command.keep_interval <= 0.0) return std::chrono::nanoseconds(0);
-  return std::max(experiment.world.step,
-                  std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(command.keep_interval)));
+  return std::max(experiment.world.step, nanoseconds(command.keep_interval));
 }
 
 void refuse_keyboard(const description::Experiment& experiment) {
@@ -99,8 +98,7 @@ void refuse_what_needs_a_server(const RunCommand& command) {
 
 description::Experiment read(const RunCommand& command, const std::filesystem::path& file, Log& log) {
   std::optional<std::chrono::nanoseconds> duration;
-  if (command.duration)
-    duration = std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*command.duration));
+  if (command.duration) duration = nanoseconds(*command.duration);
   const Stopwatch reading;
   description::Experiment experiment =
       parsing::read_experiment(file, command.seed, duration, installed_model_folders());
@@ -181,37 +179,25 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
       .state = command.paused ? session::PlaybackState::paused : session::PlaybackState::playing,
       .from = runs.from,
       .keep_interval = keep_interval_of(command, *world.experiment)};
-  const Outputs outputs = numbered(command.outputs, number, count);
-  std::optional<recording::Recorder> recorder;
-  if (!outputs.recording.empty()) {
-    using enum recording::Beginning;
-    recorder.emplace(outputs.recording, *world.experiment);
-    recorder->begin(*world.experiment, *world.simulation, runs.from ? restored : first);
-  }
+  using enum recording::Beginning;
+  OneRun one(command, numbered(command.outputs, number, count), log);
+  one.begin(*world.experiment, *world.simulation, runs.from ? restored : first);
   for (;;) {
-    std::optional<OneRun> one;
-    one.emplace(command, outputs, *world.experiment, *world.simulation, recorder ? &*recorder : nullptr, log);
     std::optional<World> next;
     options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
     const RunResult result =
         runs.serving
-            ? runs.serving->run(*world.experiment, *world.simulation, options, one->listener(), stop, number == count)
-            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one->listener(), stop);
+            ? runs.serving->run(*world.experiment, *world.simulation, options, one.listener(), stop, number == count)
+            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one.listener(), stop);
     if (!result.next) {
       const double cpu = cpu_seconds();
       goes_on = result.end == RunResult::End::finished;
-      const int code = one->finish(result, cpu - std::exchange(runs.cpu_before, cpu));
-      const bool is_recorded = !recorder || close_recording(*recorder, outputs.recording, result, log);
-      return is_recorded || code != exit_ok ? code : exit_failed;
+      return one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
     }
-    log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}",
-                           result.end == RunResult::End::reset ? "reset" : "another snapshot", result.ticks,
-                           next->simulation->tick(), next->experiment->seed));
-    if (recorder)
-      recorder->begin(
-          *next->experiment, *next->simulation,
-          result.end == RunResult::End::reset ? recording::Beginning::reset : recording::Beginning::restored);
-    one.reset();  // it looks at what goes now
+    const bool is_reset = result.end == RunResult::End::reset;
+    log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}", is_reset ? "reset" : "another snapshot",
+                           result.ticks, next->simulation->tick(), next->experiment->seed));
+    one.begin(*next->experiment, *next->simulation, is_reset ? reset : restored);
     world.simulation.reset();
     world = std::move(*next);
     options = {.speed = result.next->speed,

@@ -15,22 +15,25 @@ namespace cohort::tool {
 
 using session::RunResult;
 
-OneRun::OneRun(const RunCommand& command, Outputs outputs, const description::Experiment& experiment,
-               Simulation& simulation, recording::Recorder* recorder, Log& log)
-    : experiment_(experiment),
-      log_(log),
-      outputs_(std::move(outputs)),
-      terminal_(log, {.quiet = command.quiet,
-                      .own_controllers = command.controllers != Controllers::external && !has_keyboard(experiment)}) {
-  if (recorder != nullptr) recorders_.push_back(recorder);
+OneRun::OneRun(const RunCommand& command, Outputs outputs, Log& log)
+    : command_(command), outputs_(std::move(outputs)), log_(log) {}
+
+void OneRun::begin(const description::Experiment& experiment, const Simulation& simulation,
+                   recording::Beginning beginning) {
+  experiment_ = &experiment;
+  const bool own_controllers = command_.controllers != Controllers::external && !has_keyboard(experiment);
+  terminal_.emplace(log_, Terminal::Options{.quiet = command_.quiet, .own_controllers = own_controllers});
   if (!outputs_.plot.empty()) trace_.emplace(experiment.world, simulation, outputs_.viewpoint);
-  if (!experiment.prints.empty()) table_.emplace(experiment, simulation, outputs_.csv.empty() && !command.quiet);
+  if (!experiment.prints.empty()) table_.emplace(experiment, simulation, outputs_.csv.empty() && !command_.quiet);
+  if (outputs_.recording.empty()) return;
+  if (!recorder_) recorders_ = {&recorder_.emplace(outputs_.recording, experiment)};
+  recorder_->begin(experiment, simulation, beginning);
 }
 
 session::RunListener OneRun::listener() {
   session::RunListener listener = {
-      .progress = [&](const session::Progress& progress) { terminal_.progress(progress); },
-      .news = [&](const session::RunEvent& event) { terminal_.event(event); },
+      .progress = [&](const session::Progress& progress) { terminal_->progress(progress); },
+      .news = [&](const session::RunEvent& event) { terminal_->event(event); },
       .boundary =
           [&] {
             if (trace_) trace_->boundary();
@@ -42,18 +45,14 @@ session::RunListener OneRun::listener() {
 }
 
 int OneRun::finish(const RunResult& result, double cpu_seconds) {
-  terminal_.summary(result, cpu_seconds);
-  const bool written = write_files(result, cpu_seconds);
-  switch (result.end) {
-    case RunResult::End::finished:
-    case RunResult::End::shut_down: return written ? exit_ok : exit_failed;
-    case RunResult::End::reset:
-    case RunResult::End::restored: return exit_ok;  // another one follows
-    case RunResult::End::interrupted: return exit_interrupted;
-    case RunResult::End::failed:
-      log_.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
-  }
-  return exit_failed;
+  using enum RunResult::End;
+  terminal_->summary(result, cpu_seconds);
+  bool is_complete = write_files(result, cpu_seconds);
+  if (result.end == failed)
+    log_.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
+  if (recorder_) is_complete &= close_recording(result);
+  if (result.end == interrupted) return exit_interrupted;
+  return is_complete && (result.end == finished || result.end == shut_down) ? exit_ok : exit_failed;
 }
 
 bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
@@ -68,10 +67,10 @@ bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
   };
   bool written = true;
   if (!outputs_.summary.empty())
-    written &= try_to([&] { write_summary(outputs_.summary, experiment_, result, cpu_seconds); });
+    written &= try_to([&] { write_summary(outputs_.summary, *experiment_, result, cpu_seconds); });
   if (trace_)
     written &= try_to([&] {
-      const PlotCaption caption = {experiment_.name, result.sim_time, result.state_hash};
+      const PlotCaption caption = {experiment_->name, result.sim_time, result.state_hash};
       write_file("the plot", outputs_.plot, draw_plot(trace_->finish(), caption));
     });
   if (!outputs_.csv.empty())
@@ -79,17 +78,16 @@ bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
   return written;
 }
 
-bool close_recording(recording::Recorder& recorder, const std::filesystem::path& file, const RunResult& result,
-                     Log& log) {
-  recorder.finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
-  if (const std::uint64_t dropped = recorder.dropped(); dropped > 0)
-    log.warning(
+bool OneRun::close_recording(const RunResult& result) {
+  recorder_->finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
+  if (const std::uint64_t dropped = recorder_->dropped(); dropped > 0)
+    log_.warning(
         fmt::format("{} poses and observations are not in {}: its disk was too slow. Commands and events are all "
                     "there; --record-poses and --record-observations ask for fewer",
-                    dropped, file.string()),
+                    dropped, outputs_.recording.string()),
         {{"dropped", dropped}});
-  const std::optional<std::string> error = recorder.error();
-  if (error) log.error("the recording ended before its run: " + *error);
+  const std::optional<std::string> error = recorder_->error();
+  if (error) log_.error("the recording ended before its run: " + *error);
   return !error;
 }
 

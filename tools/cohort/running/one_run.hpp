@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -17,30 +16,32 @@ namespace cohort::tool {
 /// One experiment's run, with all that people see of it.
 class OneRun {
  public:
-  /// `outputs`: of this run. `recorder` has begun with `simulation`; null if nothing is recorded. All else must outlive
-  /// this.
-  OneRun(const RunCommand& command, Outputs outputs, const description::Experiment& experiment, Simulation& simulation,
-         recording::Recorder* recorder, Log& log);
+  /// `command` and `log` must outlive this.
+  OneRun(const RunCommand& command, Outputs outputs, Log& log);
 
+  /// Before it runs, and again if another world takes the place of the one before: then only the recording goes on.
+  /// Both must live until the next call, or until this is gone.
+  void begin(const description::Experiment& experiment, const Simulation& simulation, recording::Beginning beginning);
+
+  /// Of what has begun.
   session::RunListener listener();
 
-  /// Prints and writes what was asked for. The exit code.
+  /// Prints and writes what was asked for, and closes the recording. The exit code.
   int finish(const session::RunResult& result, double cpu_seconds);
 
  private:
   bool write_files(const session::RunResult& result, double cpu_seconds);
+  bool close_recording(const session::RunResult& result);
 
-  const description::Experiment& experiment_;
-  std::vector<recording::Recorder*> recorders_;  // one or none
-  Log& log_;
+  const RunCommand& command_;
   Outputs outputs_;
-  Terminal terminal_;
+  Log& log_;
+  const description::Experiment* experiment_ = nullptr;
+  std::optional<Terminal> terminal_;
   std::optional<TraceRecorder> trace_;
   std::optional<PrintedTable> table_;
+  std::optional<recording::Recorder> recorder_;
+  std::vector<recording::Recorder*> recorders_;  // it or none
 };
-
-/// Closes a run's recording, and tells what is missing in it. False if it ended before the run.
-bool close_recording(recording::Recorder& recorder, const std::filesystem::path& file, const session::RunResult& result,
-                     Log& log);
 
 }  // namespace cohort::tool

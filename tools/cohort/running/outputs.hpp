@@ -7,7 +7,7 @@
 
 namespace cohort::tool {
 
-/// The files that a run writes; empty: not that one.
+/// The files that a run writes (OneRun); empty: not that one.
 struct Outputs {
   std::filesystem::path summary{};
   std::filesystem::path plot{};

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "server/description/select_robots.hpp"
+#include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {
 
@@ -12,9 +13,7 @@ void set_recorded(description::Experiment& experiment, const RecordOptions& opti
   recorded.pose_rate = options.pose_rate.value_or(recorded.pose_rate);
   recorded.joint_rate = options.joint_rate.value_or(recorded.joint_rate);
   recorded.observation_rate = options.observation_rate.value_or(recorded.observation_rate);
-  if (options.snapshot_interval)
-    recorded.snapshot_interval =
-        std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(*options.snapshot_interval));
+  if (options.snapshot_interval) recorded.snapshot_interval = nanoseconds(*options.snapshot_interval);
   if (options.robots.empty()) return;
   std::set<std::uint32_t> robots;
   for (const std::string& selector : options.robots)

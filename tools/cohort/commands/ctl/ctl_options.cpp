@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/core/text.hpp"
+#include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -125,11 +126,7 @@ void add_time_commands(Requests& requests, CtlCommand& command) {
       .type_name("N");
   CommandLine back = requests.add("back", "Go back to the last kept snapshot at or before a time", Operation::go_back);
   back.add_option_function<double>(
-          "T",
-          [&](const double& seconds) {
-            command.request.duration_ns =
-                std::chrono::round<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)).count();
-          },
+          "T", [&](const double& seconds) { command.request.duration_ns = nanoseconds(seconds).count(); },
           "Simulated seconds from the run's beginning")
       .required()
       .check(number_from_zero(most_seconds))

@@ -21,10 +21,7 @@ class SensingWorld {
   /// A thing that stands still, with one emitter in the middle of its only link, which touches nothing.
   std::uint32_t add_emitter(const std::string& name, const decltype(description::Emitter::what)& what,
                             const Pose& X_WM) {
-    description::Model model;
-    model.name = name;
-    model.is_static = true;
-    model.links.push_back({"link", {}, {}, {}});
+    description::Model model = description::static_model(name);
     model.emitters.push_back({name, 0, {}, true, what});
     return add(model, name, X_WM);
   }

@@ -51,12 +51,7 @@ inline description::Inertial solid_box(double mass, const Eigen::Vector3d& size)
   return inertial;
 }
 
-inline description::Inertial solid_sphere(double mass, double radius) {
-  description::Inertial inertial;
-  inertial.mass = mass;
-  inertial.inertia = 0.4 * mass * radius * radius * Eigen::Matrix3d::Identity();
-  return inertial;
-}
+using description::solid_sphere;
 
 /// One link with one collision at its centre of mass.
 inline description::Model loose(const std::string& name, const description::Shape& shape,

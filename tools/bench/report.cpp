@@ -30,10 +30,6 @@ std::string lines_of(const std::vector<LeftOut>& left_out) {
   return lines;
 }
 
-Json spread_json(const Spread& spread, double unit) {
-  return {{"median", unit * spread.median}, {"min", unit * spread.least}, {"max", unit * spread.most}};
-}
-
 Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 void add(Json& results, const std::vector<LeftOut>& left_out) {
@@ -41,6 +37,10 @@ void add(Json& results, const std::vector<LeftOut>& left_out) {
 }
 
 }  // namespace
+
+Json spread_json(const Spread& spread, double unit) {
+  return {{"median", unit * spread.median}, {"min", unit * spread.least}, {"max", unit * spread.most}};
+}
 
 std::string table(const StepResult& result) {
   const bool has_threads =
@@ -121,7 +121,7 @@ Json to_json(const BuildResult& result) {
   Json engines = Json::array();
   for (const BuildCost& cost : result.costs)
     engines.push_back({{"engine", cost.engine},
-                       {"cpu_s", spread_json(cost.cpu, 1.0)},
+                       {"cpu_s", spread_json(cost.cpu)},
                        {"resident_bytes_per_robot", cost.bytes_for_a_robot}});
   add(engines, result.left_out);
   return {{"scene", result.scene}, {"robots", result.robots}, {"engines", engines}};

@@ -16,6 +16,7 @@ std::string table(const BuildResult& result);
 std::string table(const RayResult& result);
 std::string table(const AccuracyResult& result);
 
+nlohmann::ordered_json spread_json(const Spread& spread, double unit = 1.0);
 nlohmann::ordered_json to_json(const StepResult& result);
 nlohmann::ordered_json to_json(const BuildResult& result);
 nlohmann::ordered_json to_json(const RayResult& result);

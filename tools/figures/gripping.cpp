@@ -103,79 +103,72 @@ Panel light_barrier() {
               {}};
   using Kind = description::Gripper::LightBarrier;
   for (const Kind kind : {Kind::simple, Kind::beam}) {
-    Series series{kind == Kind::simple ? "simple" : "beam", {}};
-    for (const double d : evenly(0.0002, 0.0202, 41)) {
+    const auto measure = [&](double d) {
       Stand stand;
       description::Gripper gripper = gripper_at(0.0);
       gripper.light_barrier = kind;
       stand.add(robot_with(gripper));
       stand.add(sled(), at(turret_radius + d + sled_half, 0, turret_height + jaw_height));
-      series.measured.emplace_back(d, stand.read("gripper/0/grippable"));
-    }
+      return stand.read("gripper/0/grippable");
+    };
     const double reach = kind == Kind::simple ? depth : 0.5 * depth;
-    series.closed_form = [reach](double d) { return d <= reach ? 1.0 : 0.0; };
-    series.tolerance = 1e-9;
-    panel.series.push_back(std::move(series));
+    panel.series.push_back(measured_at(
+        evenly(0.0002, 0.0202, 41), measure, [reach](double d) { return d <= reach ? 1.0 : 0.0; }, exact,
+        kind == Kind::simple ? "simple" : "beam"));
   }
   return panel;
+}
+
+Series pulled(const description::Gripper& gripper, const std::string& channel, std::function<double(double)> expected) {
+  Pull pull(gripper);
+  const auto measure = [&](double force) {
+    pull.by(force);
+    return pull.read(channel);
+  };
+  return measured_at(evenly(0.0, 10.0, 21), measure, std::move(expected), 1e-6);
 }
 
 Panel slipping() {
   static constexpr double holding = 6.0;
   description::Gripper gripper = gripper_at(0.0);
   gripper.holding_force = holding;
-  Pull pull(gripper);
-  Series series{"", {}};
-  for (const double force : evenly(0.0, 10.0, 21)) {
-    pull.by(force);
-    series.measured.emplace_back(force, pull.read("gripper/0/force"));
-  }
-  series.closed_form = [](double force) { return std::min(force, holding); };
-  series.tolerance = 1e-6;
-  return {"Gripper: slips above 6 N", "line: min(F, 6 N)", "pull F [N]", "force in the gripper [N]", {series}};
+  return {"Gripper: slips above 6 N",
+          "line: min(F, 6 N)",
+          "pull F [N]",
+          "force in the gripper [N]",
+          {pulled(gripper, "gripper/0/force", [](double force) { return std::min(force, holding); })}};
 }
 
 Panel breaking() {
   static constexpr double limit = 5.25;
   description::Gripper gripper = gripper_at(0.0);
   gripper.breaking_force = limit;
-  Pull pull(gripper);
-  Series series{"", {}};
-  for (const double force : evenly(0.0, 10.0, 21)) {
-    pull.by(force);
-    series.measured.emplace_back(force, pull.read("gripper/0/force"));
-  }
-  series.closed_form = [](double force) { return force < limit ? force : 0.0; };
-  series.tolerance = 1e-6;
-  return {"Gripper: lets go above 5.25 N", "line: F, then nothing", "pull F [N]", "force in the gripper [N]", {series}};
+  return {"Gripper: lets go above 5.25 N",
+          "line: F, then nothing",
+          "pull F [N]",
+          "force in the gripper [N]",
+          {pulled(gripper, "gripper/0/force", [](double force) { return force < limit ? force : 0.0; })}};
 }
 
 Panel traction() {
-  Pull pull(gripper_at(0.0));
-  Series series{"", {}};
-  for (const double force : evenly(0.0, 10.0, 21)) {
-    pull.by(force);
-    series.measured.emplace_back(force, pull.read("traction/0/intensity"));
-  }
-  series.closed_form = [](double force) { return force; };
-  series.tolerance = 1e-6;
-  return {"Traction sensor: intensity", "line: the same", "pull at the gripper [N]", "intensity [N]", {series}};
+  return {"Traction sensor: intensity",
+          "line: the same",
+          "pull at the gripper [N]",
+          "intensity [N]",
+          {pulled(gripper_at(0.0), "traction/0/intensity", std::identity())}};
 }
 
 Panel direction() {
-  Series series{"", {}};
-  for (const double bearing : evenly(-165.0, 165.0, 23)) {
+  const auto measure = [](double bearing) {
     Pull pull(gripper_at(degree * bearing), degree * bearing);
     pull.by(5.0);
-    series.measured.emplace_back(bearing, pull.read("traction/0/direction") / degree);
-  }
-  series.closed_form = [](double bearing) { return bearing; };
-  series.tolerance = 1e-6;
+    return pull.read("traction/0/direction") / degree;
+  };
   return {"Traction sensor: direction",
           "line: the same",
           "direction of a pull of 5 N [degrees]",
           "direction [degrees]",
-          {series}};
+          {measured_at(evenly(-165.0, 165.0, 23), measure, std::identity(), 1e-6)}};
 }
 
 }  // namespace

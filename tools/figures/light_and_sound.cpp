@@ -59,21 +59,30 @@ description::Light lamp(double intensity) {
   return light;
 }
 
-Panel light_by_distance() {
-  Panel panel{"Light: distance", "lines: 2 / (1 + exp(-I / d²)) - 1", "distance d of the lamp [m]", "reading", {}};
+// `source` gives what stands at a distance, by its intensity.
+template <class Source>
+Panel by_distance(const std::string& title, const std::string& of, const std::string& channel, Source source) {
+  Panel panel{title, "lines: 2 / (1 + exp(-I / d²)) - 1", "distance d of the " + of + " [m]", "reading", {}};
   for (const double intensity : {1.0, 0.2}) {
-    Series series{intensity == 1.0 ? "I = 1" : "I = 0.2", {}};
-    for (const double d : evenly(0.15, 3.0, 39)) {
+    const auto measure = [&](double d) {
       Stand stand;
       stand.add(perceiving_robot());
-      stand.add_emitter(lamp(intensity), at(d, 0, z));
-      series.measured.emplace_back(d, stand.read("light/0/reading"));
-    }
-    series.closed_form = [intensity](double d) { return saturated(intensity / (d * d)); };
-    series.tolerance = exact;
-    panel.series.push_back(std::move(series));
+      stand.add_emitter(source(intensity), at(d, 0, z));
+      return stand.read(channel);
+    };
+    panel.series.push_back(measured_at(
+        evenly(0.15, 3.0, 39), measure, [intensity](double d) { return saturated(intensity / (d * d)); }, exact,
+        intensity == 1.0 ? "I = 1" : "I = 0.2"));
   }
   return panel;
+}
+
+Panel light_by_distance() { return by_distance("Light: distance", "lamp", "light/0/reading", lamp); }
+
+Panel sound_by_distance() {
+  return by_distance("Microphones: distance", "source", "microphones/0/intensity", [](double intensity) {
+    return description::Sound{440.0, intensity};
+  });
 }
 
 Panel light_by_bearing() {
@@ -83,59 +92,37 @@ Panel light_by_bearing() {
               "reading of the sensor ahead",
               {}};
   for (const bool is_alone : {true, false}) {
-    Series series{is_alone ? "one" : "two", {}};
-    for (const double bearing : evenly(-180.0, 180.0, 49)) {
+    const double ahead = is_alone ? 0.0 : 1.0;
+    const auto measure = [&](double bearing) {
       Stand stand;
       stand.add(perceiving_robot());
       stand.add_emitter(lamp(1.0), at(std::cos(degree * bearing), std::sin(degree * bearing), z));
       if (!is_alone) stand.add_emitter(lamp(1.0), at(1, 0, z));
-      series.measured.emplace_back(bearing, stand.read("light/0/reading"));
-    }
-    const double ahead = is_alone ? 0.0 : 1.0;
-    series.closed_form = [ahead](double bearing) {
-      return saturated(ahead + std::max(0.0, std::cos(degree * bearing)));
+      return stand.read("light/0/reading");
     };
-    series.tolerance = exact;
-    panel.series.push_back(std::move(series));
+    panel.series.push_back(measured_at(
+        evenly(-180.0, 180.0, 49), measure,
+        [ahead](double bearing) { return saturated(ahead + std::max(0.0, std::cos(degree * bearing))); }, exact,
+        is_alone ? "one" : "two"));
   }
   return panel;
 }
 
 Panel light_behind_a_screen() {
   static constexpr double half_width = 0.1;
-  Series series{"", {}};
-  for (const double y : evenly(-0.205, 0.205, 42)) {
+  const auto measure = [](double y) {
     Stand stand;
     stand.add(perceiving_robot());
     stand.add_emitter(lamp(1.0), at(1, 0, z));
-    stand.add(static_shape(description::Box{{0.02, 2.0 * half_width, 0.4}}), at(0.5, y, 0.2));
-    series.measured.emplace_back(y, stand.read("light/0/reading"));
-  }
-  series.closed_form = [](double y) { return std::abs(y) < half_width ? 0.0 : saturated(1.0); };
-  series.tolerance = exact;
+    stand.add(static_shape("static", description::Box{{0.02, 2.0 * half_width, 0.4}}), at(0.5, y, 0.2));
+    return stand.read("light/0/reading");
+  };
+  const auto expected = [](double y) { return std::abs(y) < half_width ? 0.0 : saturated(1.0); };
   return {"Light: a screen of 0.2 m",
           "line: a hidden lamp gives nothing",
           "middle of the screen, aside [m]",
           "reading",
-          {series}};
-}
-
-Panel sound_by_distance() {
-  Panel panel{
-      "Microphones: distance", "lines: 2 / (1 + exp(-I / d²)) - 1", "distance d of the source [m]", "reading", {}};
-  for (const double intensity : {1.0, 0.2}) {
-    Series series{intensity == 1.0 ? "I = 1" : "I = 0.2", {}};
-    for (const double d : evenly(0.15, 3.0, 39)) {
-      Stand stand;
-      stand.add(perceiving_robot());
-      stand.add_emitter(description::Sound{440.0, intensity}, at(d, 0, z));
-      series.measured.emplace_back(d, stand.read("microphones/0/intensity"));
-    }
-    series.closed_form = [intensity](double d) { return saturated(intensity / (d * d)); };
-    series.tolerance = exact;
-    panel.series.push_back(std::move(series));
-  }
-  return panel;
+          {measured_at(evenly(-0.205, 0.205, 42), measure, expected)}};
 }
 
 // Robots emit what they are told; it is perceived one tick later.
@@ -150,33 +137,30 @@ double perceived(const std::string& channel, const std::vector<double>& command,
   return stand.read(reading);
 }
 
+constexpr double after_a_tick = 1e-5;  // tolerance: the robots settle by a hair in the first one
+
 Panel loudspeaker() {
-  Series series{"", {}};
-  for (const double intensity : evenly(0.0, 4.0, 21))
-    series.measured.emplace_back(intensity,
-                                 perceived("speaker/0/intensity", {intensity}, "microphones/0/intensity", 1.0));
-  series.closed_form = [](double intensity) { return saturated(intensity); };
-  series.tolerance = 1e-5;  // the robots settle by a hair in the first tick
+  const auto measure = [](double intensity) {
+    return perceived("speaker/0/intensity", {intensity}, "microphones/0/intensity", 1.0);
+  };
   return {"Loudspeaker, 1 m away",
           "line: 2 / (1 + exp(-I)) - 1",
           "commanded intensity I",
           "reading of a microphone",
-          {series}};
+          {measured_at(evenly(0.0, 4.0, 21), measure, saturated, after_a_tick)}};
 }
 
 Panel led() {
   static constexpr double gap = 0.5;
-  Series series{"", {}};
-  for (const double brightness : evenly(0.0, 1.0, 21))
-    series.measured.emplace_back(
-        brightness, perceived("leds/0/color", {brightness, brightness, brightness}, "light/0/reading", gap + 0.06));
-  series.closed_form = [](double brightness) { return saturated(brightness / (gap * gap)); };
-  series.tolerance = 1e-5;
+  const auto measure = [](double brightness) {
+    return perceived("leds/0/color", {brightness, brightness, brightness}, "light/0/reading", gap + 0.06);
+  };
+  const auto expected = [](double brightness) { return saturated(brightness / (gap * gap)); };
   return {"LED as a lamp, 0.5 m away",
           "line: 2 / (1 + exp(-b / d²)) - 1",
           "commanded brightness b",
           "reading of a light sensor",
-          {series}};
+          {measured_at(evenly(0.0, 1.0, 21), measure, expected, after_a_tick)}};
 }
 
 }  // namespace

@@ -120,21 +120,19 @@ Panel elevation() {
 }
 
 Panel torque() {
-  Series series{"", {}};
-  for (const double angle : evenly(-80.0, 80.0, 33)) {
+  const auto measure = [](double angle) {
     Stand stand;
     stand.add(robot_with_arm());
     stand.command("elevation/0/position", {degree * angle});
     stand.step(300);
-    series.measured.emplace_back(angle, stand.read("torque/0/torque"));
-  }
-  series.closed_form = [](double angle) { return arm_mass * g * arm_middle * std::cos(degree * angle); };
-  series.tolerance = 1e-5;
+    return stand.read("torque/0/torque");
+  };
+  const auto expected = [](double angle) { return arm_mass * g * arm_middle * std::cos(degree * angle); };
   return {"Torque sensor: an arm held up",
           "line: m g l cos a; 0.2 kg, 0.05 m",
           "angle a of the arm [degrees]",
           "torque [N m]",
-          {series}};
+          {measured_at(evenly(-80.0, 80.0, 33), measure, expected, 1e-5)}};
 }
 
 description::Model feeling_robot() {

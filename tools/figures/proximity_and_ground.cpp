@@ -44,7 +44,7 @@ description::Model robot_with(ProximityTechnique technique) {
 double reading(ProximityTechnique technique, const description::Shape& shape, const Pose& X_WO) {
   Stand stand;
   stand.add(robot_with(technique));
-  stand.add(static_shape(shape), X_WO);
+  stand.add(static_shape("static", shape), X_WO);
   return stand.read("proximity/0/reading");
 }
 
@@ -105,18 +105,20 @@ Panel pillar_around() {
 
 Panel ground_below() {
   static constexpr double ground_range = 0.04;
-  constexpr double place = 0.014;
-  Series series{"", {}};
-  for (const double d : evenly(place, 0.05, 25)) {
+  static constexpr double place = 0.014;
+  const auto measure = [](double d) {
     Stand stand;
     description::Model model = tracked_robot();
     model.devices.push_back(description::GroundSensors{"ground", chassis, {{0.045, 0.0, place}}, ground_range, {}});
     stand.add(model, at(0, 0, d - place));
-    series.measured.emplace_back(d, stand.read("ground/0/reading"));
-  }
-  series.closed_form = [](double d) { return std::max(0.0, 1.0 - d / ground_range); };
-  series.tolerance = exact;
-  return {"Ground sensors", "line: 1 - d / 0.04 m", "distance d of the ground [m]", "reading", {series}};
+    return stand.read("ground/0/reading");
+  };
+  const auto expected = [](double d) { return std::max(0.0, 1.0 - d / ground_range); };
+  return {"Ground sensors",
+          "line: 1 - d / 0.04 m",
+          "distance d of the ground [m]",
+          "reading",
+          {measured_at(evenly(place, 0.05, 25), measure, expected)}};
 }
 
 }  // namespace

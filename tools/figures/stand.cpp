@@ -7,42 +7,8 @@ namespace cohort::figures {
 
 using namespace description;
 
-Pose at(double x, double y, double z, double yaw) {
-  return {{x, y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))};
-}
-
 Pose leaning(double pitch) {
   return {{0.0, 0.0, 1.0}, Eigen::Quaterniond(Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()))};
-}
-
-Inertial solid_cylinder(double mass, double radius, double length, double z) {
-  const double across = mass * (3.0 * radius * radius + length * length) / 12.0;
-  Inertial inertial;
-  inertial.mass = mass;
-  inertial.X_LI.position.z() = z;
-  inertial.inertia = Eigen::Vector3d(across, across, 0.5 * mass * radius * radius).asDiagonal();
-  return inertial;
-}
-
-Model tracked_robot() {
-  Model model;
-  model.name = "robot";
-  model.links.push_back({"chassis",
-                         {},
-                         solid_cylinder(0.4, 0.05, 0.05, 0.033),
-                         {{"hull", {{0, 0, 0.034}}, Cylinder{0.05, 0.04}, {0.3, 0}}}});
-  model.links.push_back({"turret",
-                         {{0, 0, turret_height}},
-                         solid_cylinder(0.3, turret_radius, 0.04, 0.02),
-                         {{"shell", {{0, 0, 0.02}}, Cylinder{turret_radius, 0.04}, {0.3, 0}}}});
-  Joint joint;
-  joint.name = "turret_joint";
-  joint.type = JointType::revolute;
-  joint.parent = chassis;
-  joint.child = turret;
-  model.joints.push_back(joint);
-  model.devices.push_back(TreelDrive{"treel", chassis, 0.04, 0.04, 0.0, 0.022, 0.02, 0.2, 0.8});
-  return model;
 }
 
 void hold(Model& model) {
@@ -59,34 +25,26 @@ Model held_robot() {
   return model;
 }
 
-Model static_shape(const Shape& shape) {
-  Model model;
-  model.name = "static";
-  model.is_static = true;
-  model.links.push_back({"link", {}, {}, {{"collision", {}, shape, {}}}});
-  return model;
+Series measured_at(const std::vector<double>& places, const std::function<double(double)>& measure,
+                   std::function<double(double)> closed_form, double tolerance, std::string name) {
+  Series series{std::move(name), {}, std::move(closed_form), tolerance};
+  for (const double place : places) series.measured.emplace_back(place, measure(place));
+  return series;
 }
 
 Stand::Stand() {
   experiment_.world.name = "stand";
   experiment_.duration = std::chrono::hours(1);
-  add(static_shape(Plane{}));
+  add(static_shape("static", Plane{}));
 }
 
 std::uint32_t Stand::add(const Model& model, const Pose& X_WM) {
   World& world = experiment_.world;
-  const auto object = static_cast<std::uint32_t>(world.instances.size());
-  if (model.is_robot()) world.robots.push_back(object);
-  world.instances.push_back({model.name + "_" + std::to_string(object), world.models.size(), X_WM});
-  world.models.push_back(model);
-  return object;
+  return place(world, model, model.name + "_" + std::to_string(world.instances.size()), X_WM);
 }
 
 void Stand::add_emitter(const decltype(Emitter::what)& what, const Pose& X_WM) {
-  Model model;
-  model.name = "emitter";
-  model.is_static = true;
-  model.links.push_back({"link", {}, {}, {}});
+  Model model = static_model("emitter");
   model.emitters.push_back({"emitter", 0, {}, true, what});
   add(model, X_WM);
 }

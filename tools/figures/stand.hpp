@@ -6,31 +6,26 @@
 #include <vector>
 
 #include "server/simulation/simulation.hpp"
+#include "tools/drawing/chart.hpp"
+#include "tools/figures/tracked_robot.hpp"
 
 namespace cohort::figures {
 
 inline constexpr double degree = std::numbers::pi / 180.0;
 inline constexpr double exact = 1e-9;  ///< tolerance of what is computed in closed form
 
-Pose at(double x, double y, double z, double yaw = 0.0);
+using description::at;
+using description::static_shape;
 /// Leaning forwards by `pitch` [rad].
 Pose leaning(double pitch);
 
-description::Inertial solid_cylinder(double mass, double radius, double length, double z);
-
-/// A robot like the s-bot: 0.7 kg, a chassis with tracks and a turret on a joint, both round. Links 0 and 1, joint 0,
-/// device 0.
-description::Model tracked_robot();
-inline constexpr std::size_t chassis = 0;
-inline constexpr std::size_t turret = 1;
-inline constexpr double turret_height = 0.055;  ///< z of the turret's link [m]
-inline constexpr double turret_radius = 0.058;  ///< [m]
-
-/// The same without its tracks, held by the world.
+/// A tracked_robot without its tracks, held by the world.
 description::Model held_robot();
 void hold(description::Model& model);
 
-description::Model static_shape(const description::Shape& shape);
+/// What `measure` gives at each of `places`, beside a closed form.
+Series measured_at(const std::vector<double>& places, const std::function<double(double)>& measure,
+                   std::function<double(double)> closed_form, double tolerance = exact, std::string name = {});
 
 /// A small world in which devices are measured: on a plane, ticks of 10 ms, one thread. Everything is added before the
 /// first tick.

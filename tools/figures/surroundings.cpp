@@ -19,18 +19,19 @@ struct Air {
 };
 
 Panel climate(const std::string& quantity, const Air& expected, const std::string& title, const std::string& label) {
-  Series series{"", {}};
-  for (const double d : evenly(0.0, 2.0, 25)) {
+  const auto measure = [&](double d) {
     Stand stand;
     description::Model model = tracked_robot();
     model.devices.push_back(description::ClimateSensor{"climate", turret, {0.0, 0.0, eye}, {}});
     stand.add(model);
     stand.add_emitter(description::ClimateSource{10.0, 0.3, expected.spread}, at(d, 0, eye_height));
-    series.measured.emplace_back(d, stand.read("climate/0/" + quantity));
-  }
-  series.closed_form = expected;
-  series.tolerance = exact;
-  return {title, "line: air + source · exp(-2 d² / m²)", "distance d of the source [m]", label, {series}};
+    return stand.read("climate/0/" + quantity);
+  };
+  return {title,
+          "line: air + source · exp(-2 d² / m²)",
+          "distance d of the source [m]",
+          label,
+          {measured_at(evenly(0.0, 2.0, 25), measure, expected)}};
 }
 
 description::Model seeing_robot(double range) {
@@ -40,16 +41,17 @@ description::Model seeing_robot(double range) {
 }
 
 Panel camera_bearing() {
-  Series series{"", {}};
-  for (const double bearing : evenly(-175.0, 175.0, 36)) {
+  const auto measure = [](double bearing) {
     Stand stand;
     stand.add(seeing_robot(2.0));
     stand.add_emitter(description::Marker{}, at(std::cos(degree * bearing), std::sin(degree * bearing), eye_height));
-    series.measured.emplace_back(bearing, stand.read("camera/0/bearing") / degree);
-  }
-  series.closed_form = [](double bearing) { return bearing; };
-  series.tolerance = exact;
-  return {"Camera: bearing", "line: the same", "bearing of a spot [degrees]", "bearing [degrees]", {series}};
+    return stand.read("camera/0/bearing") / degree;
+  };
+  return {"Camera: bearing",
+          "line: the same",
+          "bearing of a spot [degrees]",
+          "bearing [degrees]",
+          {measured_at(evenly(-175.0, 175.0, 36), measure, std::identity())}};
 }
 
 Panel camera_distance() {
@@ -86,7 +88,7 @@ Panel panorama() {
   model.devices.emplace_back(camera);
   stand.add(model);
   const auto add = [&](const description::Shape& shape, const Eigen::Vector3d& color, const Pose& X_WO) {
-    description::Model thing = static_shape(shape);
+    description::Model thing = static_shape("static", shape);
     thing.links[0].color = color;
     stand.add(thing, X_WO);
   };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "server/description/world_in_code.hpp"
 #include "server/physics/make_world.hpp"
 #include "server/sensing/sensor.hpp"
 
@@ -11,20 +12,12 @@ namespace {
 
 constexpr std::uint64_t random_ticks = 256;
 
-description::Model cylinder_of(const SampleGrid& grid) {
-  description::Model model;
-  model.name = "cylinder";
-  model.is_static = true;
-  model.links.push_back({"link", {}, {}, {{"collision", {}, description::Cylinder{grid.radius, grid.height}, {}}}});
-  return model;
-}
-
 }  // namespace
 
 description::Samples take_samples(const description::Model& model, std::size_t device, const SampleGrid& grid) {
   const auto& ring = std::get<description::ProximityRing>(model.devices[device]);
   description::World description;
-  description.models = {model, cylinder_of(grid)};
+  description.models = {model, description::static_shape("cylinder", description::Cylinder{grid.radius, grid.height})};
   description.instances = {{"robot", 0, {}}, {"cylinder", 1, {}}};
   description.robots = {0};
   WorkerPool workers(1);

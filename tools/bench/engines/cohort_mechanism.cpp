@@ -1,3 +1,4 @@
+#include "server/description/world_in_code.hpp"
 #include "server/physics/make_world.hpp"
 #include "tools/bench/engines/engines.hpp"
 
@@ -31,15 +32,9 @@ description::World describe(const Mechanism& mechanism) {
     }
     model.links.push_back(link);
   }
-  world.models.push_back(model);
-  world.instances.push_back({model.name, 0, {}});
+  place(world, model, model.name, {});
   if (mechanism.floor_friction) {
-    Model floor;
-    floor.name = "floor";
-    floor.is_static = true;
-    floor.links.push_back({"link", {}, {}, {{"plane", {}, Plane{}, surface}}});
-    world.instances.push_back({floor.name, world.models.size(), {}});
-    world.models.push_back(floor);
+    place(world, static_shape("floor", Plane{}, surface), "floor", {});
   }
   world.physics.lowest = -1e3;
   return world;

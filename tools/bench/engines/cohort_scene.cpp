@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "server/description/world_in_code.hpp"
+
 namespace cohort::bench {
 namespace {
 
@@ -11,20 +13,7 @@ using description::Model;
 using description::Sphere;
 
 description::Inertial inertial(const CylinderBody& body, double link_z) {
-  const double across = body.mass * (3.0 * body.radius * body.radius + body.height * body.height) / 12.0;
-  const double along = body.mass * body.radius * body.radius / 2.0;
-  description::Inertial inertial;
-  inertial.mass = body.mass;
-  inertial.X_LI.position.z() = body.z - link_z;
-  inertial.inertia = Eigen::Vector3d(across, across, along).asDiagonal();
-  return inertial;
-}
-
-description::Inertial solid_ball(double mass, double radius) {
-  description::Inertial inertial;
-  inertial.mass = mass;
-  inertial.inertia = Eigen::Vector3d::Constant(0.4 * mass * radius * radius).asDiagonal();
-  return inertial;
+  return description::solid_cylinder(body.mass, body.radius, body.height, body.z - link_z);
 }
 
 Joint revolute(const std::string& name, std::size_t child, const Eigen::Vector3d& axis) {
@@ -41,7 +30,7 @@ void add_wheel(Model& model, const std::string& name, double y, const Robot& rob
   model.joints.push_back(revolute(name, model.links.size(), Eigen::Vector3d::UnitY()));
   model.links.push_back({name,
                          X_ML,
-                         solid_ball(robot.wheel_mass, robot.wheel_radius),
+                         description::solid_sphere(robot.wheel_mass, robot.wheel_radius),
                          {{"tyre", {}, Sphere{robot.wheel_radius}, {robot.track_friction}}}});
   model.devices.push_back(description::VelocityMotor{name, model.joints.size() - 1,
                                                      robot.max_speed / robot.wheel_radius, robot.max_torque});
@@ -102,12 +91,8 @@ void place_walls(description::World& world, const Scene& scene) {
 }  // namespace
 
 void place_static(description::World& world, const description::Shape& shape, double friction, const Pose& X_WM) {
-  Model model;
-  model.name = "static_" + std::to_string(world.models.size());
-  model.is_static = true;
-  model.links.push_back({"link", {}, {}, {{"collision", {}, shape, {friction}}}});
-  world.instances.push_back({model.name, world.models.size(), X_WM});
-  world.models.push_back(model);
+  const std::string name = "static_" + std::to_string(world.models.size());
+  place(world, description::static_shape(name, shape, {friction}), name, X_WM);
 }
 
 description::World describe(const Scene& scene) {
@@ -122,12 +107,9 @@ description::World describe(const Scene& scene) {
   if (scene.half_arena) place_walls(world, scene);
   world.models.push_back(robot_model(scene.robot, scene.drive));
   for (std::size_t i = 0; i < scene.robots.size(); ++i) {
-    const Placement& at = scene.robots[i];
-    world.robots.push_back(world.instances.size());
-    world.instances.push_back(
-        {"robot_" + std::to_string(i),
-         world.models.size() - 1,
-         {{at.x, at.y, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(at.yaw, Eigen::Vector3d::UnitZ()))}});
+    const Placement& placement = scene.robots[i];
+    place(world, world.models.size() - 1, "robot_" + std::to_string(i),
+          description::at(placement.x, placement.y, 0.0, placement.yaw));
   }
   return world;
 }

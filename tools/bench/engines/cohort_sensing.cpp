@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/description/world_in_code.hpp"
 #include "server/physics/make_world.hpp"
 #include "server/sensing/exteroceptive/lamp_view.hpp"
 #include "server/sensing/readings/take_samples.hpp"
@@ -67,14 +68,10 @@ std::vector<Device> senses(const SensingScene& scene, Perceived perceived) {
 void place_sources(description::World& world, const SensingScene& scene) {
   constexpr double frequency = 440.0;  // [Hz]
   for (const Eigen::Vector3d& p_W : scene.sources) {
-    description::Model model;
-    model.name = "source_" + std::to_string(world.models.size());
-    model.is_static = true;
-    model.links.push_back({"link", {}, {}, {}});
+    description::Model model = description::static_model("source_" + std::to_string(world.models.size()));
     model.emitters.push_back({"lamp", 0, {}, true, description::Light{}});
     model.emitters.push_back({"tone", 0, {}, true, description::Sound{frequency, 1.0}});
-    world.instances.push_back({model.name, world.models.size(), Pose{p_W}});
-    world.models.push_back(model);
+    place(world, model, model.name, Pose{p_W});
   }
 }
 

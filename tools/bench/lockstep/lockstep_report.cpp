@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "tools/bench/report.hpp"
 #include "tools/drawing/chart.hpp"
 
 namespace cohort::bench {
@@ -14,10 +15,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double micro = 1e6;
 constexpr double milli = 1e3;
-
-Json spread_json(const Spread& spread, double unit = 1.0) {
-  return {{"median", unit * spread.median}, {"min", unit * spread.least}, {"max", unit * spread.most}};
-}
 
 double median_of(const std::vector<LockstepTurn>& turns, double LockstepTurn::*quantity) {
   return spread_of(turns, quantity).median;

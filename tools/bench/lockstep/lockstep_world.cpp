@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "server/description/world_in_code.hpp"
 #include "tools/bench/engines/cohort_scene.hpp"
 
 namespace cohort::bench {
@@ -49,9 +50,8 @@ description::Experiment idle_robots(std::uint32_t robots, std::uint32_t delay) {
   const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(robots)));
   for (std::uint32_t robot = 0; robot < robots; ++robot) {
     const std::uint32_t row = robot / side;
-    world.robots.push_back(world.instances.size());
-    world.instances.push_back({"robot_" + std::to_string(robot), world.models.size() - 1,
-                               Pose{{apart * (robot % side), apart * row, height}}});
+    place(world, world.models.size() - 1, "robot_" + std::to_string(robot),
+          Pose{{apart * (robot % side), apart * row, height}});
   }
   description::Team team;
   team.name = "robots";

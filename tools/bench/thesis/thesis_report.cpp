@@ -20,33 +20,22 @@ std::string in_column(const std::string& heading, const std::string& text) {
   return fmt::format("  {:>{}}", text, std::max(least, heading.size()));
 }
 
-std::string text_per_robot(const ThesisTable& table) {
-  std::string text = "  microseconds for a robot and frame:\n";
+// Of what `thesis_text` and `cell_text` say of a row's numbers, a line for each row.
+template <class ThesisText, class CellText>
+std::string lines_of(const ThesisTable& table, ThesisText thesis_text, CellText cell_text) {
+  std::string text;
   for (const ThesisRow& row : table.rows) {
     text += fmt::format("  {:>7}", row.robots);
-    for (const std::string& column : table.thesis_columns) text += in_column("thesis " + column, "");
-    for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      const ThesisCell& cell = row.cells[i];
-      text +=
-          in_column(table.columns[i],
-                    cell.is_missing ? "-" : fmt::format("{:.2f}", cost_of_robot_frame(cell, row.robots, table.frames)));
-    }
+    for (std::size_t i = 0; i < row.thesis.size(); ++i)
+      text += in_column("thesis " + table.thesis_columns[i], thesis_text(row.thesis[i]));
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      text += in_column(table.columns[i], cell_text(row, row.cells[i]));
     text += "\n";
   }
   return text;
 }
 
-std::string text_of_answers(const ThesisTable& table) {
-  std::string text = "  " + table.answers + ":\n";
-  for (const ThesisRow& row : table.rows) {
-    text += fmt::format("  {:>7}", row.robots);
-    for (const std::string& column : table.thesis_columns) text += in_column("thesis " + column, "");
-    for (std::size_t i = 0; i < row.cells.size(); ++i)
-      text += in_column(table.columns[i], row.cells[i].answer ? fmt::format("{:.4f}", *row.cells[i].answer) : "-");
-    text += "\n";
-  }
-  return text;
-}
+std::string no_text(const std::optional<double>&) { return {}; }
 
 nlohmann::ordered_json to_json(const ThesisCell& cell, std::uint32_t robots, std::uint64_t frames) {
   nlohmann::ordered_json json{{"seconds", cell.seconds}, {"extrapolated", cell.is_extrapolated}};
@@ -66,15 +55,16 @@ std::string text_of(const ThesisTable& table) {
   for (const std::string& column : table.thesis_columns) text += in_column("thesis " + column, "thesis " + column);
   for (const std::string& column : table.columns) text += in_column(column, column);
   text += "\n";
-  for (const ThesisRow& row : table.rows) {
-    text += fmt::format("  {:>7}", row.robots);
-    for (std::size_t i = 0; i < row.thesis.size(); ++i)
-      text += in_column("thesis " + table.thesis_columns[i], seconds_of(row.thesis[i]));
-    for (std::size_t i = 0; i < row.cells.size(); ++i) text += in_column(table.columns[i], text_of(row.cells[i]));
-    text += "\n";
-  }
-  if (table.frames > 0) text += text_per_robot(table);
-  if (!table.answers.empty()) text += text_of_answers(table);
+  text += lines_of(table, seconds_of, [](const ThesisRow&, const ThesisCell& cell) { return text_of(cell); });
+  if (table.frames > 0)
+    text += "  microseconds for a robot and frame:\n" +
+            lines_of(table, no_text, [&](const ThesisRow& row, const ThesisCell& cell) {
+              return cell.is_missing ? "-" : fmt::format("{:.2f}", cost_of_robot_frame(cell, row.robots, table.frames));
+            });
+  if (!table.answers.empty())
+    text += "  " + table.answers + ":\n" + lines_of(table, no_text, [](const ThesisRow&, const ThesisCell& cell) {
+              return cell.answer ? fmt::format("{:.4f}", *cell.answer) : "-";
+            });
   if (!table.note.empty()) text += "  " + table.note + "\n";
   return text;
 }

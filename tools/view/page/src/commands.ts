@@ -6,7 +6,13 @@ export interface Command {
   usage: string; // its arguments
   help: string;
   complete?: (index: number) => readonly string[]; // what an argument may be
-  run: (args: string[]) => string | Promise<string>;
+  run: (args: string[]) => unknown; // what it says, if that is a text, now or later
+}
+
+/** `line` is its name, and after it its arguments. */
+export function command(line: string, help: string, run: Command["run"], complete?: Command["complete"]): Command {
+  const [name] = line.split(" ", 1);
+  return { name, usage: line.slice(name.length + 1), help, complete, run };
 }
 
 interface Profile {
@@ -81,11 +87,11 @@ export class Commands {
     } catch {
       // What is kept is damaged, or nothing may be kept: begin with what everybody has.
     }
-    for (const command of this.ownCommands()) this.add(command);
+    for (const each of this.ownCommands()) this.add(each);
   }
 
-  add(command: Command): void {
-    this.commands.set(command.name, command);
+  add(added: Command): void {
+    this.commands.set(added.name, added);
   }
   names(): string[] {
     return [...this.commands.keys(), ...Object.keys(this.profile.aliases)].sort();
@@ -126,8 +132,8 @@ export class Commands {
       return [...this.commands.values()]
         .map(({ name: word, usage, help }) => `${`${word} ${usage}`.padEnd(34)} ${help}`)
         .join("\n");
-    const command = this.commands.get(name);
-    if (command) return `${command.name} ${command.usage}\n  ${command.help}`;
+    const found = this.commands.get(name);
+    if (found) return `${found.name} ${found.usage}\n  ${found.help}`;
     const alias = this.profile.aliases[name];
     if (alias) return `${name} is an alias of: ${alias}`;
     throw new Error(`there is no command '${name}'`);
@@ -145,9 +151,10 @@ export class Commands {
     const [name, ...args] = words(line);
     const alias = this.profile.aliases[name];
     if (alias !== undefined) return this.run([alias, ...args.map((each) => JSON.stringify(each))].join(" "), depth + 1);
-    const command = this.commands.get(name);
-    if (!command) throw new Error(`there is no command '${name}': 'help' lists them`);
-    return command.run(args);
+    const found = this.commands.get(name);
+    if (!found) throw new Error(`there is no command '${name}': 'help' lists them`);
+    const said = await found.run(args);
+    return typeof said === "string" ? said : "";
   }
 
   private keep(): void {
@@ -185,82 +192,56 @@ export class Commands {
         return "";
       };
     return [
-      {
-        name: "help",
-        usage: "[COMMAND]",
-        help: "says what there is",
-        complete: () => this.names(),
-        run: ([name]) => this.help(name),
-      },
-      {
-        name: "bind",
-        usage: "[KEY COMMAND]",
-        help: "a key or mouse button does a command; without arguments lists them",
-        complete: (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()),
-        run: change("keys", "bind KEY COMMAND"),
-      },
-      {
-        name: "unbind",
-        usage: "KEY",
-        help: "the key does nothing any more",
-        complete: () => Object.keys(this.profile.keys),
-        run: forget("keys", "unbind KEY"),
-      },
-      {
-        name: "steer",
-        usage: "[KEY DIRECTION | KEY CHANNEL VALUE]",
-        help: "a key that drives while it is held: ahead, back, left, right, or a channel; without arguments lists them",
-        complete: (index) => (index === 0 ? Object.keys(this.profile.steering) : ["ahead", "back", "left", "right"]),
-        run: change("steering", "steer KEY ahead|back|left|right, or steer KEY CHANNEL VALUE", readSteer),
-      },
-      {
-        name: "unsteer",
-        usage: "KEY",
-        help: "the key drives no more",
-        complete: () => Object.keys(this.profile.steering),
-        run: forget("steering", "unsteer KEY"),
-      },
-      {
-        name: "alias",
-        usage: "[NAME COMMAND]",
-        help: "a word for a command; without arguments lists them",
-        run: change("aliases", "alias NAME COMMAND"),
-      },
-      {
-        name: "unalias",
-        usage: "NAME",
-        help: "forgets it",
-        complete: () => Object.keys(this.profile.aliases),
-        run: forget("aliases", "unalias NAME"),
-      },
-      {
-        name: "script",
-        usage: "[NAME COMMANDS]",
-        help: "keeps a script, its commands parted by ';'",
-        run: change("scripts", "script NAME COMMANDS"),
-      },
-      {
-        name: "exec",
-        usage: "NAME",
-        help: "runs a script",
-        complete: () => Object.keys(this.profile.scripts),
-        run: ([name]) => {
+      command(
+        "help [COMMAND]",
+        "says what there is",
+        ([name]) => this.help(name),
+        () => this.names(),
+      ),
+      command(
+        "bind [KEY COMMAND]",
+        "a key or mouse button does a command; without arguments lists them",
+        change("keys", "bind KEY COMMAND"),
+        (index) => (index === 0 ? Object.keys(this.profile.keys) : this.names()),
+      ),
+      command("unbind KEY", "the key does nothing any more", forget("keys", "unbind KEY"), () =>
+        Object.keys(this.profile.keys),
+      ),
+      command(
+        "steer [KEY DIRECTION | KEY CHANNEL VALUE]",
+        "a key that drives while it is held: ahead, back, left, right, or a channel; without arguments lists them",
+        change("steering", "steer KEY ahead|back|left|right, or steer KEY CHANNEL VALUE", readSteer),
+        (index) => (index === 0 ? Object.keys(this.profile.steering) : ["ahead", "back", "left", "right"]),
+      ),
+      command("unsteer KEY", "the key drives no more", forget("steering", "unsteer KEY"), () =>
+        Object.keys(this.profile.steering),
+      ),
+      command(
+        "alias [NAME COMMAND]",
+        "a word for a command; without arguments lists them",
+        change("aliases", "alias NAME COMMAND"),
+      ),
+      command("unalias NAME", "forgets it", forget("aliases", "unalias NAME"), () => Object.keys(this.profile.aliases)),
+      command(
+        "script [NAME COMMANDS]",
+        "keeps a script, its commands parted by ';'",
+        change("scripts", "script NAME COMMANDS"),
+      ),
+      command(
+        "exec NAME",
+        "runs a script",
+        ([name]) => {
           const script = this.profile.scripts[name ?? ""];
           if (script === undefined) throw new Error(`there is no script '${name ?? ""}'`);
           return this.run(script, 1);
         },
-      },
-      {
-        name: "wait",
-        usage: "SECONDS",
-        help: "before the next command",
-        run: async ([time]) => {
-          const seconds = Number(time);
-          if (!(seconds >= 0 && seconds <= 3600)) throw new Error("expected seconds, up to 3600");
-          await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
-          return "";
-        },
-      },
+        () => Object.keys(this.profile.scripts),
+      ),
+      command("wait SECONDS", "before the next command", async ([time]) => {
+        const seconds = Number(time);
+        if (!(seconds >= 0 && seconds <= 3600)) throw new Error("expected seconds, up to 3600");
+        await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
+      }),
     ];
   }
 }

@@ -1,6 +1,6 @@
 import type { CameraMode, Viewpoint } from "./cameras";
 import { download, Film, screenshot } from "./capture";
-import type { Command, Commands } from "./commands";
+import { type Command, type Commands, command } from "./commands";
 import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
@@ -36,22 +36,18 @@ async function ask(connection: Connection, request: ViewRequest): Promise<string
 
 /** What can be said in the console beside what Commands know themselves. */
 export function addConsoleCommands(parts: Parts): void {
-  for (const command of [
+  for (const each of [
     ...playbackCommands(parts),
     ...cameraCommands(parts),
     ...pictureCommands(parts),
     ...worldCommands(parts),
   ])
-    parts.commands.add(command);
+    parts.commands.add(each);
 }
 
 function playbackCommands({ connection, timeBar }: Parts): Command[] {
-  const plain = (name: string, help: string): Command => ({
-    name,
-    usage: "",
-    help,
-    run: () => ask(connection, { operation: name }),
-  });
+  const plain = (name: string, help: string): Command =>
+    command(name, help, () => ask(connection, { operation: name }));
   const speed = (number: number): Promise<string> => ask(connection, { operation: "speed", number });
   const next = (isFaster: boolean): number => {
     const now = timeBar.status?.speed ?? 1;
@@ -61,28 +57,22 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
   return [
     plain("play", "goes on"),
     plain("pause", "stands still"),
-    {
-      name: "step",
-      usage: "[TICKS]",
-      help: "goes on by ticks, one if none is said; back where seek can",
-      run: ([ticks]) =>
-        ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
-    },
-    {
-      name: "seek",
-      usage: "SECONDS",
-      help: "goes to a time of a recording, or back to one of a server that keeps snapshots",
-      run: ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
-    },
-    {
-      name: "speed",
-      usage: "FACTOR",
-      help: "simulated seconds a second; max: as fast as it goes",
-      complete: () => ["max", ...speeds.map(String)],
-      run: ([factor]) => speed(factor === "max" ? 0 : numberOf(factor, "a factor, or max")),
-    },
-    { name: "faster", usage: "", help: "the next speed up", run: () => speed(next(true)) },
-    { name: "slower", usage: "", help: "the next speed down", run: () => speed(next(false)) },
+    command("step [TICKS]", "goes on by ticks, one if none is said; back where seek can", ([ticks]) =>
+      ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
+    ),
+    command(
+      "seek SECONDS",
+      "goes to a time of a recording, or back to one of a server that keeps snapshots",
+      ([time]) => ask(connection, { operation: "seek", number: numberOf(time, "seconds") }),
+    ),
+    command(
+      "speed FACTOR",
+      "simulated seconds a second; max: as fast as it goes",
+      ([factor]) => speed(factor === "max" ? 0 : numberOf(factor, "a factor, or max")),
+      () => ["max", ...speeds.map(String)],
+    ),
+    command("faster", "the next speed up", () => speed(next(true))),
+    command("slower", "the next speed down", () => speed(next(false))),
   ];
 }
 
@@ -93,87 +83,53 @@ function cameraCommands({ viewer }: Parts): Command[] {
     if (found === undefined) throw new Error(name === undefined ? "select something first" : `there is no '${name}'`);
     return found;
   };
-  const choose = (mode: CameraMode, help: string): Command => ({
-    name: mode,
-    usage: "",
-    help,
-    run: () => {
-      viewer.cameras.choose(mode);
-      return "";
-    },
-  });
-  const attach = (mode: CameraMode, help: string): Command => ({
-    name: mode,
-    usage: "[NAME]",
-    help,
-    complete: names,
-    run: ([name]) => {
-      const entity = entityOf(name);
-      viewer.select(entity);
-      viewer.cameras.choose(mode, entity);
-      return "";
-    },
-  });
+  const choose = (mode: CameraMode, help: string): Command => command(mode, help, () => viewer.cameras.choose(mode));
+  const attach = (mode: CameraMode, help: string): Command =>
+    command(
+      `${mode} [NAME]`,
+      help,
+      ([name]) => {
+        const entity = entityOf(name);
+        viewer.select(entity);
+        viewer.cameras.choose(mode, entity);
+      },
+      names,
+    );
   return [
     choose("orbit", "turns about what is looked at"),
     choose("top", "looks from above"),
     choose("fly", "moves by keys: w a s d, q and z"),
     attach("follow", "goes along with an object or robot"),
     attach("eye", "looks as a robot does"),
-    {
-      name: "home",
-      usage: "",
-      help: "looks at everything",
-      run: () => {
-        viewer.home();
-        return "";
-      },
-    },
-    {
-      name: "select",
-      usage: "NAME",
-      help: "chooses an object or robot, by its name or id",
-      complete: names,
-      run: ([name]) => {
+    command("home", "looks at everything", () => viewer.home()),
+    command(
+      "select NAME",
+      "chooses an object or robot, by its name or id",
+      ([name]) => {
         viewer.select(entityOf(name));
         return viewer.selectedEntity?.name ?? "";
       },
-    },
-    {
-      name: "deselect",
-      usage: "",
-      help: "chooses nothing",
-      run: () => {
-        viewer.select(undefined);
-        return "";
-      },
-    },
-    {
-      name: "viewpoint",
-      usage: "[save NAME | NAME]",
-      help: "keeps or takes a place to look from; without arguments lists them",
-      complete: () => ["save", ...Object.keys(viewpoints())],
-      run: (args) => viewpoint(viewer, args),
-    },
-    {
-      name: "where",
-      usage: "[NAME]",
-      help: "says where it is",
-      complete: names,
-      run: ([name]) => {
+      names,
+    ),
+    command("deselect", "chooses nothing", () => viewer.select(undefined)),
+    command(
+      "viewpoint [save NAME | NAME]",
+      "keeps or takes a place to look from; without arguments lists them",
+      (args) => viewpoint(viewer, args),
+      () => ["save", ...Object.keys(viewpoints())],
+    ),
+    command(
+      "where [NAME]",
+      "says where it is",
+      ([name]) => {
         const { position, heading } = viewer.poseOf(entityOf(name));
         return `${position.map((each) => each.toFixed(4)).join(" ")} m, heading ${heading.toFixed(3)} rad`;
       },
-    },
-    {
-      name: "plot",
-      usage: "CHANNEL",
-      help: "plots a channel of the selected robot",
-      run: ([name]) => {
-        if (!viewer.inspector.plot(name ?? "")) throw new Error(`what is selected has no channel '${name ?? ""}'`);
-        return "";
-      },
-    },
+      names,
+    ),
+    command("plot CHANNEL", "plots a channel of the selected robot", ([name]) => {
+      if (!viewer.inspector.plot(name ?? "")) throw new Error(`what is selected has no channel '${name ?? ""}'`);
+    }),
   ];
 }
 
@@ -212,86 +168,51 @@ function pictureCommands({ viewer, connection, console, timeBar, commands, canva
     return `${name} ${isOn ? "on" : "off"}`;
   };
   return [
-    {
-      name: "toggle",
-      usage: "[LAYER]",
-      help: `${layers.join(", ")}; without argument plays or pauses`,
-      complete: () => layers,
-      run: ([name]) => toggleLayer(name),
-    },
-    {
-      name: "theme",
-      usage: "[light|dark]",
-      help: "changes the colours of the page",
-      complete: () => ["light", "dark"],
-      run: ([asked]) => {
+    command(
+      "toggle [LAYER]",
+      `${layers.join(", ")}; without argument plays or pauses`,
+      ([name]) => toggleLayer(name),
+      () => layers,
+    ),
+    command(
+      "theme [light|dark]",
+      "changes the colours of the page",
+      ([asked]) => {
         const theme = asked === "light" || asked === "dark" ? asked : viewer.stage.theme === "dark" ? "light" : "dark";
         viewer.wear(theme);
         localStorage.setItem(themeKey, theme);
-        return "";
       },
-    },
-    {
-      name: "screenshot",
-      usage: "",
-      help: "the picture as PNG",
-      run: async () => {
-        download(await screenshot(canvas, () => viewer.draw(performance.now())), "cohort.png");
-        return "cohort.png";
-      },
-    },
-    {
-      name: "film",
-      usage: "",
-      help: "begins or ends recording the picture as WebM",
-      run: () => {
-        if (film.isOn) film.stop();
-        else film.start();
-        return film.isOn ? "recording; 'film' ends it" : "cohort.webm";
-      },
-    },
-    {
-      name: "fullscreen",
-      usage: "",
-      help: "fills the screen, or no longer",
-      run: async () => {
-        if (document.fullscreenElement) await document.exitFullscreen();
-        else await document.documentElement.requestFullscreen();
-        return "";
-      },
-    },
-    {
-      name: "console",
-      usage: "",
-      help: "opens or closes this",
-      run: () => {
-        console.toggle();
-        return "";
-      },
-    },
-    {
-      name: "events",
-      usage: "",
-      help: "shows or hides what happened",
-      run: () => {
-        const panel = element("events");
-        panel.hidden = !panel.hidden;
-        return "";
-      },
-    },
-    {
-      name: "profile",
-      usage: "export|import",
-      help: "keys, aliases and scripts as a file",
-      complete: () => ["export", "import"],
-      run: async ([what]) => {
+      () => ["light", "dark"],
+    ),
+    command("screenshot", "the picture as PNG", async () => {
+      download(await screenshot(canvas, () => viewer.draw(performance.now())), "cohort.png");
+      return "cohort.png";
+    }),
+    command("film", "begins or ends recording the picture as WebM", () => {
+      if (film.isOn) film.stop();
+      else film.start();
+      return film.isOn ? "recording; 'film' ends it" : "cohort.webm";
+    }),
+    command("fullscreen", "fills the screen, or no longer", async () => {
+      if (document.fullscreenElement) await document.exitFullscreen();
+      else await document.documentElement.requestFullscreen();
+    }),
+    command("console", "opens or closes this", () => console.toggle()),
+    command("events", "shows or hides what happened", () => {
+      const panel = element("events");
+      panel.hidden = !panel.hidden;
+    }),
+    command(
+      "profile export|import",
+      "keys, aliases and scripts as a file",
+      async ([what]) => {
         if (what === "export")
           download(new Blob([commands.exportProfile()], { type: "application/json" }), "cohort-profile.json");
         else if (what === "import") commands.importProfile(await chosenFile());
         else throw new Error("expected export or import");
-        return "";
       },
-    },
+      () => ["export", "import"],
+    ),
   ];
 }
 
@@ -305,58 +226,53 @@ function worldCommands({ viewer, connection }: Parts): Command[] {
   const numbers = (args: string[], count: number, what: string): number[] =>
     Array.from({ length: count }, (_, i) => numberOf(args[i], what));
   return [
-    { name: "reset", usage: "", help: "begins the run anew", run: () => ask(connection, { operation: "reset" }) },
-    {
-      name: "spawn",
-      usage: "MODEL NAME X Y [Z]",
-      help: "brings an object into the world",
-      complete: (index) => (index === 0 ? models() : []),
-      run: ([model, name, ...at]) =>
+    command("reset", "begins the run anew", () => ask(connection, { operation: "reset" })),
+    command(
+      "spawn MODEL NAME X Y [Z]",
+      "brings an object into the world",
+      ([model, name, ...at]) =>
         ask(connection, {
           operation: "spawn",
           name,
           text: model,
           numbers: [...numbers(at, 2, "x and y"), Number(at[2] ?? 0)],
         }),
-    },
-    {
-      name: "remove",
-      usage: "NAME",
-      help: "takes an object out",
-      complete: names,
-      run: ([name]) => ask(connection, { operation: "remove", name: whole(name) }),
-    },
-    {
-      name: "move",
-      usage: "NAME X Y [Z [HEADING]]",
-      help: "puts an object elsewhere, upright",
-      complete: (index) => (index === 0 ? names() : []),
-      run: ([name, ...at]) =>
+      (index) => (index === 0 ? models() : []),
+    ),
+    command(
+      "remove NAME",
+      "takes an object out",
+      ([name]) => ask(connection, { operation: "remove", name: whole(name) }),
+      names,
+    ),
+    command(
+      "move NAME X Y [Z [HEADING]]",
+      "puts an object elsewhere, upright",
+      ([name, ...at]) =>
         ask(connection, {
           operation: "move",
           name: whole(name),
           numbers: [...numbers(at, 2, "x and y"), ...at.slice(2).map((each) => numberOf(each, "z and a heading"))],
         }),
-    },
-    {
-      name: "light",
-      usage: "NAME on|off",
-      help: "switches a light",
-      complete: (index) => (index === 0 ? names() : ["on", "off"]),
-      run: ([name, on]) => ask(connection, { operation: "light", name: whole(name), number: on === "off" ? 0 : 1 }),
-    },
-    {
-      name: "push",
-      usage: "NAME FX FY [FZ]",
-      help: "a force for a tenth of a second [N]",
-      complete: (index) => (index === 0 ? names() : []),
-      run: ([name, ...force]) =>
+      (index) => (index === 0 ? names() : []),
+    ),
+    command(
+      "light NAME on|off",
+      "switches a light",
+      ([name, on]) => ask(connection, { operation: "light", name: whole(name), number: on === "off" ? 0 : 1 }),
+      (index) => (index === 0 ? names() : ["on", "off"]),
+    ),
+    command(
+      "push NAME FX FY [FZ]",
+      "a force for a tenth of a second [N]",
+      ([name, ...force]) =>
         ask(connection, {
           operation: "push",
           name: whole(name),
           numbers: [...numbers(force, 2, "a force"), Number(force[2] ?? 0)],
         }),
-    },
+      (index) => (index === 0 ? names() : []),
+    ),
   ];
 }
 

@@ -1,5 +1,5 @@
 import { valueNames } from "./channels";
-import type { Command, Commands } from "./commands";
+import { type Command, type Commands, command } from "./commands";
 import type { Connection } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
@@ -49,14 +49,13 @@ export class Driving {
     const robots = (): string[] =>
       this.viewer.poses?.scene.entities.flatMap(({ name, robot }) => (robot === none ? [] : [name])) ?? [];
     return [
-      {
-        name: "drive",
-        usage: "[NAME]",
-        help: "takes a robot of a server and drives it by keys (steer) or a game pad",
-        complete: robots,
-        run: ([name]) => this.drive(name),
-      },
-      { name: "release", usage: "", help: "lets the robot go that is driven", run: () => this.release() },
+      command(
+        "drive [NAME]",
+        "takes a robot of a server and drives it by keys (steer) or a game pad",
+        ([name]) => this.drive(name),
+        robots,
+      ),
+      command("release", "lets the robot go that is driven", () => this.release()),
     ];
   }
 

@@ -1,5 +1,5 @@
 import { Quaternion, Vector3 } from "three";
-import type { Command } from "./commands";
+import { type Command, command } from "./commands";
 import type { Connection, ViewRequest } from "./connection";
 import type { ConsolePanel } from "./console";
 import { element } from "./element";
@@ -40,17 +40,15 @@ export class Objects {
 
   consoleCommands(): Command[] {
     return [
-      {
-        name: "add",
-        usage: "[MODEL]",
-        help: "opens or closes the card by which a click adds an object",
-        complete: () => this.modelNames(),
-        run: ([model]) => {
+      command(
+        "add [MODEL]",
+        "opens or closes the card by which a click adds an object",
+        ([model]) => {
           if (this.isAdding && model === undefined) this.close();
           else this.open(model);
-          return "";
         },
-      },
+        () => this.modelNames(),
+      ),
     ];
   }
 

@@ -185,6 +185,12 @@ struct Reply {
   std::uint64_t offset = 0;
   std::vector<std::uint8_t> data{};
   bool operator==(const Reply&) const = default;
+
+  /// What was asked for is so, if only since it was before.
+  bool is_done() const {
+    return result == ResultCode::ok ||
+           (operation == Operation::set_simulation_state && result == ResultCode::already_in_target_state);
+  }
 };
 
 /// How many requests of one client may be without a reply, and how many replies the server remembers of each.

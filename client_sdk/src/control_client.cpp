@@ -130,8 +130,7 @@ wire::Reply ControlClient::expect(wire::Request request, std::chrono::millisecon
 }
 
 std::vector<std::byte> ControlClient::save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
-  wire::Request request;
-  request.operation = wire::Operation::save_snapshot;
+  wire::Request request{.operation = wire::Operation::save_snapshot};
   const std::uint64_t size = expect(request, at_most, stop).size;
   if (size > wire::largest_data) throw ControlError("the server says that its snapshot is larger than may be");
   std::vector<std::byte> bytes;
@@ -150,9 +149,7 @@ std::vector<std::byte> ControlClient::save(std::chrono::milliseconds at_most, co
 
 wire::Reply ControlClient::load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,
                                 const std::atomic<bool>& stop) {
-  wire::Request request;
-  request.operation = wire::Operation::put_data;
-  request.size = snapshot.size();
+  wire::Request request{.operation = wire::Operation::put_data, .size = snapshot.size()};
   while (request.offset < snapshot.size()) {
     const auto part =
         snapshot.subspan(request.offset, std::min<std::size_t>(wire::largest_part, snapshot.size() - request.offset));
@@ -161,25 +158,18 @@ wire::Reply ControlClient::load(std::span<const std::byte> snapshot, std::chrono
     expect(request, at_most, stop);
     request.offset += part.size();
   }
-  wire::Request load;
-  load.operation = wire::Operation::load_snapshot;
-  return expect(load, at_most, stop);
+  return expect({.operation = wire::Operation::load_snapshot}, at_most, stop);
 }
 
 std::string ControlClient::start_recording(const std::string& recorded, std::chrono::milliseconds at_most,
                                            const std::atomic<bool>& stop) {
-  wire::Request request;
-  request.operation = wire::Operation::start_recording;
-  request.resource_string = recorded;
-  return expect(std::move(request), at_most, stop).error_message;
+  return expect({.operation = wire::Operation::start_recording, .resource_string = recorded}, at_most, stop)
+      .error_message;
 }
 
 ControlClient::RecordingPart ControlClient::get_recording(std::uint64_t offset, std::chrono::milliseconds at_most,
                                                           const std::atomic<bool>& stop) {
-  wire::Request request;
-  request.operation = wire::Operation::get_recording;
-  request.offset = offset;
-  wire::Reply reply = expect(std::move(request), at_most, stop);
+  wire::Reply reply = expect({.operation = wire::Operation::get_recording, .offset = offset}, at_most, stop);
   RecordingPart part{std::move(reply.data), reply.size != 0 && reply.size == offset + reply.data.size(),
                      std::move(reply.error_message)};
   if (reply.offset != offset || (reply.size != 0 && reply.size < offset + part.bytes.size()))
@@ -188,9 +178,7 @@ ControlClient::RecordingPart ControlClient::get_recording(std::uint64_t offset, 
 }
 
 void ControlClient::stop_recording(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
-  wire::Request request;
-  request.operation = wire::Operation::stop_recording;
-  expect(std::move(request), at_most, stop);
+  expect({.operation = wire::Operation::stop_recording}, at_most, stop);
 }
 
 }  // namespace cohort

@@ -192,10 +192,7 @@ void Control::answer(const Request& request, ResultCode result, const std::strin
 
 void Control::answer_steps(const std::vector<Playback::Steps>& steps, ResultCode result, const std::string& text) {
   for (const Playback::Steps& each : steps) {
-    Request request;
-    request.client = each.client;
-    request.number = each.number;
-    request.operation = Operation::step_simulation;
+    const Request request{.client = each.client, .number = each.number, .operation = Operation::step_simulation};
     const std::uint64_t tick = run_->simulation.tick();
     answer(request, result,
            each.until > tick ? text + ", " + ticks_text(each.until - tick) + " before the steps' end" : text);

@@ -12,18 +12,6 @@ using wire::Operation;
 using wire::Request;
 using wire::SimulationState;
 
-Request of(Operation operation) {
-  Request request;
-  request.operation = operation;
-  return request;
-}
-
-Request to_state(SimulationState state) {
-  Request request = of(Operation::set_simulation_state);
-  request.state = state;
-  return request;
-}
-
 wire::Vector3 vector_in(const ViewRequest& asked) {
   if (asked.numbers.size() < 2 || asked.numbers.size() > 3)
     throw std::invalid_argument("'" + asked.operation + "' needs x, y and perhaps z");
@@ -42,57 +30,56 @@ wire::Pose pose_in(const ViewRequest& asked) {
   return pose;
 }
 
-Request of_object(Operation operation, const ViewRequest& asked) {
+const std::string& object_in(const ViewRequest& asked) {
   if (asked.name.empty()) throw std::invalid_argument("'" + asked.operation + "' needs the name of an object");
-  Request request = of(operation);
-  request.entity = asked.name;
-  return request;
+  return asked.name;
 }
+
+template <SimulationState state>
+Request to_state(const ViewRequest&) {
+  return {.operation = Operation::set_simulation_state, .state = state};
+}
+
+Request reset(const ViewRequest&) { return {.operation = Operation::reset_simulation}; }
 
 Request step(const ViewRequest& asked) {
   constexpr double most = 1e9;
   if (!(asked.number >= 1.0 && asked.number <= most))
     throw std::invalid_argument("a running world steps ahead, by one tick or more");
-  Request request = of(Operation::step_simulation);
-  request.steps = static_cast<std::uint64_t>(asked.number);
-  return request;
+  return {.operation = Operation::step_simulation, .steps = static_cast<std::uint64_t>(asked.number)};
 }
 
 Request speed(const ViewRequest& asked) {
   if (!(asked.number >= 0.0) || !std::isfinite(asked.number))
     throw std::invalid_argument("a speed is above 0, or 0 for as fast as it goes");
-  Request request = of(Operation::set_speed);
-  request.speed = asked.number;
-  return request;
+  return {.operation = Operation::set_speed, .speed = asked.number};
 }
 
 Request spawn(const ViewRequest& asked) {
-  Request request = of_object(Operation::spawn_entity, asked);
-  request.uri = asked.text;
-  request.set_pose = true;
-  request.pose = pose_in(asked);
-  return request;
+  return {.operation = Operation::spawn_entity,
+          .entity = object_in(asked),
+          .uri = asked.text,
+          .set_pose = true,
+          .pose = pose_in(asked)};
 }
 
+Request remove(const ViewRequest& asked) { return {.operation = Operation::delete_entity, .entity = object_in(asked)}; }
+
 Request move(const ViewRequest& asked) {
-  Request request = of_object(Operation::set_entity_state, asked);
-  request.set_pose = true;
-  request.pose = pose_in(asked);
-  return request;
+  return {
+      .operation = Operation::set_entity_state, .entity = object_in(asked), .set_pose = true, .pose = pose_in(asked)};
 }
 
 Request light(const ViewRequest& asked) {
-  Request request = of_object(Operation::set_light, asked);
-  request.on = asked.number != 0.0;
-  return request;
+  return {.operation = Operation::set_light, .entity = object_in(asked), .on = asked.number != 0.0};
 }
 
 Request push(const ViewRequest& asked) {
   constexpr std::int64_t tenth_of_a_second = 100'000'000;
-  Request request = of_object(Operation::apply_force, asked);
-  request.force = vector_in(asked);
-  request.duration_ns = tenth_of_a_second;
-  return request;
+  return {.operation = Operation::apply_force,
+          .entity = object_in(asked),
+          .force = vector_in(asked),
+          .duration_ns = tenth_of_a_second};
 }
 
 struct ViewOperation {
@@ -100,13 +87,13 @@ struct ViewOperation {
   Request (*request)(const ViewRequest&);
 };
 constexpr std::array view_operations = {
-    ViewOperation{"play", [](const ViewRequest&) { return to_state(SimulationState::playing); }},
-    ViewOperation{"pause", [](const ViewRequest&) { return to_state(SimulationState::paused); }},
+    ViewOperation{"play", to_state<SimulationState::playing>},
+    ViewOperation{"pause", to_state<SimulationState::paused>},
     ViewOperation{"step", step},
     ViewOperation{"speed", speed},
-    ViewOperation{"reset", [](const ViewRequest&) { return of(Operation::reset_simulation); }},
+    ViewOperation{"reset", reset},
     ViewOperation{"spawn", spawn},
-    ViewOperation{"remove", [](const ViewRequest& asked) { return of_object(Operation::delete_entity, asked); }},
+    ViewOperation{"remove", remove},
     ViewOperation{"move", move},
     ViewOperation{"light", light},
     ViewOperation{"push", push},

@@ -5,12 +5,7 @@
 
 namespace cohort::view {
 
-wire::Request LiveHistory::question() const {
-  wire::Request request;
-  request.operation = wire::Operation::get_history;
-  request.offset = revision_;
-  return request;
-}
+wire::Request LiveHistory::question() const { return {.operation = wire::Operation::get_history, .offset = revision_}; }
 
 bool LiveHistory::take(const wire::Reply& reply, std::chrono::nanoseconds step) {
   const auto history = recording::decode<viewing::RunHistory>(std::as_bytes(std::span(reply.data)));

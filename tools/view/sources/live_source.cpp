@@ -221,13 +221,8 @@ Answer LiveSource::done(ControlClient& client, const ViewRequest& asked) {
     if (asked.operation == "step" && asked.number < 0.0 && history_.can_go_back())
       return gone_back(client,
                        run_time_ + time_of(std::trunc(asked.number) * 1e-9 * static_cast<double>(run_.step_ns)));
-    wire::Request request = request_of(asked);
-    const bool is_state = request.operation == wire::Operation::set_simulation_state;
-    const auto reply = client.ask(std::move(request), for_a_reply, is_stopping_);
-    if (!reply) return no_answer;
-    const bool is_done =
-        reply->result == ResultCode::ok || (is_state && reply->result == ResultCode::already_in_target_state);
-    return {is_done, reply->error_message};
+    const auto reply = client.ask(request_of(asked), for_a_reply, is_stopping_);
+    return reply ? Answer{reply->is_done(), reply->error_message} : no_answer;
   } catch (const std::invalid_argument& error) {
     return {false, error.what()};
   }
@@ -235,15 +230,12 @@ Answer LiveSource::done(ControlClient& client, const ViewRequest& asked) {
 
 Answer LiveSource::gone_back(ControlClient& client, std::chrono::nanoseconds time) {
   if (time > run_time_) throw std::invalid_argument("the run has not come to that time yet");
-  wire::Request back;
-  back.operation = wire::Operation::go_back;
-  back.duration_ns = time.count();
-  const auto reply = client.ask(std::move(back), for_a_reply, is_stopping_);
+  const auto reply =
+      client.ask({.operation = wire::Operation::go_back, .duration_ns = time.count()}, for_a_reply, is_stopping_);
   if (!reply) return no_answer;
   if (reply->result != ResultCode::ok || reply->state != SimulationState::paused || run_.step_ns <= 0)
     return {reply->result == ResultCode::ok, reply->error_message};
-  wire::Request on;
-  on.operation = wire::Operation::step_simulation;
+  wire::Request on{.operation = wire::Operation::step_simulation};
   on.steps = static_cast<std::uint64_t>(std::max<std::int64_t>(0, time.count() - reply->time_ns) / run_.step_ns);
   if (on.steps == 0) return {true, reply->error_message};
   const auto arrived = client.ask(std::move(on), for_a_reply, is_stopping_);
@@ -276,9 +268,7 @@ ViewStatus LiveSource::blank_status() const {
 }
 
 void LiveSource::ask_status(ControlClient& client) {
-  wire::Request request;
-  request.operation = wire::Operation::get_status;
-  const auto reply = client.ask(std::move(request), for_a_reply, is_stopping_);
+  const auto reply = client.ask({.operation = wire::Operation::get_status}, for_a_reply, is_stopping_);
   ViewStatus status = blank_status();
   if (reply && !reply->status.empty()) {
     const wire::SimulationStatus& run = reply->status.front();

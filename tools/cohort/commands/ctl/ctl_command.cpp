@@ -112,9 +112,7 @@ class Ctl {
 
   // What is asked for waits for a boundary, and that for the controllers.
   std::string why_it_waits() {
-    Request request;
-    request.operation = Operation::get_status;
-    const auto reply = client_.ask(request, for_status, stop_);
+    const auto reply = client_.ask({.operation = Operation::get_status}, for_status, stop_);
     if (!reply || reply->status.empty()) return {};
     const wire::SimulationStatus& status = reply->status.front();
     if (status.awaited.empty()) return fmt::format("the run is {}", word_of(reply->state));
@@ -127,13 +125,12 @@ class Ctl {
 
   void request() {
     if (command_.request.operation == Operation::spawn_entity) take_model();
-    const bool sets_state = command_.request.operation == Operation::set_simulation_state;
-    const bool quits = sets_state && command_.request.state == wire::SimulationState::quitting;
+    const bool quits = command_.request.operation == Operation::set_simulation_state &&
+                       command_.request.state == wire::SimulationState::quitting;
     const auto reply = client_.ask(command_.request, patience_, stop_);
     if (!reply && quits && client_.server_is_gone()) return;  // with its last words
     if (!reply) throw no_reply();
-    if (reply->result != ResultCode::ok && !(sets_state && reply->result == ResultCode::already_in_target_state))
-      throw std::runtime_error(reply->error_message);
+    if (!reply->is_done()) throw std::runtime_error(reply->error_message);
     std::printf("%s\n", reply->error_message.c_str());
   }
 
@@ -146,14 +143,8 @@ class Ctl {
     command_.request.resource_string.assign(text.begin(), text.end());
   }
 
-  Reply ask_status() {
-    Request request;
-    request.operation = Operation::get_status;
-    return ask(request);
-  }
-
   std::string status(int indent) {
-    const Reply reply = ask_status();
+    const Reply reply = ask({.operation = Operation::get_status});
     return command_.json ? status_json(reply, indent) : status_text(reply);
   }
 
@@ -178,11 +169,10 @@ class Ctl {
   }
 
   void history() {
-    const Reply status = ask_status();
+    const Reply status = ask({.operation = Operation::get_status});
     if (status.status.empty()) throw no_reply();
     viewing::RunHistory all;
-    Request request;
-    request.operation = Operation::get_history;
+    Request request{.operation = Operation::get_history};
     for (bool is_complete = false; !is_complete;) {
       const Reply reply = ask_and_get(request);
       add(all, recording::decode<viewing::RunHistory>(std::as_bytes(std::span(reply.data))));

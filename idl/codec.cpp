@@ -138,7 +138,7 @@ RobotDescription Codec<RobotDescription>::decode(const Sample& sample) {
           decode_channels(sample.command)};
 }
 
-Codec<Observation>::Outgoing::Outgoing(const Observation& message) {
+void Codec<Observation>::lend(const Observation& message, Sample& sample) {
   sample.client = message.client;
   sample.run = message.run;
   sample.resent = message.resent;
@@ -154,7 +154,7 @@ Observation Codec<Observation>::decode(const Sample& sample) {
           sample.tick,   sample.time_ns, to_span(sample.robots), to_span(sample.values)};
 }
 
-Codec<Command>::Outgoing::Outgoing(const Command& message) {
+void Codec<Command>::lend(const Command& message, Sample& sample) {
   sample.client = message.client;
   sample.run = message.run;
   sample.resent = message.resent;
@@ -169,7 +169,7 @@ Command Codec<Command>::decode(const Sample& sample) {
           to_span(sample.values), sample.resent};
 }
 
-Codec<WorldState>::Outgoing::Outgoing(const WorldState& message) {
+void Codec<WorldState>::lend(const WorldState& message, Sample& sample) {
   sample.run = message.run;
   sample.tick = message.tick;
   sample.time_ns = message.time_ns;
@@ -182,7 +182,7 @@ WorldState Codec<WorldState>::decode(const Sample& sample) {
   return {sample.run, sample.tick, sample.time_ns, sample.state_hash, to_span(sample.robots), to_span(sample.poses)};
 }
 
-Codec<SceneDescription>::Outgoing::Outgoing(const SceneDescription& message) {
+void Codec<SceneDescription>::lend(const SceneDescription& message, Sample& sample) {
   sample.run = message.run;
   sample.revision = message.revision;
   loan(message.scene, sample.scene);
@@ -192,7 +192,7 @@ SceneDescription Codec<SceneDescription>::decode(const Sample& sample) {
   return {sample.run, sample.revision, to_span(sample.scene)};
 }
 
-Codec<SceneUpdate>::Outgoing::Outgoing(const SceneUpdate& message) {
+void Codec<SceneUpdate>::lend(const SceneUpdate& message, Sample& sample) {
   sample.run = message.run;
   sample.revision = message.revision;
   sample.tick = message.tick;
@@ -212,7 +212,7 @@ SceneUpdate Codec<SceneUpdate>::decode(const Sample& sample) {
           to_span(sample.robots)};
 }
 
-Codec<Report>::Outgoing::Outgoing(const Report& message) {
+void Codec<Report>::lend(const Report& message, Sample& sample) {
   sample.client = message.client;
   sample.run = message.run;
   sample.kind = static_cast<std::uint32_t>(message.kind);

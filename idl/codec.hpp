@@ -29,6 +29,16 @@ struct Topic {
 template <class Message>
 struct Codec;
 
+/// Of messages whose samples need nothing beside themselves.
+template <class Message, class ItsSample>
+struct PlainCodec {
+  using Sample = ItsSample;
+  struct Outgoing {
+    explicit Outgoing(const Message& message) { Codec<Message>::lend(message, sample); }
+    Sample sample{};
+  };
+};
+
 template <>
 struct Codec<Join> {
   using Sample = cohort_v1_Join;
@@ -70,79 +80,51 @@ struct Codec<RobotDescription> {
 };
 
 template <>
-struct Codec<Observation> {
-  using Sample = cohort_v1_Observation;
-  struct Outgoing {
-    explicit Outgoing(const Observation& message);
-    Sample sample{};
-  };
+struct Codec<Observation> : PlainCodec<Observation, cohort_v1_Observation> {
   static const Topic topic;
+  static void lend(const Observation& message, Sample& sample);
   static Observation decode(const Sample& sample);
 };
 
 template <>
-struct Codec<Command> {
-  using Sample = cohort_v1_Command;
-  struct Outgoing {
-    explicit Outgoing(const Command& message);
-    Sample sample{};
-  };
+struct Codec<Command> : PlainCodec<Command, cohort_v1_Command> {
   static const Topic topic;
+  static void lend(const Command& message, Sample& sample);
   static Command decode(const Sample& sample);
 };
 
 template <>
-struct Codec<WorldState> {
-  using Sample = cohort_v1_WorldState;
-  struct Outgoing {
-    explicit Outgoing(const WorldState& message);
-    Sample sample{};
-  };
+struct Codec<WorldState> : PlainCodec<WorldState, cohort_v1_WorldState> {
   static const Topic topic;
+  static void lend(const WorldState& message, Sample& sample);
   static WorldState decode(const Sample& sample);
 };
 
 template <>
-struct Codec<SceneDescription> {
-  using Sample = cohort_v1_SceneDescription;
-  struct Outgoing {
-    explicit Outgoing(const SceneDescription& message);
-    Sample sample{};
-  };
+struct Codec<SceneDescription> : PlainCodec<SceneDescription, cohort_v1_SceneDescription> {
   static const Topic topic;
+  static void lend(const SceneDescription& message, Sample& sample);
   static SceneDescription decode(const Sample& sample);
 };
 
 template <>
-struct Codec<SceneUpdate> {
-  using Sample = cohort_v1_SceneUpdate;
-  struct Outgoing {
-    explicit Outgoing(const SceneUpdate& message);
-    Sample sample{};
-  };
+struct Codec<SceneUpdate> : PlainCodec<SceneUpdate, cohort_v1_SceneUpdate> {
   static const Topic topic;
+  static void lend(const SceneUpdate& message, Sample& sample);
   static SceneUpdate decode(const Sample& sample);
 };
 
 template <>
-struct Codec<Report> {
-  using Sample = cohort_v1_Report;
-  struct Outgoing {
-    explicit Outgoing(const Report& message);
-    Sample sample{};
-  };
+struct Codec<Report> : PlainCodec<Report, cohort_v1_Report> {
   static const Topic topic;
+  static void lend(const Report& message, Sample& sample);
   static Report decode(const Sample& sample);
 };
 
 template <>
-struct Codec<Request> {
-  using Sample = cohort_v1_Request;
-  struct Outgoing {
-    explicit Outgoing(const Request& message);
-    Sample sample{};
-  };
+struct Codec<Request> : PlainCodec<Request, cohort_v1_Request> {
   static const Topic topic;
+  static void lend(const Request& message, Sample& sample);
   static Request decode(const Sample& sample);
 };
 

@@ -203,7 +203,7 @@ const Topic Codec<Request>::topic = {.name = "cohort/v1/request", .type = &cohor
 const Topic Codec<Reply>::topic = {
     .name = "cohort/v1/reply", .type = &cohort_v1_Reply_desc, .transient_local = true, .depth = depth};
 
-Codec<Request>::Outgoing::Outgoing(const Request& message) { copy_request(message, sample, ToSample{}); }
+void Codec<Request>::lend(const Request& message, Sample& sample) { copy_request(message, sample, ToSample{}); }
 
 Request Codec<Request>::decode(const Sample& sample) {
   Request message;

@@ -19,8 +19,6 @@
 
 namespace cohort::sensing {
 
-/// As a bound: a channel has none.
-
 /// Where a sensor is mounted, and what it senses. All that it refers to must outlive the sensor.
 struct Mount {
   const physics::World& world;

@@ -75,19 +75,6 @@ Model robot_model(const Robot& robot, Drive drive) {
   return model;
 }
 
-void place_walls(description::World& world, const Scene& scene) {
-  const double thickness = scene.wall_thickness;
-  const double way = *scene.half_arena + 0.5 * thickness;
-  const double z = 0.5 * scene.wall_height;
-  const double length = 2.0 * (*scene.half_arena + thickness);
-  for (const double sign : {-1.0, 1.0}) {
-    place_static(world, description::Box{{thickness, length, scene.wall_height}}, scene.robot.friction,
-                 {{sign * way, 0.0, z}});
-    place_static(world, description::Box{{length, thickness, scene.wall_height}}, scene.robot.friction,
-                 {{0.0, sign * way, z}});
-  }
-}
-
 }  // namespace
 
 void place_static(description::World& world, const description::Shape& shape, double friction, const Pose& X_WM) {
@@ -104,7 +91,8 @@ description::World describe(const Scene& scene) {
   if (scene.drive == Drive::wheels) world.physics.fidelity = description::Fidelity::articulated;
   if (scene.planar) world.physics.fidelity = description::Fidelity::planar;
   place_static(world, description::Plane{}, scene.ground_friction, {});
-  if (scene.half_arena) place_walls(world, scene);
+  for (const Wall& wall : scene.walls())
+    place_static(world, description::Box{wall.size}, scene.robot.friction, {wall.centre});
   world.models.push_back(robot_model(scene.robot, scene.drive));
   for (std::size_t i = 0; i < scene.robots.size(); ++i) {
     const Placement& placement = scene.robots[i];

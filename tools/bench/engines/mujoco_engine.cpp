@@ -54,7 +54,7 @@ class ModelText {
     // Of a pair the larger friction and the larger number of dimensions count.
     fmt::format_to(out_, R"(<geom type="plane" size="0 0 1" friction="0" condim="1" contype="0" conaffinity="{}"/>)",
                    shell | wheel);
-    if (scene_.half_arena) add_walls();
+    for (const Wall& wall : scene_.walls()) add_wall(wall);
     for (std::size_t i = 0; i < robots; ++i) add_robot(i);
     text_ += "</worldbody>";
     if (scene_.connected) add_connections();
@@ -65,20 +65,11 @@ class ModelText {
   }
 
  private:
-  void add_walls() {
-    const double thickness = scene_.wall_thickness;
-    const double way = *scene_.half_arena + 0.5 * thickness;
-    const double half_length = *scene_.half_arena + thickness;
-    const double half_height = 0.5 * scene_.wall_height;
-    const auto add = [&](double x, double y, double half_x, double half_y) {
-      fmt::format_to(out_,
-                     R"(<geom type="box" pos="{} {} {}" size="{} {} {}" friction="{}" contype="0" conaffinity="{}"/>)",
-                     x, y, half_height, half_x, half_y, half_height, scene_.robot.friction, shell);
-    };
-    for (const double sign : {-1.0, 1.0}) {
-      add(sign * way, 0.0, 0.5 * thickness, half_length);
-      add(0.0, sign * way, half_length, 0.5 * thickness);
-    }
+  void add_wall(const Wall& wall) {
+    fmt::format_to(out_,
+                   R"(<geom type="box" pos="{} {} {}" size="{} {} {}" friction="{}" contype="0" conaffinity="{}"/>)",
+                   wall.centre.x(), wall.centre.y(), wall.centre.z(), 0.5 * wall.size.x(), 0.5 * wall.size.y(),
+                   0.5 * wall.size.z(), scene_.robot.friction, shell);
   }
 
   void add_cylinder(double radius, double height, double z) {

@@ -40,7 +40,7 @@ class OdeEngine final : public Engine {
     dHashSpaceSetLevels(space_, smallest_cell, largest_cell);
 
     set_surface(dCreatePlane(space_, 0.0, 0.0, 1.0, 0.0), scene.ground_friction, ground_bit, nothing, Touch::wall);
-    if (scene.half_arena) add_walls();
+    for (const Wall& wall : scene.walls()) add_wall(wall);
     for (const Placement& placement : scene.robots) add_robot(placement);
   }
 
@@ -94,19 +94,10 @@ class OdeEngine final : public Engine {
     dGeomSetData(geom, &surfaces_.back());
   }
 
-  void add_walls() {
-    const double thickness = scene_.wall_thickness;
-    const double way = *scene_.half_arena + 0.5 * thickness;
-    const double length = 2.0 * (*scene_.half_arena + thickness);
-    const auto add = [&](double x, double y, double size_x, double size_y) {
-      dGeomID wall = dCreateBox(space_, size_x, size_y, scene_.wall_height);
-      dGeomSetPosition(wall, x, y, 0.5 * scene_.wall_height);
-      set_surface(wall, scene_.robot.friction, wall_bit, shell_bit, Touch::wall);
-    };
-    for (const double sign : {-1.0, 1.0}) {
-      add(sign * way, 0.0, thickness, length);
-      add(0.0, sign * way, length, thickness);
-    }
+  void add_wall(const Wall& wall) {
+    dGeomID geom = dCreateBox(space_, wall.size.x(), wall.size.y(), wall.size.z());
+    dGeomSetPosition(geom, wall.centre.x(), wall.centre.y(), wall.centre.z());
+    set_surface(geom, scene_.robot.friction, wall_bit, shell_bit, Touch::wall);
   }
 
   // `z` is the height of its centre of mass.

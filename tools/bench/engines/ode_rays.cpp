@@ -17,7 +17,9 @@ class OdeRays : public SensingRun {
       : scene_(scene), first_hit_(first_hit), solids_(dHashSpaceCreate(nullptr)) {
     dSpaceSetSublevel(solids_, 1);  // spaces of rays count as one geom each for it
     dCreatePlane(solids_, 0.0, 0.0, 1.0, 0.0);
-    add_walls();
+    for (const Wall& wall : scene.scene.walls())
+      place(dCreateBox(solids_, wall.size.x(), wall.size.y(), wall.size.z()), {wall.centre.x(), wall.centre.y(), 0.0},
+            wall.centre.z());
     const double z = 0.5 * scene.obstacle_height;
     for (const Placement& at : scene.boxes)
       place(dCreateBox(solids_, scene.box_size, scene.box_size, scene.obstacle_height), at, z);
@@ -78,18 +80,6 @@ class OdeRays : public SensingRun {
     dMatrix3 rotation;
     dRFromAxisAndAngle(rotation, 0.0, 0.0, 1.0, at.yaw);
     dGeomSetRotation(geom, rotation);
-  }
-
-  void add_walls() {
-    const Scene& scene = scene_.scene;
-    const double way = *scene.half_arena + 0.5 * scene.wall_thickness;
-    const double length = 2.0 * (*scene.half_arena + scene.wall_thickness);
-    for (const double sign : {-1.0, 1.0}) {
-      place(dCreateBox(solids_, scene.wall_thickness, length, scene.wall_height), {sign * way, 0.0, 0.0},
-            0.5 * scene.wall_height);
-      place(dCreateBox(solids_, length, scene.wall_thickness, scene.wall_height), {0.0, sign * way, 0.0},
-            0.5 * scene.wall_height);
-    }
   }
 
   void add_robot(const Placement& at) {

@@ -20,6 +20,18 @@ CylinderBody Robot::chassis_without_wheels() const {
   return rest;
 }
 
+std::vector<Wall> Scene::walls() const {
+  std::vector<Wall> walls;
+  if (!half_arena) return walls;
+  const double way = *half_arena + 0.5 * wall_thickness;
+  const double length = 2.0 * (*half_arena + wall_thickness);
+  for (const double sign : {-1.0, 1.0}) {
+    walls.push_back({{sign * way, 0.0, 0.5 * wall_height}, {wall_thickness, length, wall_height}});
+    walls.push_back({{0.0, sign * way, 0.5 * wall_height}, {length, wall_thickness, wall_height}});
+  }
+  return walls;
+}
+
 std::vector<Placement> in_cells(std::uint32_t robots, double cell, double freedom, std::uint64_t seed) {
   const RandomStream random(seed, "bench", "placement");
   const auto columns = static_cast<std::uint32_t>(std::ceil(std::sqrt(robots)));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -58,6 +59,11 @@ struct Placement {
   double yaw = 0.0;
 };
 
+struct Wall {
+  Eigen::Vector3d centre;
+  Eigen::Vector3d size;
+};
+
 struct Scene {
   Robot robot;
   Drive drive = Drive::tracks;
@@ -71,6 +77,9 @@ struct Scene {
   double ground_friction = 1.0;
   double wall_thickness = 0.1;
   double wall_height = 0.2;
+
+  /// Of the arena, if it has one.
+  std::vector<Wall> walls() const;
 };
 
 /// One robot in each cell of a square grid about the origin, at random up to `freedom` from its middle along x and y,

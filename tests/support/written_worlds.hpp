@@ -79,7 +79,7 @@ inline std::string collision(const std::string& geometry, const std::string& sur
   return "<link name=\"l\"><collision name=\"c\"><geometry>" + geometry + "</geometry>" + surface +
          "</collision></link>";
 }
-inline std::string static_model(const std::string& content, const std::string& name = "m") {
+inline std::string static_model_sdf(const std::string& content, const std::string& name = "m") {
   return "<model name=\"" + name + "\"><static>true</static>" + content + "</model>";
 }
 

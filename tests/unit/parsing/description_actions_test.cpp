@@ -19,8 +19,8 @@ class WorldsWithJoints : public Description {
  protected:
   static std::string content(const std::string& keys, const std::string& name = "hook") {
     return "<model name=\"box\">" + links("ab") + joint("j", "a", "b") + "</model>" +
-           static_model(collision("<sphere><radius>0.1</radius></sphere>"), "team/wall") +
-           static_model(collision("<sphere><radius>0.1</radius></sphere>"), "floor") +
+           static_model_sdf(collision("<sphere><radius>0.1</radius></sphere>"), "team/wall") +
+           static_model_sdf(collision("<sphere><radius>0.1</radius></sphere>"), "floor") +
            "\n<cohort:breakable_joint name=\"" + name + "\">\n" + keys + "</cohort:breakable_joint>";
   }
 };
@@ -46,7 +46,7 @@ TEST_F(WorldsWithJoints, MayNameObjectsThatComeAfterThemAndThoseOfPopulations) {
   const World world = read(
       "<cohort:breakable_joint name=\"b\"><cohort:first>team/sbot_1</cohort:first><cohort:second>team/sbot_0"
       "</cohort:second></cohort:breakable_joint>" +
-      static_model(collision("<plane/>"), "floor") +
+      static_model_sdf(collision("<plane/>"), "floor") +
       "<cohort:population name=\"team\"><cohort:uri>model://sbot</cohort:uri><cohort:count>2</cohort:count>"
       "<cohort:placement><cohort:grid><cohort:spacing>0.3</cohort:spacing></cohort:grid></cohort:placement>"
       "</cohort:population>");
@@ -118,11 +118,11 @@ class CourseWithActions : public Description {
     write_world(
         robot("a", "<cohort:battery name=\"b\"><cohort:capacity>1</cohort:capacity></cohort:battery>") +
         robot("team/b", open) + robot("team/c", open + call) +
-        static_model("<link name=\"l\"><light name=\"lamp\" type=\"point\"/><cohort:sound name=\"siren\">"
-                     "<cohort:frequency>400</cohort:frequency><cohort:intensity>1</cohort:intensity></cohort:sound>"
-                     "</link>",
-                     "stand") +
-        static_model(collision("<sphere><radius>0.1</radius></sphere>"), "wall") +
+        static_model_sdf("<link name=\"l\"><light name=\"lamp\" type=\"point\"/><cohort:sound name=\"siren\">"
+                         "<cohort:frequency>400</cohort:frequency><cohort:intensity>1</cohort:intensity></cohort:sound>"
+                         "</link>",
+                         "stand") +
+        static_model_sdf(collision("<sphere><radius>0.1</radius></sphere>"), "wall") +
         "<light name=\"sun\" type=\"directional\"/><cohort:breakable_joint name=\"hook\">" + ends("a", "wall") +
         "</cohort:breakable_joint>");
   }

@@ -16,7 +16,7 @@ class Schedule : public Description {
     write_world(
         "<include><uri>model://sbot</uri><name>a</name></include><include><uri>model://sbot</uri><name>team/b"
         "</name><pose>1 0 0 0 0 0</pose></include>" +
-        static_model("<pose>3 0 0 0 0 0</pose>" + collision("<sphere><radius>0.1</radius></sphere>"), "wall"));
+        static_model_sdf("<pose>3 0 0 0 0 0</pose>" + collision("<sphere><radius>0.1</radius></sphere>"), "wall"));
   }
   // What is added begins on line 4.
   std::filesystem::path write_experiment(const std::string& course) const {

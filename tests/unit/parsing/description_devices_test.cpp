@@ -124,7 +124,7 @@ TEST_F(Devices, ALinkHasTheColorOfItsFirstVisualAndIsGreyWithoutOne) {
     return "<visual name=\"" + name + "\"><geometry><box><size>1 1 1</size></box></geometry>" + material + "</visual>";
   };
   const auto color = [&](const std::string& visuals) {
-    return read(static_model("<link name=\"l\">" + visuals + "</link>")).models[0].links[0].color;
+    return read(static_model_sdf("<link name=\"l\">" + visuals + "</link>")).models[0].links[0].color;
   };
   EXPECT_EQ(color(""), default_color());
   EXPECT_EQ(color(visual("v", "")), default_color());

@@ -95,9 +95,9 @@ TEST_F(Formats, IncludesArePlacedByFramesOfEachOther) {
 
 TEST_F(Formats, ModelsAndIncludesKeepTheirOrder) {
   write_arm();
-  const World world = read(include("model://arm", "<name>a</name>") + static_model(links("l"), "b") +
+  const World world = read(include("model://arm", "<name>a</name>") + static_model_sdf(links("l"), "b") +
                            include("model://arm", "<name>c</name><pose relative_to=\"a\"/>") +
-                           include("model://arm", "<name>d</name>") + static_model(links("l"), "e"));
+                           include("model://arm", "<name>d</name>") + static_model_sdf(links("l"), "e"));
   std::string names;
   for (const Instance& instance : world.instances) names += instance.name;
   EXPECT_EQ(names, "abcde");
@@ -282,9 +282,9 @@ class FlawOfAFormat : public Formats, public ::testing::WithParamInterface<Flaw>
 TEST_P(FlawOfAFormat, IsReportedAlone) { expect_only_flaw(GetParam(), write_world(GetParam().content)); }
 
 std::string heightmap(const std::string& terrain, const std::string& size = "1 1 1") {
-  return static_model("<link name=\"l\"><collision name=\"c\"><geometry><heightmap><size>" + size +
-                      "</size><cohort:terrain>\n" + terrain +
-                      "</cohort:terrain></heightmap></geometry></collision></link>");
+  return static_model_sdf("<link name=\"l\"><collision name=\"c\"><geometry><heightmap><size>" + size +
+                          "</size><cohort:terrain>\n" + terrain +
+                          "</cohort:terrain></heightmap></geometry></collision></link>");
 }
 
 INSTANTIATE_TEST_SUITE_P(

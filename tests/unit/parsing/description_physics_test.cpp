@@ -11,7 +11,7 @@ namespace {
 const std::string ball = "<sphere><radius>1</radius></sphere>";
 
 std::string made_of(const std::string& material, const std::string& name = "m") {
-  return static_model(collision(ball, "\n<cohort:material>" + material + "</cohort:material>"), name);
+  return static_model_sdf(collision(ball, "\n<cohort:material>" + material + "</cohort:material>"), name);
 }
 std::string pair(const std::string& first, const std::string& second, const std::string& rest = "") {
   return "\n<cohort:material_pair>\n<cohort:first>" + first + "</cohort:first>\n<cohort:second>" + second +
@@ -24,20 +24,20 @@ const Surface& surface_of(const World& world, std::size_t model) {
 using Surfaces = Description;
 
 TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
-  const World world = read(static_model(
+  const World world = read(static_model_sdf(
       collision(ball,
                 "<surface><friction><ode><mu>0.3</mu></ode><bullet><rolling_friction>0.002</rolling_friction>"
                 "</bullet></friction></surface>")));
   EXPECT_EQ(surface_of(world, 0).friction, 0.3);
   EXPECT_EQ(surface_of(world, 0).rolling_resistance, 0.002);
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
-  EXPECT_EQ(surface_of(read(static_model(collision(ball, "<surface><friction><bullet/></friction></surface>"))), 0)
+  EXPECT_EQ(surface_of(read(static_model_sdf(collision(ball, "<surface><friction><bullet/></friction></surface>"))), 0)
                 .rolling_resistance,
             0.0);
 }
 
 TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByName) {
-  const World world = read(static_model(
+  const World world = read(static_model_sdf(
       collision(ball,
                 "<surface><friction><bullet><friction>0.5</friction><friction2>0.5</friction2><fdir1>1 0 0</fdir1>"
                 "</bullet></friction></surface>")));
@@ -48,10 +48,10 @@ TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByName) {
 }
 
 TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
-  const World world =
-      read(made_of("rubber", "a") + made_of("wood", "b") + made_of("rubber", "c") + static_model(collision(ball), "d") +
-           pair("wood", "rubber", "<cohort:restitution>0.1</cohort:restitution>") +
-           pair("rubber", "rubber", "<cohort:rolling_resistance>0.01</cohort:rolling_resistance>"));
+  const World world = read(made_of("rubber", "a") + made_of("wood", "b") + made_of("rubber", "c") +
+                           static_model_sdf(collision(ball), "d") +
+                           pair("wood", "rubber", "<cohort:restitution>0.1</cohort:restitution>") +
+                           pair("rubber", "rubber", "<cohort:rolling_resistance>0.01</cohort:rolling_resistance>"));
   EXPECT_EQ(world.materials, (std::vector<std::string>{"", "rubber", "wood"}));
   EXPECT_EQ(surface_of(world, 0).material, 1u);
   EXPECT_EQ(surface_of(world, 1).material, 2u);
@@ -121,16 +121,16 @@ const std::string in_physics = "world/cohort:physics";
 INSTANTIATE_TEST_SUITE_P(
     Surfaces, FlawOfASurface,
     testing::Values(
-        Flaw{static_model(collision(
+        Flaw{static_model_sdf(collision(
                  ball,
                  "<surface><friction><bullet>\n<rolling_friction>-1</rolling_friction></bullet></friction></surface>")),
              3, in_collision + "/surface/friction/bullet/rolling_friction", "expected a rolling resistance >= 0 m"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},
         Flaw{made_of("<cohort:name>x</cohort:name>"), 3, in_collision + "/cohort:material/cohort:name", "holds a name"},
         Flaw{made_of("a</cohort:material>\n<cohort:material>b"), 4, in_collision + "/cohort:material", "given twice"},
-        Flaw{static_model(collision(ball, "\n<cohort:materiel>a</cohort:materiel>")), 3,
+        Flaw{static_model_sdf(collision(ball, "\n<cohort:materiel>a</cohort:materiel>")), 3,
              in_collision + "/cohort:materiel", "did you mean 'cohort:material'?"},
-        Flaw{static_model("\n<cohort:material>a</cohort:material>" + collision(ball)), 3,
+        Flaw{static_model_sdf("\n<cohort:material>a</cohort:material>" + collision(ball)), 3,
              "world/model[m]/cohort:material", "belongs in <collision>"},
         Flaw{made_of("rubber") + pair("ruber", "rubber"), 5, in_pair + "/cohort:first",
              "nothing is made of 'ruber'; did you mean 'rubber'?"},

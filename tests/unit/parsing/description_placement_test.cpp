@@ -25,7 +25,7 @@ class Populations : public Description {
     return "<cohort:" + name + ">" + value + "</cohort:" + name + ">";
   }
   static std::string box_model(const std::string& size, const std::string& pose, const std::string& name) {
-    return static_model("<pose>" + pose + "</pose>" + collision("<box><size>" + size + "</size></box>"), name);
+    return static_model_sdf("<pose>" + pose + "</pose>" + collision("<box><size>" + size + "</size></box>"), name);
   }
 };
 
@@ -160,7 +160,7 @@ TEST_F(Populations, StandOnTheirLowestPoint) {
   write_model("ball",
               "<link name=\"l\"><inertial><mass>1</mass><inertia/></inertial><collision name=\"c\"><geometry>"
               "<sphere><radius>0.2</radius></sphere></geometry></collision></link>");
-  const World world = read(static_model(collision("<plane/>"), "floor") +
+  const World world = read(static_model_sdf(collision("<plane/>"), "floor") +
                            population(1, key("line", key("from", "0 0") + key("to", "1 0")), "", "model://ball"));
   EXPECT_DOUBLE_EQ(world.instances.back().X_WM.position.z(), 0.2);
 }
@@ -168,7 +168,7 @@ TEST_F(Populations, StandOnTheirLowestPoint) {
 TEST_F(Populations, StandOnASlopeWithoutBeingInIt) {
   const double slope = 0.3;
   const World world =
-      read(static_model("<pose>0 0 0 0 " + std::to_string(slope) + " 0</pose>" + collision("<plane/>"), "floor") +
+      read(static_model_sdf("<pose>0 0 0 0 " + std::to_string(slope) + " 0</pose>" + collision("<plane/>"), "floor") +
            population(1, key("line", key("from", "-2 1") + key("to", "-2 1"))));
   EXPECT_NEAR(world.robot(0).X_WM.position.z(), (2.0 + sbot_radius) * std::tan(slope), 1e-5);
 }
@@ -192,7 +192,7 @@ TEST_F(Populations, FitIntoARoomThatIsOneMeshAndNotIntoASolidOne) {
         "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\nf 5 6 7 8\n");
   const std::string wide = key("uniform", key("min", "-1.5 -1.5") + key("max", "1.5 1.5"));
   const auto mesh = [](const std::string& file) {
-    return static_model(collision("<mesh><uri>" + file + "</uri></mesh>"), "house");
+    return static_model_sdf(collision("<mesh><uri>" + file + "</uri></mesh>"), "house");
   };
   const World room = read(mesh("room.obj") + population(60, wide));
   int inside = 0;
@@ -209,7 +209,7 @@ TEST_F(Populations, FitIntoARoomThatIsOneMeshAndNotIntoASolidOne) {
 }
 
 TEST_F(Populations, OfTenThousandTakeLessThanASecondOfTheProcessor) {
-  const std::string world = static_model(collision("<plane/>"), "floor") +
+  const std::string world = static_model_sdf(collision("<plane/>"), "floor") +
                             population(10'000, key("uniform", key("min", "-20 -20") + key("max", "20 20")));
   const std::filesystem::path file = write_world(world);
   const std::clock_t before = std::clock();

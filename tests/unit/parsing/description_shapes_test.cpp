@@ -114,15 +114,16 @@ class Shapes : public Description {
 };
 
 TEST_F(Shapes, ACapsuleAndAnEllipsoidAreRead) {
-  const World world = read(static_model(collision("<capsule><radius>0.1</radius><length>0.4</length></capsule>"), "a") +
-                           static_model(collision("<ellipsoid><radii>1 2 3</radii></ellipsoid>"), "b"));
+  const World world =
+      read(static_model_sdf(collision("<capsule><radius>0.1</radius><length>0.4</length></capsule>"), "a") +
+           static_model_sdf(collision("<ellipsoid><radii>1 2 3</radii></ellipsoid>"), "b"));
   EXPECT_EQ(std::get<Capsule>(collision_of(world, 0).shape).radius, 0.1);
   EXPECT_EQ(std::get<Capsule>(collision_of(world, 0).shape).length, 0.4);
   EXPECT_EQ(std::get<Ellipsoid>(collision_of(world, 1).shape).radii, Vector3d(1, 2, 3));
 }
 
 TEST_F(Shapes, AStaticMeshIsItsTrianglesAndAMovingOneItsHull) {
-  const World world = read(static_model(collision(mesh("box.obj")), "a") + moving(mesh("box.obj")));
+  const World world = read(static_model_sdf(collision(mesh("box.obj")), "a") + moving(mesh("box.obj")));
   EXPECT_FALSE(std::get<Mesh>(collision_of(world, 0).shape).convex);
   EXPECT_EQ(mesh_of(world, 0).vertices.size(), 8u);
   EXPECT_EQ(mesh_of(world, 0).triangles.size(), 12u);
@@ -133,13 +134,13 @@ TEST_F(Shapes, AStaticMeshIsItsTrianglesAndAMovingOneItsHull) {
 }
 
 TEST_F(Shapes, VerticesThatAMeshRepeatsAreOne) {
-  const World world = read(static_model(collision(mesh("corner.stl"))));
+  const World world = read(static_model_sdf(collision(mesh("corner.stl"))));
   EXPECT_EQ(mesh_of(world).vertices.size(), 4u);
   EXPECT_NEAR(volume_of(mesh_of(world)), 1.0 / 6.0, 1e-12);
 }
 
 TEST_F(Shapes, AScaledMeshStaysRightSideOutAlsoWhenMirrored) {
-  const World world = read(static_model(collision(mesh("box.obj", "<scale>2 1 -0.5</scale>"))));
+  const World world = read(static_model_sdf(collision(mesh("box.obj", "<scale>2 1 -0.5</scale>"))));
   EXPECT_NEAR(volume_of(mesh_of(world)), 6.0, 1e-12);
   double lowest = 0.0;
   for (const Vector3d& vertex : mesh_of(world).vertices) lowest = std::min(lowest, vertex.z());
@@ -148,7 +149,7 @@ TEST_F(Shapes, AScaledMeshStaysRightSideOutAlsoWhenMirrored) {
 
 TEST_F(Shapes, AColladaMeshHasItsUnitAndItsNodesButKeepsItsAxes) {
   write("triangle.dae", dae);
-  const World world = read(static_model(collision(mesh("triangle.dae"))));
+  const World world = read(static_model_sdf(collision(mesh("triangle.dae"))));
   ASSERT_EQ(mesh_of(world).triangles.size(), 1u);
   const Vector3d& last = mesh_of(world).vertices[mesh_of(world).triangles[0][2]];
   EXPECT_TRUE(last.isApprox(Vector3d(0, 2, 3), 1e-6)) << last.transpose();
@@ -166,7 +167,7 @@ TEST_F(Shapes, TrianglesHaveTheColoursOfMaterialsWhereTheFileHasAny) {
   write("painted.obj",
         "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nusemtl green\nf 1 2 4\n");
   const auto colors = [&](const std::string& file) {
-    return mesh_of(read(static_model(collision(mesh(file))))).colors;
+    return mesh_of(read(static_model_sdf(collision(mesh(file))))).colors;
   };
   for (const char* file : {"box.obj", "corner.stl", "triangle.dae"}) EXPECT_TRUE(colors(file).empty()) << file;
   using Colors = std::vector<std::array<std::uint8_t, 3>>;
@@ -176,8 +177,8 @@ TEST_F(Shapes, TrianglesHaveTheColoursOfMaterialsWhereTheFileHasAny) {
 
 TEST_F(Shapes, MeshesOfOneFileAndScaleShareTheirTriangles) {
   const World world =
-      read(static_model(collision(mesh("box.obj")), "a") + static_model(collision(mesh("box.obj")), "b") +
-           static_model(collision(mesh("box.obj", "<scale>2 2 2</scale>")), "c"));
+      read(static_model_sdf(collision(mesh("box.obj")), "a") + static_model_sdf(collision(mesh("box.obj")), "b") +
+           static_model_sdf(collision(mesh("box.obj", "<scale>2 2 2</scale>")), "c"));
   EXPECT_EQ(&mesh_of(world, 0), &mesh_of(world, 1));
   EXPECT_NE(&mesh_of(world, 0), &mesh_of(world, 2));
 }
@@ -188,12 +189,12 @@ TEST_F(Shapes, AMeshIsFoundInAModelsFolderOrBesideTheFileThatNamesIt) {
   write_model("boulder", "<include merge=\"true\"><uri>model://rock</uri></include>");
   const World world = read(
       "<include><uri>model://rock</uri></include><include><uri>model://boulder</uri><static>true</static></include>" +
-      static_model(collision(mesh("model://rock/meshes/rock.obj"))));
+      static_model_sdf(collision(mesh("model://rock/meshes/rock.obj"))));
   for (std::size_t model = 0; model < 3; ++model) EXPECT_EQ(&mesh_of(world, model), &mesh_of(world, 0));
 }
 
 TEST_F(Shapes, ASubmeshIsSaidToBeIgnored) {
-  const World world = read(static_model(collision(mesh("box.obj", "\n<submesh><name>x</name></submesh>"))));
+  const World world = read(static_model_sdf(collision(mesh("box.obj", "\n<submesh><name>x</name></submesh>"))));
   ASSERT_EQ(world.warnings.size(), 1u);
   EXPECT_EQ(world.warnings[0].line, 4);
   EXPECT_EQ(world.warnings[0].element, in_geometry + "/mesh/submesh");
@@ -201,9 +202,9 @@ TEST_F(Shapes, ASubmeshIsSaidToBeIgnored) {
 
 TEST_F(Shapes, AHeightmapHasAHeightForEachPixelTheUpperEdgeFarthestAlongY) {
   const World world =
-      read(static_model(collision(height_image("ridge.png",
-                                               "<size>4 2 0.5</size><pos>1 2 3</pos><texture>"
-                                               "<size>1</size><diffuse>x</diffuse><normal>x</normal></texture>"))));
+      read(static_model_sdf(collision(height_image("ridge.png",
+                                                   "<size>4 2 0.5</size><pos>1 2 3</pos><texture>"
+                                                   "<size>1</size><diffuse>x</diffuse><normal>x</normal></texture>"))));
   const HeightGrid& grid = *std::get<Heightmap>(collision_of(world).shape).grid;
   EXPECT_EQ(grid.columns, 3u);
   EXPECT_EQ(grid.rows, 2u);
@@ -216,7 +217,7 @@ TEST_F(Shapes, AHeightmapHasAHeightForEachPixelTheUpperEdgeFarthestAlongY) {
 
 TEST_F(Shapes, AHeightmapMayHaveSixteenBits) {
   write_png<png_uint_16>("fine.png", PNG_FORMAT_LINEAR_Y, 2, 2, {0, 1, 256, 65535});
-  const World world = read(static_model(collision(height_image("fine.png", "<size>1 1 65535</size>"))));
+  const World world = read(static_model_sdf(collision(height_image("fine.png", "<size>1 1 65535</size>"))));
   const HeightGrid& grid = *std::get<Heightmap>(collision_of(world).shape).grid;
   EXPECT_EQ(grid.heights, (std::vector<double>{256, 65535, 0, 1}));
 }
@@ -225,8 +226,8 @@ TEST_F(Shapes, NothingIsPrintedAboutBrokenFiles) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   for (const char* const file : {"broken.dae", "nan.stl", "no_triangle.obj"})
-    problems_of([&] { read(static_model(collision(mesh(file)))); });
-  problems_of([&] { read(static_model(collision(height_image("not.png")))); });
+    problems_of([&] { read(static_model_sdf(collision(mesh(file)))); });
+  problems_of([&] { read(static_model_sdf(collision(height_image("not.png")))); });
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
 }
@@ -239,7 +240,7 @@ TEST_P(FlawOfAShape, IsReportedAloneWithFileLineAndElement) {
 
 const std::string in_mesh = in_geometry + "/mesh/uri";
 const std::string in_heightmap = in_geometry + "/heightmap/uri";
-std::string still(const std::string& geometry) { return static_model(collision(geometry)); }
+std::string still(const std::string& geometry) { return static_model_sdf(collision(geometry)); }
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, FlawOfAShape,

@@ -201,8 +201,8 @@ TEST_F(Description, APopulationThatDoesNotFitSaysHowManyDid) {
 TEST_F(Description, AFloorAndABridgeAreNotInTheWayOfAPopulation) {
   const std::string slab = collision("<box><size>9 9 0.1</size></box>");
   const World world =
-      read(static_model("<pose>0 0 -0.05 0 0 0</pose>" + slab, "floor") +
-           static_model("<pose>0 0 0.3 0 0 0</pose>" + slab, "bridge") + population("3", uniform("-1 -1", "1 1")));
+      read(static_model_sdf("<pose>0 0 -0.05 0 0 0</pose>" + slab, "floor") +
+           static_model_sdf("<pose>0 0 0.3 0 0 0</pose>" + slab, "bridge") + population("3", uniform("-1 -1", "1 1")));
   EXPECT_EQ(world.robots.size(), 3u);
 }
 
@@ -248,9 +248,10 @@ TEST_F(Description, PosesResolveThroughFrames) {
       "<include><name>b</name><uri>model://sbot</uri><pose relative_to=\"a\">2 0 0 0 0 0</pose></include>"
       "<include><name>c</name><uri>model://sbot</uri><placement_frame>turret</placement_frame>"
       "<pose>0 0 1 0 0 0</pose></include>" +
-      static_model("<frame name=\"f\"><pose>0 0 1 0 0 0</pose></frame><link name=\"l\">"
-                   "<pose relative_to=\"f\">0 1 0 0 0 0</pose><collision name=\"c\"><pose relative_to=\"f\">0 0 2 0 0 0"
-                   "</pose><geometry><sphere><radius>1</radius></sphere></geometry></collision></link>"));
+      static_model_sdf(
+          "<frame name=\"f\"><pose>0 0 1 0 0 0</pose></frame><link name=\"l\">"
+          "<pose relative_to=\"f\">0 1 0 0 0 0</pose><collision name=\"c\"><pose relative_to=\"f\">0 0 2 0 0 0"
+          "</pose><geometry><sphere><radius>1</radius></sphere></geometry></collision></link>"));
   const Pose& a = instance(world, "a").X_WM;
   EXPECT_TRUE(a.position.isApprox(Eigen::Vector3d(1, 3, 0), 1e-12)) << a.position.transpose();
   EXPECT_NEAR(yaw(a), std::numbers::pi / 2, 1e-12);
@@ -394,23 +395,24 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{inertial("x", "1"), 3, "world/model[m]/link[l]/inertial/mass", "cannot have the value 'x'"},
         Flaw{inertial("1", "0"), 4, "world/model[m]/link[l]/inertial/inertia", "not positive definite"},
         Flaw{inertial("1", "3"), 4, "world/model[m]/link[l]/inertial/inertia", "exceeds the sum"},
-        Flaw{static_model("\n" + collision("<sphere><radius>0</radius></sphere>")), 3,
+        Flaw{static_model_sdf("\n" + collision("<sphere><radius>0</radius></sphere>")), 3,
              "world/model[m]/link[l]/collision[c]/geometry/sphere/radius", "expected a size > 0"},
-        Flaw{static_model(collision("<box><size>1 -1 1</size></box>")), 2,
+        Flaw{static_model_sdf(collision("<box><size>1 -1 1</size></box>")), 2,
              "world/model[m]/link[l]/collision[c]/geometry/box/size", "expected a size > 0"},
-        Flaw{static_model(collision("<sphere><radius>1</radius></sphere>",
-                                    "<surface><bounce><restitution_coefficient>nan</restitution_coefficient></bounce>"
-                                    "</surface>")),
+        Flaw{static_model_sdf(
+                 collision("<sphere><radius>1</radius></sphere>",
+                           "<surface><bounce><restitution_coefficient>nan</restitution_coefficient></bounce>"
+                           "</surface>")),
              2, "world/model[m]/link[l]/collision[c]/surface/bounce/restitution_coefficient", "'nan'"},
         Flaw{"<model name=\"m\"><link name=\"l\"><collision name=\"c\"><geometry><plane/></geometry></collision>"
              "</link></model>",
              2, "world/model[m]/link[l]/collision[c]/geometry", "<static>"},
-        Flaw{static_model("<pose>0 0 inf 0 0 0</pose>" + links("a")), 2, "world/model[m]/pose", "'0 0 inf 0 0 0'"},
-        Flaw{static_model("<pse/>" + links("a")), 2, "world/model[m]/pse", "unknown element; did you mean 'pose'?"},
+        Flaw{static_model_sdf("<pose>0 0 inf 0 0 0</pose>" + links("a")), 2, "world/model[m]/pose", "'0 0 inf 0 0 0'"},
+        Flaw{static_model_sdf("<pse/>" + links("a")), 2, "world/model[m]/pse", "unknown element; did you mean 'pose'?"},
         Flaw{"<model name=\"m\">\n<link nam=\"l\"/></model>", 3, "world/model[m]/link/@nam",
              "unknown attribute; did you mean 'name'?"},
-        Flaw{static_model(links("a")) + "\n" + static_model(links("a")), 3, "world/model[m]", "another model"},
-        Flaw{static_model(links("a"), "sbot") + "\n<include><uri>model://sbot</uri></include>", 3,
+        Flaw{static_model_sdf(links("a")) + "\n" + static_model_sdf(links("a")), 3, "world/model[m]", "another model"},
+        Flaw{static_model_sdf(links("a"), "sbot") + "\n<include><uri>model://sbot</uri></include>", 3,
              "world/include[sbot]", "another model"},
         Flaw{"\n<include><uri>model://sbit</uri></include>", 3, "world/include/uri", "there is no model 'sbit'"},
         Flaw{"<include>\n<uri>https://somewhere/sbot</uri></include>", 3, "world/include/uri", "cannot be fetched"},

@@ -130,10 +130,10 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
   const std::string content =
       "<gravity>0.1 -0.2 -9.7</gravity><physics type=\"ode\"><max_step_size>0.003</max_step_size></physics>"
       "<frame name=\"f\"><pose>0.1 0.2 0.3 0.4 0.5 0.6</pose></frame>" +
-      static_model("<pose relative_to=\"f\">0.7 -0.1 -0.9 -0.4 -0.5 0.1</pose>" +
-                       collision("<plane><normal>0.1 -0.2 0.97</normal></plane>"),
-                   "slope") +
-      static_model("<pose>5 5 0 0.1 0.2 0.3</pose>" + collision("<mesh><uri>t.obj</uri></mesh>"), "rock") + model +
+      static_model_sdf("<pose relative_to=\"f\">0.7 -0.1 -0.9 -0.4 -0.5 0.1</pose>" +
+                           collision("<plane><normal>0.1 -0.2 0.97</normal></plane>"),
+                       "slope") +
+      static_model_sdf("<pose>5 5 0 0.1 0.2 0.3</pose>" + collision("<mesh><uri>t.obj</uri></mesh>"), "rock") + model +
       "<cohort:material_pair><cohort:first>m_a</cohort:first><cohort:second>m_b</cohort:second><cohort:friction>0.77"
       "</cohort:friction><cohort:restitution>0.1</cohort:restitution></cohort:material_pair>"
       "<cohort:physics><cohort:solver>hybrid</cohort:solver><cohort:fidelity>articulated</cohort:fidelity>"
@@ -171,7 +171,7 @@ TEST_F(ExportedWorlds, HaveTheirColorsTechniquesCamerasAndFilesOfSamples) {
       link +
       "<cohort:width>8</cohort:width><cohort:height>3</cohort:height><cohort:range>7</cohort:range><cohort:sky>0 0.1 1"
       "</cohort:sky></cohort:panorama></model>" +
-      static_model(collision("<plane/>"), "floor"));
+      static_model_sdf(collision("<plane/>"), "floor"));
   EXPECT_NE(text_of(world).find("<diffuse>0.1 0.7 0.3 1</diffuse>"), std::string::npos);
   EXPECT_NE(text_of(world).find("<cohort:samples>data/s.csv</cohort:samples>"), std::string::npos);
   expect_the_same_again(world);
@@ -183,7 +183,7 @@ TEST_F(ExportedWorlds, HaveTheirActionsAndBreakableJoints) {
            joint("j", "a", "b") + "<cohort:action name=\"open_" + name + "\"/></model>";
   };
   const World world = read(
-      static_model(collision("<plane/>"), "floor") + hung("one", "0.1") + hung("two", "0.7") +
+      static_model_sdf(collision("<plane/>"), "floor") + hung("one", "0.1") + hung("two", "0.7") +
       "<cohort:breakable_joint name=\"rope\"><cohort:first>one</cohort:first><cohort:first_link>b</cohort:first_link>"
       "<cohort:second>two</cohort:second><cohort:pose>0.1 0.2 0.3 0.4 0.5 0.6</cohort:pose><cohort:breaking_torque>0.37"
       "</cohort:breaking_torque></cohort:breakable_joint><cohort:breakable_joint name=\"hook\"><cohort:first>floor"
@@ -213,20 +213,20 @@ TEST_F(ExportedWorlds, WithAHeightMapNameItsFileFromWhereTheyAre) {
 }
 
 TEST_F(ExportedWorlds, WithGroundFromAFunctionHaveTheFunction) {
-  expect_the_same_again(read(static_model(
+  expect_the_same_again(read(static_model_sdf(
       "<link name=\"l\"><collision name=\"c\"><geometry><heightmap><size>3 2 0.4</size><cohort:terrain>"
       "<cohort:kind>hills</cohort:kind><cohort:spacing>0.1</cohort:spacing><cohort:wavelength>0.7</cohort:wavelength>"
       "<cohort:seed>3</cohort:seed></cohort:terrain></heightmap></geometry></collision></link>")));
 }
 
 TEST_F(ExportedWorlds, EscapeNamesThatXmlWouldMisread) {
-  const World world = read(static_model(links("a"), "a&amp;b&lt;&quot;c"));
+  const World world = read(static_model_sdf(links("a"), "a&amp;b&lt;&quot;c"));
   EXPECT_EQ(world.instances[0].name, "a&b<\"c");
   expect_the_same_again(world);
 }
 
 TEST_F(ExportedWorlds, ReadAQuaternionThatIsNoUnitAsOne) {
-  const World world = read(static_model("<pose rotation_format=\"quat_xyzw\">1 2 3 0 0 2 2</pose>" + links("a")));
+  const World world = read(static_model_sdf("<pose rotation_format=\"quat_xyzw\">1 2 3 0 0 2 2</pose>" + links("a")));
   const Eigen::Quaterniond q = world.instances[0].X_WM.orientation;
   EXPECT_NEAR(q.z(), std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(q.w(), std::sqrt(0.5), 1e-15);

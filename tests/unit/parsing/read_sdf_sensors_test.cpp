@@ -235,7 +235,7 @@ TEST_F(SdfSensors, OfOtherTypesAreIgnoredWithAWarningThatNamesThem) {
 }
 
 TEST_F(SdfSensors, OfAStaticModelAreIgnoredWithAWarning) {
-  const World world = read(static_model("<link name=\"l\">" + sensor("altimeter", "") + "</link>"));
+  const World world = read(static_model_sdf("<link name=\"l\">" + sensor("altimeter", "") + "</link>"));
   EXPECT_TRUE(world.robots.empty());
   EXPECT_NE(texts_of(world.warnings).find("is static: its devices are ignored"), std::string::npos)
       << texts_of(world.warnings);
@@ -361,7 +361,7 @@ TEST_F(SdfSensors, ComeBackFromAnExportBitForBit) {
       "</cohort:pose><cohort:noise>0.013</cohort:noise></cohort:inclinometer>";
   const World world =
       read("<magnetic_field>1.1e-5 2.3e-6 -4.7e-5</magnetic_field>" +
-           static_model(collision("<plane><normal>0 0 1</normal></plane>"), "floor") + "<model name=\"m\">" +
+           static_model_sdf(collision("<plane><normal>0 0 1</normal></plane>"), "floor") + "<model name=\"m\">" +
            "<pose>0 0 0.5 0.1 0.2 0.3</pose>" + link("b", sensor("altimeter", "", "other")) + link("a", all_sensors()) +
            "<joint name=\"j\" type=\"revolute\"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>" +
            sensor("force_torque",

@@ -46,7 +46,7 @@ enum class Dynamics {
 
 struct PhysicsSettings {
   Fidelity fidelity = Fidelity::treel;
-  Dynamics dynamics = Dynamics::cohort;
+  Dynamics dynamics = Dynamics::bullet;
   Solver solver = Solver::iterative;
   std::uint32_t iterations = 10;                             ///< of the iterative solver, at the most
   std::uint32_t direct_bodies = 4;                           ///< hybrid: the largest island that is solved directly

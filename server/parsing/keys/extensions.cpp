@@ -75,7 +75,7 @@ constexpr ExtensionKey uniform[] = {
 constexpr ExtensionKey physics[] = {
     {"fidelity", choice, "", "treel", "how much of a model is simulated: `articulated`, `treel` or `planar`", false,
      fidelities},
-    {"dynamics", choice, "", "cohort",
+    {"dynamics", choice, "", "bullet",
      "how bodies come by their velocities: `bullet`, with its articulated bodies, or `cohort`, with our own mass "
      "matrix; without meaning in `planar`",
      false, dynamics_kinds},

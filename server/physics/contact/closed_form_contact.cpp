@@ -64,6 +64,17 @@ void on_plane(const Box& box, const Pose& X_W, const HalfSpace& plane, double ma
   for (const std::uint32_t corner : lowest) touch_plane(positions_W[corner], plane, margin, found);
 }
 
+// At right angles to each other and to the axis. Four points are a square in the rim: on a slope one of its corners is
+// at the bottom, where the cylinder tips over.
+std::array<Vector3d, 2> directions_on_rim(const Matrix3d& R, const Vector3d& normal_W) {
+  const Vector3d downhill = normal_W.z() * normal_W - Vector3d::UnitZ();
+  constexpr double level = 1e-3;
+  if (downhill.norm() < level) return {R.col(0), R.col(1)};
+  const Vector3d axis = R.col(2);
+  const Vector3d first = (downhill - downhill.dot(axis) * axis).normalized();
+  return {first, axis.cross(first)};
+}
+
 void on_plane(const Cylinder& cylinder, const Pose& X_W, const HalfSpace& plane, double margin, ContactPoints& found) {
   const Matrix3d R = X_W.orientation.toRotationMatrix();
   const Vector3d axis = R.col(2);
@@ -72,8 +83,9 @@ void on_plane(const Cylinder& cylinder, const Pose& X_W, const HalfSpace& plane,
   constexpr double stands = 0.95;
   if (std::abs(upright) > stands) {
     const Vector3d end = X_W.position - (upright > 0.0 ? 1.0 : -1.0) * to_end;
+    const std::array<Vector3d, 2> across = directions_on_rim(R, plane.normal_W);
     for (std::uint32_t i = 0; i < 4; ++i) {
-      const Vector3d rim = cylinder.radius * ((i & 1) != 0 ? -1.0 : 1.0) * R.col(i / 2);
+      const Vector3d rim = cylinder.radius * ((i & 1) != 0 ? -1.0 : 1.0) * across[i / 2];
       touch_plane(end + rim, plane, margin, found);
     }
     return;

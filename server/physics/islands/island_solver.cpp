@@ -1,5 +1,7 @@
 #include "server/physics/islands/island_solver.hpp"
 
+#include <algorithm>
+
 #include "server/physics/solvers/active_set_solver.hpp"
 #include "server/physics/solvers/direct_solver.hpp"
 #include "server/physics/solvers/iterative_solver.hpp"
@@ -11,6 +13,20 @@ namespace {
 // Where light links hold heavy bodies sequential impulses give way by millimetres. A few are solved exactly instead;
 // beyond, that takes too long.
 constexpr std::size_t most_solved_as_group = 6;
+// And more that only touch each other, if some are carried by others, as in a stack or between fingers, and the passes
+// end while rows still change by more than this [m/s or rad/s].
+constexpr std::size_t most_escalated = 24;
+constexpr double unsettled = 1e-4;
+
+// Whether nothing but other bodies that move keeps it where it is.
+bool is_carried(std::uint32_t member, const Assembly& assembly) {
+  const Multibody& multibody = *assembly.members[member].multibody;
+  bool stands = !multibody.mechanism().has_free_root();
+  for (const TrackRows& treel : multibody.treels())
+    treel.for_each_ground([&](std::uint32_t solid) { stands = stands || !assembly.anchors.moves(solid); });
+  assembly.for_each_pair(member, [&](const SolidPair& pair) { stands = stands || !assembly.anchors.moves(pair.b); });
+  return !stands;
+}
 
 }  // namespace
 
@@ -78,12 +94,24 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
   } else {
     is_solved = solve_by_active_set(problem_);
   }
-  if (!is_solved) solve_iteratively(problem_, assembly.settings.iterations, has_connections ? start_of_connected : 1.0);
+  if (!is_solved) {
+    const double share_of_last = has_connections ? start_of_connected : 1.0;
+    const double change = solve_iteratively(problem_, assembly.settings.iterations, share_of_last);
+    if (!has_connections && change > unsettled && sound_.size() > 1 && sound_.size() <= most_escalated &&
+        std::ranges::any_of(sound_, [&](std::uint32_t member) { return is_carried(member, assembly); }))
+      escalate();
+  }
   if (!all_are_finite()) return false;
 
   keep_impulses(problem_);
   for (const std::uint32_t member : sound_) assembly.integrate(member, problem_);
   return true;
+}
+
+void IslandSolver::escalate() {
+  SequentialImpulses impulses(problem_);
+  impulses.take_back();
+  if (!group_solver_.solve(problem_)) impulses.put_in();
 }
 
 }  // namespace cohort::physics

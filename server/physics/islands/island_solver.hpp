@@ -16,6 +16,7 @@ class IslandSolver {
 
  private:
   bool try_to_solve(Assembly& assembly);
+  void escalate();
 
   IslandBodies bodies_;
   Problem problem_{bodies_};

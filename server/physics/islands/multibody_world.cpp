@@ -117,13 +117,17 @@ Eigen::Vector3d MultibodyWorld::link_acceleration(std::uint32_t body, std::size_
 }
 
 Wrench MultibodyWorld::connection_wrench(std::uint32_t index) const {
-  const Connection& connection = assembly_.connections[index];
-  return connection.wrench_on_a(assembly_.pose_of(connection.a()), assembly_.pose_of(connection.b()), assembly_.step);
+  const Connection* const connection = assembly_.connections.find(index);
+  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  return connection->wrench_on_a(assembly_.pose_of(connection->a()), assembly_.pose_of(connection->b()),
+                                 assembly_.step);
 }
 
 Wrench MultibodyWorld::connection_reaction(std::uint32_t index) const {
-  const Connection& connection = assembly_.connections[index];
-  return connection.wrench_on_b(assembly_.pose_of(connection.a()), assembly_.pose_of(connection.b()), assembly_.step);
+  const Connection* const connection = assembly_.connections.find(index);
+  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  return connection->wrench_on_b(assembly_.pose_of(connection->a()), assembly_.pose_of(connection->b()),
+                                 assembly_.step);
 }
 
 void MultibodyWorld::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,

@@ -54,7 +54,7 @@ class MultibodyWorld final : public World {
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
   void disconnect(std::uint32_t connection) override { assembly_.connections.release(connection); }
-  bool is_connected(std::uint32_t connection) const override { return assembly_.connections[connection].holds(); }
+  bool is_connected(std::uint32_t connection) const override { return assembly_.connections.holds(connection); }
   void set_connection_give(std::uint32_t connection, const ConnectionGive& give) override {
     assembly_.connections.set_give(connection, give);
   }

@@ -34,8 +34,6 @@ class Connection {
   void release();
   /// Releases it for what the last step did to it, which `wrench` tells until the end of the next.
   void break_now();
-  /// From now on `wrench` no longer tells what broke it.
-  void forget_break() { breaking_ = {}; }
 
   /// Adds three rows against moving apart and three against turning; X_WS: of the segments of both ends.
   void add_rows(Problem& problem, const Anchors& anchors, const Pose& X_WSa, const Pose& X_WSb, double step);

@@ -1,5 +1,7 @@
 #include "server/physics/multibody/connections.hpp"
 
+#include <algorithm>
+
 #include "server/core/state_visitors.hpp"
 
 namespace cohort::physics {
@@ -17,41 +19,63 @@ void visit_end(End& end, Visit&& visit) {
 }  // namespace
 
 std::uint32_t Connections::add(const Connection::End& a, const Connection::End& b, const ConnectionLimits& limits) {
-  const auto index = static_cast<std::uint32_t>(connections_.size());
-  connections_.emplace_back(a, b, limits);
+  add(next_, a, b, limits);
+  return next_++;
+}
+
+void Connections::add(std::uint32_t number, const Connection::End& a, const Connection::End& b,
+                      const ConnectionLimits& limits) {
+  connections_.push_back({number, Connection(a, b, limits)});
   if (of_member_.size() <= a.member) of_member_.resize(a.member + 1);
-  of_member_[a.member].push_back(index);
-  return index;
+  of_member_[a.member].push_back(number);
+}
+
+Connection* Connections::find(std::uint32_t connection) {
+  const auto found = std::ranges::lower_bound(connections_, connection, {}, &Numbered::number);
+  return found != connections_.end() && found->number == connection ? &found->connection : nullptr;
 }
 
 void Connections::release_of(std::uint32_t member) {
-  for (Connection& connection : connections_)
+  for (auto& [number, connection] : connections_)
     if (connection.a().member == member || connection.b().member == member) connection.release();
 }
 
 void Connections::release_of_body(std::uint32_t body) {
-  for (Connection& connection : connections_)
+  for (auto& [number, connection] : connections_)
     if (connection.a().body == body || connection.b().body == body) connection.release();
 }
 
+void Connections::forget_released() {
+  if (std::erase_if(connections_, [](const Numbered& each) { return !each.connection.holds(); }) == 0) return;
+  for (std::vector<std::uint32_t>& numbers : of_member_)
+    std::erase_if(numbers, [&](std::uint32_t number) { return find(number) == nullptr; });
+}
+
 void Connections::break_overloaded(double step) {
-  for (const std::uint32_t index : broken_) connections_[index].forget_break();
+  forget_released();
   broken_.clear();
-  for (std::uint32_t index = 0; index < connections_.size(); ++index) {
-    if (!connections_[index].holds() || !connections_[index].is_overloaded(step)) continue;
-    connections_[index].break_now();
-    broken_.push_back(index);
+  for (auto& [number, connection] : connections_) {
+    if (!connection.is_overloaded(step)) continue;
+    connection.break_now();
+    broken_.push_back(number);
   }
 }
 
 void Connections::hash(StateHash& hash) const {
-  for (const Connection& connection : connections_) Connection::visit_state(connection, StateHasher{hash});
+  hash.add(std::uint64_t{next_});
+  for (const auto& [number, connection] : connections_) {
+    if (!connection.holds()) continue;
+    hash.add(std::uint64_t{number});
+    Connection::visit_state(connection, StateHasher{hash});
+  }
 }
 
 void Connections::save(SnapshotWriter& writer) const {
   const StateSaver save{writer};
+  save(next_);
   writer.add_count(connections_.size());
-  for (const Connection& connection : connections_) {
+  for (const auto& [number, connection] : connections_) {
+    save(number);
     visit_end(connection.a(), save);
     visit_end(connection.b(), save);
     save(connection.limits().force);
@@ -65,18 +89,24 @@ void Connections::restore(SnapshotReader& reader, std::size_t members) {
   connections_.clear();
   of_member_.clear();
   broken_.clear();
+  restore(next_);
   constexpr std::size_t least_bytes = 100;
   for (std::size_t count = reader.read_count(least_bytes); count > 0; --count) {
+    std::uint32_t number = 0;
     Connection::End a;
     Connection::End b;
     ConnectionLimits limits;
+    restore(number);
     visit_end(a, restore);
     visit_end(b, restore);
     restore(limits.force);
     restore(limits.torque);
     if (a.member >= members || (b.member >= members && b.member != Anchors::nobody))
       throw SnapshotError("the snapshot has a connection of a body that is not there");
-    Connection::visit_state(connections_[add(a, b, limits)], restore);
+    if (number >= next_ || (!connections_.empty() && number <= connections_.back().number))
+      throw SnapshotError("the snapshot has connections that are out of order");
+    add(number, a, b, limits);
+    Connection::visit_state(connections_.back().connection, restore);
   }
 }
 

@@ -8,12 +8,15 @@
 
 namespace cohort::physics {
 
-/// All connections of a world, also those that no longer hold, numbered from 0.
+/// The connections of a world that hold, or broke in the last step, numbered from 0 in the order in which they came.
+/// What was released is forgotten, so that a world in which robots grip and let go for days costs what it did.
 class Connections {
  public:
   /// Returns its number. `a` is on a body that moves.
   std::uint32_t add(const Connection::End& a, const Connection::End& b, const ConnectionLimits& limits);
-  void release(std::uint32_t connection) { connections_[connection].release(); }
+  void release(std::uint32_t connection) {
+    if (Connection* const found = find(connection)) found->release();
+  }
   /// Those at either end of a body that moves.
   void release_of(std::uint32_t member);
   /// Those at either end of any body of the world.
@@ -21,23 +24,30 @@ class Connections {
   /// After a step, of all that hold and yield: `pose(end)` is X_WS of its segment.
   template <class PoseOf>
   void settle(PoseOf&& pose, double step) {
-    for (Connection& connection : connections_)
+    for (auto& [number, connection] : connections_)
       if (connection.holds() && connection.may_slip())
         connection.settle(pose(connection.a()), pose(connection.b()), step);
   }
-  void set_give(std::uint32_t connection, const ConnectionGive& give) { connections_[connection].set_give(give); }
-  /// Releases those that the last step took beyond their limits.
+  void set_give(std::uint32_t connection, const ConnectionGive& give) {
+    if (Connection* const found = find(connection)) found->set_give(give);
+  }
+  /// Releases those that the last step took beyond their limits, and forgets what was released before.
   void break_overloaded(double step);
   /// By that, ascending.
   std::span<const std::uint32_t> broken() const { return broken_; }
 
-  const Connection& operator[](std::uint32_t connection) const { return connections_[connection]; }
+  /// nullptr if it was released.
+  const Connection* find(std::uint32_t connection) const { return const_cast<Connections&>(*this).find(connection); }
+  bool holds(std::uint32_t connection) const {
+    const Connection* const found = find(connection);
+    return found != nullptr && found->holds();
+  }
   /// Calls `visit(connection)` for those that hold and whose end a is on this body, ascending.
   template <class Visit>
   void for_each_of(std::uint32_t member, Visit&& visit) {
     if (member >= of_member_.size()) return;
-    for (const std::uint32_t index : of_member_[member])
-      if (connections_[index].holds()) visit(connections_[index]);
+    for (const std::uint32_t number : of_member_[member])
+      if (Connection* const found = find(number); found != nullptr && found->holds()) visit(*found);
   }
 
   void hash(StateHash& hash) const;
@@ -46,8 +56,17 @@ class Connections {
   void restore(SnapshotReader& reader, std::size_t members);
 
  private:
-  std::vector<Connection> connections_;
-  std::vector<std::vector<std::uint32_t>> of_member_;  // of end a
+  struct Numbered {
+    std::uint32_t number;
+    Connection connection;
+  };
+  Connection* find(std::uint32_t connection);
+  void add(std::uint32_t number, const Connection::End& a, const Connection::End& b, const ConnectionLimits& limits);
+  void forget_released();
+
+  std::vector<Numbered> connections_;  // ascending
+  std::uint32_t next_ = 0;
+  std::vector<std::vector<std::uint32_t>> of_member_;  // of end a, ascending
   std::vector<std::uint32_t> broken_;
 };
 

@@ -92,10 +92,9 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
   if (surfaces.friction > 0.0) {
     Row& first = problem.add_force_row(a, b, point.position_W, tangents.first, &point.impulse[1]);
     limit_by_load(first, surfaces.friction);
-    first.limits = Row::Limits::cone;
     Row& second = problem.add_force_row(a, b, point.position_W, tangents.second, &point.impulse[2]);
     limit_by_load(second, surfaces.friction);
-    second.limits = Row::Limits::coned;
+    problem.join_to_cone();
   } else {
     point.impulse[1] = point.impulse[2] = 0.0;
   }

@@ -68,20 +68,26 @@ void JointRows::add_rows(Problem& problem, int index, const Multibody& body, dou
     problem.add_dof_row(index, friction.dof, &friction.impulse).set_limits(-limit, limit);
   }
   for (Motor& motor : motors_) {
+    motor.most_change = 0.0;
     if (motor.control == Control::effort) continue;
     Row& row = problem.add_dof_row(index, motor.dof, &motor.impulse);
     row.target =
         motor.control == Control::velocity ? motor.target : velocity_towards_target(motor, row, problem, body, step);
     row.set_limits(-motor.max_effort * step, motor.max_effort * step);
+    motor.most_change = row.inverse > 0.0 ? motor.max_effort * step / row.inverse : 0.0;
   }
   // One-sided rows, as a contact is: inactive until a step could pass the limit.
   for (Limit& limit : limits_) {
     const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(limit.dof)];
     const double position = body.coordinate(dof);
     const double velocity = body.velocities()[limit.dof];
+    // How far this step can take it: by how it moves already, by what acts on it, and by its motor.
+    const double fastest = std::max(std::abs(velocity), std::abs(problem.equations(index).velocity()[limit.dof]));
+    const double by_motor = has_motor(limit.dof) ? motor(limit.dof).most_change : 0.0;
+    const double reach = (2.0 * fastest + by_motor) * step + 1e-3;
     // The velocity that just closes the gap, or that takes back a share of an overshoot.
     const auto target = [&](double gap) { return (gap > 0.0 ? gap : correction_share * gap) / step; };
-    const auto is_near = [&](double gap) { return gap < 2.0 * std::abs(velocity) * step + 1e-3; };
+    const auto is_near = [&](double gap) { return gap < reach; };
     if (is_near(position - dof.axis.lower)) {
       Row& row = problem.add_dof_row(index, limit.dof, &limit.lower_impulse);
       row.target = -target(position - dof.axis.lower);

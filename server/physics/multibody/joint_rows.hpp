@@ -58,6 +58,7 @@ class JointRows {
     Control control = Control::velocity;
     double target = 0.0;
     double impulse = 0.0;
+    double most_change = 0.0;  // of the dof's velocity, by the motor in the present step
   };
   struct Limit {
     int dof = 0;

@@ -1,5 +1,7 @@
 #include "server/physics/multibody/rows.hpp"
 
+#include <cmath>
+
 namespace cohort::physics {
 
 void IslandBodies::reset(std::size_t count) {
@@ -74,6 +76,24 @@ Row& Problem::add_dof_row(int body, int dof, double* kept) {
   Row& row = begin_row({body}, {}, kept);
   numbers_[row.numbers + static_cast<std::size_t>(dof)] = 1.0;
   return finish_row(row, {body}, {});
+}
+
+// What the impulses of a plane give is a symmetric matrix, which has this as its greater eigenvalue.
+void Problem::join_to_cone() {
+  Row& second = rows_.back();
+  Row& first = rows_[rows_.size() - 2];
+  first.limits = Row::Limits::cone;
+  second.limits = Row::Limits::coned;
+  const double* jacobian = numbers_.data() + first.numbers;
+  const double* response = numbers_.data() + second.numbers + second.stride_a;
+  double coupling = dot(jacobian, response, first.stride_a);
+  if (first.velocity_b != nullptr)
+    coupling += dot(jacobian + 2 * first.stride_a, response + second.stride_a + second.stride_b, first.stride_b);
+  const double by_first = first.inverse > 0.0 ? 1.0 / first.inverse : 0.0;
+  const double by_second = second.inverse > 0.0 ? 1.0 / second.inverse : 0.0;
+  const double half = 0.5 * (by_first - by_second);
+  const double greatest = 0.5 * (by_first + by_second) + std::sqrt(half * half + coupling * coupling);
+  first.cone_inverse = greatest > 0.0 ? 1.0 / greatest : 0.0;
 }
 
 double Problem::velocity(const Row& row) const {

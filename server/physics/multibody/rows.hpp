@@ -27,7 +27,8 @@ struct Row {
   double impulse = 0.0;  ///< [N s] or [N m s]
   double friction = 0.0;
   double cap = unlimited;
-  double softness = 0.0;  ///< of a soft row [m/s / N s] or [rad/s / N m s]
+  double cone_inverse = 0.0;  ///< of a cone: 1 / the greatest velocity that a unit impulse in its plane gives; 0: none
+  double softness = 0.0;      ///< of a soft row [m/s / N s] or [rad/s / N m s]
   int load_begin = 0;
   int load_end = 0;
   Limits limits = Limits::fixed;
@@ -94,6 +95,9 @@ class Problem {
   Row& add_torque_row(Anchor a, Anchor b, const Eigen::Vector3d& direction_W, double* kept);
   /// Adds the row of the force or torque along one dof of a joint.
   Row& add_dof_row(int body, int dof, double* kept);
+
+  /// Makes a cone of the last two rows, whose directions are at right angles.
+  void join_to_cone();
 
   /// Along the row, with the bodies' present velocities.
   double velocity(const Row& row) const;

@@ -68,13 +68,15 @@ Pose PlanarWorld::pose_of(const Connection::End& end) const {
 }
 
 Wrench PlanarWorld::connection_wrench(std::uint32_t index) const {
-  const Connection& connection = connections_[index];
-  return in_plane(connection.wrench_on_a(pose_of(connection.a()), pose_of(connection.b()), step_));
+  const Connection* const connection = connections_.find(index);
+  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  return in_plane(connection->wrench_on_a(pose_of(connection->a()), pose_of(connection->b()), step_));
 }
 
 Wrench PlanarWorld::connection_reaction(std::uint32_t index) const {
-  const Connection& connection = connections_[index];
-  return in_plane(connection.wrench_on_b(pose_of(connection.a()), pose_of(connection.b()), step_));
+  const Connection* const connection = connections_.find(index);
+  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  return in_plane(connection->wrench_on_b(pose_of(connection->a()), pose_of(connection->b()), step_));
 }
 
 void PlanarWorld::step() {

@@ -72,7 +72,7 @@ class PlanarWorld final : public World {
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
   void disconnect(std::uint32_t connection) override { connections_.release(connection); }
-  bool is_connected(std::uint32_t connection) const override { return connections_[connection].holds(); }
+  bool is_connected(std::uint32_t connection) const override { return connections_.holds(connection); }
   void set_connection_give(std::uint32_t, const ConnectionGive&) override {}
   Wrench connection_wrench(std::uint32_t connection) const override;
   Wrench connection_reaction(std::uint32_t connection) const override;

@@ -13,6 +13,14 @@ void SequentialImpulses::start(double share) {
   }
 }
 
+void SequentialImpulses::take_back() {
+  for (const Row& row : rows_) apply(row, -row.impulse);
+}
+
+void SequentialImpulses::put_in() {
+  for (const Row& row : rows_) apply(row, row.impulse);
+}
+
 double SequentialImpulses::pass(bool forwards) {
   double greatest = 0.0;
   const std::size_t count = rows_.size();
@@ -71,10 +79,10 @@ inline void SequentialImpulses::apply(const Row& row, double impulse) {
 }
 
 // Both directions of the tangent plane at once. What slides is held against its motion: so both take the same step per
-// velocity, that of the direction that gives way more, and what is too much is shortened, not turned.
+// velocity, that of the direction that gives way most, and what is too much is shortened, not turned.
 double SequentialImpulses::turn_cone(Row& first, Row& second) {
   const double limit = limit_of(first);
-  const double inverse = std::min(first.inverse, second.inverse);
+  const double inverse = first.cone_inverse;
   double wanted_first = first.impulse + (first.target - velocity(first)) * inverse;
   double wanted_second = second.impulse + (second.target - velocity(second)) * inverse;
   const double squared = wanted_first * wanted_first + wanted_second * wanted_second;
@@ -86,11 +94,15 @@ double SequentialImpulses::turn_cone(Row& first, Row& second) {
   return std::max(change(first, wanted_first), change(second, wanted_second));
 }
 
-void solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last) {
+double solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last) {
   SequentialImpulses impulses(problem);
   impulses.start(share_of_last);
-  for (std::uint32_t i = 0; i < iterations; ++i)
-    if (impulses.pass(i % 2 == 0) <= negligible_change) return;
+  double change = 0.0;
+  for (std::uint32_t i = 0; i < iterations; ++i) {
+    change = impulses.pass(i % 2 == 0);
+    if (change <= negligible_change) break;
+  }
+  return change;
 }
 
 }  // namespace cohort::physics

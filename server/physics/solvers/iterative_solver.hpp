@@ -16,6 +16,9 @@ class SequentialImpulses {
 
   /// Once, before the first pass: from this share of the last step's impulses.
   void start(double share);
+  /// Takes the impulses out of the velocities, or puts them in again.
+  void take_back();
+  void put_in();
   /// One pass over the rows, forwards or backwards. Returns the greatest change of a row's velocity.
   double pass(bool forwards);
 
@@ -36,7 +39,7 @@ class SequentialImpulses {
 /// would otherwise add up from step to step: light links between heavy ones then gain energy without end.
 inline constexpr double start_of_connected = 0.9;
 
-/// At most `iterations` passes, there and back.
-void solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last);
+/// At most `iterations` passes, there and back. Returns the greatest change of a row's velocity by the last one.
+double solve_iteratively(Problem& problem, std::uint32_t iterations, double share_of_last);
 
 }  // namespace cohort::physics

@@ -27,7 +27,9 @@ Measured measure(std::vector<std::string> arguments) {
   return measured;
 }
 
-std::vector<std::string> known_engines() { return {"cohort", "ode-worldstep", "ode-quickstep", "mujoco", "enki"}; }
+std::vector<std::string> known_engines() {
+  return {"cohort", "cohort-matrix", "ode-worldstep", "ode-quickstep", "mujoco", "enki"};
+}
 
 // Each known engine is measured, left out of this scene, or missing in this build; measured ones are returned.
 std::vector<Json> measured_engines(const Json& all, const Json& result) {

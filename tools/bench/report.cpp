@@ -89,12 +89,12 @@ std::string table(const AccuracyResult& result) {
     if (!has_heading) {
       text += fmt::format("  {:<50}{:>6}", "case", "unit");
       for (const AccuracyError& error : of.errors)
-        text += fmt::format("{:>15}", fmt::format("{} {:g} ms", error.engine, milli * error.step));
+        text += fmt::format("{:>21}", fmt::format("{} {:g} ms", error.engine, milli * error.step));
       text += '\n';
       has_heading = true;
     }
     text += fmt::format("  {:<50}{:>6}", of.name, of.unit);
-    for (const AccuracyError& error : of.errors) text += fmt::format("{:>15.2g}", error.error);
+    for (const AccuracyError& error : of.errors) text += fmt::format("{:>21.2g}", error.error);
     text += '\n';
   }
   return text;

@@ -9,10 +9,10 @@ namespace {
 
 class CohortEngine final : public Engine {
  public:
-  CohortEngine(const Scene& scene, unsigned threads)
+  CohortEngine(const Scene& scene, unsigned threads, description::Dynamics dynamics)
       : robot_(scene.robot),
         drive_(scene.drive),
-        description_(describe(scene)),
+        description_(describe(scene, dynamics)),
         first_robot_(static_cast<std::uint32_t>(description_.robots.front())),
         workers_(threads),
         world_(physics::make_world(description_, workers_)) {
@@ -64,8 +64,8 @@ class CohortEngine final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads) {
-  return std::make_unique<CohortEngine>(scene, threads);
+std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads, description::Dynamics dynamics) {
+  return std::make_unique<CohortEngine>(scene, threads, dynamics);
 }
 
 }  // namespace cohort::bench

@@ -5,7 +5,7 @@
 namespace cohort::bench {
 namespace {
 
-description::World describe(const Mechanism& mechanism) {
+description::World describe(const Mechanism& mechanism, description::Dynamics dynamics) {
   using namespace description;
   World world;
   world.name = "mechanism";
@@ -36,14 +36,15 @@ description::World describe(const Mechanism& mechanism) {
   if (mechanism.floor_friction) {
     place(world, static_shape("floor", Plane{}, surface), "floor", {});
   }
+  world.physics.dynamics = dynamics;
   world.physics.lowest = -1e3;
   return world;
 }
 
 class CohortMechanism final : public MechanismRun {
  public:
-  explicit CohortMechanism(const Mechanism& mechanism)
-      : description_(describe(mechanism)), world_(physics::make_world(description_, one_)) {
+  CohortMechanism(const Mechanism& mechanism, description::Dynamics dynamics)
+      : description_(describe(mechanism, dynamics)), world_(physics::make_world(description_, one_)) {
     if (const RigidBody& body = mechanism.bodies.front(); !body.hinge_W)
       world_->set_root_twist(0, {body.angular_velocity_W, Eigen::Vector3d::Zero()});
   }
@@ -64,8 +65,8 @@ class CohortMechanism final : public MechanismRun {
 
 }  // namespace
 
-std::unique_ptr<MechanismRun> make_cohort_mechanism(const Mechanism& mechanism) {
-  return std::make_unique<CohortMechanism>(mechanism);
+std::unique_ptr<MechanismRun> make_cohort_mechanism(const Mechanism& mechanism, description::Dynamics dynamics) {
+  return std::make_unique<CohortMechanism>(mechanism, dynamics);
 }
 
 }  // namespace cohort::bench

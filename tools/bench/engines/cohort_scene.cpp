@@ -82,11 +82,12 @@ void place_static(description::World& world, const description::Shape& shape, do
   place(world, description::static_shape(name, shape, {friction}), name, X_WM);
 }
 
-description::World describe(const Scene& scene) {
+description::World describe(const Scene& scene, description::Dynamics dynamics) {
   description::World world;
   world.name = "bench";
   world.step = std::chrono::nanoseconds(std::llround(1e9 * scene.step));
   world.gravity = {0.0, 0.0, -scene.gravity};
+  world.physics.dynamics = dynamics;
   world.physics.strict = true;  // a body that breaks is a result, not a saving
   if (scene.drive == Drive::wheels) world.physics.fidelity = description::Fidelity::articulated;
   if (scene.planar) world.physics.fidelity = description::Fidelity::planar;

@@ -16,7 +16,7 @@ inline constexpr std::size_t right_wheel_joint = 2;
 inline constexpr std::size_t treel_drive = 0;
 
 /// The plane is body 0, then come the walls and then the robots, all of the last model.
-description::World describe(const Scene& scene);
+description::World describe(const Scene& scene, description::Dynamics dynamics = description::Dynamics::bullet);
 
 void place_static(description::World& world, const description::Shape& shape, double friction, const Pose& X_WM);
 

@@ -14,6 +14,11 @@ constexpr std::size_t most_connected_in_world_step = 32;
 
 Limitation none(const Scene&) { return std::nullopt; }
 
+Limitation matrix_limitation(const Scene& scene) {
+  if (scene.planar) return "planar bodies have no mass matrix";
+  return std::nullopt;
+}
+
 Limitation world_step_limitation(const Scene& scene) {
   if (scene.connected && scene.robots.size() > most_connected_in_world_step)
     return fmt::format("more than {} connected robots take it seconds a step", most_connected_in_world_step);
@@ -33,21 +38,27 @@ Limitation enki_limitation(const Scene& scene) {
 }
 
 std::vector<EngineKind> known_engines() {
-  std::vector<EngineKind> kinds = {{"cohort", "", make_cohort_engine, make_cohort_mechanism, none},
+  const auto ours = [](const char* name, description::Dynamics dynamics, Limitation (*limitation)(const Scene&)) {
+    return EngineKind{
+        name, "", [=](const Scene& scene, unsigned threads) { return make_cohort_engine(scene, threads, dynamics); },
+        [=](const Mechanism& mechanism) { return make_cohort_mechanism(mechanism, dynamics); }, limitation};
+  };
+  std::vector<EngineKind> kinds = {ours("cohort", description::Dynamics::bullet, none),
+                                   ours("cohort-matrix", description::Dynamics::cohort, matrix_limitation),
                                    {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
                                    {"ode-quickstep", "libode-dev", {}, {}, none},
                                    {"mujoco", "libmujoco-dev", {}, {}, mujoco_limitation},
                                    {"enki", "libenki-dev", {}, {}, enki_limitation}};
   // The build defines each as true or false, and links the sources of those that are true.
   if constexpr (COHORT_BENCH_ODE) {
-    kinds[1].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
-    kinds[2].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
+    kinds[2].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
+    kinds[3].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
   }
   if constexpr (COHORT_BENCH_MUJOCO) {
-    kinds[3].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
-    kinds[3].make_mechanism = make_mujoco_mechanism;
+    kinds[4].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
+    kinds[4].make_mechanism = make_mujoco_mechanism;
   }
-  if constexpr (COHORT_BENCH_ENKI) kinds[4].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
+  if constexpr (COHORT_BENCH_ENKI) kinds[5].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
   return kinds;
 }
 

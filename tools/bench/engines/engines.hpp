@@ -1,12 +1,14 @@
 #pragma once
 
+#include "server/description/world.hpp"
 #include "tools/bench/engines/engine.hpp"
 
 /// What each engine's source file provides; engine.cpp picks those that are in this build.
 namespace cohort::bench {
 
-std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads);
-std::unique_ptr<MechanismRun> make_cohort_mechanism(const Mechanism& mechanism);
+std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads,
+                                           description::Dynamics dynamics = description::Dynamics::bullet);
+std::unique_ptr<MechanismRun> make_cohort_mechanism(const Mechanism& mechanism, description::Dynamics dynamics);
 
 enum class OdeStepper { world_step, quick_step };
 std::unique_ptr<Engine> make_ode_engine(const Scene& scene, OdeStepper stepper);

@@ -93,7 +93,7 @@ TEST_P(FirstWeek, AFootOnARailSticksToTheFloor) {
   }
 }
 
-// Of 50 g, driven by 1 N m towards its limit, from 2 mm before it at the tip.
+// Of 50 g, driven by 1 N m towards its limit, from where its tip has 2 mm to go.
 TEST_P(FirstWeek, AnArmStopsAtItsLimit) {
   for (const bool has_motor : {true, false}) {
     SCOPED_TRACE(has_motor ? "by a motor's velocity" : "by an effort");

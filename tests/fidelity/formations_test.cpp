@@ -127,7 +127,9 @@ TEST_P(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
 // Each solver on the same chain: all hold it together.
 class EverySolver : public EveryPhysics {};
 INSTANTIATE_TEST_SUITE_P(Every, EverySolver,
-                         ::testing::Values(treel, Physics{.solver = description::Solver::direct}, hybrid), name_of);
+                         ::testing::Values(treel, by_bullet(treel), direct, by_bullet(direct), hybrid,
+                                           by_bullet(hybrid)),
+                         name_of);
 
 TEST_P(EverySolver, HoldsAChainOfFour) {
   Chain chain(GetParam(), 4);

@@ -67,7 +67,8 @@ struct CrowdedBoard : DrivenRobots {
 };
 
 class LargeIslands : public EveryPhysics {};
-INSTANTIATE_TEST_SUITE_P(Every, LargeIslands, ::testing::Values(articulated, treel), name_of);
+INSTANTIATE_TEST_SUITE_P(Every, LargeIslands,
+                         ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel)), name_of);
 
 TEST_P(LargeIslands, HaveTheSameBitsForAnyNumberOfThreads) {
   const std::uint64_t expected = Raft(GetParam(), 12, 1).run(60);

@@ -46,9 +46,9 @@ void Connections::release_of_body(std::uint32_t body) {
 }
 
 void Connections::forget_released() {
-  if (std::erase_if(connections_, [](const Numbered& each) { return !each.connection.holds(); }) == 0) return;
-  for (std::vector<std::uint32_t>& numbers : of_member_)
-    std::erase_if(numbers, [&](std::uint32_t number) { return find(number) == nullptr; });
+  for (const auto& [number, connection] : connections_)
+    if (!connection.holds()) std::erase(of_member_[connection.a().member], number);
+  std::erase_if(connections_, [](const Numbered& each) { return !each.connection.holds(); });
 }
 
 void Connections::break_overloaded(double step) {

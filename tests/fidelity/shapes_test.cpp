@@ -7,15 +7,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::shared_ptr<const description::TriangleMesh> cube(double half) {
-  auto mesh = std::make_shared<description::TriangleMesh>();
-  for (int i = 0; i < 8; ++i)
-    mesh->vertices.emplace_back((i & 1) != 0 ? half : -half, (i & 2) != 0 ? half : -half, (i & 4) != 0 ? half : -half);
-  mesh->triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
-
 // Ground of every kind, all at z = 0 around the origin.
 struct GroundKind {
   const char* name;
@@ -35,7 +26,7 @@ std::vector<GroundKind> grounds() {
   return {{"plane", description::Plane{}, 0.0},
           {"box", description::Box{{4, 4, 1}}, -0.5},
           {"mesh", description::Mesh{slab, false}, 0.0},
-          {"hull", description::Mesh{cube(2.0), true}, -2.0},
+          {"hull", box_mesh(Vector3d::Constant(4.0)), -2.0},
           {"heightmap", description::Heightmap{grid}, -0.3}};
 }
 
@@ -51,7 +42,7 @@ TEST(Shapes, EveryShapeComesToRestOnEveryGround) {
   const std::vector<std::pair<description::Shape, double>> shapes = {
       {description::Box{{0.2, 0.2, 0.1}}, 0.05}, {description::Sphere{0.1}, 0.1},
       {description::Cylinder{0.1, 0.1}, 0.05},   {description::Capsule{0.05, 0.1}, 0.1},
-      {description::Ellipsoid{radii}, 0.05},     {description::Mesh{cube(0.1), true}, 0.1},
+      {description::Ellipsoid{radii}, 0.05},     {box_mesh(Vector3d::Constant(0.2)), 0.1},
   };
   for (const GroundKind& ground : grounds()) {
     for (const auto& [shape, height] : shapes) {

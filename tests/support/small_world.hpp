@@ -77,6 +77,17 @@ inline description::Inertial solid_box(double mass, const Eigen::Vector3d& size)
 
 using description::solid_sphere;
 
+/// A box as a convex mesh.
+inline description::Mesh box_mesh(const Eigen::Vector3d& size) {
+  auto mesh = std::make_shared<description::TriangleMesh>();
+  for (int i = 0; i < 8; ++i)
+    mesh->vertices.push_back(
+        0.5 * size.cwiseProduct(Eigen::Vector3d((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1)));
+  mesh->triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return {mesh, true};
+}
+
 /// One link with one collision at its centre of mass.
 inline description::Model loose(const std::string& name, const description::Shape& shape,
                                 const description::Inertial& inertial, description::Surface surface = {}) {

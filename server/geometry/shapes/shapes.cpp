@@ -216,6 +216,23 @@ double radius_of(const Shape& shape) {
   return std::visit(Radius{}, shape);
 }
 
+double half_thickness_of(const Shape& shape) {
+  struct HalfThickness {
+    double operator()(const Box& box) const { return 0.5 * box.size.minCoeff(); }
+    double operator()(const Sphere& sphere) const { return sphere.radius; }
+    double operator()(const Cylinder& cylinder) const { return std::min(cylinder.radius, 0.5 * cylinder.length); }
+    double operator()(const description::Capsule& capsule) const { return capsule.radius; }
+    double operator()(const description::Ellipsoid& ellipsoid) const { return ellipsoid.radii.minCoeff(); }
+    double operator()(const description::Mesh& mesh) const {
+      const Bounds bounds = bounds_of(mesh, Pose{});
+      return 0.5 * (bounds.upper - bounds.lower).minCoeff();
+    }
+    double operator()(const Plane&) const { return infinity; }
+    double operator()(const description::Heightmap&) const { return infinity; }
+  };
+  return std::visit(HalfThickness{}, shape);
+}
+
 Bounds bounds_of(const Shape& shape, const Pose& X_WC) {
   return std::visit([&](const auto& s) { return bounds(s, X_WC); }, shape);
 }

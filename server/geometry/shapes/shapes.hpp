@@ -45,6 +45,10 @@ Bounds bounds_of_disc(const Pose& X_WS, double radius);
 /// Of the smallest ball around the shape's origin that holds it [m]; infinite for planes and height maps.
 double radius_of(const Shape& shape);
 
+/// Half of how thin the shape is [m]: a point that moves no further from outside is not beyond its middle. Of a mesh
+/// that of its bounds; infinite for planes and height maps.
+double half_thickness_of(const Shape& shape);
+
 /// Where a ray enters a solid: `distance` along the unit direction, 0 if it starts inside, infinite if it misses.
 /// `normal`: outward unit normal of the surface there, undefined if it starts inside or misses.
 struct RayEntry {

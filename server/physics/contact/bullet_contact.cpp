@@ -56,6 +56,7 @@ struct BulletContact::State {
   btCollisionObject a;
   btCollisionObject b;
   btCollisionAlgorithm* algorithm = nullptr;
+  double skin = 0.0;  // [m]
 
   btPersistentManifold* manifold() const;
   void collide(const Pose& X_WA, const Pose& X_WB);
@@ -72,6 +73,8 @@ BulletContact::BulletContact(BulletNarrowPhase& narrow_phase, std::shared_ptr<co
   state_->dispatcher = &narrow_phase.state_->dispatcher;
   state_->a.setCollisionShape(a->get());
   state_->b.setCollisionShape(b->get());
+  const auto is_sphere = [](const BulletShape& shape) { return shape.get()->getShapeType() == SPHERE_SHAPE_PROXYTYPE; };
+  state_->skin = (is_sphere(*b) ? 0.0 : a->skin()) + (is_sphere(*a) ? 0.0 : b->skin());
   state_->shape_a = std::move(a);
   state_->shape_b = std::move(b);
 }
@@ -135,8 +138,8 @@ void BulletContact::update(const Pose& X_WA, const Pose& X_WB, ContactPoints& po
     const btManifoldPoint& theirs = manifold->getContactPoint(i);
     const Eigen::Vector3d normal_W = (flipped ? -1.0 : 1.0) * to_eigen(theirs.m_normalWorldOnB);
     const Eigen::Vector3d position_W =
-        0.5 * (to_eigen(theirs.getPositionWorldOnA()) + to_eigen(theirs.getPositionWorldOnB()));
-    points.add(position_W, normal_W, theirs.getDistance());
+        0.5 * (to_eigen(theirs.getPositionWorldOnA()) + to_eigen(theirs.getPositionWorldOnB()) - state.skin * normal_W);
+    points.add(position_W, normal_W, theirs.getDistance() + state.skin);
     points.points[static_cast<std::size_t>(i)].impulse = {theirs.m_appliedImpulse, theirs.m_appliedImpulseLateral1,
                                                           theirs.m_appliedImpulseLateral2};
   }

@@ -11,8 +11,26 @@ using description::HeightGrid;
 using description::TriangleMesh;
 using Eigen::Vector3d;
 
-// Bullet finds contacts between hulls best if they are rounded a little; it adds this all around [m].
+// Bullet finds contacts between hulls best if they are rounded a little [m]: it adds this all around to a hull that is
+// that much smaller, so that faces are where they were and edges are rounded.
 constexpr double hull_rounding = 0.0005;
+constexpr double surface_skin = 0.001;  // [m]
+
+std::unique_ptr<btConvexHullShape> rounded_hull(const std::vector<Vector3d>& vertices) {
+  auto hull = std::make_unique<btConvexHullShape>();
+  constexpr double most_of_its_size = 0.1;
+  btConvexHullComputer smaller;
+  const double rounding = smaller.compute(vertices[0].data(), sizeof(Vector3d), static_cast<int>(vertices.size()),
+                                          hull_rounding, most_of_its_size);
+  if (rounding > 0.0) {
+    for (int i = 0; i < smaller.vertices.size(); ++i) hull->addPoint(smaller.vertices[i], false);
+  } else {  // flat: it is as thick as it is rounded
+    for (const Vector3d& vertex : vertices) hull->addPoint(to_bullet(vertex), false);
+  }
+  hull->recalcLocalAabb();
+  hull->setMargin(rounding > 0.0 ? rounding : hull_rounding);
+  return hull;
+}
 
 // Bullet has no ellipsoid: the point furthest along a direction is all that its narrow phase asks for.
 class EllipsoidShape final : public btConvexInternalShape {
@@ -81,20 +99,16 @@ struct Make {
     return std::make_unique<EllipsoidShape>(ellipsoid.radii);
   }
   std::unique_ptr<btCollisionShape> operator()(const description::Mesh& mesh) const {
-    if (mesh.convex) {
-      auto hull = std::make_unique<btConvexHullShape>();
-      for (const Vector3d& vertex : mesh.triangles->vertices) hull->addPoint(to_bullet(vertex), false);
-      hull->recalcLocalAabb();
-      hull->setMargin(hull_rounding);
-      return hull;
-    }
+    if (mesh.convex) return rounded_hull(mesh.triangles->vertices);
     triangles = std::make_unique<btTriangleMesh>();
     for (const auto& corners : mesh.triangles->triangles)
       triangles->addTriangle(to_bullet(mesh.triangles->vertices[corners[0]]),
                              to_bullet(mesh.triangles->vertices[corners[1]]),
                              to_bullet(mesh.triangles->vertices[corners[2]]));
     const bool compress_boxes = false;
-    return std::make_unique<btBvhTriangleMeshShape>(triangles.get(), compress_boxes);
+    auto surface = std::make_unique<btBvhTriangleMeshShape>(triangles.get(), compress_boxes);
+    surface->setMargin(surface_skin);
+    return surface;
   }
   std::unique_ptr<btCollisionShape> operator()(const description::Heightmap& map) const {
     const HeightGrid& grid = *map.grid;
@@ -105,6 +119,7 @@ struct Make {
         std::make_unique<btHeightfieldTerrainShape>(static_cast<int>(grid.columns), static_cast<int>(grid.rows),
                                                     grid.heights.data(), *lowest, *highest, upwards, flip_diagonals);
     field->setLocalScaling(btVector3(grid.spacing.x(), grid.spacing.y(), 1.0));
+    field->setMargin(surface_skin);
     offset.z() = 0.5 * (*lowest + *highest);
     return field;
   }
@@ -121,5 +136,7 @@ BulletShape::BulletShape(const geometry::Shape& shape) : data_(std::make_unique<
 BulletShape::~BulletShape() = default;
 
 btCollisionShape* BulletShape::get() const { return data_->shape.get(); }
+
+double BulletShape::skin() const { return data_->shape->isConcave() ? data_->shape->getMargin() : 0.0; }
 
 }  // namespace cohort::physics

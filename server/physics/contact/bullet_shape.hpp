@@ -19,6 +19,9 @@ class BulletShape {
   btCollisionShape* get() const;
   /// Bullet's frame of the shape in ours: it puts the middle of a height map's heights at the origin.
   const Eigen::Vector3d& offset() const { return offset_; }
+  /// By how much Bullet finds others nearer than they are, but for spheres [m]: meshes that are surfaces and height
+  /// maps have a skin, or it would find them only once they are reached.
+  double skin() const;
 
  private:
   struct Data;

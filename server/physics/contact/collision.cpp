@@ -1,6 +1,7 @@
 #include "server/physics/contact/collision.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "server/physics/contact/closed_form_contact.hpp"
 #include "server/physics/contact/same_point.hpp"
@@ -11,26 +12,49 @@ Collision::Collision(const geometry::Scene& scene, MayTouch may_touch)
     : scene_(scene), may_touch_(std::move(may_touch)), narrow_phase_(margin) {}
 
 void Collision::add(std::shared_ptr<const BulletShape> shape) {
+  const auto solid = static_cast<std::uint32_t>(shapes_.size());
+  constexpr double nearly = 0.9;
+  furthest_unseen_.push_back(nearly * geometry::half_thickness_of(scene_.solid(solid).shape));
+  ways_.emplace_back(Eigen::Vector3d::Zero());
   shapes_.push_back(std::move(shape));
   pairs_.emplace_back();
 }
 
 void Collision::remove(std::uint32_t solid) {
   pairs_[solid].clear();
+  ways_[solid].setZero();
   for (std::vector<SolidPair>& pairs : pairs_)
     std::erase_if(pairs, [&](const SolidPair& pair) { return pair.b == solid; });
 }
 
 void Collision::detect(std::uint32_t solid, std::span<const std::uint32_t> near) {
   find_pairs(solid, near);
-  for (SolidPair& pair : pairs_[solid]) find_contact(pair);
+  for (SolidPair& pair : pairs_[solid]) {
+    find_contact(pair);
+    if (!is_fast(solid)) continue;
+    if (pair.contact.count == 0)
+      find_contact_on_the_way(pair);
+    else if (pair.general)
+      add_points_beside(scene_.solid(solid).X_WC, solid, pair.b, pair.contact);
+  }
+}
+
+geometry::Bounds Collision::region_along(std::uint32_t solid, const Eigen::Vector3d& way_W) const {
+  geometry::Bounds region = scene_.bounds(solid).grown_by(margin);
+  region.lower += way_W.cwiseMin(0.0);
+  region.upper += way_W.cwiseMax(0.0);
+  return region;
+}
+
+bool Collision::reports(std::uint32_t solid, std::uint32_t other) const {
+  if (!scene_.solid(other).moves) return true;
+  return is_fast(solid) == is_fast(other) ? solid < other : is_fast(solid);
 }
 
 bool Collision::makes_a_pair(std::uint32_t solid, std::uint32_t other) const {
-  const geometry::Solid& two = scene_.solid(other);
-  if (two.moves && other <= solid) return false;  // the other one reports it
-  if (!scene_.reaches_into(other, scene_.bounds(solid).grown_by(margin))) return false;
-  return two.body != scene_.solid(solid).body || may_touch_(solid, other);
+  if (!reports(solid, other)) return false;
+  if (!scene_.reaches_into(other, region_along(solid, ways_[solid] - ways_[other]))) return false;
+  return scene_.solid(other).body != scene_.solid(solid).body || may_touch_(solid, other);
 }
 
 // Old pairs that are still near keep what they know.
@@ -78,6 +102,106 @@ void Collision::find_contact(SolidPair& pair) {
     pair.contact.count = 0;
   }
   pair.general->update(a.X_WC, b.X_WC, pair.contact);
+}
+
+// Of two that were apart, with the first one somewhere else than it is.
+ContactPoints Collision::contact_at(const Pose& X_WA, std::uint32_t solid, std::uint32_t other) const {
+  const geometry::Solid& b = scene_.solid(other);
+  ContactPoints found;
+  if (!find_closed_form_contact(scene_.solid(solid).shape, X_WA, b.shape, b.X_WC, margin, found))
+    BulletContact(narrow_phase_, shapes_[solid], shapes_[other]).update(X_WA, b.X_WC, found);
+  return found;
+}
+
+// Bullet finds one point at a time, and those beside it in the next steps. Of what is fast they are found now, each by
+// turning the solid a little towards it: a face that hits with one corner alone would turn past what it hits. Only a
+// ball has no more.
+void Collision::add_points_beside(const Pose& X_WA, std::uint32_t solid, std::uint32_t other,
+                                  ContactPoints& found) const {
+  if (found.count > 2 || std::holds_alternative<description::Sphere>(scene_.solid(solid).shape)) return;
+  constexpr double little = 0.01;  // [rad]
+  constexpr double askew = 0.46;   // so that no edge is level [rad]
+  constexpr double alike = 0.999;  // cosine between normals
+  const Eigen::Vector3d way_W = ways_[solid] - ways_[other];
+  const auto is_more_against = [&](const ContactPoint& one, const ContactPoint& two) {
+    return one.normal_W.dot(way_W) < two.normal_W.dot(way_W);
+  };
+  const Eigen::Vector3d normal_W = std::ranges::min_element(found, is_more_against)->normal_W;
+  const double apart = 0.5 * furthest_unseen_[solid];
+  ContactPoints beside;
+  const auto add = [&](const Eigen::Vector3d& position_W, double gap) {
+    const auto is_near = [&](const ContactPoint& point) { return (point.position_W - position_W).norm() < apart; };
+    if (std::ranges::none_of(beside, is_near)) beside.add(position_W, normal_W, gap);
+  };
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const Eigen::AngleAxisd around(askew + 0.5 * M_PI * quarter, normal_W);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(little, around * normal_W.unitOrthogonal()));
+    for (const ContactPoint& turned : contact_at({X_WA.position, turn * X_WA.orientation}, solid, other)) {
+      const Eigen::Vector3d position_W = X_WA.position + turn.conjugate() * (turned.position_W - X_WA.position);
+      if (turned.normal_W.dot(normal_W) > alike)
+        add(position_W, turned.gap + normal_W.dot(position_W - turned.position_W));
+    }
+  }
+  for (const ContactPoint& point : found)
+    if (point.normal_W.dot(normal_W) > alike) add(point.position_W, point.gap);
+  found = beside;
+}
+
+// The places where that is looked for are so close together that nothing fits between.
+Collision::Touch Collision::first_touch(std::uint32_t solid, std::uint32_t other, const Eigen::Vector3d& way_W) const {
+  const Pose& X_WA = scene_.solid(solid).X_WC;
+  const auto pose_at = [&](double share) { return Pose{X_WA.position + share * way_W, X_WA.orientation}; };
+  double spacing = furthest_unseen_[solid];
+  if (is_fast(other)) spacing = std::min(spacing, furthest_unseen_[other]);
+  const double places = std::min(most_places, std::ceil(way_W.norm() / spacing));
+  double apart = 0.0;
+  Touch touch{0.0, {}};
+  for (double place = 1.0; place <= places && touch.points.count == 0; ++place) {
+    apart = touch.share;
+    touch.share = place / places;
+    touch.points = contact_at(pose_at(touch.share), solid, other);
+  }
+  const auto overlap = [&] {
+    return std::ranges::any_of(touch.points, [](const ContactPoint& point) { return point.gap < 0.0; });
+  };
+  for (int halving = 0; halving < 6 && overlap(); ++halving) {
+    const double middle = 0.5 * (apart + touch.share);
+    const ContactPoints there = contact_at(pose_at(middle), solid, other);
+    if (there.count == 0)
+      apart = middle;
+    else
+      touch = {middle, there};
+  }
+  return touch;
+}
+
+// Of two that are apart, but of which one is so fast that they may have passed through each other at the end of the
+// step: where they will touch.
+void Collision::find_contact_on_the_way(SolidPair& pair) {
+  const Eigen::Vector3d way_W = ways_[pair.a] - ways_[pair.b];  // of a as b sees it
+  Touch touch = first_touch(pair.a, pair.b, way_W);
+  if (touch.points.count == 0) return;
+  const Pose& X_WA = scene_.solid(pair.a).X_WC;
+  add_points_beside({X_WA.position + touch.share * way_W, X_WA.orientation}, pair.a, pair.b, touch.points);
+  // As if a were where it is now: the faster of the two has come the longer way to where they meet.
+  const double of_a = ways_[pair.a].norm() / (ways_[pair.a].norm() + ways_[pair.b].norm());
+  for (const ContactPoint& point : touch.points) {
+    const double closes = -touch.share * point.normal_W.dot(way_W);
+    if (closes > 0.0)
+      pair.contact.add(point.position_W - of_a * touch.share * way_W, point.normal_W, point.gap + closes);
+  }
+}
+
+double Collision::free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) const {
+  if (!((way_W - ways_[solid]).norm() > furthest_unseen_[solid])) return 1.0;  // as foreseen, or not a number
+  double share = 1.0;
+  scene_.for_each_static_overlap(region_along(solid, way_W), [&](std::uint32_t other) {
+    const auto touches = [&](const SolidPair& pair) { return pair.b == other && pair.contact.count > 0; };
+    if (std::ranges::any_of(pairs_[solid], touches)) return;  // the solver knows
+    const Touch touch = first_touch(solid, other, way_W);
+    if (touch.points.count > 0) share = std::min(share, touch.share);
+  });
+  return share;
 }
 
 void Collision::save(SnapshotWriter& writer) const {

@@ -17,6 +17,22 @@ bool is_sensible(const double* velocities, int count) {
   return sum < senseless;
 }
 
+// As far as the joints may stretch it; those that slide without a limit by a metre.
+double reach_of(const Member& member) {
+  double reach = 0.0;
+  const Mechanism& mechanism = member.multibody->mechanism();
+  for (const Segment& segment : mechanism.segments()) {
+    reach += segment.X_PS.position.norm() + segment.centre_S.norm();
+    if (segment.motion != Motion::prismatic) continue;
+    const description::JointAxis& axis = mechanism.dofs()[static_cast<std::size_t>(segment.first_dof)].axis;
+    const double way = std::max(std::abs(axis.lower), std::abs(axis.upper));
+    reach += std::isfinite(way) ? way : 1.0;
+  }
+  double furthest_part = 0.0;
+  for (const Part& part : member.parts) furthest_part = std::max(furthest_part, part.X_SC.position.norm());
+  return reach + furthest_part;
+}
+
 }  // namespace
 
 Assembly::Assembly(const description::World& world)
@@ -66,11 +82,14 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
       const std::shared_ptr<const BulletShape>& shape_of_part = shapes[shape++];
       if (!place.collides) continue;
       const Pose X_SC = place.X_SL * links[link].collisions[part].X_LC;
-      member.parts.push_back({static_cast<std::uint32_t>(scene.size()), place.segment, X_SC});
+      const auto solid = static_cast<std::uint32_t>(scene.size());
+      member.parts.push_back({solid, place.segment, X_SC});
       add_solid(body.body(), model, link, part, body.segment_pose(place.segment) * X_SC, {index, place.segment},
                 shape_of_part);
+      member.furthest_unseen = std::min(member.furthest_unseen, collision.furthest_unseen(solid));
     }
   }
+  member.reach = reach_of(member);
   return index;
 }
 
@@ -125,13 +144,36 @@ bool Assembly::may_touch(std::uint32_t solid, std::uint32_t other) const {
   return one != two && above(one) != two && above(two) != one;
 }
 
+double Assembly::look_ahead(Member& member) {
+  const Multibody& multibody = *member.multibody;
+  const bool may_be_fast = step * multibody.greatest_speed(member.reach) > member.furthest_unseen;
+  if (!may_be_fast && !member.is_fast) return 0.0;
+  member.is_fast = false;
+  double furthest = 0.0;
+  for (const Part& part : member.parts) {
+    const Eigen::Vector3d centre_W = multibody.segment_pose(part.segment) * part.X_SC.position;
+    Eigen::Vector3d way_W = step * multibody.segment_twist(part.segment, centre_W).linear_W;
+    const double length = way_W.norm();
+    if (length > collision.furthest_unseen(part.solid)) {
+      way_W *= std::min(1.0, collision.furthest_followed(part.solid) / length);
+      furthest = std::max(furthest, way_W.norm());
+      member.is_fast = true;
+    } else {
+      way_W.setZero();
+    }
+    collision.set_way(part.solid, way_W);
+  }
+  return furthest;
+}
+
 // One look around the scene for all of a body.
-void Assembly::look_around(const Member& member, std::vector<std::uint32_t>& near,
+void Assembly::look_around(const Member& member, double furthest, std::vector<std::uint32_t>& near,
                            std::vector<std::uint32_t>& candidates) {
   Multibody& multibody = *member.multibody;
   if (member.parts.empty() && multibody.treels().empty()) return;
   geometry::Bounds around{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
-  for (const Part& part : member.parts) around.include(scene.bounds(part.solid).grown_by(Collision::margin));
+  for (const Part& part : member.parts) around.include(collision.region_of(part.solid));
+  if (member.is_fast) around = around.grown_by(furthest);  // others come its way
   const Pose& X_WS = multibody.segment_pose(0);
   for (const TrackRows& treel : multibody.treels()) around.include(treel.ground_region(X_WS));
   near.clear();
@@ -177,12 +219,29 @@ bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
   return members[member].is_finite = is_sensible(equations.velocity(), equations.size());
 }
 
+// A body that another one has just hit may be much faster than at the beginning of the step, from which it was foreseen
+// what it would touch. It waits before what stands in its way, and touches it in the next step.
+void Assembly::keep_from_passing_through(Member& member) {
+  Multibody& multibody = *member.multibody;
+  if (!multibody.mechanism().has_free_root()) return;
+  if (!(step * multibody.greatest_speed(member.reach) > member.furthest_unseen)) return;
+  Eigen::Vector3d back_W = Eigen::Vector3d::Zero();
+  for (const Part& part : member.parts) {
+    const Eigen::Vector3d way_W =
+        multibody.segment_pose(part.segment) * part.X_SC.position - scene.solid(part.solid).X_WC.position;
+    const Eigen::Vector3d rest_W = (1.0 - collision.free_share(part.solid, way_W)) * way_W;
+    if (rest_W.squaredNorm() > back_W.squaredNorm()) back_W = rest_W;
+  }
+  if (!back_W.isZero(0.0)) multibody.move(-back_W);
+}
+
 void Assembly::integrate(std::uint32_t index, const Problem& problem) {
   Member& member = members[index];
   Multibody& multibody = *member.multibody;
   for (TrackRows& treel : multibody.treels()) treel.read_rows(problem, step);
   if (member.record) member.record->begin(multibody);
   multibody.integrate(problem.equations(anchors.index_of_member[index]).velocity(), step);
+  keep_from_passing_through(member);
   if (member.record) member.record->finish(multibody, gravity, step);
   const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
   member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest_from_origin;

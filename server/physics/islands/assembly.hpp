@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -27,6 +28,9 @@ struct Member {
   std::uint32_t body = 0;
   std::unique_ptr<Multibody> multibody;
   std::vector<Part> parts;  ///< ascending solids
+  double reach = 0.0;       ///< no part's centre is further from a joint that moves it [m]
+  double furthest_unseen = std::numeric_limits<double>::infinity();  ///< the least of its parts [m]
+  bool is_fast = false;                                              ///< one of its parts is, in this step
   bool is_active = true;
   bool is_finite = true;                  ///< of the last step: its velocities were
   bool is_inside = true;                  ///< of the last step: it is still in the world
@@ -78,8 +82,12 @@ struct Assembly {
     return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->segment_pose(end.segment);
   }
 
-  /// Finds what the member touches and stands on. The vectors are scratch memory.
-  void look_around(const Member& member, std::vector<std::uint32_t>& near, std::vector<std::uint32_t>& candidates);
+  /// Finds which parts of the member are fast. Returns how far the furthest of them goes in the step [m], 0 if none is.
+  double look_ahead(Member& member);
+  /// Finds what the member touches and stands on. `furthest`: that any part of any member goes. The vectors are scratch
+  /// memory.
+  void look_around(const Member& member, double furthest, std::vector<std::uint32_t>& near,
+                   std::vector<std::uint32_t>& candidates);
 
   /// Calls `visit(other)` for every member that this one is coupled to by what it reports: its pairs, its connections
   /// and what its tracks stand on. Some more than once.
@@ -130,6 +138,7 @@ struct Assembly {
   /// Of the collision `number` of a link.
   void add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
                  const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape);
+  void keep_from_passing_through(Member& member);
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;
   ForceRecord* record_of(std::uint32_t member) const {
     return member == Anchors::nobody ? nullptr : members[member].record.get();

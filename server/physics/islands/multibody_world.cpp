@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace cohort::physics {
 namespace {
@@ -151,11 +152,18 @@ void MultibodyWorld::step() {
 }
 
 void MultibodyWorld::detect() {
-  const std::vector<Member>& members = assembly_.members;
+  std::vector<Member>& members = assembly_.members;
+  workers_.for_each_chunk(members.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    double& furthest = memory_[worker].furthest;
+    for (std::size_t i = begin; i < end; ++i)
+      if (members[i].is_active) furthest = std::max(furthest, assembly_.look_ahead(members[i]));
+  });
+  double furthest = 0.0;
+  for (Memory& memory : memory_) furthest = std::max(furthest, std::exchange(memory.furthest, 0.0));
   workers_.for_each_chunk(members.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
     Memory& memory = memory_[worker];
     for (std::size_t i = begin; i < end; ++i)
-      if (members[i].is_active) assembly_.look_around(members[i], memory.near, memory.candidates);
+      if (members[i].is_active) assembly_.look_around(members[i], furthest, memory.near, memory.candidates);
   });
 }
 

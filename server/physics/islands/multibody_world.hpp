@@ -89,6 +89,7 @@ class MultibodyWorld final : public World {
     IslandSolver solver;
     std::vector<std::uint32_t> near;
     std::vector<std::uint32_t> candidates;
+    double furthest = 0.0;  // way of a part in this step [m]
   };
 
   std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, std::uint32_t body);

@@ -96,11 +96,13 @@ Pose Multibody::link_pose(std::size_t link) const {
 }
 
 Twist Multibody::link_twist(std::size_t link) const {
-  const Mechanism::LinkPlace& place = mechanism_->link(link);
-  const Eigen::Vector3d origin_W = link_pose(link).position;
+  return segment_twist(mechanism_->link(link).segment, link_pose(link).position);
+}
+
+Twist Multibody::segment_twist(int of_segment, const Eigen::Vector3d& point_W) const {
   Twist twist{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  // From the link to the root: each joint adds what it does to the link's origin.
-  for (int s = place.segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
+  // From the segment to the root: each joint adds what it does to the point.
+  for (int s = of_segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
     const Segment& segment = mechanism_->segments()[static_cast<std::size_t>(s)];
     const Pose& X_WS = segment_pose(s);
     const double* v = velocities() + segment.first_dof;
@@ -118,9 +120,25 @@ Twist Multibody::link_twist(std::size_t link) const {
       case Motion::ball: angular_W = X_WS.orientation * Eigen::Vector3d(v[0], v[1], v[2]); break;
     }
     twist.angular_W += angular_W;
-    twist.linear_W += angular_W.cross(origin_W - pivot_W);
+    twist.linear_W += angular_W.cross(point_W - pivot_W);
   }
   return twist;
+}
+
+double Multibody::greatest_speed(double reach) const {
+  double sum = 0.0;
+  for (const Segment& segment : mechanism_->segments()) {
+    const double* v = velocities() + segment.first_dof;
+    const auto length = [&](int i) { return std::abs(v[i]) + std::abs(v[i + 1]) + std::abs(v[i + 2]); };
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free: sum += reach * length(0) + length(3); break;
+      case Motion::revolute: sum += reach * std::abs(v[0]); break;
+      case Motion::prismatic: sum += std::abs(v[0]); break;
+      case Motion::ball: sum += reach * length(0); break;
+    }
+  }
+  return sum;
 }
 
 double Multibody::joint_position(std::size_t joint) const {

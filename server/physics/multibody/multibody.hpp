@@ -43,6 +43,10 @@ class Multibody {
   const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
   Pose link_pose(std::size_t link) const;  ///< X_WL
   Twist link_twist(std::size_t link) const;
+  /// Of the segment, its velocity at a point.
+  Twist segment_twist(int segment, const Eigen::Vector3d& point_W) const;
+  /// No point within `reach` of all joints it hangs on, and of the reference, moves faster [m/s].
+  double greatest_speed(double reach) const;
   double joint_position(std::size_t joint) const;
   double joint_velocity(std::size_t joint) const;
 
@@ -71,6 +75,11 @@ class Multibody {
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
   /// Takes the velocities that the solver found and moves the body by them.
   void integrate(const double* velocities, double step);
+  /// Puts a body whose root is free elsewhere, as it is and moves.
+  void move(const Eigen::Vector3d& way_W) {
+    state_.set_reference(reference() + way_W);
+    update_poses();
+  }
   /// Calls `visit` for each number of the state, always in the same order.
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit) {

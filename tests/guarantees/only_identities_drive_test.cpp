@@ -146,9 +146,10 @@ TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_NE(made.out.find("operator  may control the run, and drive nothing"), std::string::npos) << made.out;
   EXPECT_NE(made.out.find("both  may drive all, and control the run"), std::string::npos) << made.out;
-  const auto ctl = [&](const ReservedDomain& domain, const std::string& name, const std::string& what) {
+  const auto ctl = [&](const ReservedDomain& domain, const std::string& name, const std::string& what,
+                       const std::string& timeout = patience_in_seconds) {
     return run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "--secure", keys + "/clients/" + name,
-                       "--timeout", "2", what});
+                       "--timeout", timeout, what});
   };
   const auto serve = [&](const ReservedDomain& domain) {
     return std::vector<std::string>{cohort_program(), "serve",       demo_experiment(), "--paused",
@@ -166,7 +167,7 @@ TEST(OnlyIdentitiesDrive, AndOnlyThoseWithTheRightControl) {
     EXPECT_NE(refused.err.find("may neither control a run nor look on"), std::string::npos) << refused.err;
     // One that says that it may: DDS knows better, by what was signed.
     write_file(disguised, red_identity + "control: yes\n");
-    EXPECT_NE(ctl(domain, "red", "pause").exit_code, 0);
+    EXPECT_NE(ctl(domain, "red", "pause", "2").exit_code, 0);
     // Nobody without an identity.
     EXPECT_EQ(run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "--timeout", "2", "pause"}).exit_code, 1);
     EXPECT_NE(ctl(domain, "operator", "status").out.find("playing"), std::string::npos);
@@ -205,7 +206,7 @@ TEST(OnlyIdentitiesDrive, AndObserversLookOnAndRecord) {
       {cohort_program(), "serve", demo_experiment(), "--paused", "--domain", domain.text(), "--secure", keys});
   Process recording(as("observer", {"record", "-o", file}));
   EXPECT_TRUE(recording.wait_for_output("recorded from tick 0 on")) << recording.output();
-  EXPECT_EQ(run_to_end(as("observer", {"ctl", "status"})).exit_code, 0);
+  EXPECT_EQ(run_to_end(as("observer", {"ctl", "--timeout", patience_in_seconds, "status"})).exit_code, 0);
   EXPECT_EQ(run_to_end(as("observer", {"ctl", "history"})).exit_code, 0);
   EXPECT_EQ(run_to_end(as("observer", {"ctl", "save", (folder / "snapshot").string()})).exit_code, 0);
   for (const std::vector<std::string>& change : {std::vector<std::string>{"ctl", "resume"},

@@ -24,7 +24,8 @@ class ControlledRun {
   const ReservedDomain& domain() const { return domain_; }
 
   std::vector<std::string> ctl(const std::vector<std::string>& arguments) const {
-    std::vector<std::string> command = {cohort_program(), "ctl", "--domain", domain_.text()};
+    std::vector<std::string> command = {cohort_program(), "ctl",       "--domain",
+                                        domain_.text(),   "--timeout", patience_in_seconds};
     command.insert(command.end(), arguments.begin(), arguments.end());
     return command;
   }

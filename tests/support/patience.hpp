@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 #include <thread>
 
 namespace cohort::test {
@@ -8,6 +9,9 @@ namespace cohort::test {
 /// How long a test waits for something that should happen before it fails: long, since it is never waited for in vain,
 /// and shorter than ctest waits for the test (COHORT_TEST_TIMEOUT).
 inline constexpr std::chrono::seconds patience{COHORT_TEST_PATIENCE};
+
+/// For commands that are told how long to wait.
+inline const std::string patience_in_seconds = std::to_string(patience.count());
 
 /// Polls until `condition` holds; false if it does not within `at_most`.
 template <class Condition>

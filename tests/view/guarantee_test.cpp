@@ -19,7 +19,10 @@ class ObserversNeverCount : public InABrowser {
     View view({"--domain", domain.text(), "--control"});
     Process browser = start_script("browser.mjs", {scenario, view.address()});
     ASSERT_TRUE(browser.wait_for_output("looking")) << browser.output();
-    ASSERT_EQ(run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "resume"}).exit_code, 0);
+    ASSERT_EQ(
+        run_to_end({cohort_program(), "ctl", "--domain", domain.text(), "--timeout", patience_in_seconds, "resume"})
+            .exit_code,
+        0);
     if (is_killed) {
       ASSERT_TRUE(browser.wait_for_output("seen")) << browser.output();
       browser.signal(SIGKILL);

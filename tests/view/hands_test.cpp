@@ -43,7 +43,7 @@ teams:
     return {cohort_program(), "run", scratch / "experiment.yaml", "--domain", domain.text()};
   }
   std::vector<std::string> ctl(const std::string& command) const {
-    return {cohort_program(), "ctl", "--domain", domain.text(), command};
+    return {cohort_program(), "ctl", "--domain", domain.text(), "--timeout", patience_in_seconds, command};
   }
   nlohmann::json status() const {
     auto command = ctl("status");

@@ -219,6 +219,16 @@ bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
   return members[member].is_finite = is_sensible(equations.velocity(), equations.size());
 }
 
+bool Assembly::is_in_flight(std::uint32_t index) {
+  const Multibody& multibody = *members[index].multibody;
+  if (!multibody.mechanism().has_free_root() || multibody.mechanism().is_free_body()) return false;
+  bool is_held = false;
+  for (const TrackRows& treel : multibody.treels()) treel.for_each_ground([&](std::uint32_t) { is_held = true; });
+  connections.for_each_of(index, [&](const Connection&) { is_held = true; });
+  for_each_pair(index, [&](const SolidPair&) { is_held = true; });
+  return !is_held;
+}
+
 // A body that another one has just hit may be much faster than at the beginning of the step, from which it was foreseen
 // what it would touch. It waits before what stands in its way, and touches it in the next step.
 void Assembly::keep_from_passing_through(Member& member) {
@@ -240,9 +250,13 @@ void Assembly::integrate(std::uint32_t index, const Problem& problem) {
   Multibody& multibody = *member.multibody;
   for (TrackRows& treel : multibody.treels()) treel.read_rows(problem, step);
   if (member.record) member.record->begin(multibody);
-  multibody.integrate(problem.equations(anchors.index_of_member[index]).velocity(), step);
+  const Equations& equations = problem.equations(anchors.index_of_member[index]);
+  if (problem.body_count() == 1 && is_in_flight(index))
+    multibody.fly(equations.velocity(), equations.pushed().linear, equations.pushed().angular, gravity, step);
+  else
+    multibody.integrate(equations.velocity(), step);
   keep_from_passing_through(member);
-  if (member.record) member.record->finish(multibody, gravity, step);
+  if (member.record) member.record->finish(multibody, equations.velocity(), gravity, step);
   const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
   member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest_from_origin;
   place_solids_of(member);

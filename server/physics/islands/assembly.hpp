@@ -131,6 +131,8 @@ struct Assembly {
 
   /// Whether its velocities are such that the step may go on; the member is told.
   bool check(std::uint32_t member, const IslandBodies& bodies);
+  /// Whether nothing but itself, gravity and pushes acts on the member.
+  bool is_in_flight(std::uint32_t index);
   /// Moves the body by the velocities found. `problem`: the one that has its own rows.
   void integrate(std::uint32_t index, const Problem& problem);
 

@@ -22,10 +22,10 @@ void ForceRecord::begin(const Multibody& body) {
   reference_W_ = body.reference();
 }
 
-void ForceRecord::finish(const Multibody& body, const Vector3d& gravity, double step) {
+void ForceRecord::finish(const Multibody& body, const double* velocities, const Vector3d& gravity, double step) {
   step_ = step;
   motion_.after(body, parents_.size());
-  find_accelerations(body, step);
+  find_accelerations(velocities, step);
   needed_.resize(parents_.size());
   for (std::size_t link = 0; link < parents_.size(); ++link) {
     const description::Inertial& inertial = mechanism_.model().links[link].inertial;
@@ -46,13 +46,13 @@ void ForceRecord::finish(const Multibody& body, const Vector3d& gravity, double 
 }
 
 // From the root to the leaves, of the segments' origins (Craig, "Introduction to robotics", section 6.5).
-void ForceRecord::find_accelerations(const Multibody& body, double step) {
+void ForceRecord::find_accelerations(const double* velocities, double step) {
   segments_.resize(X_WS_.size());
   const Vector3d zero = Vector3d::Zero();
   for (std::size_t s = 0; s < X_WS_.size(); ++s) {
     const Segment& segment = mechanism_.segments()[s];
     const double* before = velocities_.data() + segment.first_dof;
-    const double* after = body.velocities() + segment.first_dof;
+    const double* after = velocities + segment.first_dof;
     const auto velocity = [&](int i) { return Vector3d(before[i], before[i + 1], before[i + 2]); };
     const auto acceleration = [&](int i) -> Vector3d {
       return (Vector3d(after[i], after[i + 1], after[i + 2]) - velocity(i)) / step;

@@ -22,7 +22,8 @@ class ForceRecord {
 
   /// Call these two around the integration of a step.
   void begin(const Multibody& body);
-  void finish(const Multibody& body, const Eigen::Vector3d& gravity, double step);
+  /// `velocities`: those that the solver found.
+  void finish(const Multibody& body, const double* velocities, const Eigen::Vector3d& gravity, double step);
   /// What acted from outside on a link during the step that was finished, as an impulse at a point and an angular
   /// impulse [N s, N m s]; nothing if there is no such step.
   void add_outside(std::size_t link, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
@@ -42,7 +43,7 @@ class ForceRecord {
     Eigen::Vector3d angular_acceleration_W;
     Eigen::Vector3d acceleration_W;  // of the segment's origin
   };
-  void find_accelerations(const Multibody& body, double step);
+  void find_accelerations(const double* velocities, double step);
 
   const Mechanism& mechanism_;
   std::uint32_t first_solid_;

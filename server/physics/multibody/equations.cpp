@@ -17,6 +17,7 @@ void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, do
   size_ = mechanism_->dof_count();
   stride_ = mechanism_->stride();
   velocity_.assign(at(stride_), 0.0);
+  pushed_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   find_joint_axes(body, axes_);
   find_efforts(step);
   body.bullet() != nullptr ? solve_by_bullet(gravity, step) : solve_by_mass_matrix(gravity, step);
@@ -112,6 +113,8 @@ void Equations::push(int segment, const Eigen::Vector3d& point_W, const Eigen::V
   add_torque(segment, angular_impulse_W, generalised.data());
   respond(generalised.data(), response.data());
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += response[at(i)];
+  pushed_.angular += angular_impulse_W + (point_W - body_->reference()).cross(impulse_W);
+  pushed_.linear += impulse_W;
 }
 
 void Equations::push_dof(int dof, double impulse) {

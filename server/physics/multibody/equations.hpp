@@ -36,7 +36,9 @@ class Equations {
   /// Changes the velocities by an impulse at `point_W` of a segment and an angular impulse on it [N s, N m s].
   void push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
             const Eigen::Vector3d& angular_impulse_W);
-  /// The same by an impulse along one dof of a joint.
+  /// What such pushes add up to, since `set_up`: their impulse, and its moment about the body's reference.
+  const Spatial& pushed() const { return pushed_; }
+  /// Changes the velocities by an impulse along one dof of a joint.
   void push_dof(int dof, double impulse);
   /// `response`: the change of the velocities by the generalised impulse `jacobian`.
   void respond(const double* jacobian, double* response) const;
@@ -59,6 +61,7 @@ class Equations {
   bool is_inverted_ = false;     // whether inverse_ is of this body
   std::vector<double> velocity_;
   std::vector<double> response_;
+  Spatial pushed_;
 };
 
 }  // namespace cohort::physics

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "server/physics/multibody/rotation.hpp"
+#include "server/physics/multibody/whole_body.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -255,23 +256,13 @@ void Multibody::turn_freely(double step) {
   std::copy_n(new_angular_W.data(), 3, state_.velocities());
 }
 
-void Multibody::integrate(const double* velocities, double step) {
-  std::copy_n(velocities, mechanism_->dof_count(), state_.velocities());
-  last_step_ = step;
+void Multibody::move_joints(double step) {
   for (const Segment& segment : mechanism_->segments()) {
     const double* v = state_.velocities() + segment.first_dof;
     double* coordinates = state_.coordinates(segment.first_coordinate);
     switch (segment.motion) {
-      case Motion::anchored: break;
-      case Motion::free:
-        if (mechanism_->is_free_body()) {
-          turn_freely(step);
-        } else {
-          const Eigen::Quaterniond turn = rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]));
-          state_.set_root_rotation((turn * state_.root_rotation()).normalized());
-        }
-        state_.set_reference(reference() + step * Eigen::Vector3d(v[3], v[4], v[5]));
-        break;
+      case Motion::anchored:
+      case Motion::free: break;
       case Motion::revolute:
       case Motion::prismatic: coordinates[0] += step * v[0]; break;
       case Motion::ball: {
@@ -282,7 +273,57 @@ void Multibody::integrate(const double* velocities, double step) {
       }
     }
   }
+}
+
+void Multibody::integrate(const double* velocities, double step) {
+  std::copy_n(velocities, mechanism_->dof_count(), state_.velocities());
+  last_step_ = step;
+  move_joints(step);
+  if (mechanism_->has_free_root()) {
+    const double* v = state_.velocities();
+    if (mechanism_->is_free_body()) {
+      turn_freely(step);
+    } else {
+      const Eigen::Quaterniond turn = rotation_by(step * Eigen::Vector3d(v[0], v[1], v[2]));
+      state_.set_root_rotation((turn * state_.root_rotation()).normalized());
+    }
+    state_.set_reference(reference() + step * Eigen::Vector3d(v[3], v[4], v[5]));
+  }
   update_poses();
+}
+
+// Keeps the momentum of the whole body as it is but for what comes from outside: the root turns and moves as the joints
+// leave it to. The angular velocity of the middle of the step turns it, as in turn_freely. With the velocities that the
+// equations foresee from the beginning of a step, a wheel that spins would make its hull swing further and further.
+void Multibody::fly(const double* velocities, const Eigen::Vector3d& impulse_W,
+                    const Eigen::Vector3d& angular_impulse_W, const Eigen::Vector3d& gravity, double step) {
+  double* const v = state_.velocities();
+  Eigen::Map<Eigen::Vector3d> angular_W(v);
+  Eigen::Map<Eigen::Vector3d> linear_W(v + 3);
+  const WholeBody before(*this);
+  const Eigen::Vector3d arm_W = before.centre_W - reference();
+  const Eigen::Vector3d momentum_W =
+      before.inertia_W * angular_W + before.joints_angular_momentum_W + angular_impulse_W - arm_W.cross(impulse_W);
+  const Eigen::Vector3d velocity_W = linear_W + angular_W.cross(arm_W) + step * gravity +
+                                     (before.joints_momentum_W + impulse_W) / before.mass;  // of the centre
+
+  std::copy_n(velocities, mechanism_->dof_count(), v);
+  last_step_ = step;
+  const Eigen::Quaterniond rotation = state_.root_rotation();
+  const auto turn_by = [&](const Eigen::Vector3d& turn) {
+    state_.set_root_rotation((rotation_by(turn) * rotation).normalized());
+    update_poses();
+  };
+  angular_W = WholeBody(*this).angular_velocity_at(momentum_W);
+  move_joints(0.5 * step);
+  turn_by(0.5 * step * angular_W);
+  angular_W = WholeBody(*this).angular_velocity_at(momentum_W);
+  move_joints(0.5 * step);
+  turn_by(step * angular_W);
+  const WholeBody after(*this);
+  angular_W = after.angular_velocity_at(momentum_W);
+  linear_W = velocity_W - after.joints_momentum_W / after.mass - angular_W.cross(after.centre_W - reference());
+  move(before.centre_W + step * velocity_W - after.centre_W);
 }
 
 }  // namespace cohort::physics

@@ -75,6 +75,10 @@ class Multibody {
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
   /// Takes the velocities that the solver found and moves the body by them.
   void integrate(const double* velocities, double step);
+  /// The same of a body of several segments that touches nothing, which gravity [m/s^2] and an impulse from outside [N
+  /// s] alone change as a whole, with the moment that it has about the reference [N m s].
+  void fly(const double* velocities, const Eigen::Vector3d& impulse_W, const Eigen::Vector3d& angular_impulse_W,
+           const Eigen::Vector3d& gravity, double step);
   /// Puts a body whose root is free elsewhere, as it is and moves.
   void move(const Eigen::Vector3d& way_W) {
     state_.set_reference(reference() + way_W);
@@ -103,6 +107,7 @@ class Multibody {
     int wheels = -1;
   };
 
+  void move_joints(double step);
   void turn_freely(double step);
   void build_devices();
   void add_drive(std::size_t device, const description::TreelDrive& drive);

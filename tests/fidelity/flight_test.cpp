@@ -1,0 +1,120 @@
+// Bodies of several links that nothing holds.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/physics.hpp"
+
+namespace cohort::test {
+namespace {
+
+using description::Box;
+using description::JointType;
+using Eigen::Vector3d;
+
+class Flight : public EveryPhysics {
+ protected:
+  description::World space() const {
+    description::World world = empty_world();
+    world.physics = GetParam().world().physics;
+    world.gravity.setZero();
+    return world;
+  }
+  // Two links: a hull, and one on a hinge with this axis.
+  static description::Model hinged(const description::Inertial& hull, const description::Inertial& other,
+                                   const Vector3d& place, const Vector3d& axis) {
+    description::Model model;
+    model.name = "hinged";
+    model.links.push_back({"hull", {}, hull, {}});
+    model.links.push_back({"other", {place}, other, {}});
+    description::Joint& hinge = model.joints.emplace_back();
+    hinge.name = "hinge";
+    hinge.type = JointType::revolute;
+    hinge.child = 1;
+    hinge.axis.direction = axis;
+    return model;
+  }
+  // Of all links about the origin.
+  struct Whole {
+    double energy = 0.0;
+    Vector3d momentum = Vector3d::Zero();
+    Vector3d angular_momentum = Vector3d::Zero();
+  };
+  static Whole whole(SmallWorld& small, std::uint32_t body) {
+    Whole sum;
+    const description::Model& model = small.description.models[small.world().model_of(body)];
+    for (std::size_t link = 0; link < model.links.size(); ++link) {
+      const Pose X_WL = small.world().link_pose(body, link);
+      const physics::Twist twist = small.world().link_twist(body, link);
+      const description::Inertial& inertial = model.links[link].inertial;
+      const Vector3d arm = X_WL.orientation * inertial.X_LI.position;
+      const Vector3d v = twist.linear_W + twist.angular_W.cross(arm);
+      const Eigen::Matrix3d R = (X_WL.orientation * inertial.X_LI.orientation).toRotationMatrix();
+      const Vector3d spin = R * inertial.inertia * R.transpose() * twist.angular_W;
+      sum.energy += 0.5 * inertial.mass * v.squaredNorm() + 0.5 * spin.dot(twist.angular_W);
+      sum.momentum += inertial.mass * v;
+      sum.angular_momentum += spin + inertial.mass * (X_WL.position + arm).cross(v);
+    }
+    return sum;
+  }
+  static void expect_kept(SmallWorld& small, std::uint32_t body, double share_of_energy) {
+    const Whole before = whole(small, body);
+    double least = before.energy;
+    double most = before.energy;
+    for (int second = 0; second < 60; ++second) {
+      small.run(1.0);
+      least = std::min(least, whole(small, body).energy);
+      most = std::max(most, whole(small, body).energy);
+    }
+    const Whole after = whole(small, body);
+    EXPECT_GT(least, (1.0 - share_of_energy) * before.energy);
+    EXPECT_LT(most, (1.0 + share_of_energy) * before.energy);
+    EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 1e-9 * before.angular_momentum.norm());
+    EXPECT_LT((after.momentum - before.momentum).norm(), 1e-9);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Every, Flight, ::testing::Values(treel, by_bullet(treel)), name_of);
+
+TEST_P(Flight, AHullWithAWheelThatSpinsKeepsItsEnergy) {
+  SmallWorld small(space());
+  const auto body = small.add(hinged(solid_box(1.0, {0.3, 0.2, 0.1}), description::solid_cylinder(0.2, 0.05, 0.02, 0.0),
+                                     {0.05, 0.02, 0.1}, Vector3d::UnitZ()),
+                              at(0, 0, 0));
+  small.world().set_root_twist(body, {Vector3d(0.5, 0.2, 0.1), Vector3d(0.1, 0, 0)});
+  const double angle[] = {0.0};
+  const double speed[] = {100.0};
+  small.world().set_joint_state(body, 0, angle, speed);
+  expect_kept(small, body, 0.01);
+}
+
+// Its motor holds it where it is.
+TEST_P(Flight, ATumblingBoxWithALinkOnAMotorKeepsItsEnergy) {
+  SmallWorld small(space());
+  const Vector3d size(0.3, 0.2, 0.1);
+  description::Inertial arm = solid_box(0.05, {0.1, 0.02, 0.02});
+  arm.X_LI.position.x() = 0.05;
+  description::Model model = hinged(solid_box(1.0, size), arm, {0.15, 0, 0}, Vector3d::UnitY());
+  model.devices.emplace_back(description::VelocityMotor{"motor", 0, 1.0, 10.0, 0.0});
+  const auto body = small.add(model, at(0, 0, 0));
+  small.world().set_root_twist(body, {Vector3d(0.1, 8.0, 0.1), Vector3d::Zero()});
+  expect_kept(small, body, 0.01);
+}
+
+// As it falls, and when someone pushes it: what comes from outside changes the momentum of the whole, and only that.
+TEST_P(Flight, PushesAndGravityChangeTheMomentumOfTheWhole) {
+  SmallWorld small(space());
+  small.description.gravity = {0, 0, -9.81};
+  const auto body = small.add(hinged(solid_box(1.0, {0.3, 0.2, 0.1}), description::solid_cylinder(0.2, 0.05, 0.02, 0.0),
+                                     {0.05, 0.02, 0.1}, Vector3d::UnitZ()),
+                              at(0, 0, 0));
+  const double angle[] = {0.0};
+  const double speed[] = {50.0};
+  small.world().set_joint_state(body, 0, angle, speed);
+  const Whole before = whole(small, body);
+  small.world().push_body(body, 0, {Vector3d(3, 0, 0), Vector3d(0, 0.2, 0)});
+  small.world().step();
+  const Whole after = whole(small, body);
+  EXPECT_LT((after.momentum - before.momentum - Vector3d(0.03, 0, -0.01 * 1.2 * 9.81)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace cohort::test

@@ -188,6 +188,42 @@ TEST_P(FirstWeek, ACylinderTipsWhereItsCentreLeavesItsRim) {
   }
 }
 
+// Tracks on what their material hardly grips, whatever their own coefficient says.
+TEST_P(FirstWeek, TracksHoldOnToMaterialsAsTheirPairSays) {
+  for (const Physics& physics : {GetParam(), planar}) {
+    SCOPED_TRACE(physics.name());
+    SmallWorld small(physics.world());
+    small.description.materials = {"", "ice", "rubber"};
+    small.description.material_pairs = {{2, 1, 0.05, 0.0, 0.0}};
+    small.description.models[0].links[0].collisions[0].surface.material = 1;
+    description::Model robot = physics.robot();
+    const auto slippery = small.add(robot, at(0, 1, 0));
+    for (description::Link& link : robot.links)
+      for (description::Collision& collision : link.collisions) collision.surface.material = 2;
+    const auto on_rubber = small.add(robot, at(0, 0, 0));
+    for (const std::uint32_t body : {slippery, on_rubber}) small.drive(body, 0.2, 0.2);
+    small.run(0.2);
+    EXPECT_NEAR(small.velocity(slippery).x(), 0.2, 0.01) << "no pair of its material";
+    EXPECT_NEAR(small.velocity(on_rubber).x(), 0.05 * 9.81 * 0.2, 0.01);
+  }
+}
+
+// What touches at rest has no gap between, whatever it is: from hulls, boxes and meshes to planes.
+TEST_P(FirstWeek, HullsTouchWhatTheyLieOn) {
+  const Vector3d size(0.2, 0.2, 0.1);
+  description::Mesh surface = box_mesh({1.0, 1.0, 0.1});
+  surface.convex = false;
+  const std::vector<description::Shape> tables{Box{{1.0, 1.0, 0.1}}, box_mesh({1.0, 1.0, 0.1}), surface};
+  for (std::size_t table = 0; table < tables.size(); ++table) {
+    SCOPED_TRACE("table " + std::to_string(table));
+    SmallWorld small(GetParam().world());
+    small.add(static_shape("table", tables[table]), at(0, 0, 0.05));
+    const auto hull = small.add(loose("hull", box_mesh(size), solid_box(1.0, size)), at(0, 0, 0.155));
+    small.run(5.0);
+    EXPECT_NEAR(small.position(hull).z(), 0.15, 5e-5);
+  }
+}
+
 // A world in which robots grip and let go for days keeps what holds, and nothing else.
 TEST_P(FirstWeek, GripsThatWereReleasedLeaveNothingBehind) {
   SmallWorld small(GetParam().world());

@@ -186,7 +186,7 @@ void Assembly::look_around(const Member& member, double furthest, std::vector<st
     candidates.clear();
     for (const std::uint32_t solid : near)
       if (scene.solid(solid).body != member.body && scene.reaches_into(solid, region)) candidates.push_back(solid);
-    treel.find_ground(scene, X_WS, candidates);
+    treel.find_ground(scene, surfaces, X_WS, candidates);
   }
 }
 

@@ -22,32 +22,6 @@ Tangents tangents_of(const Eigen::Vector3d& normal) {
 
 }  // namespace
 
-SurfacePairs::SurfacePairs(const description::World& world)
-    : materials_(world.materials.size()), pairs_(materials_ * materials_), is_given_(materials_ * materials_, 0) {
-  for (const description::MaterialPair& pair : world.material_pairs) {
-    for (const std::size_t index : {pair.first * materials_ + pair.second, pair.second * materials_ + pair.first}) {
-      pairs_[index] = {pair.friction, pair.restitution, pair.rolling_resistance};
-      is_given_[index] = 1;
-    }
-  }
-}
-
-namespace {
-
-SurfacePair of_coefficients(const description::Surface& a, const description::Surface& b) {
-  return {std::min(a.friction, b.friction), std::max(a.restitution, b.restitution),
-          std::max(a.rolling_resistance, b.rolling_resistance)};
-}
-
-}  // namespace
-
-SurfacePair SurfacePairs::of(const description::Surface& a, const description::Surface& b) const {
-  if (a.material >= materials_ || b.material >= materials_) return of_coefficients(a, b);  // came later
-  const std::size_t index = a.material * materials_ + b.material;
-  if (is_given_[index]) return pairs_[index];
-  return of_coefficients(a, b);
-}
-
 namespace {
 
 // Where friction starts from. Between two bodies at nothing: what a heap of bodies needed a step ago would rock it, as

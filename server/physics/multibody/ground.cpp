@@ -13,8 +13,7 @@ std::optional<Ground> GroundFinder::below(const Eigen::Vector3d& point_W) const 
   if (!hit || hit->distance == 0.0) return std::nullopt;
   const double faces_up = up_W_.dot(hit->normal_W);
   if (faces_up < steepest) return std::nullopt;
-  return Ground{hit->solid, (hit->distance - climb_) * faces_up, hit->normal_W,
-                scene_.solid(hit->solid).surface.friction};
+  return Ground{hit->solid, (hit->distance - climb_) * faces_up, hit->normal_W};
 }
 
 }  // namespace cohort::physics

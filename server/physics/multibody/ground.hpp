@@ -12,7 +12,6 @@ struct Ground {
   std::uint32_t solid = 0;
   double gap = 0.0;  ///< from the surface to the point along the normal [m], negative: the point is below the surface
   Eigen::Vector3d normal_W = Eigen::Vector3d::Zero();
-  double friction = 0.0;
 };
 
 /// Finds the ground under points of one body, for as long as nothing moves. Any shape that a ray can hit can be ground,

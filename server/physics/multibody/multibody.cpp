@@ -56,7 +56,7 @@ void Multibody::add_drive(std::size_t device, const description::TreelDrive& dri
                                 "'");
   if (!mechanism_->has_wheels() || (drive.left_wheels.empty() && drive.right_wheels.empty())) {
     drives_[device].treel = static_cast<int>(treels_.size());
-    treels_.emplace_back(drive, mechanism_->link(drive.link).X_SL);
+    treels_.emplace_back(model, drive, mechanism_->link(drive.link).X_SL);
     return;
   }
   drives_[device].wheels = static_cast<int>(wheels_.size());

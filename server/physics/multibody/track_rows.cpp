@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/core/infinity.hpp"
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/world/corrections.hpp"
 
@@ -24,7 +25,8 @@ geometry::Bounds TrackRows::ground_region(const Pose& X_WS) const {
   return {centre_W - half_W, centre_W + half_W};
 }
 
-void TrackRows::find_ground(const geometry::Scene& scene, const Pose& X_WS, std::span<const std::uint32_t> candidates) {
+void TrackRows::find_ground(const geometry::Scene& scene, const SurfacePairs& surfaces, const Pose& X_WS,
+                            std::span<const std::uint32_t> candidates) {
   X_WL_ = X_WS * X_SL_;
   const Eigen::Matrix3d R = X_WL_.orientation.toRotationMatrix();
   const Eigen::Vector3d centre_W = X_WL_.position + drive_.ground_height * R.col(2);
@@ -39,6 +41,7 @@ void TrackRows::find_ground(const geometry::Scene& scene, const Pose& X_WS, std:
         point.ground = finder.below(point.position_W);
         if (point.ground) break;
       }
+      if (point.ground) point.friction = surfaces.of(surface_, scene.solid(point.ground->solid).surface).friction;
     }
   }
 }
@@ -66,7 +69,7 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
   const Anchor hull{index, 0};
   const int first = problem.row_count();
   std::array<int, 3> begin{first, first, first};  // of the normal rows of each side, and one past the last
-  std::array<double, 2> friction{drive_.friction, drive_.friction};
+  std::array<double, 2> friction{infinity, infinity};
   std::array<Anchor, 2> under;  // what each track stands on: of two things the one under its rear
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::size_t side = i / 2;
@@ -76,7 +79,7 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
     } else {
       const Ground& ground = *point.ground;
       under[side] = anchors.of(ground.solid);
-      friction[side] = std::min(friction[side], ground.friction);
+      friction[side] = std::min(friction[side], point.friction);
       Row& row = problem.add_force_row(hull, under[side], point.position_W, ground.normal_W, &point.impulse);
       row.target = separating_velocity(ground.gap, step);
       row.set_limits(0.0, unlimited);

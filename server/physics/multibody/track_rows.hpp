@@ -6,6 +6,7 @@
 #include "server/physics/multibody/ground.hpp"
 #include "server/physics/world/anchors.hpp"
 #include "server/physics/world/physics_world.hpp"
+#include "server/physics/world/surface_pairs.hpp"
 
 namespace cohort::physics {
 
@@ -18,7 +19,8 @@ class Problem;
 class TrackRows {
  public:
   /// `X_SL`: the drive's link in the root segment.
-  TrackRows(const description::TreelDrive& drive, const Pose& X_SL) : drive_(drive), X_SL_(X_SL) {}
+  TrackRows(const description::Model& model, const description::TreelDrive& drive, const Pose& X_SL)
+      : drive_(drive), surface_(surface_of_tracks(model, drive)), X_SL_(X_SL) {}
 
   void set_target(Side side, double velocity) { side_of(side).target = velocity; }
   const TrackState& track(Side side) const { return side_of(side).state; }
@@ -26,7 +28,8 @@ class TrackRows {
   /// Where the ground is looked for. `X_WS`: the root segment.
   geometry::Bounds ground_region(const Pose& X_WS) const;
   /// Looks for what each ground point stands on. `candidates`: the solids of other bodies in the ground region.
-  void find_ground(const geometry::Scene& scene, const Pose& X_WS, std::span<const std::uint32_t> candidates);
+  void find_ground(const geometry::Scene& scene, const SurfacePairs& surfaces, const Pose& X_WS,
+                   std::span<const std::uint32_t> candidates);
   /// Calls `visit(solid)` for what was found.
   template <class Visit>
   void for_each_ground(Visit&& visit) const {
@@ -70,6 +73,7 @@ class TrackRows {
     // Of this step:
     Eigen::Vector3d position_W = Eigen::Vector3d::Zero();
     std::optional<Ground> ground;
+    double friction = 0.0;  // against it
   };
   /// Directions on the ground in this step, those of a track that rolls forwards and to its left; zero if nothing is
   /// under the tracks.
@@ -87,6 +91,7 @@ class TrackRows {
   double y_of(Side side) const { return side == Side::left ? drive_.half_gauge : -drive_.half_gauge; }
 
   description::TreelDrive drive_;
+  description::Surface surface_;
   Pose X_SL_;
   std::array<Track, 2> tracks_;
   std::array<Point, 4> points_;  // left front, left rear, right front, right rear

@@ -187,9 +187,10 @@ void PlanarWorld::put_on_ground(std::uint32_t index) {
   member.has_ground = true;
   const description::Surface& under = scene_.solid(ground).surface;
   if (const description::TreelDrive* drive = model.drive()) {
+    const description::Surface tracks = surface_of_tracks(model.mechanism().model(), *drive);
     const Mechanism::LinkPlace& place = model.mechanism().link(drive->link);
     grounds_[index] = PlanarGround(*drive, planar_.segment_in_body(index, place.segment) * place.X_SL,
-                                   std::min(drive->friction, under.friction), weight, planar_.inertia(index), step_);
+                                   surfaces_.of(tracks, under).friction, weight, planar_.inertia(index), step_);
   } else if (lowest != parts.end()) {
     const SurfacePair surfaces = surfaces_.of(scene_.solid(lowest->solid).surface, under);
     grounds_[index] =

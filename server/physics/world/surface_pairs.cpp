@@ -1,0 +1,43 @@
+#include "server/physics/world/surface_pairs.hpp"
+
+#include <algorithm>
+
+namespace cohort::physics {
+
+SurfacePairs::SurfacePairs(const description::World& world)
+    : materials_(world.materials.size()), pairs_(materials_ * materials_), is_given_(materials_ * materials_, 0) {
+  for (const description::MaterialPair& pair : world.material_pairs) {
+    for (const std::size_t index : {pair.first * materials_ + pair.second, pair.second * materials_ + pair.first}) {
+      pairs_[index] = {pair.friction, pair.restitution, pair.rolling_resistance};
+      is_given_[index] = 1;
+    }
+  }
+}
+
+namespace {
+
+SurfacePair of_coefficients(const description::Surface& a, const description::Surface& b) {
+  return {std::min(a.friction, b.friction), std::max(a.restitution, b.restitution),
+          std::max(a.rolling_resistance, b.rolling_resistance)};
+}
+
+}  // namespace
+
+SurfacePair SurfacePairs::of(const description::Surface& a, const description::Surface& b) const {
+  if (a.material >= materials_ || b.material >= materials_) return of_coefficients(a, b);  // came later
+  const std::size_t index = a.material * materials_ + b.material;
+  if (is_given_[index]) return pairs_[index];
+  return of_coefficients(a, b);
+}
+
+description::Surface surface_of_tracks(const description::Model& model, const description::TreelDrive& drive) {
+  std::size_t link = drive.link;
+  for (const std::vector<std::size_t>* wheels : {&drive.right_wheels, &drive.left_wheels})
+    if (!wheels->empty()) link = model.joints[wheels->front()].child;
+  description::Surface surface;
+  if (!model.links[link].collisions.empty()) surface.material = model.links[link].collisions.front().surface.material;
+  surface.friction = drive.friction;
+  return surface;
+}
+
+}  // namespace cohort::physics

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "server/description/world.hpp"
+
+namespace cohort::physics {
+
+/// What two surfaces do to each other.
+struct SurfacePair {
+  double friction = 0.0;
+  double restitution = 0.0;
+  double rolling_resistance = 0.0;  ///< [m]
+};
+
+/// Combines surfaces, with the world's pairs of materials before the rule for the rest.
+class SurfacePairs {
+ public:
+  explicit SurfacePairs(const description::World& world);
+  SurfacePair of(const description::Surface& a, const description::Surface& b) const;
+
+ private:
+  std::size_t materials_;
+  std::vector<SurfacePair> pairs_;  // materials_ x materials_
+  std::vector<char> is_given_;
+};
+
+/// Tracks are made of what the first wheel that they stand for is made of or, if they name none, their link: the first
+/// collision of it says so.
+description::Surface surface_of_tracks(const description::Model& model, const description::TreelDrive& drive);
+
+}  // namespace cohort::physics

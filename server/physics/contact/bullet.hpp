@@ -9,7 +9,6 @@
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
-#include <BulletDynamics/MLCPSolvers/btDantzigLCP.h>
 #include <LinearMath/btConvexHullComputer.h>
 #include <btBulletCollisionCommon.h>
 #pragma GCC diagnostic pop

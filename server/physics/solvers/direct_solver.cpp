@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/physics/contact/bullet.hpp"
+#include "server/physics/solvers/linear_complementarity.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -14,18 +14,20 @@ class DirectSolver {
 
   bool run() {
     gather();
-    set_limits();
+    set_limits(1.0);
     for (int solution = 0; solution < most_solutions; ++solution) {
-      if (!solve()) return false;
-      if (set_limits()) break;
+      if (!complementarity_.solve(gains_, wanted_, lower_, upper_, impulses_)) return false;
+      if (set_limits(solution < undamped_solutions ? 1.0 : 0.5)) break;
     }
     apply();
     return true;
   }
 
  private:
-  // Solutions after the first, each with the friction limits that follow from the normal impulses of the one before.
-  static constexpr int most_solutions = 8;
+  // Solutions, each with the friction limits that follow from the normal impulses of the one before: after the first
+  // few, which may go to and fro, half way to them.
+  static constexpr int undamped_solutions = 8;
+  static constexpr int most_solutions = 64;
   static constexpr double limit_tolerance = 1e-9;  // [N s or N m s]
   // Each row gives way by this share of its own response, or redundant rows would have no solution.
   static constexpr double give = 1e-6;
@@ -65,8 +67,8 @@ class DirectSolver {
     }
   }
 
-  // From the impulses as they are. False if that moved a limit.
-  bool set_limits() {
+  // By this share of the way to what follows from the impulses as they are. False if that moved a limit.
+  bool set_limits(double share) {
     bool hold = true;
     for (int i = 0; i < count_; ++i) {
       const Row& row = row_at(i);
@@ -82,24 +84,11 @@ class DirectSolver {
         for (int k = row.load_begin; k < row.load_end; ++k) load += impulses_[index(k)];
         const double limit = std::max(0.0, std::min(row.cap, row.friction * load));
         if (std::abs(limit - upper) > limit_tolerance) hold = false;
-        lower = -limit;
-        upper = limit;
+        upper += share * (limit - upper);
+        lower = -upper;
       }
     }
     return hold;
-  }
-
-  // The algorithm spoils what it is given.
-  bool solve() {
-    std::vector<double> gains = gains_;
-    std::vector<double> right = wanted_;
-    std::vector<double> lower = lower_;
-    std::vector<double> upper = upper_;
-    std::vector<double> remainder(size_);
-    std::vector<int> no_friction(size_, -1);
-    btDantzigScratchMemory scratch;
-    return btSolveDantzigLCP(count_, gains.data(), impulses_.data(), right.data(), remainder.data(), 0, lower.data(),
-                             upper.data(), no_friction.data(), scratch);
   }
 
   void apply() {
@@ -122,6 +111,7 @@ class DirectSolver {
   std::vector<double> impulses_;
   std::vector<double> lower_;
   std::vector<double> upper_;
+  LinearComplementarity complementarity_;
 };
 
 }  // namespace

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace cohort::physics {
+
+/// Finds x between `lower` and `upper` so that each row of A x - b is zero where x is between its limits, not negative
+/// where it is at the lower and not positive where it is at the upper one: Dantzig's algorithm (Baraff, "Fast contact
+/// force computation for nonpenetrating rigid bodies", SIGGRAPH 1994). One after the other, each row is driven to where
+/// it may be, and those before it are kept where they may be. The rows in between are kept factorised (Cholesky) as
+/// they come and go. The cost grows with the third power of the number of rows.
+///
+/// Keeps its memory. Nothing is shared between objects.
+class LinearComplementarity {
+ public:
+  /// `matrix`: symmetric and positive definite, row by row. Limits may be infinite; lower <= 0 <= upper. `x`: the
+  /// result. False if no solution is found: the matrix is not definite.
+  bool solve(std::span<const double> matrix, std::span<const double> b, std::span<const double> lower,
+             std::span<const double> upper, std::span<double> x);
+
+ private:
+  enum class Place : unsigned char { later, between, lower, upper };
+
+  bool drive(std::size_t row);
+  void find_directions(std::size_t row, double sense);
+  bool insert(std::size_t row);
+  void remove(std::size_t position);
+  double at(std::size_t row, std::size_t column) const { return matrix_[row * size_ + column]; }
+  double& factor(std::size_t row, std::size_t column) { return factors_[row * size_ + column]; }
+
+  std::size_t size_ = 0;
+  std::span<const double> matrix_;
+  std::span<const double> lower_;
+  std::span<const double> upper_;
+  std::span<double> x_;
+  std::vector<double> excess_;            // A x - b, by row
+  std::vector<Place> places_;             // by row
+  std::vector<std::size_t> between_;      // rows, in the order of the factors
+  std::vector<double> factors_;           // the lower triangle, by position in between_
+  std::vector<double> change_of_x_;       // by position in between_, for a unit change of the row that is driven
+  std::vector<double> change_of_excess_;  // by row
+  std::size_t moves_left_ = 0;
+};
+
+}  // namespace cohort::physics

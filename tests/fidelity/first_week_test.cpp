@@ -35,13 +35,41 @@ class FirstWeek : public EveryPhysics {
 INSTANTIATE_TEST_SUITE_P(Every, FirstWeek, ::testing::Values(treel, by_bullet(treel)), name_of);
 
 TEST_P(FirstWeek, StacksStand) {
-  for (const std::size_t count : {10, 20}) {
+  for (const std::size_t count : {10, 20, 40}) {
     SCOPED_TRACE(std::to_string(count) + " boxes");
     Stack stack(GetParam(), std::vector<double>(count, 1.0));
     const double top = stack.top();
     stack.small.run(30.0);
     EXPECT_LT(stack.furthest_aside(), 1e-3);
     EXPECT_NEAR(stack.top(), top, 2e-3);
+  }
+}
+
+// Rows of bricks, each a third of a brick aside, and rows that become shorter.
+TEST_P(FirstWeek, WallsAndPyramidsStand) {
+  const Vector3d brick(0.2, 0.1, 0.1);
+  struct Heap {
+    int rows;
+    bool is_pyramid;
+    double seconds;
+    double at_most;  // aside [m]
+  };
+  for (const Heap& heap : {Heap{7, true, 30.0, 1e-3}, Heap{5, false, 30.0, 1e-3}, Heap{10, false, 5.0, 0.05}}) {
+    SCOPED_TRACE((heap.is_pyramid ? "pyramid of " : "wall of ") + std::to_string(heap.rows) + " rows");
+    SmallWorld small(GetParam().world());
+    std::vector<std::pair<std::uint32_t, Vector3d>> bricks;
+    for (int row = 0; row < heap.rows; ++row)
+      for (int i = 0; i < (heap.is_pyramid ? heap.rows - row : heap.rows); ++i) {
+        const double x = heap.is_pyramid ? 0.22 * (i + 0.5 * row) : 0.2 * i + 0.06 * (row % 2);
+        const Vector3d place(x, 0, 0.05 + 0.1 * row);
+        bricks.emplace_back(small.add(loose("brick", Box{brick}, solid_box(2.0, brick)), {place}), place);
+      }
+    small.run(heap.seconds);
+    for (const auto& [body, place] : bricks) {
+      const Vector3d way = small.position(body) - place;
+      EXPECT_LT(way.head<2>().norm(), heap.at_most);
+      EXPECT_NEAR(way.z(), 0.0, 5e-3);
+    }
   }
 }
 

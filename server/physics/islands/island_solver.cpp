@@ -13,10 +13,7 @@ namespace {
 // Where light links hold heavy bodies sequential impulses give way by millimetres. A few are solved exactly instead;
 // beyond, that takes too long.
 constexpr std::size_t most_solved_as_group = 6;
-// And more that only touch each other, if some are carried by others, as in a stack or between fingers, and the passes
-// end while rows still change by more than this [m/s or rad/s].
-constexpr std::size_t most_escalated = 24;
-constexpr double unsettled = 1e-4;
+constexpr double unsettled = 1e-4;  // [m/s or rad/s]
 
 // Whether nothing but other bodies that move keeps it where it is.
 bool is_carried(std::uint32_t member, const Assembly& assembly) {
@@ -29,6 +26,11 @@ bool is_carried(std::uint32_t member, const Assembly& assembly) {
 }
 
 }  // namespace
+
+bool is_unsettled_heap(double change, std::span<const std::uint32_t> members, const Assembly& assembly) {
+  return change > unsettled && members.size() > 1 &&
+         std::ranges::any_of(members, [&](std::uint32_t member) { return is_carried(member, assembly); });
+}
 
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies) {
   return settings.solver == description::Solver::direct ||
@@ -97,9 +99,7 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
   if (!is_solved) {
     const double share_of_last = has_connections ? start_of_connected : 1.0;
     const double change = solve_iteratively(problem_, assembly.settings.iterations, share_of_last);
-    if (!has_connections && change > unsettled && sound_.size() > 1 && sound_.size() <= most_escalated &&
-        std::ranges::any_of(sound_, [&](std::uint32_t member) { return is_carried(member, assembly); }))
-      escalate();
+    if (!has_connections && is_unsettled_heap(change, sound_, assembly)) settle(assembly.settings.iterations);
   }
   if (!all_are_finite()) return false;
 
@@ -108,10 +108,14 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
   return true;
 }
 
-void IslandSolver::escalate() {
+// All at once, if that is not too dear; by more passes otherwise.
+void IslandSolver::settle(std::uint32_t iterations) {
   SequentialImpulses impulses(problem_);
   impulses.take_back();
-  if (!group_solver_.solve(problem_)) impulses.put_in();
+  if (group_solver_.solve(problem_)) return;
+  impulses.put_in();
+  for (std::uint32_t i = 0; i < passes_of_heaps * iterations; ++i)
+    if (impulses.pass(i % 2 == 0) <= unsettled) return;
 }
 
 }  // namespace cohort::physics

@@ -16,13 +16,19 @@ class IslandSolver {
 
  private:
   bool try_to_solve(Assembly& assembly);
-  void escalate();
+  void settle(std::uint32_t iterations);
 
   IslandBodies bodies_;
   Problem problem_{bodies_};
   GroupSolver group_solver_;
   std::vector<std::uint32_t> sound_;  // members
 };
+
+/// Whether passes, the last of which changed a row's velocity by `change`, ended too early for bodies of which some are
+/// carried by others, as in a stack or between fingers: what is on top of them would wander off.
+bool is_unsettled_heap(double change, std::span<const std::uint32_t> members, const Assembly& assembly);
+/// Then so many times more passes are made, as long as they change anything.
+inline constexpr std::uint32_t passes_of_heaps = 4;
 
 /// Whether an island of so many bodies is solved by Dantzig's algorithm.
 bool is_solved_directly(const description::PhysicsSettings& settings, std::size_t bodies);

@@ -46,7 +46,12 @@ bool LargeIslandSolver::try_to_solve(Assembly& assembly) {
     assembly.connections.for_each_of(member, [&](const Connection&) { any = true; });
     return any;
   });
-  run_passes(assembly.settings.iterations, has_connections ? start_of_connected : 1.0);
+  const double share_of_last = has_connections ? start_of_connected : 1.0;
+  for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
+    for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(share_of_last); });
+  const double change = run_passes(assembly.settings.iterations);
+  if (!has_connections && is_unsettled_heap(change, sound_, assembly))
+    run_passes(passes_of_heaps * assembly.settings.iterations);
   if (!all_are_finite(assembly)) return false;
 
   for (std::size_t phase = 0; phase + 1 < phases_.size(); ++phase)
@@ -187,19 +192,19 @@ void LargeIslandSolver::for_each_share(std::size_t phase, Work&& work) {
   });
 }
 
-void LargeIslandSolver::run_passes(std::uint32_t iterations, double share_of_last) {
+double LargeIslandSolver::run_passes(std::uint32_t most) {
   const std::size_t phases = phases_.size() - 1;
-  for (std::size_t phase = 0; phase < phases; ++phase)
-    for_each_share(phase, [&](Share& share) { SequentialImpulses(share.problem).start(share_of_last); });
-  for (std::uint32_t i = 0; i < iterations; ++i) {
+  double greatest = 0.0;
+  for (std::uint32_t i = 0; i < most; ++i) {
     const bool forwards = i % 2 == 0;
     for (std::size_t phase = 0; phase < phases; ++phase)
       for_each_share(forwards ? phase : phases - 1 - phase,
                      [&](Share& share) { share.change = SequentialImpulses(share.problem).pass(forwards); });
-    double greatest = 0.0;
+    greatest = 0.0;
     for (std::size_t share = 0; share < phases_.back(); ++share) greatest = std::max(greatest, shares_[share].change);
-    if (greatest <= negligible_change) return;
+    if (greatest <= negligible_change) break;
   }
+  return greatest;
 }
 
 }  // namespace cohort::physics

@@ -63,7 +63,8 @@ class LargeIslandSolver {
   void colour_seams();
   void add_rows_of_seam(Assembly& assembly, const Seam& seam, Problem& problem);
   bool all_are_finite(Assembly& assembly);
-  void run_passes(std::uint32_t iterations, double share_of_last);
+  /// Returns the greatest change of a row's velocity by the last of them.
+  double run_passes(std::uint32_t most);
   template <class Work>
   void for_each_share(std::size_t phase, Work&& work);
 

@@ -43,22 +43,25 @@ std::vector<EngineKind> known_engines() {
         name, "", [=](const Scene& scene, unsigned threads) { return make_cohort_engine(scene, threads, dynamics); },
         [=](const Mechanism& mechanism) { return make_cohort_mechanism(mechanism, dynamics); }, limitation};
   };
-  std::vector<EngineKind> kinds = {ours("cohort", description::Dynamics::bullet, none),
-                                   ours("cohort-matrix", description::Dynamics::cohort, matrix_limitation),
-                                   {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
-                                   {"ode-quickstep", "libode-dev", {}, {}, none},
-                                   {"mujoco", "libmujoco-dev", {}, {}, mujoco_limitation},
-                                   {"enki", "libenki-dev", {}, {}, enki_limitation}};
+  std::vector<EngineKind> kinds = {
+      ours("cohort", description::Dynamics::bullet, none),
+      ours("cohort-matrix", description::Dynamics::cohort, matrix_limitation),
+      {"bullet", "libbullet-dev", [](const Scene& scene, unsigned) { return make_bullet_engine(scene); },
+       make_bullet_mechanism, bullet_limitation, bullet_version()},
+      {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
+      {"ode-quickstep", "libode-dev", {}, {}, none},
+      {"mujoco", "libmujoco-dev", {}, {}, mujoco_limitation},
+      {"enki", "libenki-dev", {}, {}, enki_limitation}};
   // The build defines each as true or false, and links the sources of those that are true.
   if constexpr (COHORT_BENCH_ODE) {
-    kinds[2].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
-    kinds[3].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
+    kinds[3].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
+    kinds[4].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
   }
   if constexpr (COHORT_BENCH_MUJOCO) {
-    kinds[4].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
-    kinds[4].make_mechanism = make_mujoco_mechanism;
+    kinds[5].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
+    kinds[5].make_mechanism = make_mujoco_mechanism;
   }
-  if constexpr (COHORT_BENCH_ENKI) kinds[5].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
+  if constexpr (COHORT_BENCH_ENKI) kinds[6].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
   return kinds;
 }
 

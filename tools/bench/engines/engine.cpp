@@ -9,7 +9,6 @@ namespace {
 
 using Limitation = std::optional<std::string>;
 
-constexpr std::size_t most_robots_in_mujoco = 512;
 constexpr std::size_t most_connected_in_world_step = 32;
 
 Limitation none(const Scene&) { return std::nullopt; }
@@ -22,13 +21,6 @@ Limitation matrix_limitation(const Scene& scene) {
 Limitation world_step_limitation(const Scene& scene) {
   if (scene.connected && scene.robots.size() > most_connected_in_world_step)
     return fmt::format("more than {} connected robots take it seconds a step", most_connected_in_world_step);
-  return std::nullopt;
-}
-
-Limitation mujoco_limitation(const Scene& scene) {
-  if (scene.robots.size() > most_robots_in_mujoco)
-    return fmt::format("its matrices are dense, and those of more than {} robots too large for it",
-                       most_robots_in_mujoco);
   return std::nullopt;
 }
 
@@ -50,9 +42,10 @@ std::vector<EngineKind> known_engines() {
        make_bullet_mechanism, bullet_limitation, bullet_version()},
       {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
       {"ode-quickstep", "libode-dev", {}, {}, none},
-      {"mujoco", "libmujoco-dev", {}, {}, mujoco_limitation},
+      {"mujoco", "libmujoco-dev", {}, {}, none},
       {"enki", "libenki-dev", {}, {}, enki_limitation}};
-  // The build defines each as true or false, and links the sources of those that are true.
+  // The build defines each as true or false, and links the sources of those
+  // that are true.
   if constexpr (COHORT_BENCH_ODE) {
     kinds[3].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
     kinds[4].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
@@ -60,6 +53,8 @@ std::vector<EngineKind> known_engines() {
   if constexpr (COHORT_BENCH_MUJOCO) {
     kinds[5].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
     kinds[5].make_mechanism = make_mujoco_mechanism;
+    kinds[5].limitation = mujoco_limitation;
+    kinds[5].version = mujoco_version();
   }
   if constexpr (COHORT_BENCH_ENKI) kinds[6].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
   return kinds;

@@ -20,6 +20,8 @@ std::unique_ptr<Engine> make_ode_engine(const Scene& scene, OdeStepper stepper);
 
 std::unique_ptr<Engine> make_mujoco_engine(const Scene& scene);
 std::unique_ptr<MechanismRun> make_mujoco_mechanism(const Mechanism& mechanism);
+std::optional<std::string> mujoco_limitation(const Scene& scene);
+std::string mujoco_version();
 
 std::unique_ptr<Engine> make_enki_engine(const Scene& scene);
 

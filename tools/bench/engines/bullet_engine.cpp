@@ -106,7 +106,7 @@ class BulletEngine final : public Engine {
         btVector3(robot_.turret.radius, robot_.turret.radius, 0.5 * robot_.turret.height));
   }
 
-  void set_up_wheel(btMultiBody& body, int link, double y) {
+  void set_up_wheel(btMultiBody& body, int link, double y) const {
     const double moment = 0.4 * robot_.wheel_mass * robot_.wheel_radius * robot_.wheel_radius;
     body.setupRevolute(link, robot_.wheel_mass, {moment, moment, moment}, -1, btQuaternion::getIdentity(), {0, 1, 0},
                        {0.0, y, robot_.wheel_radius - chassis_.z}, {0, 0, 0}, true);

@@ -73,7 +73,7 @@ class BulletMechanism final : public MechanismRun {
     std::vector<btVector3> angular(static_cast<std::size_t>(body_->getNumLinks()) + 1);
     std::vector<btVector3> linear(angular.size());
     body_->compTreeLinkVelocities(angular.data(), linear.data());
-    const auto at = static_cast<std::size_t>(link_of(body) + 1);
+    const std::size_t at = body_->getNumLinks() == 0 ? 0 : body + 1;
     return {in_world(body, angular[at]), in_world(body, linear[at])};
   }
 

@@ -67,7 +67,7 @@ class ModelText {
   }
 
  private:
-  // Four times what robots were seen to need; what MuJoCo takes by itself is 14 GB for 2000.
+  // Twice to four times what robots were seen to need; MuJoCo by itself asks for 14 GB for 2000 of them.
   void add_sparse_sizes() {
     const std::size_t robots = scene_.robots.size();
     fmt::format_to(out_, R"(<size memory="{}"/>)", 100 * robots * robots + 64'000 * robots + 1'000'000);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "tests/support/process.hpp"
 
@@ -28,7 +29,7 @@ Measured measure(std::vector<std::string> arguments) {
 }
 
 std::vector<std::string> known_engines() {
-  return {"cohort", "cohort-matrix", "ode-worldstep", "ode-quickstep", "mujoco", "enki"};
+  return {"cohort", "cohort-matrix", "bullet", "ode-worldstep", "ode-quickstep", "mujoco", "enki"};
 }
 
 // Each known engine is measured, left out of this scene, or missing in this build; measured ones are returned.
@@ -77,6 +78,31 @@ TEST(Bench, MeasuresEveryEngineThatIsThereOnTheSameCrowd) {
   }
 }
 
+TEST(Bench, RobotsThatBumpIntoEachOtherStayApartInEveryEngine) {
+  const Measured measured = measure({"--scene", "crowd_wheels", "--robots", "16", "--seconds", "1"});
+  for (const Json& engine : measured_engines(measured.json, measured.json["results"][0]))
+    EXPECT_LT(engine.value("deepest_overlap_m", 1.0), 0.01) << engine;
+}
+
+TEST(Bench, TellsTheVersionsOfEnginesThatSayThem) {
+  const Measured measured = measure({"--scene", "free", "--robots", "1", "--seconds", "0.1"});
+  const Json& versions = measured.json["engine_versions"];
+  EXPECT_TRUE(versions.contains("bullet")) << versions;
+  for (const Json& engine : measured.json["missing_engines"])
+    EXPECT_FALSE(versions.contains(engine.value("engine", ""))) << versions;
+  for (const auto& [engine, version] : versions.items())
+    EXPECT_NE(measured.ended.out.find(engine + " " + version.get<std::string>()), std::string::npos)
+        << measured.ended.out;
+}
+
+TEST(Bench, OnlyCohortHasThreads) {
+  const Measured measured =
+      measure({"--scene", "free", "--robots", "1", "--seconds", "0.1", "--engines", "bullet", "--threads", "2"});
+  const Json& engines = measured.json["results"][0]["engines"];
+  ASSERT_EQ(engines.size(), 1u) << engines;
+  EXPECT_EQ(engines[0].value("threads", 0), 1);
+}
+
 TEST(Bench, PrintsALineForEachEngineUnderOneHeading) {
   const Measured measured = measure({"--scene", "crowd", "--robots", "4", "--seconds", "0.1"});
   const std::vector<std::string> lines = lines_of(measured.ended.out);
@@ -119,7 +145,10 @@ TEST(Bench, TellsWhichEnginesCannotConnectRobots) {
   const Measured measured = measure({"--scene", "chain", "--robots", "3", "--seconds", "0.1"});
   for (const Json& engine : measured.json["results"][0]["engines"]) {
     EXPECT_EQ(engine.contains("left_out"), !engine.contains("cpu_us_per_robot_step")) << engine;
-    if (!engine.contains("left_out")) continue;
+    if (!engine.contains("left_out")) {
+      EXPECT_LT(engine.value("connection_error_m", 1.0), 0.01) << engine;
+      continue;
+    }
     EXPECT_NE(measured.ended.out.find("left out: " + engine.value("engine", "") + ": "), std::string::npos);
   }
 }
@@ -142,6 +171,27 @@ TEST(Bench, ComparesMotionsWithTheirKnownSolutions) {
       const double share = error.value("step_s", 0.0) == 0.01 ? 1.0 : 0.11;  // of first order, or better
       EXPECT_LE(std::abs(error.value("error", 1e9)), share * most.at(of.value("case", ""))) << of;
     }
+  }
+}
+
+// How soft contacts are and how a free body turns is each engine's own; how bodies fall and swing is not.
+TEST(Bench, EveryEngineWithMechanismsFallsAndSwingsAlike) {
+  const Measured measured = measure({"--scene", "accuracy"});
+  std::set<std::string> compared = {"cohort", "cohort-matrix", "bullet", "mujoco"};
+  for (const Json& engine : measured.json["missing_engines"]) compared.erase(engine.value("engine", ""));
+  const std::map<std::string, double> alike = {{"free fall, way of 1 s", 50.0},
+                                               {"pendulum, period of 2 s", 0.1},
+                                               {"double pendulum, energy of 29 J in 5 s, greatest", 3.2}};
+  for (const Json& of : measured.json["results"][0]["cases"]) {
+    std::set<std::string> engines;
+    for (const Json& error : of["errors"]) {
+      engines.insert(error.value("engine", ""));
+      ASSERT_TRUE(error["error"].is_number()) << of;  // what is not finite is null
+      if (const auto most = alike.find(of.value("case", "")); most != alike.end()) {
+        EXPECT_LE(std::abs(error.value("error", 1e9)), most->second) << of;
+      }
+    }
+    EXPECT_EQ(engines, compared) << of;
   }
 }
 

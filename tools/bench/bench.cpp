@@ -55,7 +55,21 @@ std::vector<EngineKind> chosen_engines(const Options& options) {
   return chosen;
 }
 
-nlohmann::ordered_json heading(const Options& options) {
+nlohmann::ordered_json versions_of(const std::vector<EngineKind>& engines) {
+  nlohmann::ordered_json versions = nlohmann::ordered_json::object();
+  for (const EngineKind& kind : engines)
+    if (!kind.version.empty()) versions[kind.name] = kind.version;
+  return versions;
+}
+
+std::string line_of(const nlohmann::ordered_json& versions) {
+  std::string line;
+  for (const auto& [engine, version] : versions.items())
+    line += fmt::format("{}{} {}", line.empty() ? "" : ", ", engine, version.get<std::string>());
+  return line + '\n';
+}
+
+nlohmann::ordered_json heading(const Options& options, const std::vector<EngineKind>& engines) {
   nlohmann::ordered_json missing = nlohmann::ordered_json::array();
   for (const EngineKind& kind : engine_kinds())
     if (!kind.make) missing.push_back({{"engine", kind.name}, {"package", kind.package}});
@@ -63,6 +77,7 @@ nlohmann::ordered_json heading(const Options& options) {
           {"seconds", options.seconds},
           {"repetitions", options.repetitions},
           {"cores", std::thread::hardware_concurrency()},
+          {"engine_versions", versions_of(engines)},
           {"missing_engines", missing},
           {"results", nlohmann::ordered_json::array()}};
 }
@@ -100,7 +115,8 @@ std::string missing_engines() {
 nlohmann::ordered_json measure_all(const Options& options, const Surroundings& surroundings,
                                    const std::function<void(const std::string&)>& print) {
   const std::vector<EngineKind> engines = chosen_engines(options);
-  nlohmann::ordered_json all = heading(options);
+  nlohmann::ordered_json all = heading(options, engines);
+  if (!all["engine_versions"].empty()) print(line_of(all["engine_versions"]));
   const auto take = [&](const auto& result) {
     print(table(result));
     all["results"].push_back(to_json(result));

@@ -9,7 +9,6 @@ namespace {
 
 using Limitation = std::optional<std::string>;
 
-constexpr std::size_t most_robots_in_mujoco = 512;
 constexpr std::size_t most_connected_in_world_step = 32;
 
 Limitation none(const Scene&) { return std::nullopt; }
@@ -25,13 +24,6 @@ Limitation world_step_limitation(const Scene& scene) {
   return std::nullopt;
 }
 
-Limitation mujoco_limitation(const Scene& scene) {
-  if (scene.robots.size() > most_robots_in_mujoco)
-    return fmt::format("its matrices are dense, and those of more than {} robots too large for it",
-                       most_robots_in_mujoco);
-  return std::nullopt;
-}
-
 Limitation enki_limitation(const Scene& scene) {
   if (scene.connected) return "it has no joints";
   return std::nullopt;
@@ -43,22 +35,28 @@ std::vector<EngineKind> known_engines() {
         name, "", [=](const Scene& scene, unsigned threads) { return make_cohort_engine(scene, threads, dynamics); },
         [=](const Mechanism& mechanism) { return make_cohort_mechanism(mechanism, dynamics); }, limitation};
   };
-  std::vector<EngineKind> kinds = {ours("cohort", description::Dynamics::bullet, none),
-                                   ours("cohort-matrix", description::Dynamics::cohort, matrix_limitation),
-                                   {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
-                                   {"ode-quickstep", "libode-dev", {}, {}, none},
-                                   {"mujoco", "libmujoco-dev", {}, {}, mujoco_limitation},
-                                   {"enki", "libenki-dev", {}, {}, enki_limitation}};
-  // The build defines each as true or false, and links the sources of those that are true.
+  std::vector<EngineKind> kinds = {
+      ours("cohort", description::Dynamics::bullet, none),
+      ours("cohort-matrix", description::Dynamics::cohort, matrix_limitation),
+      {"bullet", "libbullet-dev", [](const Scene& scene, unsigned) { return make_bullet_engine(scene); },
+       make_bullet_mechanism, bullet_limitation, bullet_version()},
+      {"ode-worldstep", "libode-dev", {}, {}, world_step_limitation},
+      {"ode-quickstep", "libode-dev", {}, {}, none},
+      {"mujoco", "libmujoco-dev", {}, {}, none},
+      {"enki", "libenki-dev", {}, {}, enki_limitation}};
+  // The build defines each as true or false, and links the sources of those
+  // that are true.
   if constexpr (COHORT_BENCH_ODE) {
-    kinds[2].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
-    kinds[3].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
+    kinds[3].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::world_step); };
+    kinds[4].make = [](const Scene& scene, unsigned) { return make_ode_engine(scene, OdeStepper::quick_step); };
   }
   if constexpr (COHORT_BENCH_MUJOCO) {
-    kinds[4].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
-    kinds[4].make_mechanism = make_mujoco_mechanism;
+    kinds[5].make = [](const Scene& scene, unsigned) { return make_mujoco_engine(scene); };
+    kinds[5].make_mechanism = make_mujoco_mechanism;
+    kinds[5].limitation = mujoco_limitation;
+    kinds[5].version = mujoco_version();
   }
-  if constexpr (COHORT_BENCH_ENKI) kinds[5].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
+  if constexpr (COHORT_BENCH_ENKI) kinds[6].make = [](const Scene& scene, unsigned) { return make_enki_engine(scene); };
   return kinds;
 }
 

@@ -48,6 +48,7 @@ struct EngineKind {
   std::function<std::unique_ptr<MechanismRun>(const Mechanism&)> make_mechanism;
   /// Why the engine cannot do this scene, or nothing.
   std::function<std::optional<std::string>(const Scene&)> limitation;
+  std::string version{};  ///< as the engine itself says; empty if it does not
 };
 
 const std::vector<EngineKind>& engine_kinds();

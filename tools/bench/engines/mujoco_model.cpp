@@ -24,9 +24,14 @@ MujocoModel compile_mujoco(const std::string& text) {
   const char* const file = "bench.xml";
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
-  if (mj_makeEmptyFileVFS(files.get(), file, static_cast<int>(text.size())) != 0)
-    throw std::runtime_error("MuJoCo does not take the model's text");
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), file)], text.data(), text.size());
+  const auto size = static_cast<int>(text.size());
+#if mjVERSION_HEADER < 300  // Debian's 2.2
+  const bool is_taken = mj_makeEmptyFileVFS(files.get(), file, size) == 0;
+  if (is_taken) std::memcpy(files->filedata[mj_findFileVFS(files.get(), file)], text.data(), text.size());
+#else
+  const bool is_taken = mj_addBufferVFS(files.get(), file, text.data(), size) == 0;
+#endif
+  if (!is_taken) throw std::runtime_error("MuJoCo does not take the model's text");
   std::string message(1000, '\0');
   MujocoModel model(mj_loadXML(file, files.get(), message.data(), static_cast<int>(message.size())));
   mj_deleteVFS(files.get());

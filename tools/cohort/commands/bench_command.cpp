@@ -123,11 +123,11 @@ void add_scenes_options(CommandLine line, BenchCommand& command) {
       "Scenes: crowd (in a walled square), free (apart), crowd_wheels (Cohort too has wheels as bodies),\n"
       "crowd_planar (Cohort in the plane only), chain (connected robots), rays, build (time and memory),\n"
       "accuracy (against closed forms).\n"
-      "Engines: cohort, cohort-matrix (the same with 'dynamics: cohort'), and as Debian ships them ode-worldstep,\n"
-      "ode-quickstep, mujoco and enki.\n"
+      "Engines: cohort (bodies of Bullet), cohort-matrix (the same with 'dynamics: cohort'), bullet (Bullet's own\n"
+      "world), ode-worldstep, ode-quickstep, mujoco and enki.\n"
       "All engines get the same robots, places, commands and step, in this process, in turns. They differ in what\n"
-      "they can express: ODE, MuJoCo and Enki have wheels where Cohort has tracks; MuJoCo's motors lose torque with\n"
-      "speed; Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
+      "they can express: the others have wheels where Cohort has tracks; MuJoCo's motors lose torque with speed;\n"
+      "Enki is flat, without turrets, joints or torque limits. docs/bench.md says all of it.\n"
       "Example: cohort bench --scene crowd --robots 128,1000 --json results.json");
 }
 

@@ -11,10 +11,7 @@ Eigen::Vector2d fin_force(const description::Fin& fin, double density, const Eig
   const double w = v_F.z();
   const double speed = std::sqrt(u * u + w * w);
   if (speed == 0.0) return Eigen::Vector2d::Zero();
-  constexpr double half_turn = std::numbers::pi;
-  double alpha = fin.alpha0 + std::atan2(-w, u);
-  while (alpha > 0.5 * half_turn) alpha -= half_turn;
-  while (alpha < -0.5 * half_turn) alpha += half_turn;
+  const double alpha = std::remainder(fin.alpha0 + std::atan2(-w, u), std::numbers::pi);
   const double attached = std::clamp(alpha, -fin.alpha_stall, fin.alpha_stall);
   const double stalled = alpha - attached;
   double lift = fin.cla * attached + fin.cla_stall * stalled;

@@ -84,9 +84,12 @@ TEST_P(Fluids, AQuadcopterHoversAtTheThrustThatItsWeightAsksFor) {
   small.run(5.0);
   EXPECT_LT((small.position(body) - Vector3d(1, 2, 3)).norm(), 1e-6);
   EXPECT_GT(small.up(body).z(), 1.0 - 1e-9);
+  small.world().record(body);
   spin(small.world(), body, 1.005 * hover);
   small.run(1.0);
-  EXPECT_NEAR(small.velocity(body).z(), (1.005 * 1.005 - 1.0) * g, 1e-6) << "one percent more thrust";
+  const double climb = (1.005 * 1.005 - 1.0) * g;
+  EXPECT_NEAR(small.velocity(body).z(), climb, 1e-6) << "one percent more thrust";
+  EXPECT_LT((small.world().link_acceleration(body, 0, {0.1, 0, 0}) - Vector3d(0, 0, climb)).norm(), 1e-6);
 }
 
 TEST_P(Fluids, ReactionTorquesOfRotorsCancelOrTurnTheBody) {
@@ -352,6 +355,44 @@ TEST_P(Fluids, ABoatReachesTheSpeedAtWhichItsDragIsItsThrust) {
   EXPECT_NEAR(through_water.y(), 0.0, 1e-3);
 }
 
+TEST_P(Fluids, ARudderTurnsABoatToItsSide) {
+  for (const double side : {1.0, -1.0}) {
+    SmallWorld small(water());
+    Model boat = crate({0.6, 0.3, 0.2}, 0.5);
+    boat.links.push_back({"rudder", {{-0.35, 0, -0.1}}, solid_box(0.1, {0.1, 0.01, 0.1}), {}});
+    description::Joint joint;
+    joint.name = "rudder";
+    joint.type = description::JointType::revolute;
+    joint.child = 1;
+    boat.joints.push_back(joint);
+    boat.devices.push_back(description::PositionMotor{"rudder", 0, 5.0, 5.0});
+    Rotor thruster = rotor_at({-0.3, 0, -0.08});
+    thruster.X_LR.orientation = Eigen::AngleAxisd(pi / 2, Vector3d::UnitY());
+    thruster.motor_constant = 1e-3;
+    thruster.moment_constant = 0.0;
+    boat.devices.push_back(thruster);
+    Fin blade;
+    blade.link = 1;
+    blade.X_LF = turned(-0.05, 0, 0, {1, 0, 0}, pi / 2);
+    blade.area = 0.01;
+    blade.cla = 4.0;
+    boat.fins.push_back(blade);
+    Drag drag;
+    drag.X_LD.position = {0, 0, -0.05};
+    drag.damping = {8, 60, 60};
+    drag.angular_damping = {2, 2, 2};
+    boat.drags.push_back(drag);
+    const auto body = small.add(boat, at(0, 0, 0));
+    small.world().set_joint_position_target(body, 0, 0.3 * side);
+    small.world().set_rotor_velocity_target(body, 1, 100.0);
+    small.run(3.0);
+    EXPECT_NEAR(small.world().joint_position(body, 0), 0.3 * side, 0.02);
+    // The end of the blade is on the right: the stern goes left.
+    EXPECT_LT(side * small.world().link_twist(body, 0).angular_W.z(), -0.1);
+    EXPECT_GT(small.up(body).z(), 0.95);
+  }
+}
+
 // ---- Drag, fins and wind ----
 
 TEST_P(Fluids, WhatFallsReachesItsTerminalVelocity) {
@@ -488,7 +529,7 @@ TEST_P(Fluids, WhatARotorLiftsGoesThroughTheJointsThatHoldIt) {
 
 // ---- State ----
 
-// Quadcopters, boats and gliders on a windy sea.
+// Quadcopters and boats on a windy sea, with a raft of crates that touch each other: a large island.
 struct Regatta {
   SmallWorld small;
   std::uint32_t copters = 12;
@@ -509,6 +550,9 @@ struct Regatta {
     boat.drags.push_back(drag);
     for (std::uint32_t i = 0; i < copters; ++i) small.add(copter, at(1.0 * i, 0, 2, 0.1 * i));
     for (std::uint32_t i = 0; i < copters; ++i) small.add(boat, turned(0.55 * i, 0.1 * i, 0, {1, 1, 0}, 0.02 * i));
+    const Vector3d cube = Vector3d::Constant(0.1);
+    const Model crate = loose("crate", Box{cube}, solid_box(0.4, cube));
+    for (int i = 0; i < 110; ++i) small.add(crate, at(0.1001 * (i % 11), -3.0 + 0.1001 * (i / 11), 0.02));
   }
   void step(int tick) {
     for (std::uint32_t body = 0; body < copters; ++body)

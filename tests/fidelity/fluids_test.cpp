@@ -142,10 +142,10 @@ TEST_P(Fluids, ARotorIsDraggedAcrossItsAxis) {
 }
 
 // A link that is welded to the world by the joint above it: what the joint bears is what acts on the link.
-Model anchored(description::Inertial inertial = solid_box(1.0, Vector3d::Constant(0.1))) {
+Model anchored() {
   Model model;
   model.name = "anchored";
-  model.links.push_back({"link", {}, inertial, {}});
+  model.links.push_back({"link", {}, solid_box(1.0, Vector3d::Constant(0.1)), {}});
   description::Joint joint;
   joint.parent = description::Joint::world;
   joint.child = 0;
@@ -552,7 +552,8 @@ struct Regatta {
     for (std::uint32_t i = 0; i < copters; ++i) small.add(boat, turned(0.55 * i, 0.1 * i, 0, {1, 1, 0}, 0.02 * i));
     const Vector3d cube = Vector3d::Constant(0.1);
     const Model crate = loose("crate", Box{cube}, solid_box(0.4, cube));
-    for (int i = 0; i < 110; ++i) small.add(crate, at(0.1001 * (i % 11), -3.0 + 0.1001 * (i / 11), 0.02));
+    for (int row = 0; row < 10; ++row)
+      for (int column = 0; column < 11; ++column) small.add(crate, at(0.1001 * column, -3.0 + 0.1001 * row, 0.02));
   }
   void step(int tick) {
     for (std::uint32_t body = 0; body < copters; ++body)

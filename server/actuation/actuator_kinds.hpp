@@ -25,6 +25,7 @@ std::unique_ptr<Actuator> make_actuator(const description::LedRing& leds, const 
 std::unique_ptr<Actuator> make_actuator(const description::Loudspeaker& speaker, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::PositionMotor& motor, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::RangeAndBearing& device, const Mount& mount);
+std::unique_ptr<Actuator> make_actuator(const description::Rotor& rotor, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::TreelDrive& drive, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::UserAction& action, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::VelocityMotor& motor, const Mount& mount);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/core/pose.hpp"
+#include "server/description/fluid_devices.hpp"
 #include "server/description/readout.hpp"
 #include "server/description/samples.hpp"
 #include "server/description/sdf_sensors.hpp"
@@ -281,11 +282,12 @@ struct UserAction {
 };
 
 /// The register: a new kind is one more here. In the order in which manuals have them, SDF's own ones last.
-using Device = std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, LedRing, Loudspeaker, JointEncoder,
-                            TreelEncoder, ProximityRing, GroundSensors, LightSensors, Microphones, Accelerometer,
-                            Inclinometer, RangeAndBearing, OmnidirectionalCamera, PanoramicCamera, ClimateSensor,
-                            Battery, Gripper, TorqueSensor, TractionSensor, UserAction, Imu, ForceTorqueSensor, Lidar,
-                            ContactSensor, Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
+using Device =
+    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, Rotor, LedRing, Loudspeaker, JointEncoder,
+                 TreelEncoder, ProximityRing, GroundSensors, LightSensors, Microphones, Accelerometer, Inclinometer,
+                 RangeAndBearing, OmnidirectionalCamera, PanoramicCamera, ClimateSensor, Battery, Gripper, TorqueSensor,
+                 TractionSensor, UserAction, Imu, ForceTorqueSensor, Lidar, ContactSensor, Altimeter, Magnetometer,
+                 LogicalCamera, AirPressureSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

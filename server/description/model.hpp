@@ -57,6 +57,7 @@ struct Link {
   std::vector<Collision> collisions;
   Eigen::Vector3d color = default_color();  ///< for cameras: that of the first visual; red, green, blue from 0 to 1
   std::vector<Visual> visuals{};            ///< those whose shape can be read
+  bool feels_wind = false;                  ///< SDF's enable_wind
 };
 
 /// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.
@@ -106,6 +107,8 @@ struct Model {
   std::vector<Device> devices;
   std::vector<Emitter> emitters;
   std::vector<GripRing> grip_rings{};
+  std::vector<Fin> fins{};
+  std::vector<Drag> drags{};
 
   /// A robot is a model that can be observed or commanded.
   bool is_robot() const { return !devices.empty(); }

@@ -60,6 +60,21 @@ struct Climate {
   double humidity = 0.5;        ///< relative [1]
 };
 
+/// The air that bodies move in.
+struct Air {
+  double density = 1.225;                          ///< of the standard atmosphere at sea level [kg/m^3]
+  Eigen::Vector3d wind = Eigen::Vector3d::Zero();  ///< the same everywhere [m/s]
+  /// Of links that feel the wind: force for each kilogram and m/s of wind that passes them [1/s].
+  double wind_force = 1.0;
+};
+
+/// All below a height, and all that is there.
+struct Water {
+  double level = 0.0;                                 ///< z of its surface [m]
+  double density = 1000.0;                            ///< [kg/m^3]
+  Eigen::Vector3d current = Eigen::Vector3d::Zero();  ///< the same everywhere [m/s]
+};
+
 /// What holds between two materials in place of the surfaces' own coefficients. Either order; a material may be paired
 /// with itself.
 struct MaterialPair {
@@ -91,6 +106,8 @@ struct World {
   Eigen::Vector3d magnetic_field{5.5645e-6, 22.8758e-6, -42.3884e-6};  ///< the same everywhere; SDF's default [T]
   PhysicsSettings physics;
   Climate climate;
+  Air air;
+  std::optional<Water> water{};
   std::vector<std::string> materials{""};  ///< 0 is of all that names none
   std::vector<MaterialPair> material_pairs;
   std::deque<Model> models;  ///< they stay where they are while more come

@@ -40,6 +40,7 @@ std::unique_ptr<Sensor> make_sensor(const description::OmnidirectionalCamera& ca
 std::unique_ptr<Sensor> make_sensor(const description::PanoramicCamera& camera, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::ProximityRing& ring, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::RangeAndBearing& device, const Mount& mount);
+std::unique_ptr<Sensor> make_sensor(const description::Rotor& rotor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::TorqueSensor& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::TractionSensor& sensor, const Mount& mount);
 std::unique_ptr<Sensor> make_sensor(const description::TreelEncoder& encoder, const Mount& mount);

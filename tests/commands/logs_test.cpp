@@ -149,11 +149,11 @@ TEST(Logs, AWorldsWarningsAreToldWithTheirPlace) {
   const SmallExperiment experiment(test_controller("misbehaving"), "", 0.1);
   const std::filesystem::path world = experiment / "world.sdf";
   write_file(world, std::regex_replace(SmallExperiment::world(), std::regex("<model name=\"r0\">"),
-                                       "$&\n<enable_wind>true</enable_wind>"));
+                                       "$&\n<gripper name=\"g\"/>"));
   for (const char* command : {"run", "check"}) {
     const Ended ended = run_to_end({cohort_program(), command, experiment.file()});
     EXPECT_EQ(ended.exit_code, 0) << ended.err;
-    EXPECT_NE(ended.err.find(world.string() + ":5: warning: world/model[r0]/enable_wind: "), std::string::npos)
+    EXPECT_NE(ended.err.find(world.string() + ":5: warning: world/model[r0]/gripper[g]: "), std::string::npos)
         << ended.err;
   }
 }

@@ -169,6 +169,19 @@ TEST(ShippedExperiments, TheArmComesToItsAngles) {
   EXPECT_NEAR(run.position("ball").z(), 0.03, 0.01) << "it fell from where the event put it";
 }
 
+TEST(ShippedExperiments, QuadcoptersRiseToTheirHeightsAndStayUpright) {
+  const Shipped run("quadcopters");
+  const double heights[] = {1.0, 1.5, 2.0, 2.5};
+  for (int i = 0; i < 4; ++i) {
+    const Pose X_WL = run.pose("copter_" + std::to_string(i));
+    EXPECT_NEAR(X_WL.position.z(), heights[i], 0.02);
+    EXPECT_GT((X_WL.orientation * Eigen::Vector3d::UnitZ()).z(), 0.999);
+    EXPECT_NEAR(X_WL.position.x(), -1.5 + i, i == 2 ? 2.0 : 0.01) << "the gust leaves one of them drifting";
+  }
+  EXPECT_LT(run.least_upright, 0.95) << "the gust";
+  EXPECT_GT(run.least_upright, 0.5);
+}
+
 TEST(ShippedExperiments, ThePorterOpensTheGateSwitchesTheLampOffAndPushesTheBarOff) {
   const Shipped run("gate");
   EXPECT_EQ(run.result.stop_reason, "beyond: 'porter'");

@@ -67,6 +67,33 @@ inline constexpr auto table_of<EffortMotor> = KeyTable{
         "of what turns in the motor, as the joint feels it", unless_default),
 };
 
+/// In the order of Rotor::Direction.
+inline constexpr std::string_view rotor_directions[] = {"ccw", "cw"};
+
+template <>
+inline constexpr auto table_of<Rotor> = KeyTable{
+    actuator("rotor", "A propeller in air or water, with its motor."),
+    link_key(&Rotor::link, "the link that feels its thrust and its reaction"),
+    pose_key(&Rotor::X_LR, "in the link; the thrust of a positive velocity is along its z axis"),
+    choice_key("direction", &Rotor::direction, rotor_directions, "ccw",
+               "how it turns at a positive velocity, seen against the z axis: `ccw` or `cw`"),
+    key("max_velocity", &Rotor::max_velocity, positive, "rad/s", "", "greatest velocity"),
+    key("min_velocity", &Rotor::min_velocity, real, "rad/s", "0",
+        "least velocity, at most 0; below 0 it is reversible"),
+    key("motor_constant", &Rotor::motor_constant, positive, "N s^2/rad^2", "", "thrust for each square of velocity"),
+    key("moment_constant", &Rotor::moment_constant, non_negative, "m", "0",
+        "reaction torque for each newton of thrust"),
+    key("drag_coefficient", &Rotor::drag_coefficient, non_negative, "N s^2/(rad m)", "0",
+        "force against what moves it across its axis, for each rad/s and m/s", unless_default),
+    key("rolling_moment_coefficient", &Rotor::rolling_moment_coefficient, non_negative, "N s^2/rad", "0",
+        "torque for the same", unless_default),
+    key("time_constant_up", &Rotor::time_constant_up, non_negative, "s", "0",
+        "of the motor, while its velocity rises; 0: at once"),
+    key("time_constant_down", &Rotor::time_constant_down, non_negative, "s", "0", "the same while it falls"),
+    key("density", &Rotor::density, positive, "kg/m^3", no_value,
+        "of the fluid that the coefficients are of: in another they act in proportion; the same in any if absent"),
+};
+
 template <>
 inline constexpr auto table_of<LedRing> = KeyTable{
     actuator("led_ring", "LEDs of any colour around a link."),
@@ -284,6 +311,35 @@ inline constexpr auto table_of<GripRing> = KeyTable{
     Extension{"grip_ring", "link", true, "A circle that grippers hold on to.", {}, "actuators"},
     pose_key(&GripRing::X_LR, "of the circle in the link; it lies in its xy plane"),
     key("radius", &GripRing::radius, positive, "m", "", "of the circle"),
+};
+
+template <>
+inline constexpr auto table_of<Fin> = KeyTable{
+    Extension{
+        "fin", "link", true, "A surface that gives lift and drag: a wing, a rudder, a sail, a keel.", {}, "physics"},
+    pose_key(&Fin::X_LF, "of its centre of pressure in the link: x forward along the chord, z up"),
+    key("area", &Fin::area, positive, "m^2", "", "of the surface"),
+    key("alpha0", &Fin::alpha0, real, "rad", "0", "added to the angle of attack"),
+    key("cla", &Fin::cla, non_negative, "1/rad", "", "slope of the coefficient of lift"),
+    key("cda", &Fin::cda, non_negative, "1/rad", "0.01", "slope of the coefficient of drag"),
+    key("alpha_stall", &Fin::alpha_stall, positive, "rad", "1.5707963267948966", "angle of attack at which it stalls"),
+    key("cla_stall", &Fin::cla_stall, real, "1/rad", "0", "slope of the coefficient of lift beyond"),
+    key("cda_stall", &Fin::cda_stall, real, "1/rad", "1", "slope of the coefficient of drag beyond"),
+};
+
+template <>
+inline constexpr auto table_of<Drag> = KeyTable{
+    Extension{"drag", "link", true, "What resists the motion of a link through air or water.", {}, "physics"},
+    pose_key(&Drag::X_LD, "in the link: where the force acts, and the axes"),
+    key("damping", &Drag::damping, vector, "N s/m", "0 0 0", "force against its velocity along each axis"),
+    key("quadratic_damping", &Drag::quadratic_damping, vector, "N s^2/m^2", "0 0 0",
+        "the same for the square of the velocity"),
+    key("angular_damping", &Drag::angular_damping, vector, "N m s/rad", "0 0 0",
+        "torque against its angular velocity about each axis"),
+    key("quadratic_angular_damping", &Drag::quadratic_angular_damping, vector, "N m s^2/rad^2", "0 0 0",
+        "the same for its square"),
+    key("density", &Drag::density, positive, "kg/m^3", no_value,
+        "of the fluid that these are of: in another they act in proportion; the same in any if absent"),
 };
 
 template <>

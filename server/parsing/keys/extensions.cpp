@@ -91,6 +91,18 @@ constexpr ExtensionKey climate[] = {
     {"humidity", fraction, "1", "0.5", "relative"},
 };
 
+constexpr ExtensionKey air[] = {
+    {"density", non_negative, "kg/m^3", "1.225", "of the air"},
+    {"force_approximation_scaling_factor", non_negative, "1/s", "1",
+     "of links that feel the wind: force for each kilogram, and m/s of wind that passes them"},
+};
+
+constexpr ExtensionKey water[] = {
+    {"level", real, "m", "0", "z of its surface"},
+    {"density", positive, "kg/m^3", "1000", "of the water"},
+    {"current", vector, "m/s", "0 0 0", "its velocity"},
+};
+
 constexpr ExtensionKey material_pair[] = {
     {"first", name, "", "", "a material"},
     {"second", name, "", "", "another, or the same"},
@@ -134,6 +146,8 @@ constexpr Extension of_worlds[] = {
      "physics",
      positive},
     {"climate", "world", false, "Temperature and humidity where no source is near.", climate, "emitters"},
+    {"air", "world", false, "The air that bodies move in.", air, "physics"},
+    {"water", "world", false, "Water below a level surface.", water, "physics"},
     {"terrain", "heightmap", false, "Ground that a function describes, in place of an image.", terrain, "physics"},
     {"material", "collision", false, "The name of what a collision is made of.", {}, "physics", name},
     {"material_pair", "world", false, "What holds where two materials touch.", material_pair, "physics"},
@@ -155,6 +169,8 @@ std::vector<Extension> all_extensions() {
   const auto add = [&]<class Kind>(std::type_identity<Kind>) { all.push_back(keys::extension_of<Kind>); };
   keys::for_kinds_in(keys::devices, add);
   all.push_back(keys::extension_of<GripRing>);
+  all.push_back(keys::extension_of<Fin>);
+  all.push_back(keys::extension_of<Drag>);
   all.push_back(
       {"grippable", "collision", false, "Whether grippers can hold on to it, anywhere.", {}, "actuators", flag});
   keys::for_kinds_in(keys::emitters, add);

@@ -19,14 +19,11 @@ struct Unsupported {
 
 // Elements of SDF 1.9. One with a value is passed over where the value is SDF's default.
 constexpr Unsupported unsupported[] = {
-    {"world", "wind"},
     {"world", "actor"},
     {"world", "state"},
     {"world", "population", "; use <cohort:population>"},
-    {"model", "enable_wind"},
     {"model", "gripper"},
     {"link", "gravity", "; gravity acts on every link"},
-    {"link", "enable_wind"},
     {"link", "self_collide", "; <self_collide> of the model is for all of its links"},
     {"link", "kinematic"},
     {"link", "velocity_decay"},

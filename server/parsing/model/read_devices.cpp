@@ -181,6 +181,10 @@ void check(const Battery& battery, const ExtensionValues& values, const SdfRepor
   if (battery.motor_efficiency > 1.0) report.problem(values.where("motor_efficiency"), "expected at most 1");
 }
 
+void check(const Rotor& rotor, const ExtensionValues& values, const SdfReport& report) {
+  if (rotor.min_velocity > 0.0) report.problem(values.where("min_velocity"), "expected at most 0 rad/s");
+}
+
 // The keys that every sensor has.
 template <class Kind>
 Readout read_readout(const ExtensionValues& values) {

@@ -74,7 +74,15 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   }
   for (Emitter& emitter : model.emitters) emitter.link = place[emitter.link];
   for (GripRing& ring : model.grip_rings) ring.link = place[ring.link];
+  for (Fin& fin : model.fins) fin.link = place[fin.link];
+  for (Drag& drag : model.drags) drag.link = place[drag.link];
   return true;
+}
+
+// What <enable_wind> of a model or a link says; otherwise it is as what it stands in.
+bool feels_wind(const sdf::ElementPtr& element, bool outer) {
+  const sdf::ElementPtr written = element->FindElement("enable_wind");
+  return is_written(written) && written->GetExplicitlySetInFile() ? written->Get<bool>() : outer;
 }
 
 // The parts of a model that stand in it and in the models inside of it, with scoped names.
@@ -83,7 +91,7 @@ class ModelFlattener {
   ModelFlattener(Model& model, const ModelReading& reading) : model_(model), reading_(reading) {}
 
   /// The links come first, since joints of an outer model may name links of an inner one.
-  void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN);
+  void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN, bool outer_feels_wind);
   void add_joints(const sdf::Model& sdf_model, const std::string& scope);
 
   const std::vector<DeviceScope>& scopes() const { return scopes_; }
@@ -101,27 +109,37 @@ class ModelFlattener {
         sensors_.push_back({owner.SensorByIndex(i), is_joint, scope + owner.Name(), scope});
   }
 
+  template <class Part>
+  void add_parts(const sdf::Link& sdf_link, const std::string& scope, std::vector<Part>& parts) {
+    for (Part& part : read_link_parts<Part>(sdf_link, reading_)) {
+      part.name = scope + part.name;
+      part.link = model_.links.size();
+      parts.push_back(std::move(part));
+    }
+  }
+
   std::vector<DeviceScope> scopes_;
   std::vector<SensorPlace> sensors_;
   std::size_t joint_count_ = 0;
 };
 
-void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN) {
+void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN,
+                               bool outer_feels_wind) {
   scopes_.push_back({sdf_model.Element(), scope});
+  const bool model_feels_wind = feels_wind(sdf_model.Element(), outer_feels_wind);
   for (std::uint64_t i = 0; i < sdf_model.LinkCount(); ++i) {
     Link link = read_link(*sdf_model.LinkByIndex(i), reading_);
     link.name = scope + link.name;
     link.X_ML = X_MN * link.X_ML;
+    link.feels_wind = feels_wind(sdf_model.LinkByIndex(i)->Element(), model_feels_wind);
     for (Emitter& emitter : read_emitters(*sdf_model.LinkByIndex(i), reading_)) {
       emitter.name = scope + emitter.name;
       emitter.link = model_.links.size();
       model_.emitters.push_back(std::move(emitter));
     }
-    for (GripRing& ring : read_grip_rings(*sdf_model.LinkByIndex(i), reading_)) {
-      ring.name = scope + ring.name;
-      ring.link = model_.links.size();
-      model_.grip_rings.push_back(std::move(ring));
-    }
+    add_parts(*sdf_model.LinkByIndex(i), scope, model_.grip_rings);
+    add_parts(*sdf_model.LinkByIndex(i), scope, model_.fins);
+    add_parts(*sdf_model.LinkByIndex(i), scope, model_.drags);
     model_.links.push_back(std::move(link));
     note_sensors(*sdf_model.LinkByIndex(i), false, scope);
   }
@@ -132,7 +150,7 @@ void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& s
     if (inner.Static() && !reading_.is_static)
       reading_.report.problem(inner.Element(),
                               "a static model inside of one that moves is not supported; a fixed joint can hold it");
-    add_links(inner, scope + inner.Name() + "::", X_MN * resolved_pose(inner, reading_));
+    add_links(inner, scope + inner.Name() + "::", X_MN * resolved_pose(inner, reading_), model_feels_wind);
   }
 }
 
@@ -154,7 +172,7 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   warn_of_unsupported(element, reading.report);
 
   ModelFlattener parts(model, reading);
-  parts.add_links(sdf_model, "", {});
+  parts.add_links(sdf_model, "", {}, false);
   if (model.links.empty() && model.is_static) reading.report.problem(element, "expected at least one <link>");
 
   if (model.is_static) {

@@ -43,8 +43,9 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading);
 std::vector<Emitter> read_emitters(const sdf::Link& sdf_link, const ModelReading& reading);
 Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading);
 
-/// Its `cohort:grip_ring` elements; of link 0.
-std::vector<GripRing> read_grip_rings(const sdf::Link& sdf_link, const ModelReading& reading);
+/// Its `cohort:` elements that are GripRings, Fins or Drags; of link 0.
+template <class Part>
+std::vector<Part> read_link_parts(const sdf::Link& sdf_link, const ModelReading& reading);
 
 /// The joints of a model between `links`, in document order. Of a model inside of the one that is read, `scope` is the
 /// prefix of all names in it, such as `arm::`.

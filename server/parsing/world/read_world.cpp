@@ -28,6 +28,11 @@ namespace {
 
 const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
 
+// A world has one at most.
+bool is_once(const Extension& extension) {
+  return extension.name == "physics" || extension.name == "air" || extension.name == "water";
+}
+
 class WorldReader {
  public:
   WorldReader(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
@@ -135,6 +140,8 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
   // SDF's default is World's, which libsdformat rounds.
   if (const sdf::ElementPtr field = find(sdf_world.Element(), {"magnetic_field"}); is_written(field))
     world_.magnetic_field = to_eigen(field->Get<ignition::math::Vector3d>());
+  if (const sdf::ElementPtr wind = find(sdf_world.Element(), {"wind", "linear_velocity"}); is_written(wind))
+    world_.air.wind = to_eigen(wind->Get<ignition::math::Vector3d>());
   check_numbers(sdf_world.Element(), report_);
   warn_of_unsupported(sdf_world.Element(), report_);
 
@@ -234,18 +241,26 @@ std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
 
 void WorldReader::read_extensions(const sdf::World& sdf_world) {
   const auto extensions = extensions_in(sdf_world.Element(), report_);
-  bool has_physics = false;
+  std::set<std::string_view> given;
   for (const auto& [element, extension] : extensions) {
+    if (is_once(*extension) && !given.insert(extension->name).second)
+      report_.problem(element, "<" + prefixed(extension->name) + "> is given twice");
     if (extension->name == "population") {
       if (const auto population = read_population(element, *extension, seed_, report_)) expand(*population);
     } else if (extension->name == "physics") {
-      if (has_physics) report_.problem(element, "<cohort:physics> is given twice");
-      has_physics = true;
       if (const auto values = ExtensionValues::read(element, *extension, report_))
         world_.physics = with_values(world_.physics, *values);
     } else if (extension->name == "climate") {
       if (const auto values = ExtensionValues::read(element, *extension, report_))
         world_.climate = {values->real("temperature"), values->real("humidity")};
+    } else if (extension->name == "air") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_)) {
+        world_.air.density = values->real("density");
+        world_.air.wind_force = values->real("force_approximation_scaling_factor");
+      }
+    } else if (extension->name == "water") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.water = Water{values->real("level"), values->real("density"), values->vector("current")};
     }
   }
   // Last, when all materials and objects are known; what could not be read may have had more.

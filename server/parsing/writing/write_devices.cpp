@@ -159,9 +159,13 @@ void write_device(XmlNode& model_element, const Model& model, const Device& devi
   std::visit(DeviceWriter{model_element, model, folder}, device);
 }
 
-void write_grip_ring(XmlNode& link_element, const GripRing& ring) {
-  write_values<GripRing>(add_element<GripRing>(link_element, ring.name), ring);
+template <class Part>
+void write_link_part(XmlNode& link_element, const Part& part) {
+  write_values<Part>(add_element<Part>(link_element, part.name), part);
 }
+template void write_link_part(XmlNode&, const GripRing&);
+template void write_link_part(XmlNode&, const Fin&);
+template void write_link_part(XmlNode&, const Drag&);
 
 void write_emitter(XmlNode& link_element, const Emitter& emitter) {
   std::visit(EmitterWriter{link_element, emitter}, emitter.what);

@@ -58,8 +58,9 @@ std::string relative_to(const std::filesystem::path& folder, const std::filesyst
 void write_device(XmlNode& model_element, const Model& model, const Device& device,
                   const std::filesystem::path& folder);
 /// In its link.
-/// Of a link.
-void write_grip_ring(XmlNode& link_element, const GripRing& ring);
+/// A GripRing, a Fin or a Drag of a link.
+template <class Part>
+void write_link_part(XmlNode& link_element, const Part& part);
 void write_emitter(XmlNode& link_element, const Emitter& emitter);
 
 }  // namespace cohort::parsing

@@ -64,6 +64,7 @@ class WorldWriter {
     XmlNode& climate = add(world, prefixed("climate"));
     add_key(climate, "temperature", world_.climate.temperature);
     add_key(climate, "humidity", world_.climate.humidity);
+    write_fluids(world);
     for (const Instance& instance : world_.instances)
       if (instance.is_present) write_model(world, instance);
     for (const MaterialPair& pair : world_.material_pairs) {
@@ -91,6 +92,22 @@ class WorldWriter {
     if (joint.X_LP) add_key(element, "pose", *joint.X_LP);
     if (std::isfinite(joint.breaking_force)) add_key(element, "breaking_force", joint.breaking_force);
     if (std::isfinite(joint.breaking_torque)) add_key(element, "breaking_torque", joint.breaking_torque);
+  }
+
+  void write_fluids(XmlNode& world) const {
+    const Air& air = world_.air;
+    const Air usual;
+    if (air.wind != usual.wind) add_value(add(world, "wind"), "linear_velocity", air.wind);
+    if (air.density != usual.density || air.wind_force != usual.wind_force) {
+      XmlNode& element = add(world, prefixed("air"));
+      add_key(element, "density", air.density);
+      add_key(element, "force_approximation_scaling_factor", air.wind_force);
+    }
+    if (!world_.water) return;
+    XmlNode& water = add(world, prefixed("water"));
+    add_key(water, "level", world_.water->level);
+    add_key(water, "density", world_.water->density);
+    add_key(water, "current", world_.water->current);
   }
 
   void write_physics(XmlNode& world) const {
@@ -125,6 +142,7 @@ class WorldWriter {
     const bool is_static = model.is_static;
     XmlNode& element = add_named(parent, "link", without_scope_marks(link.name));
     add_pose(element, link.X_ML);
+    if (link.feels_wind) add_value(element, "enable_wind", true);
     if (!is_static) {
       XmlNode& inertial = add(element, "inertial");
       add_pose(inertial, link.inertial.X_LI);
@@ -152,8 +170,13 @@ class WorldWriter {
       if (collision.surface.is_grippable) add_key(shape, "grippable", true);
       if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
     }
-    for (const GripRing& ring : model.grip_rings)
-      if (ring.link == index) write_grip_ring(element, ring);
+    const auto write_parts = [&](const auto& parts) {
+      for (const auto& part : parts)
+        if (part.link == index) write_link_part(element, part);
+    };
+    write_parts(model.grip_rings);
+    write_parts(model.fins);
+    write_parts(model.drags);
     for (const Emitter& emitter : model.emitters)
       if (emitter.link == index) write_emitter(element, emitter);
   }

@@ -40,7 +40,8 @@ Assembly::Assembly(const description::World& world)
       gravity(world.gravity),
       settings(world.physics),
       surfaces(world),
-      collision(scene, [this](std::uint32_t solid, std::uint32_t other) { return may_touch(solid, other); }) {}
+      collision(scene, [this](std::uint32_t solid, std::uint32_t other) { return may_touch(solid, other); }),
+      media(world) {}
 
 void Assembly::add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
                          const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
@@ -69,9 +70,12 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
                                    std::span<const std::shared_ptr<const BulletShape>> shapes) {
   const auto index = static_cast<std::uint32_t>(members.size());
   const Multibody& body = *multibody;
+  std::shared_ptr<const FluidModel>& fluid = fluid_models_[&body.mechanism()];
+  if (!fluid) fluid = std::make_shared<const FluidModel>(body.mechanism(), media);
   Member& member = members.emplace_back();
   member.body = body.body();
   member.multibody = std::move(multibody);
+  if (!fluid->is_empty()) member.fluid = std::make_unique<FluidBody>(fluid);
   anchors.index_of_member.push_back(-1);
   const description::Model& model = body.mechanism().model();
   const std::vector<description::Link>& links = model.links;
@@ -105,7 +109,10 @@ void Assembly::take_out(std::uint32_t member) {
 
 void Assembly::put_back(std::uint32_t index) {
   Member& member = members[index];
-  if (!member.is_finite || !member.is_inside) member.multibody->stop();
+  if (!member.is_finite || !member.is_inside) {
+    member.multibody->stop();
+    if (member.fluid) member.fluid->stop();
+  }
   member.is_active = member.is_finite = member.is_inside = true;
   place_solids_of(member);
   for (const Part& part : member.parts) scene.put_back(part.solid);
@@ -115,6 +122,7 @@ void Assembly::place(std::uint32_t index, const Pose& X_WM) {
   const Member& member = members[index];
   connections.release_of(index);
   member.multibody->place(X_WM);
+  if (member.fluid) member.fluid->stop();
   if (member.record) member.record->forget();
   for (const Part& part : member.parts) collision.remove(part.solid);
   place_solids_of(member);
@@ -197,6 +205,7 @@ void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) const {
   pushes.for_each_of(member, [&](const Pushes::Push& push) {
     equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
   });
+  if (FluidBody* const fluid = members[member].fluid.get()) fluid->apply(equations, media, step);
 }
 
 void Assembly::add_own_rows(std::uint32_t member, Problem& problem) {
@@ -257,6 +266,7 @@ void Assembly::integrate(std::uint32_t index, const Problem& problem) {
     multibody.integrate(equations.velocity(), step);
   keep_from_passing_through(member);
   if (member.record) member.record->finish(multibody, equations.velocity(), gravity, step);
+  if (member.fluid) member.fluid->finish_step();
   const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
   member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest_from_origin;
   place_solids_of(member);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "server/physics/contact/collision.hpp"
+#include "server/physics/fluid/fluid_body.hpp"
 #include "server/physics/islands/force_record.hpp"
 #include "server/physics/multibody/connections.hpp"
 #include "server/physics/multibody/contact_rows.hpp"
@@ -35,6 +37,7 @@ struct Member {
   bool is_finite = true;                  ///< of the last step: its velocities were
   bool is_inside = true;                  ///< of the last step: it is still in the world
   std::unique_ptr<ForceRecord> record{};  ///< null: nobody asked for it
+  std::unique_ptr<FluidBody> fluid{};     ///< null: neither air nor water acts on it
 };
 
 /// The bodies of a world that move, and all that couples them to each other and to what stands still: what the rows of
@@ -54,6 +57,7 @@ struct Assembly {
   std::vector<Member> members;
   Connections connections;
   Pushes pushes;
+  Media media;
 
   /// One thread alone. `shapes`: of the model's collisions, in their order. Returns the solids.
   std::vector<std::uint32_t> add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
@@ -149,6 +153,7 @@ struct Assembly {
   void record_connection(const Connection& connection) const;
 
   bool has_records_ = false;
+  std::map<const Mechanism*, std::shared_ptr<const FluidModel>> fluid_models_;
 };
 
 }  // namespace cohort::physics

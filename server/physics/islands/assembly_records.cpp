@@ -41,6 +41,9 @@ void Assembly::record_outside() {
     pushes.for_each_of(index, [&](const Pushes::Push& push) {
       member.record->add_outside(push.link, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
     });
+    if (!member.fluid) continue;
+    for (const FluidBody::Impulse& impulse : member.fluid->impulses())
+      member.record->add_outside(impulse.link, impulse.point_W, impulse.impulse_W.linear, impulse.impulse_W.angular);
   }
 }
 

@@ -74,6 +74,12 @@ class MultibodyWorld final : public World {
   void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) override {
     multibody(body).set_track_velocity_target(drive, side, velocity);
   }
+  double rotor_velocity(std::uint32_t body, std::size_t device) const override {
+    return assembly_.members[bodies_[body].member].fluid->rotor_velocity(device);
+  }
+  void set_rotor_velocity_target(std::uint32_t body, std::size_t device, double velocity) override {
+    assembly_.members[bodies_[body].member].fluid->set_rotor_target(device, velocity);
+  }
   void set_root_twist(std::uint32_t body, const Twist& twist) override { multibody(body).set_root_twist(twist); }
   void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
                        std::span<const double> velocities) override;

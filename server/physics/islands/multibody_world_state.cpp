@@ -10,6 +10,8 @@ void MultibodyWorld::hash_body(std::uint32_t body, StateHash& hash) const {
   if (is_static(body)) return;
   StateHasher{hash}(is_active(body));
   Multibody::visit_state(multibody(body), StateHasher{hash});
+  if (const FluidBody* fluid = assembly_.members[bodies_[body].member].fluid.get())
+    FluidBody::visit_state(*fluid, StateHasher{hash});
 }
 
 void MultibodyWorld::hash_contacts(StateHash& hash) const {
@@ -31,6 +33,7 @@ void MultibodyWorld::save(SnapshotWriter& writer) const {
     save(member.is_finite);
     save(member.is_inside);
     Multibody::visit_state(*member.multibody, save);
+    if (const FluidBody* fluid = member.fluid.get()) FluidBody::visit_state(*fluid, save);
   }
   assembly_.connections.save(writer);
   assembly_.collision.save(writer);
@@ -49,6 +52,7 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
     restore(member.is_finite);
     restore(member.is_inside);
     Multibody::visit_state(*member.multibody, restore);
+    if (member.fluid) FluidBody::visit_state(*member.fluid, restore);
     member.multibody->update_poses();
     assembly_.place_solids_of(member);
     if (!is_active) assembly_.take_out(index);

@@ -24,8 +24,6 @@ Scratch& scratch_of_thread() {
   return scratch;
 }
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 btVector3 diagonal_of(const Segment& segment) { return to_bullet(Eigen::Vector3d(segment.inertia_S.diagonal())); }
 
 void set_up_link(btMultiBody& body, int link, int parent, const Segment& segment,

@@ -7,8 +7,6 @@ namespace {
 
 constexpr int free_root_dofs = 6;
 
-std::size_t at(std::ptrdiff_t index) { return static_cast<std::size_t>(index); }
-
 }  // namespace
 
 void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step) {

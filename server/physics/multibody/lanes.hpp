@@ -8,6 +8,9 @@ namespace cohort::physics {
 
 inline constexpr std::ptrdiff_t lanes = 4;
 
+/// An index of ours as one of the standard library.
+inline std::size_t at(std::ptrdiff_t index) { return static_cast<std::size_t>(index); }
+
 /// Half of `lanes`, which fits into a register of every x86-64.
 using Half = double __attribute__((vector_size(16)));
 using HalfInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));

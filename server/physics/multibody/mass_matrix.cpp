@@ -8,8 +8,6 @@ namespace {
 constexpr int free_dofs = 6;
 constexpr int most_inverted = 12;
 
-std::size_t at(std::ptrdiff_t index) { return static_cast<std::size_t>(index); }
-
 }  // namespace
 
 void MassMatrix::set_up(const Multibody& body, const std::vector<Spatial>& axes, const Eigen::Vector3d& gravity) {

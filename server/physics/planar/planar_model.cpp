@@ -13,6 +13,8 @@ PlanarModel::PlanarModel(const description::Model& model)
     if (segments[s].parent < 0 &&
         (s > 0 || (segments[s].motion != Motion::free && segments[s].motion != Motion::anchored)))
       throw std::invalid_argument("a joint that moves against the world cannot be planar");
+  if (!model.fins.empty()) throw std::invalid_argument("fin '" + model.fins[0].name + "' cannot be planar");
+  if (!model.drags.empty()) throw std::invalid_argument("drag '" + model.drags[0].name + "' cannot be planar");
   for (const description::Device& device : model.devices) {
     if (const auto motor = description::motor_limits(device)) {
       add_motor(*motor, description::name_of(device));
@@ -22,6 +24,8 @@ PlanarModel::PlanarModel(const description::Model& model)
         throw std::invalid_argument("treel drive '" + drive->name + "' is not on the root link '" +
                                     model.links[0].name + "'");
       drive_ = drive;
+    } else if (const auto* rotor = std::get_if<description::Rotor>(&device)) {
+      throw std::invalid_argument("rotor '" + rotor->name + "' cannot be planar");
     }
   }
   add_masses();

@@ -46,6 +46,7 @@ PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& work
   const Vector3d& gravity = description.gravity;
   if (gravity.head<2>().norm() > -most_lean * gravity.z())
     throw std::invalid_argument("planar physics needs gravity along -z");
+  if (description.water) throw std::invalid_argument("planar physics has no water");
   for (unsigned worker = 0; worker < workers.threads(); ++worker)
     memory_.push_back({PlanarSolver(planar_, grounds_), {}, {}});
   bodies_.reserve(description.instances.size());
@@ -104,6 +105,9 @@ std::uint32_t PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM
     const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
     if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
       throw std::invalid_argument("a robot that leans cannot be planar");
+    const auto feels_wind = [](const description::Link& link) { return link.feels_wind; };
+    if (description_.air.wind != Vector3d::Zero() && std::any_of(model.links.begin(), model.links.end(), feels_wind))
+      throw std::invalid_argument("what feels the wind cannot be planar");
     PlacedBody& placed = bodies_.emplace_back();
     placed.model = model_index;
     placed.X_WM = X_WM;

@@ -31,12 +31,13 @@ namespace cohort::physics {
 /// - Connections hold in the plane: their wrench is a force in x and y and a torque about z. They are rigid, whatever
 ///   their ConnectionGive.
 /// - Joints and motors have no force to tell; a motor that is told an effort stays where it is.
+/// - There is no water, no wind, and nothing that flies or swims.
 /// - The solver is always the iterative one.
 class PlanarWorld final : public World {
  public:
-  /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, ground
-  /// that is not level, none under a body, a joint that moves against the world, or a robot that leans by more than a
-  /// milliradian.
+  /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, water,
+  /// ground that is not level, none under a body, a joint that moves against the world, a rotor, a fin, drag, a link
+  /// that feels a wind, or a robot that leans by more than a milliradian.
   PlanarWorld(const description::World& description, WorkerPool& workers);
 
   void step() override;
@@ -90,6 +91,8 @@ class PlanarWorld final : public World {
   void set_track_velocity_target(std::uint32_t body, std::size_t, Side side, double velocity) override {
     grounds_[bodies_[body].member].set_target(side, velocity);
   }
+  double rotor_velocity(std::uint32_t, std::size_t) const override { return 0.0; }  // none can be planar
+  void set_rotor_velocity_target(std::uint32_t, std::size_t, double) override {}
   void set_root_twist(std::uint32_t body, const Twist& twist) override {
     planar_.set_root_twist(bodies_[body].member, twist);
   }

@@ -158,6 +158,11 @@ class World {
   /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
   virtual void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) = 0;
 
+  /// `device`: index of a Rotor among the model's devices; its velocity [rad/s].
+  virtual double rotor_velocity(std::uint32_t body, std::size_t device) const = 0;
+  /// What its velocity goes to, with its time constants [rad/s].
+  virtual void set_rotor_velocity_target(std::uint32_t body, std::size_t device, double velocity) = 0;
+
   /// Of a root link that is free to move.
   virtual void set_root_twist(std::uint32_t body, const Twist& twist) = 0;
   /// An angle or a way and its velocity, one of each for every axis; of a ball joint the quaternion x y z w of the

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "server/core/state_visitors.hpp"
 #include "server/sensing/sensor_kinds.hpp"
@@ -7,7 +8,8 @@ namespace cohort::sensing {
 namespace {
 
 /// Charge and power of a robot's battery (description::Battery). Over each step it gives its idle power and, for every
-/// motor and track that moves its load, force times velocity / efficiency; a motor that brakes gives nothing back.
+/// motor, track and rotor that moves its load, force times velocity / efficiency; a motor that brakes gives nothing
+/// back.
 class Battery final : public SensorOf<description::Battery> {
  public:
   Battery(const description::Battery& battery, const Mount& mount);
@@ -31,6 +33,7 @@ class Battery final : public SensorOf<description::Battery> {
 
   std::vector<std::size_t> motor_joints_;
   std::vector<std::size_t> drives_;  // devices of the model
+  std::vector<std::size_t> rotors_;  // the same
   double step_ = 0.0;                // [s]
   double energy_ = 0.0;              // that is left [J]
   double power_ = 0.0;               // over the last step [W]
@@ -47,6 +50,8 @@ Battery::Battery(const description::Battery& battery, const Mount& mount)
       motor_joints_.push_back(motor->joint);
     else if (std::holds_alternative<description::TreelDrive>(devices[device]))
       drives_.push_back(device);
+    else if (std::holds_alternative<description::Rotor>(devices[device]))
+      rotors_.push_back(device);
   }
 }
 
@@ -64,6 +69,11 @@ double Battery::mechanical_power() const {
       const physics::TrackState track = mount_.world.track(mount_.body, drive, side);
       power += std::max(0.0, track.traction * track.velocity);
     }
+  }
+  for (const std::size_t device : rotors_) {
+    const auto& rotor = std::get<description::Rotor>(mount_.model().devices[device]);
+    const double velocity = std::abs(mount_.world.rotor_velocity(mount_.body, device));
+    power += rotor.moment_constant * rotor.motor_constant * velocity * velocity * velocity;
   }
   return power;
 }

@@ -344,14 +344,15 @@ TEST_F(Description, AnEmptyWorldHasSdfsGravityAndOurStep) {
 
 TEST_F(Description, WhatIsNotSimulatedIsSaidOnceEach) {
   const World world = read(
-      "<wind><linear_velocity>1 0 0</linear_velocity></wind>\n"
-      "<model name=\"m\"><enable_wind>true</enable_wind><link name=\"l\"><gravity>true</gravity>\n"
+      "<state world_name=\"w\"/>\n"
+      "<model name=\"m\"><gripper name=\"g\"><gripper_link>l</gripper_link><palm_link>l</palm_link></gripper>"
+      "<link name=\"l\"><gravity>true</gravity>\n"
       "<sensor name=\"s\" type=\"camera\"/></link></model>");
   std::string all;
   for (const Problem& warning : world.warnings) all += warning.text() + "\n";
   EXPECT_EQ(world.warnings.size(), 5u) << all;  // and that the link has neither mass nor inertia
-  EXPECT_NE(all.find(":2: world/wind: "), std::string::npos) << all;
-  EXPECT_NE(all.find(":3: world/model[m]/enable_wind: "), std::string::npos) << all;
+  EXPECT_NE(all.find(":2: world/state: "), std::string::npos) << all;
+  EXPECT_NE(all.find(":3: world/model[m]/gripper[g]: "), std::string::npos) << all;
   EXPECT_NE(all.find(":4: world/model[m]/link[l]/sensor[s]: "), std::string::npos) << all;
 }
 

@@ -75,6 +75,34 @@ TEST_F(ExportedWorlds, OfEveryExperimentThatShipsHaveItsSeedItsStepAndItsPhysics
   }
 }
 
+TEST_F(ExportedWorlds, OfASeaWithWhatFliesAndSwimsGiveTheSameHash) {
+  const std::string model =
+      "<pose>0 0 0.1 0.01 0.02 0.7</pose><enable_wind>true</enable_wind>"
+      "<link name=\"a\"><inertial><mass>3.1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia>"
+      "</inertial><collision "
+      "name=\"c\"><geometry><capsule><radius>0.1</radius><length>0.3</length></capsule></geometry>"
+      "</collision><cohort:fin name=\"keel\"><cohort:pose>0.01 0 -0.1 1.57 0 0</cohort:pose><cohort:area>0.02"
+      "</cohort:area><cohort:cla>4.7</cohort:cla><cohort:alpha0>0.013</cohort:alpha0><cohort:alpha_stall>0.31"
+      "</cohort:alpha_stall><cohort:cla_stall>-1.3</cohort:cla_stall></cohort:fin><cohort:drag name=\"hull\">"
+      "<cohort:damping>1.1 2.3 3.7</cohort:damping><cohort:quadratic_damping>5.3 7.1 11.9</cohort:quadratic_damping>"
+      "<cohort:quadratic_angular_damping>0.1 0.2 0.3</cohort:quadratic_angular_damping><cohort:density>1025"
+      "</cohort:density></cohort:drag></link>"
+      "<cohort:rotor name=\"screw\"><cohort:link>a</cohort:link><cohort:pose>-0.2 0 -0.1 0 1.57 0</cohort:pose>"
+      "<cohort:direction>cw</cohort:direction><cohort:max_velocity>210.7</cohort:max_velocity><cohort:min_velocity>"
+      "-100.3</cohort:min_velocity><cohort:motor_constant>1.3e-4</cohort:motor_constant><cohort:moment_constant>0.017"
+      "</cohort:moment_constant><cohort:drag_coefficient>1e-4</cohort:drag_coefficient>"
+      "<cohort:rolling_moment_coefficient>1e-5</cohort:rolling_moment_coefficient><cohort:time_constant_up>0.11"
+      "</cohort:time_constant_up><cohort:density>1025</cohort:density><cohort:noise>0.3</cohort:noise></cohort:rotor>";
+  const World world = read(
+      "<wind><linear_velocity>1.1 -0.7 0.1</linear_velocity></wind><cohort:air><cohort:density>1.19</cohort:density>"
+      "</cohort:air><cohort:water><cohort:level>0.07</cohort:level><cohort:density>1025</"
+      "cohort:density><cohort:current>"
+      "0.3 0.1 0</cohort:current></cohort:water><model name=\"boat\">" +
+      model + "</model>");
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  expect_the_same_again(world);
+}
+
 // Rotations, axes and normals that no short number has, frames, every shape, every joint, materials.
 TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
   write("t.obj", "v 0.1 0 0\nv 0 0.3 0\nv 0 0 0.7\nv 0 0 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");

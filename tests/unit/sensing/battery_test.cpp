@@ -40,6 +40,23 @@ TEST(Battery, GivesWhatTheTracksDoToTheirLoad) {
   EXPECT_LT(given, 2.2 * kinetic / 0.5) << "friction while it gets going takes as much at the most";
 }
 
+TEST(Battery, GivesWhatRotorsDoToTheAir) {
+  SensingWorld world;
+  description::Model model = fed_robot(1000.0, 0.0, 0.5);
+  description::Rotor rotor;
+  rotor.name = "rotor";
+  rotor.max_velocity = 500.0;
+  rotor.motor_constant = 1e-6;
+  rotor.moment_constant = 0.02;
+  rotor.time_constant_up = 0.05;
+  model.devices.push_back(rotor);
+  world.add(model, "robot", at(0, 0, 0));
+  world.command(0, "rotor/0/velocity", {400.0});
+  world.step(100);
+  EXPECT_NEAR(world.read(0, "rotor/0/velocity"), 400.0, 1e-3);
+  EXPECT_NEAR(world.read(0, "battery/0/power"), 0.02 * 1e-6 * 400.0 * 400.0 * 400.0 / 0.5, 1e-3);
+}
+
 TEST(Battery, StopsTheRobotWhenItIsEmpty) {
   SensingWorld world;
   world.add(fed_robot(1.0, 2.0), "robot", at(0, 0, 0));

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <numbers>
+#include <string>
+
+#include "server/core/pose.hpp"
+#include "server/description/readout.hpp"
+
+/// What pushes air or water, or is pushed by them, as plain data. Frames: L a link.
+namespace cohort::description {
+
+/// A propeller in air or water, of a motor whose speed follows its target with a time constant (Furrer et al., "RotorS
+/// – A modular Gazebo MAV simulator framework", in: Robot operating system, 2016). Its thrust is along the z axis of R
+/// at positive velocities. Command and observation `NAME/0/velocity` [rad/s].
+struct Rotor {
+  /// How it turns at a positive velocity, seen against the z axis of R: from above, if that points up.
+  enum class Direction { ccw, cw };
+
+  std::string name;
+  std::size_t link = 0;  ///< feels thrust, reaction and drag
+  Pose X_LR;
+  Direction direction = Direction::ccw;
+  double min_velocity = 0.0;  ///< <= 0 [rad/s]
+  double max_velocity = 0.0;  ///< [rad/s]
+  /// Thrust for each ω|ω| [N s^2/rad^2]. With the thrust coefficient of a propeller of diameter D in a fluid (Fossen,
+  /// "Handbook of marine craft hydrodynamics and motion control", 2011, chapter 12), it is density K D^4 / 4π^2.
+  double motor_constant = 0.0;
+  double moment_constant = 0.0;             ///< reaction torque for each newton of thrust [m]
+  double drag_coefficient = 0.0;            ///< force for each |ω| v across the axis [N s^2/(rad m)]
+  double rolling_moment_coefficient = 0.0;  ///< torque for the same [N s^2/rad]
+  double time_constant_up = 0.0;            ///< while its velocity rises [s]; 0: at once
+  double time_constant_down = 0.0;          ///< while it falls [s]
+  double density = 0.0;                     ///< of the fluid that the coefficients are of [kg/m^3]; 0: the same in any
+  Readout readout{};
+};
+
+/// A surface that gives lift and drag: a wing, a rudder, a sail, a keel. Coefficients as of Gazebo's LiftDrag. In F, at
+/// the centre of pressure, x is forward along the chord and z up.
+struct Fin {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LF;
+  double area = 0.0;                            ///< [m^2]
+  double alpha0 = 0.0;                          ///< added to the angle of attack [rad]
+  double cla = 0.0;                             ///< slope of the coefficient of lift [1/rad]
+  double cda = 0.01;                            ///< the same of drag [1/rad]
+  double alpha_stall = 0.5 * std::numbers::pi;  ///< where the slopes change [rad]
+  double cla_stall = 0.0;                       ///< slopes beyond [1/rad]
+  double cda_stall = 1.0;
+};
+
+/// What resists the motion of a link through air or water, axis by axis in D: of the origin of D by a force, and of
+/// turning by a torque, each with a part in proportion to the velocity v and one to v|v|.
+struct Drag {
+  std::string name;
+  std::size_t link = 0;
+  Pose X_LD;
+  Eigen::Vector3d damping = Eigen::Vector3d::Zero();                    ///< [N s/m]
+  Eigen::Vector3d quadratic_damping = Eigen::Vector3d::Zero();          ///< [N s^2/m^2]
+  Eigen::Vector3d angular_damping = Eigen::Vector3d::Zero();            ///< [N m s/rad]
+  Eigen::Vector3d quadratic_angular_damping = Eigen::Vector3d::Zero();  ///< [N m s^2/rad^2]
+  double density = 0.0;  ///< of the fluid that these are of [kg/m^3]; 0: the same in any
+};
+
+}  // namespace cohort::description

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <vector>
+
+#include "server/physics/fluid/floating_shape.hpp"
+#include "server/physics/fluid/media.hpp"
+#include "server/physics/multibody/mechanism.hpp"
+
+namespace cohort::physics {
+
+/// What air and water act on in a model. Constant; shared by all bodies of the model.
+struct FluidModel {
+  FluidModel(const Mechanism& mechanism, const Media& media);
+  bool is_empty() const {
+    return floats.empty() && rotors.empty() && fins.empty() && drags.empty() && windages.empty();
+  }
+
+  /// A frame P on a link.
+  struct Place {
+    std::size_t link = 0;
+    int segment = 0;
+    Pose X_SP;
+    bool feels_wind = false;
+  };
+  struct Float : Place {  // P is that of the collision
+    FloatingShape shape;
+  };
+  struct RotorPlace : Place {
+    const description::Rotor* rotor = nullptr;
+    std::size_t device = 0;
+  };
+  struct FinPlace : Place {
+    const description::Fin* fin = nullptr;
+    double no_lift = 0.0;  // its velocity upwards for each m/s forwards at which it has no lift
+  };
+  struct DragPlace : Place {
+    const description::Drag* drag = nullptr;
+  };
+  struct Windage : Place {  // P is at the centre of mass
+    double mass = 0.0;      // [kg]
+  };
+
+  std::vector<Float> floats;  // none without water
+  std::vector<RotorPlace> rotors;
+  std::vector<FinPlace> fins;
+  std::vector<DragPlace> drags;
+  std::vector<Windage> windages;  // none without wind
+};
+
+}  // namespace cohort::physics

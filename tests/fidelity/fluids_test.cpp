@@ -1,0 +1,622 @@
+// What flies and swims, against closed forms.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "server/physics/fluid/floating_shape.hpp"
+#include "tests/support/physics.hpp"
+
+namespace cohort::test {
+namespace {
+
+using description::Box;
+using description::Drag;
+using description::Fin;
+using description::Model;
+using description::Rotor;
+using Eigen::Vector3d;
+
+constexpr double pi = std::numbers::pi;
+constexpr double water_density = 1000.0;
+
+class Fluids : public EveryPhysics {
+ protected:
+  static description::World air() {
+    description::World world = empty_world();
+    world.physics.fidelity = GetParam().fidelity;
+    world.physics.dynamics = GetParam().dynamics;
+    return world;
+  }
+  static description::World water(const Vector3d& current = Vector3d::Zero()) {
+    description::World world = air();
+    world.water = {0.0, water_density, current};
+    return world;
+  }
+  // Of water_density times `density`, with the centre of mass in the middle.
+  static Model floating(const description::Shape& shape, double volume, double density, const Vector3d& size) {
+    return loose("floating", shape, solid_box(density * water_density * volume, size));
+  }
+  static Model crate(const Vector3d& size, double density) { return floating(Box{size}, size.prod(), density, size); }
+};
+INSTANTIATE_TEST_SUITE_P(Every, Fluids, ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel)),
+                         name_of);
+
+// ---- Rotors ----
+
+constexpr double motor_constant = 8.5e-6, moment_constant = 0.016;
+
+Rotor rotor_at(const Vector3d& p_LR, Rotor::Direction direction = Rotor::Direction::ccw) {
+  Rotor rotor;
+  rotor.name = "rotor";
+  rotor.X_LR.position = p_LR;
+  rotor.direction = direction;
+  rotor.max_velocity = 1100.0;
+  rotor.motor_constant = motor_constant;
+  rotor.moment_constant = moment_constant;
+  return rotor;
+}
+
+constexpr double copter_mass = 1.2;
+Model quadcopter(double time_constant = 0.0) {
+  const Vector3d size(0.4, 0.4, 0.1);
+  Model model = loose("quadcopter", Box{size}, solid_box(copter_mass, size));
+  for (const double x : {0.2, -0.2})
+    for (const double y : {0.2, -0.2}) {
+      Rotor rotor = rotor_at({x, y, 0.06}, x * y > 0.0 ? Rotor::Direction::cw : Rotor::Direction::ccw);
+      rotor.name += std::to_string(model.devices.size());
+      rotor.time_constant_up = rotor.time_constant_down = time_constant;
+      model.devices.push_back(rotor);
+    }
+  return model;
+}
+const double hover = std::sqrt(copter_mass * g / (4.0 * motor_constant));
+
+void spin(physics::World& world, std::uint32_t body, double velocity) {
+  for (std::size_t device = 0; device < 4; ++device) world.set_rotor_velocity_target(body, device, velocity);
+}
+
+TEST_P(Fluids, AQuadcopterHoversAtTheThrustThatItsWeightAsksFor) {
+  SmallWorld small(air());
+  const auto body = small.add(quadcopter(), at(1, 2, 3, 0.4));
+  spin(small.world(), body, hover);
+  small.run(5.0);
+  EXPECT_LT((small.position(body) - Vector3d(1, 2, 3)).norm(), 1e-6);
+  EXPECT_GT(small.up(body).z(), 1.0 - 1e-9);
+  small.world().record(body);
+  spin(small.world(), body, 1.005 * hover);
+  small.run(1.0);
+  const double climb = (1.005 * 1.005 - 1.0) * g;
+  EXPECT_NEAR(small.velocity(body).z(), climb, 1e-6) << "one percent more thrust";
+  EXPECT_LT((small.world().link_acceleration(body, 0, {0.1, 0, 0}) - Vector3d(0, 0, climb)).norm(), 1e-6);
+}
+
+TEST_P(Fluids, ReactionTorquesOfRotorsCancelOrTurnTheBody) {
+  SmallWorld small(air());
+  const auto body = small.add(quadcopter(), at(0, 0, 3));
+  physics::World& world = small.world();
+  const double more = 1.1, less = std::sqrt(2.0 - more * more);
+  for (const std::size_t cw : {0u, 3u}) world.set_rotor_velocity_target(body, cw, more * hover);
+  for (const std::size_t ccw : {1u, 2u}) world.set_rotor_velocity_target(body, ccw, less * hover);
+  small.run(0.5);
+  const double thrust = copter_mass * g / 4.0;
+  const double torque = 2.0 * moment_constant * thrust * (more * more - less * less);
+  const double inertia = copter_mass / 12.0 * (0.16 + 0.16);
+  EXPECT_NEAR(world.link_twist(body, 0).angular_W.z(), torque / inertia * 0.5, 1e-6)
+      << "what turns clockwise turns the body counter-clockwise";
+  EXPECT_LT(small.velocity(body).norm(), 1e-9);
+}
+
+TEST_P(Fluids, ARotorReaches63PercentAfterItsTimeConstant) {
+  SmallWorld small(air());
+  small.description.gravity.setZero();
+  Model model = quadcopter(0.2);
+  std::get<Rotor>(model.devices[0]).time_constant_down = 0.4;
+  const auto body = small.add(model, at(0, 0, 3));
+  spin(small.world(), body, 500.0);
+  small.run(0.2);
+  EXPECT_NEAR(small.world().rotor_velocity(body, 0), 500.0 * (1.0 - std::exp(-1.0)), 1e-9);
+  small.run(5.0);
+  const double before = small.world().rotor_velocity(body, 0);
+  spin(small.world(), body, 0.0);
+  small.run(0.4);
+  EXPECT_NEAR(small.world().rotor_velocity(body, 0), before * std::exp(-1.0), 1e-9);
+  EXPECT_NEAR(small.world().rotor_velocity(body, 1), before * std::exp(-2.0), 1e-9);
+}
+
+TEST_P(Fluids, ARotorIsDraggedAcrossItsAxis) {
+  SmallWorld small(air());
+  small.description.gravity.setZero();
+  Model model = loose("rotor", Box{Vector3d::Constant(0.1)}, solid_box(2.0, Vector3d::Constant(0.1)));
+  Rotor rotor = rotor_at(Vector3d::Zero());
+  rotor.drag_coefficient = 1e-3;
+  rotor.moment_constant = 0.0;
+  model.devices.push_back(rotor);
+  const auto body = small.add(model, at(0, 0, 3));
+  small.world().set_root_twist(body, {Vector3d::Zero(), Vector3d(3, -1, 0)});
+  small.world().set_rotor_velocity_target(body, 0, 400.0);
+  small.run(1.0);
+  const double share = std::pow(1.0 + 0.01 * 400.0 * 1e-3 / 2.0, -100);
+  EXPECT_LT((small.velocity(body) - Vector3d(3 * share, -share, motor_constant * 400 * 400 / 2.0)).norm(), 1e-9);
+}
+
+// A link that is welded to the world by the joint above it: what the joint bears is what acts on the link.
+Model anchored() {
+  Model model;
+  model.name = "anchored";
+  model.links.push_back({"link", {}, solid_box(1.0, Vector3d::Constant(0.1)), {}});
+  description::Joint joint;
+  joint.parent = description::Joint::world;
+  joint.child = 0;
+  model.joints.push_back(joint);
+  return model;
+}
+physics::Wrench wrench_on(SmallWorld& small, std::uint32_t body) {
+  small.world().record(body);
+  small.run(0.02);
+  physics::Wrench wrench = small.world().joint_wrench(body, 0);
+  wrench.force_W = -wrench.force_W;
+  wrench.torque_W = -wrench.torque_W;
+  return wrench;
+}
+
+TEST_P(Fluids, AThrusterPushesBothWaysAndInItsOwnFluid) {
+  // Fossen's density K D^4 n|n|, with n in turns a second, and the torque density Q D^5 n|n|.
+  const double diameter = 0.1, thrust_coefficient = 0.4, turns = 12.0;
+  const double thrust = water_density * thrust_coefficient * std::pow(diameter, 4) * turns * turns;
+  for (const double z : {-1.0, 1.0}) {
+    SmallWorld small(water());
+    small.description.gravity.setZero();
+    Model model = anchored();
+    Rotor thruster = rotor_at({0.1, 0.2, 0});
+    thruster.X_LR.orientation = Eigen::AngleAxisd(pi / 2, Vector3d::UnitY());
+    thruster.motor_constant = water_density * thrust_coefficient * std::pow(diameter, 4) / (4 * pi * pi);
+    thruster.min_velocity = -200.0;
+    thruster.density = water_density;
+    model.devices.push_back(thruster);
+    const auto body = small.add(model, at(0, 0, z));
+    small.world().set_rotor_velocity_target(body, 0, -2 * pi * turns);
+    const double share = z < 0.0 ? 1.0 : 1.225 / water_density;
+    const physics::Wrench wrench = wrench_on(small, body);
+    EXPECT_LT((wrench.force_W - share * Vector3d(-thrust, 0, 0)).norm(), 1e-9 * thrust);
+    EXPECT_LT((wrench.torque_W - share * Vector3d(moment_constant * thrust, 0, 0.2 * thrust)).norm(), 1e-9 * thrust);
+  }
+}
+
+TEST_P(Fluids, ARotorThatComesBackAfterItsBodyWasLostStandsStill) {
+  SmallWorld small(air());
+  small.description.physics.lowest = 0.0;
+  const auto body = small.add(quadcopter(), at(0, 0, 1));
+  spin(small.world(), body, 0.5 * hover);
+  small.run(1.0);
+  ASSERT_FALSE(small.world().is_active(body));
+  EXPECT_GT(small.world().rotor_velocity(body, 0), 0.0);
+  small.world().put_back_body(body);
+  EXPECT_EQ(small.world().rotor_velocity(body, 0), 0.0);
+  small.world().place_body(body, at(0, 0, 1));
+  spin(small.world(), body, hover);
+  small.run(1.0);
+  EXPECT_NEAR(small.position(body).z(), 1.0, 1e-6);
+}
+
+// ---- Water ----
+
+TEST_P(Fluids, ABoxFloatsAtTheDraughtOfArchimedesAndRightsItself) {
+  SmallWorld small(water());
+  const Vector3d size(0.4, 0.3, 0.2);
+  const double density = 0.6;
+  Model model = crate(size, density);
+  Drag drag;
+  drag.damping = {5, 5, 20};
+  drag.angular_damping = {0.5, 0.5, 0.5};
+  model.drags.push_back(drag);
+  const auto body = small.add(model, turned(0, 0, 0.1, {1, 0.5, 0}, 0.3));
+  small.run(30.0);
+  const double draught = 0.5 * size.z() - small.position(body).z();
+  EXPECT_NEAR(draught, density * size.z(), 1e-6);
+  EXPECT_GT(small.up(body).z(), 1.0 - 1e-9) << "its metacentre is 22 mm above its centre of mass";
+}
+
+TEST_P(Fluids, WhatFloatsAtRestStaysThere) {
+  SmallWorld small(water());
+  const auto body = small.add(crate({0.4, 0.3, 0.2}, 0.6), at(0, 0, -0.02, 0.3));
+  small.run(10.0);
+  EXPECT_LT((small.position(body) - Vector3d(0, 0, -0.02)).norm(), 1e-9);
+}
+
+TEST_P(Fluids, ATallBoxTips) {
+  SmallWorld small(water());
+  const auto body = small.add(crate({0.1, 0.1, 0.4}, 0.5), turned(0, 0, 0, {1, 0, 0}, 0.01));
+  double least = 1.0;
+  for (int i = 0; i < 1000; ++i) {
+    small.world().step();
+    least = std::min(least, std::abs(small.up(body).z()));
+  }
+  EXPECT_LT(least, 0.2);
+}
+
+TEST_P(Fluids, ABoxBobsWithThePeriodOfItsDraught) {
+  SmallWorld small(water());
+  const auto body = small.add(crate({0.8, 0.8, 0.4}, 0.5), at(0, 0, 0.02));
+  int crossings = 0;
+  double first = 0.0, last = 0.0, before = 0.02;
+  for (int i = 1; i <= 600; ++i) {
+    small.world().step();
+    const double now = small.position(body).z();
+    if (before > 0.0 && now <= 0.0) {
+      last = 0.01 * (i - now / (now - before));
+      if (crossings++ == 0) first = last;
+    }
+    before = now;
+  }
+  EXPECT_NEAR((last - first) / (crossings - 1), 2 * pi * std::sqrt(0.2 / g), 0.005);
+}
+
+TEST_P(Fluids, SpheresAndCylindersFloatWhereTheyDisplaceTheirMass) {
+  Drag drag;
+  drag.damping.setConstant(20.0);
+  drag.angular_damping.setConstant(0.5);
+  const auto height_of = [&](Model model, const Pose& X_WM) {
+    SmallWorld small(water());
+    model.drags.push_back(drag);
+    const auto body = small.add(model, X_WM);
+    small.run(20.0);
+    return small.position(body).z();
+  };
+  const double r = 0.1;
+  const double ball = 4.0 / 3.0 * pi * r * r * r;
+  // Of a cap of height h, pi h^2 (3 r - h) / 3: 5/32 of the ball where h = r / 2.
+  EXPECT_NEAR(height_of(floating(description::Sphere{r}, ball, 5.0 / 32.0, {r, r, r}), at(0, 0, 0)), 0.5 * r, 1e-6);
+  const double length = 0.05;
+  const double disc = pi * r * r * length;
+  EXPECT_NEAR(height_of(floating(description::Cylinder{r, length}, disc, 0.7, {r, r, length}), at(0, 0, 0)),
+              (0.5 - 0.7) * length, 1e-6);
+  const double log = pi * r * r * 0.6;
+  const Pose lying = turned(0, 0, 0, {0, 1, 0}, pi / 2);
+  EXPECT_NEAR(height_of(floating(description::Cylinder{r, 0.6}, log, 0.5, {r, r, 0.6}), lying), 0.0, 1e-4);
+}
+
+// Each below a surface at many heights and angles, against sums over layers.
+TEST(FloatingShapes, DisplaceWhatIsBelowTheSurface) {
+  const double r = 0.1, length = 0.3;
+  const physics::FloatingShape cylinder(description::Cylinder{r, length}), capsule(description::Capsule{r, length}),
+      sphere(description::Sphere{r}), box(Box{{0.2, 0.2, 0.3}}), ellipsoid(description::Ellipsoid{{r, r, 2 * r}});
+  const double whole_cylinder = pi * r * r * length, whole_ball = 4.0 / 3.0 * pi * r * r * r;
+  const Pose lying = turned(0, 0, 0, {0, 1, 0}, pi / 2);
+  for (const double level : {-0.09, -0.05, -0.01, 0.0, 0.03, 0.07}) {
+    const double cap = pi / 3.0 * (r + level) * (r + level) * (2 * r - level);
+    const double segment = r * r * std::acos(-level / r) + level * std::sqrt(r * r - level * level);
+    EXPECT_NEAR(sphere.below(level, {}).volume, cap, 1e-12);
+    EXPECT_NEAR(cylinder.below(level, lying).volume, segment * length, 0.002 * whole_cylinder);
+    EXPECT_NEAR(capsule.below(level, lying).volume, segment * length + cap, 0.002 * (whole_cylinder + whole_ball));
+    EXPECT_NEAR(cylinder.below(level, {}).volume, pi * r * r * (0.5 * length + level), 1e-12);
+    EXPECT_NEAR(ellipsoid.below(2 * level, {}).volume, 2 * cap, 1e-12);
+    EXPECT_NEAR(ellipsoid.below(level, lying).volume, 2 * cap, 1e-12);
+    const physics::SubmergedPart edge_down =
+        box.below(level, turned(0, 0, 0, {0, 0, 1}, 0.0) * turned(0, 0, 0, {1, 0, 0}, pi / 2) *
+                             turned(0, 0, 0, {0, 0, 1}, pi / 4));
+    const double depth = 0.1 * std::numbers::sqrt2 - std::abs(level);
+    const double corner = depth * depth * 0.3;
+    EXPECT_NEAR(edge_down.volume, level < 0.0 ? corner : 0.2 * 0.2 * 0.3 - corner, 1e-12);
+    EXPECT_NEAR(edge_down.area, 2 * depth * 0.3, 1e-12);
+    EXPECT_NEAR(edge_down.second_moment_W.trace(), edge_down.area / 12.0 * (4 * depth * depth + 0.09), 1e-12);
+  }
+  // What the section says is how the volume and its moment change with the level, for any shape at any angle.
+  for (const physics::FloatingShape* shape : {&cylinder, &capsule, &ellipsoid, &box}) {
+    const Pose X_WC = turned(0.3, -0.2, 0.05, {1, 2, 0.5}, 0.8);
+    constexpr double change = 1e-5;
+    const physics::SubmergedPart low = shape->below(0.02 - change, X_WC), high = shape->below(0.02 + change, X_WC),
+                                 mid = shape->below(0.02, X_WC);
+    EXPECT_NEAR((high.volume - low.volume) / (2 * change), mid.area, 1e-5 * mid.area);
+    const Vector3d centre = (high.volume * high.centre_W - low.volume * low.centre_W) / (high.volume - low.volume);
+    EXPECT_LT((centre - mid.area_centre_W).norm(), 1e-5);
+  }
+}
+
+TEST_P(Fluids, WhatIsLightAndFlatSettlesOnTheWater) {
+  SmallWorld small(water());
+  Model model = crate({1.0, 1.0, 0.05}, 0.02);
+  Drag drag;
+  drag.damping.setConstant(5.0);
+  drag.angular_damping.setConstant(1.0);
+  model.drags.push_back(drag);
+  const auto body = small.add(model, turned(0, 0, 0.3, {1, 0.3, 0}, 0.4));
+  for (int i = 0; i < 2000; ++i) {
+    small.world().step();
+    ASSERT_LT(small.velocity(body).norm(), 20.0) << "at step " << i;
+  }
+  EXPECT_NEAR(small.position(body).z(), (0.5 - 0.02) * 0.05, 1e-6);
+  EXPECT_GT(small.up(body).z(), 1.0 - 1e-9);
+}
+
+TEST_P(Fluids, ABoatReachesTheSpeedAtWhichItsDragIsItsThrust) {
+  const Vector3d current(0.2, -0.1, 0);
+  SmallWorld small(water(current));
+  Model boat = crate({0.6, 0.3, 0.2}, 0.5);
+  Rotor thruster = rotor_at({-0.3, 0, -0.08});
+  thruster.X_LR.orientation = Eigen::AngleAxisd(pi / 2, Vector3d::UnitY());
+  thruster.motor_constant = 1e-3;
+  thruster.moment_constant = 0.0;
+  thruster.density = water_density;
+  boat.devices.push_back(thruster);
+  Drag drag;
+  drag.X_LD.position = {0, 0, -0.08};
+  drag.damping = {0, 30, 30};
+  drag.quadratic_damping = {8, 0, 0};
+  drag.angular_damping = {3, 3, 3};
+  boat.drags.push_back(drag);
+  const auto body = small.add(boat, at(0, 0, 0));
+  small.world().set_rotor_velocity_target(body, 0, 100.0);
+  small.run(60.0);
+  const Vector3d through_water =
+      small.world().link_pose(body, 0).orientation.conjugate() * (small.velocity(body) - current);
+  EXPECT_NEAR(through_water.x(), std::sqrt(1e-3 * 100.0 * 100.0 / 8.0), 1e-3);
+  EXPECT_NEAR(through_water.y(), 0.0, 1e-3);
+}
+
+TEST_P(Fluids, ARudderTurnsABoatToItsSide) {
+  for (const double side : {1.0, -1.0}) {
+    SmallWorld small(water());
+    Model boat = crate({0.6, 0.3, 0.2}, 0.5);
+    boat.links.push_back({"rudder", {{-0.35, 0, -0.1}}, solid_box(0.1, {0.1, 0.01, 0.1}), {}});
+    description::Joint joint;
+    joint.name = "rudder";
+    joint.type = description::JointType::revolute;
+    joint.child = 1;
+    boat.joints.push_back(joint);
+    boat.devices.push_back(description::PositionMotor{"rudder", 0, 5.0, 5.0});
+    Rotor thruster = rotor_at({-0.3, 0, -0.08});
+    thruster.X_LR.orientation = Eigen::AngleAxisd(pi / 2, Vector3d::UnitY());
+    thruster.motor_constant = 1e-3;
+    thruster.moment_constant = 0.0;
+    boat.devices.push_back(thruster);
+    Fin blade;
+    blade.link = 1;
+    blade.X_LF = turned(-0.05, 0, 0, {1, 0, 0}, pi / 2);
+    blade.area = 0.01;
+    blade.cla = 4.0;
+    boat.fins.push_back(blade);
+    Drag drag;
+    drag.X_LD.position = {0, 0, -0.05};
+    drag.damping = {8, 60, 60};
+    drag.angular_damping = {2, 2, 2};
+    boat.drags.push_back(drag);
+    const auto body = small.add(boat, at(0, 0, 0));
+    small.world().set_joint_position_target(body, 0, 0.3 * side);
+    small.world().set_rotor_velocity_target(body, 1, 100.0);
+    small.run(3.0);
+    EXPECT_NEAR(small.world().joint_position(body, 0), 0.3 * side, 0.02);
+    // The end of the blade is on the right: the stern goes left.
+    EXPECT_LT(side * small.world().link_twist(body, 0).angular_W.z(), -0.1);
+    EXPECT_GT(small.up(body).z(), 0.95);
+  }
+}
+
+// ---- Drag, fins and wind ----
+
+TEST_P(Fluids, WhatFallsReachesItsTerminalVelocity) {
+  SmallWorld small(air());
+  const double mass = 0.5, linear = 0.1, quadratic = 0.02;
+  Model model = loose("ball", description::Sphere{0.1}, solid_sphere(mass, 0.1));
+  Drag drag;
+  drag.damping.setConstant(linear);
+  drag.quadratic_damping.setConstant(quadratic);
+  model.drags.push_back(drag);
+  const auto body = small.add(model, at(0, 0, 0));
+  small.description.physics.lowest = -1e4;
+  small.run(40.0);
+  const double expected = (-linear + std::sqrt(linear * linear + 4 * quadratic * mass * g)) / (2 * quadratic);
+  EXPECT_NEAR(small.velocity(body).z(), -expected, 1e-6 * expected);
+}
+
+TEST_P(Fluids, DragNeverTurnsTheMotionRound) {
+  SmallWorld small(air());
+  small.description.gravity.setZero();
+  Model model = loose("leaf", Box{{0.1, 0.1, 0.001}}, solid_box(1e-3, {0.1, 0.1, 0.001}));
+  Drag drag;
+  drag.X_LD.position = {0.05, 0, 0};
+  drag.damping = {0, 0, 50};
+  drag.quadratic_damping = {100, 100, 100};
+  drag.quadratic_angular_damping = {10, 10, 10};
+  model.drags.push_back(drag);
+  const auto body = small.add(model, at(0, 0, 3));
+  small.world().set_root_twist(body, {Vector3d(30, -20, 10), Vector3d(50, 10, -20)});
+  double before = 1e9;
+  for (int i = 0; i < 200; ++i) {
+    small.world().step();
+    const physics::Twist twist = small.world().link_twist(body, 0);
+    const double energy = 0.5e-3 * twist.linear_W.squaredNorm();
+    ASSERT_LE(energy, before);
+    before = energy;
+  }
+  EXPECT_LT(small.velocity(body).norm(), 0.1);
+}
+
+TEST_P(Fluids, AFinHasTheLiftAndDragOfItsAngle) {
+  const double speed = 2.0;
+  Fin fin;
+  fin.name = "fin";
+  fin.X_LF.position = {0.1, 0, 0.2};
+  fin.area = 0.03;
+  fin.cla = 4.0;
+  fin.cda = 0.2;
+  fin.alpha_stall = 0.2;
+  fin.cla_stall = -3.0;
+  fin.cda_stall = 1.5;
+  for (const double degrees : {5.0, -5.0, 20.0, 80.0, 180.0 + 5.0}) {
+    const double angle = degrees * pi / 180.0;
+    const double alpha = degrees > 90.0 ? angle - pi : angle;
+    // The water comes from ahead and below.
+    SmallWorld small(water(speed * Vector3d(-std::cos(angle), 0, std::sin(angle))));
+    small.description.gravity.setZero();
+    Model model = anchored();
+    model.fins.push_back(fin);
+    const auto body = small.add(model, at(0, 0, -2));
+    const double beyond = std::copysign(std::max(0.0, std::abs(alpha) - 0.2), alpha);
+    double lift = 4.0 * (alpha - beyond) - 3.0 * beyond;
+    if (beyond > 0.0) lift = std::max(lift, 0.0);
+    const double drag = std::abs(0.2 * (alpha - beyond) + 1.5 * beyond);
+    const double pressure = 0.5 * water_density * speed * speed * fin.area;
+    const Vector3d with_flow(-std::cos(angle), 0, std::sin(angle));
+    const Vector3d across(std::sin(angle), 0, std::cos(angle));
+    const Vector3d force = pressure * (lift * across + drag * with_flow);
+    const physics::Wrench wrench = wrench_on(small, body);
+    EXPECT_LT((wrench.force_W - force).norm(), 1e-9 * pressure) << degrees << " degrees: " << wrench.force_W;
+    EXPECT_LT((wrench.torque_W - Vector3d(0.1, 0, 0.2).cross(force)).norm(), 1e-9 * pressure);
+  }
+}
+
+// A glider of 30 g at 300 m/s: the lift of one step would throw it up 180 times as fast as it sinks.
+TEST_P(Fluids, ALightFinAtHighSpeedIsStable) {
+  for (const double cla_stall : {0.0, -3.0}) {
+    SmallWorld small(air());
+    small.description.physics.lowest = -1e4;
+    Model model = loose("glider", Box{{0.3, 0.5, 0.02}}, solid_box(0.03, {0.3, 0.5, 0.02}));
+    Fin wing;
+    wing.X_LF.position = {-0.01, 0, 0};
+    wing.area = 0.5;
+    wing.cla = 6.0;
+    wing.alpha0 = 0.05;
+    wing.alpha_stall = 0.25;
+    wing.cla_stall = cla_stall;
+    model.fins.push_back(wing);
+    const auto body = small.add(model, turned(0, 0, 1000, {0, 1, 0}, 0.3));
+    small.world().set_root_twist(body, {Vector3d(0, 5, 0), Vector3d(300, 0, -50)});
+    double most = small.velocity(body).norm();
+    for (int i = 0; i < 1000; ++i) {
+      small.world().step();
+      const double speed = small.velocity(body).norm();
+      ASSERT_TRUE(small.world().is_active(body)) << "at step " << i;
+      ASSERT_LT(speed, most) << "at step " << i;
+      most = std::sqrt(std::max(speed * speed, 1.0) + 2.0 * g * 10.0);
+    }
+  }
+}
+
+TEST_P(Fluids, WindBlowsThoseWhoFeelIt) {
+  SmallWorld small(air());
+  small.description.gravity.setZero();
+  small.description.air.wind = {3, 1, 0};
+  small.description.air.wind_force = 0.5;
+  const auto ball = [] { return loose("ball", description::Sphere{0.1}, solid_sphere(0.5, 0.1)); };
+  Model feeling = ball(), dragged = ball();
+  feeling.links[0].feels_wind = true;
+  Drag drag;
+  drag.damping.setConstant(0.25);
+  dragged.drags.push_back(drag);
+  const auto calm = small.add(dragged, at(0, 0, 5));
+  const auto blown = small.add(feeling, at(0, 2, 5));
+  feeling.drags.push_back(drag);
+  const auto both = small.add(feeling, at(0, 4, 5));
+  small.run(1.0);
+  EXPECT_EQ(small.velocity(calm), Vector3d::Zero());
+  EXPECT_LT((small.velocity(blown) - Vector3d(3, 1, 0) * (1.0 - std::pow(1.005, -100))).norm(), 1e-9);
+  EXPECT_LT((small.velocity(both) - Vector3d(3, 1, 0) * (1.0 - std::pow(1.005, -200))).norm(), 1e-9);
+}
+
+TEST_P(Fluids, WhatARotorLiftsGoesThroughTheJointsThatHoldIt) {
+  SmallWorld small(air());
+  Model model = anchored();
+  model.devices.push_back(rotor_at({0.3, 0, 0}));
+  const auto body = small.add(model, at(0, 0, 1));
+  small.world().set_rotor_velocity_target(body, 0, 600.0);
+  const double thrust = motor_constant * 600.0 * 600.0;
+  const physics::Wrench wrench = wrench_on(small, body);
+  EXPECT_LT((wrench.force_W - Vector3d(0, 0, thrust - g)).norm(), 1e-9);
+  EXPECT_LT((wrench.torque_W - Vector3d(0, -0.3 * thrust, -moment_constant * thrust)).norm(), 1e-9);
+}
+
+// ---- State ----
+
+// Quadcopters and boats on a windy sea, with a raft of crates that touch each other: a large island.
+struct Regatta {
+  SmallWorld small;
+  std::uint32_t copters = 12;
+
+  Regatta(description::World world, unsigned threads) : small(std::move(world), threads) {
+    small.description.air.wind = {2, -1, 0};
+    Model copter = quadcopter(0.05);
+    copter.links[0].feels_wind = true;
+    Model boat = loose("boat", Box{{0.6, 0.3, 0.2}}, solid_box(18.0, {0.6, 0.3, 0.2}));
+    Fin keel;
+    keel.X_LF = turned(0, 0, -0.2, {1, 0, 0}, pi / 2);
+    keel.area = 0.05;
+    keel.cla = 5.0;
+    Drag drag;
+    drag.quadratic_damping.setConstant(30.0);
+    drag.density = water_density;
+    boat.fins.push_back(keel);
+    boat.drags.push_back(drag);
+    for (std::uint32_t i = 0; i < copters; ++i) small.add(copter, at(1.0 * i, 0, 2, 0.1 * i));
+    for (std::uint32_t i = 0; i < copters; ++i) small.add(boat, turned(0.55 * i, 0.1 * i, 0, {1, 1, 0}, 0.02 * i));
+    const Vector3d cube = Vector3d::Constant(0.1);
+    const Model crate = loose("crate", Box{cube}, solid_box(0.4, cube));
+    for (int row = 0; row < 10; ++row)
+      for (int column = 0; column < 11; ++column) small.add(crate, at(0.1001 * column, -3.0 + 0.1001 * row, 0.02));
+  }
+  void step(int tick) {
+    for (std::uint32_t body = 0; body < copters; ++body)
+      spin(small.world(), body, hover * (1.0 + 0.05 * std::sin(0.1 * tick + body)));
+    small.world().step();
+  }
+};
+
+TEST_P(Fluids, HaveTheSameBitsForAnyNumberOfThreads) {
+  const auto hash_with = [](unsigned threads) {
+    Regatta regatta(water(), threads);
+    for (int tick = 0; tick < 200; ++tick) regatta.step(tick);
+    return hash_of(regatta.small.world());
+  };
+  const std::uint64_t expected = hash_with(1);
+  for (const unsigned threads : {2u, 4u}) EXPECT_EQ(hash_with(threads), expected) << threads;
+}
+
+TEST_P(Fluids, GoOnFromASnapshotWithTheSameBits) {
+  Regatta regatta(water(), 1), restored(water(), 2);
+  for (int tick = 0; tick < 100; ++tick) regatta.step(tick);
+  restore_from(regatta.small.world(), restored.small.world());
+  ASSERT_EQ(hash_of(restored.small.world()), hash_of(regatta.small.world()));
+  for (int tick = 100; tick < 200; ++tick) {
+    regatta.step(tick);
+    restored.step(tick);
+    ASSERT_EQ(hash_of(restored.small.world()), hash_of(regatta.small.world())) << "at tick " << tick;
+  }
+}
+
+TEST(PlanarFluids, AreRefused) {
+  const auto reason = [](const Model& model, void (*change)(description::World&)) -> std::string {
+    SmallWorld small;
+    small.description.physics.fidelity = description::Fidelity::planar;
+    change(small.description);
+    small.add(model, at(0, 0, 0.05));
+    try {
+      small.world();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto nothing = [](description::World&) {};
+  const Model plain = loose("box", Box{Vector3d::Constant(0.1)}, solid_box(1.0, Vector3d::Constant(0.1)));
+  EXPECT_EQ(reason(plain, nothing), "");
+  EXPECT_EQ(reason(plain, [](description::World& world) { world.water.emplace(); }), "planar physics has no water");
+  EXPECT_EQ(reason(quadcopter(), nothing), "model 'quadcopter': rotor 'rotor0' cannot be planar");
+  Model model = plain;
+  model.fins.emplace_back().name = "wing";
+  EXPECT_EQ(reason(model, nothing), "model 'box': fin 'wing' cannot be planar");
+  model = plain;
+  model.drags.emplace_back().name = "hull";
+  EXPECT_EQ(reason(model, nothing), "model 'box': drag 'hull' cannot be planar");
+  model = plain;
+  model.links[0].feels_wind = true;
+  EXPECT_EQ(reason(model, nothing), "");
+  EXPECT_EQ(reason(model,
+                   [](description::World& world) {
+                     world.air.wind = {1, 0, 0};
+                   }),
+            "model 'box': what feels the wind cannot be planar");
+}
+
+}  // namespace
+}  // namespace cohort::test

@@ -527,6 +527,59 @@ TEST_P(Fluids, WhatARotorLiftsGoesThroughTheJointsThatHoldIt) {
   EXPECT_LT((wrench.torque_W - Vector3d(0, -0.3 * thrust, -moment_constant * thrust)).norm(), 1e-9);
 }
 
+// Too many degrees of freedom for the inverse of its mass matrix.
+TEST(FluidsByBothDynamics, AreTheSameForAChainOfFloatsThatIsTowed) {
+  const auto places_by = [](description::Dynamics dynamics) {
+    SmallWorld small(empty_world());
+    small.description.physics.dynamics = dynamics;
+    small.description.water.emplace().current = {0.1, 0.2, 0};
+    small.description.air.wind = {2, 0, 0};
+    Model chain;
+    chain.name = "chain";
+    const double length = 0.2;
+    for (std::size_t i = 0; i < 8; ++i) {
+      chain.links.push_back({"float",
+                             {{-length * static_cast<double>(i), 0, 0}},
+                             solid_box(0.8, {0.15, 0.1, 0.1}),
+                             {{"c", {}, description::Capsule{0.05, 0.05}, {}}}});
+      chain.links.back().feels_wind = i % 2 == 0;
+      Drag drag;
+      drag.link = i;
+      drag.quadratic_damping = {2, 8, 8};
+      drag.angular_damping.setConstant(0.02);
+      chain.drags.push_back(drag);
+      if (i == 0) continue;
+      description::Joint joint;
+      joint.type = description::JointType::ball;
+      joint.parent = i - 1;
+      joint.child = i;
+      joint.X_LJ.position = {0.5 * length, 0, 0};
+      joint.axis.damping = 0.01;
+      chain.joints.push_back(joint);
+    }
+    Fin fin;
+    fin.link = 7;
+    fin.X_LF.orientation = Eigen::AngleAxisd(pi / 2, Vector3d::UnitX());
+    fin.area = 0.01;
+    fin.cla = 4.0;
+    chain.fins.push_back(fin);
+    Rotor tug = rotor_at({0, 0, 0.1});
+    tug.X_LR.orientation = Eigen::AngleAxisd(pi / 2 - 0.3, Vector3d::UnitY());
+    tug.drag_coefficient = 1e-4;
+    chain.devices.push_back(tug);
+    const auto body = small.add(chain, at(0, 0, 0.05));
+    small.world().set_rotor_velocity_target(body, 0, 700.0);
+    small.run(2.0);
+    EXPECT_GT(small.velocity(body, 0).x(), 0.05) << "it is towed";
+    std::vector<Vector3d> places;
+    for (std::size_t i = 0; i < 8; ++i) places.push_back(small.position(body, i));
+    return places;
+  };
+  const std::vector<Vector3d> bullets = places_by(description::Dynamics::bullet);
+  const std::vector<Vector3d> ours = places_by(description::Dynamics::cohort);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_LT((bullets[i] - ours[i]).norm(), 1e-7) << "float " << i;
+}
+
 // ---- State ----
 
 // Quadcopters and boats on a windy sea, with a raft of crates that touch each other: a large island.

@@ -144,7 +144,9 @@ std::string ElementSchema::default_text() const {
 
 bool ElementSchema::is_vector() const {
   if (element_) return element_->GetValue() && is_vector_type(element_->GetValue()->GetTypeName());
-  return key_ != nullptr && (key_->value == ExtensionValue::point || key_->value == ExtensionValue::pose);
+  constexpr ExtensionValue vectors[] = {ExtensionValue::point, ExtensionValue::vector, ExtensionValue::place,
+                                        ExtensionValue::pose};
+  return key_ != nullptr && std::ranges::find(vectors, key_->value) != std::end(vectors);
 }
 
 std::vector<std::string> ElementSchema::children() const {

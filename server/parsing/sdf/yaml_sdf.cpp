@@ -30,6 +30,13 @@ bool is_list_of_scalars(const YamlNode& node) {
          std::all_of(node.items.begin(), node.items.end(), [](const YamlPtr& item) { return item->is_scalar(); });
 }
 
+// The numbers of one vector, not vectors that are each a text.
+bool is_vector(const YamlNode& node) {
+  return is_list_of_scalars(node) && std::all_of(node.items.begin(), node.items.end(), [](const YamlPtr& item) {
+           return item->text.find(' ') == std::string::npos;
+         });
+}
+
 // YAML's infinity is not SDF's.
 std::string scalar_text(const YamlNode& node) {
   std::string text = node.text;
@@ -216,7 +223,7 @@ void Converter::add_children(XmlNode& node, const Entry& entry, const ElementSch
   if (schema.is_extension() && name.find(':') == std::string::npos) name = prefixed(name);
   const ElementSchema child = schema.child(name);
   const YamlNode& value = *entry.value;
-  if (!value.is_list() || (child.is_vector() && is_list_of_scalars(value))) {
+  if (!value.is_list() || (child.is_vector() && is_vector(value))) {
     add_child(node, name, entry.line, value, child, path);
     return;
   }

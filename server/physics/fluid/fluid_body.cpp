@@ -34,9 +34,9 @@ void FluidBody::stop() {
   for (RotorState& rotor : rotors_) rotor.velocity = 0.0;
 }
 
-FluidBody::Here FluidBody::here(const Place& place, const Equations& equations, const Media& media) const {
+FluidBody::Here FluidBody::here(const Place& place, const Equations& equations, const Media& media) {
   const Pose X_WP = equations.body().segment_pose(place.segment) * place.X_SP;
-  return {place, X_WP, media.at(X_WP.position, place.feels_wind)};
+  return {X_WP, media.at(X_WP.position, place.feels_wind)};
 }
 
 void FluidBody::apply(Equations& equations, const Media& media, double step) {
@@ -80,7 +80,7 @@ void FluidBody::push_by_rotor(std::size_t index, Equations& equations, const Med
 // it leans are those of the section, so that each is a damper by itself.
 void FluidBody::stiffen(const FluidModel::Float& floating, const SubmergedPart& part, const Media& media,
                         Equations& equations, double step) {
-  const double weight = -media.gravity.z() * (media.water ? media.water->density : 0.0);  // of the water [N/m^3]
+  const double weight = -media.gravity.z() * media.water->density;  // of the water [N/m^3]
   if (!(part.area > 0.0) || !(weight > 0.0)) return;
   aim(floating, part.area_centre_W, force_along(Vector3d::UnitZ()), equations);
   damp_along(0.0, step * weight * part.area, 0.0, equations, step);

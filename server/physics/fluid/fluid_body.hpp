@@ -57,13 +57,12 @@ class FluidBody {
   };
   /// A place in the present step.
   struct Here {
-    const Place& place;
     Pose X_WP;
     Media::Medium medium;
   };
 
   std::size_t rotor_of(std::size_t device) const;
-  Here here(const Place& place, const Equations& equations, const Media& media) const;
+  static Here here(const Place& place, const Equations& equations, const Media& media);
   static double share_of_density(double density, const Media::Medium& medium) {
     return density > 0.0 ? medium.density / density : 1.0;
   }

@@ -92,6 +92,24 @@ TEST_F(Fluids, AWorldHasAirAndWindAndWaterIfItSaysSo) {
   EXPECT_EQ(wet.water->current, Eigen::Vector3d(0.1, 0, 0));
 }
 
+TEST_F(Fluids, VectorsOfExtensionsAreListsInYaml) {
+  const auto read_yaml = [&](const std::string& devices) {
+    return parsing::read_world(write("world.yaml",
+                                     "world:\n  cohort:water: {current: [0.1, 0.2, 0]}\n  model:\n    name: m\n"
+                                     "    link: {name: a, cohort:density: 1, collision: {geometry: "
+                                     "{sphere: {radius: 1}}}}\n" +
+                                         devices),
+                               1);
+  };
+  EXPECT_EQ(read_yaml("").water->current, Eigen::Vector3d(0.1, 0.2, 0));
+  for (const std::string places : {"[[1, 2, 3], [4, 5, 6]]", "['1 2 3', '4 5 6']"}) {
+    const World world = read_yaml("    cohort:ground_sensors: {name: s, link: a, range: 1, place: " + places + "}\n");
+    const auto& sensors = std::get<GroundSensors>(world.models[0].devices.at(0));
+    ASSERT_EQ(sensors.places_L.size(), 2u);
+    EXPECT_EQ(sensors.places_L[1], Eigen::Vector3d(4, 5, 6));
+  }
+}
+
 TEST_F(Fluids, LinksFeelTheWindAsTheySayOrAsTheirModelDoes) {
   const auto who_feels = [&](const std::string& in_model, const std::string& in_link) {
     const World world = read(vessel("", in_model, in_link));

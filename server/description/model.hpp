@@ -68,7 +68,7 @@ struct GripRing {
   double radius = 0.0;  ///< [m]
 };
 
-enum class JointType { fixed, revolute, prismatic, ball, universal };
+enum class JointType { fixed, revolute, prismatic, ball, universal, screw };
 
 /// One direction in which a joint turns [rad] or slides [m].
 struct JointAxis {
@@ -79,10 +79,12 @@ struct JointAxis {
   double friction = 0.0;          ///< Coulomb friction of the joint [N m] or [N]
   double spring_stiffness = 0.0;  ///< [N m/rad] or [N/m]
   double spring_reference = 0.0;  ///< where the spring is at rest [rad] or [m]
+  // Of a motor on it, whatever the motor itself may do:
+  double max_effort = std::numeric_limits<double>::infinity();    ///< [N m] or [N]
+  double max_velocity = std::numeric_limits<double>::infinity();  ///< [rad/s] or [m/s]
 };
 
-/// Joins two links of the same model, or a link and the world. Links form a tree: every link is the child of at most
-/// one joint.
+/// Joins two links of the same model, or a link and the world.
 struct Joint {
   static constexpr std::size_t world = std::numeric_limits<std::size_t>::max();
 
@@ -91,12 +93,23 @@ struct Joint {
   std::size_t parent = 0;  ///< index into Model::links, or `world`
   std::size_t child = 0;   ///< index into Model::links
   Pose X_LJ;               ///< in the child link
-  JointAxis axis;          ///< of a revolute, prismatic or universal joint; of a ball only damping and friction
+  JointAxis axis;          ///< of all but fixed joints; of a ball only damping and friction; of a screw, how it turns
   JointAxis second_axis;   ///< of a universal joint: the one that moves with the first, fixed in the child
+  double thread_pitch = 0.0;  ///< of a screw: its way along the axis for each turn [m], negative: left-handed
+};
+
+/// Lets one joint follow another: its position is `multiplier` times that of the leader, plus `offset`. Of joints with
+/// several axes the first.
+struct Coupling {
+  std::size_t follower = 0;  ///< index into Model::joints
+  std::size_t leader = 0;    ///< likewise
+  double multiplier = 1.0;   ///< [1], [m/rad] or [rad/m]
+  double offset = 0.0;       ///< [rad] or [m]
 };
 
 /// Links in an order in which every parent comes before its children; link 0 is the root, which is free to move unless
-/// a joint ties it to the world. Devices in document order, which is the order of their channels. A static model has
+/// a joint ties it to the world. Every link is the child of at most one of the joints; what closes a loop stands apart.
+/// Devices in document order, which is the order of their channels. A static model has
 /// neither joints nor devices, and its links stay at X_ML.
 struct Model {
   std::string name;
@@ -104,6 +117,9 @@ struct Model {
   bool self_collide = false;  ///< links of one instance collide with each other, but for those that a joint connects
   std::vector<Link> links;
   std::vector<Joint> joints;
+  std::vector<Joint>
+      loop_joints{};  ///< between links that joints connect already; without limits, springs and friction
+  std::vector<Coupling> couplings{};
   std::vector<Device> devices;
   std::vector<Emitter> emitters;
   std::vector<GripRing> grip_rings{};

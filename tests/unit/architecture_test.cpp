@@ -149,7 +149,7 @@ TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
       {"expat", std::regex("expat\\.h")},
       {"Assimp", std::regex("assimp/.*")},
       {"libpng", std::regex("png\\.h")},
-      {"Bullet", std::regex("(bt|Bullet).*")},
+      {"Bullet", std::regex("(bt|Bullet|LinearMath).*")},
       {"zstd", std::regex("zstd\\.h")},
       {"zlib", std::regex("zlib\\.h")},
       {"hdf5", std::regex("hdf5\\.h")},

@@ -111,6 +111,12 @@ constexpr ExtensionKey material_pair[] = {
     {"rolling_resistance", non_negative, "m", "0", "torque against rolling for each newton of normal force"},
 };
 
+constexpr ExtensionKey mimic[] = {
+    {"joint", name, "", "", "the joint that it follows, of the same model"},
+    {"multiplier", real, "1", "1", "its position for each radian or metre of that joint's"},
+    {"offset", real, "rad", "0", "its position where that joint's is 0; of one that slides, in metres"},
+};
+
 constexpr ExtensionKey breakable_joint[] = {
     {"first", name, "", "", "an object, by its scoped name"},
     {"first_link", name, "", no_value, "of it; its root link if absent"},
@@ -151,6 +157,7 @@ constexpr Extension of_worlds[] = {
     {"terrain", "heightmap", false, "Ground that a function describes, in place of an image.", terrain, "physics"},
     {"material", "collision", false, "The name of what a collision is made of.", {}, "physics", name},
     {"material_pair", "world", false, "What holds where two materials touch.", material_pair, "physics"},
+    {"mimic", "joint", false, "Lets the joint follow another one, by a force that both feel.", mimic, "physics"},
     {"breakable_joint", "world", true, "Holds links of two objects together until that takes too much.",
      breakable_joint, "physics"},
     {"physics", "world", false, "How the world is simulated.", physics, "physics"},

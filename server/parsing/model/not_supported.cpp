@@ -32,8 +32,6 @@ constexpr Unsupported unsupported[] = {
     {"link", "audio_sink"},
     {"link", "audio_source"},
     {"joint", "physics"},
-    {"limit", "effort", "; the effort of a motor is the <cohort:max_effort> of its <cohort:velocity_motor>"},
-    {"limit", "velocity", "; the velocity of a motor is the <cohort:max_velocity> of its <cohort:velocity_motor>"},
     {"limit", "stiffness", "; joint limits are rigid"},
     {"limit", "dissipation", "; joint limits are rigid"},
     {"friction", "torsional"},

@@ -29,6 +29,8 @@ class References {
     return found;
   }
 
+  const Model& model() const { return model_; }
+
  private:
   bool find(const ExtensionValues& values, const keys::Reference& key, std::size_t& index) {
     const std::optional<std::size_t> found = find_index(key.to, values.text(key.name), values.where(key.name));
@@ -185,6 +187,22 @@ void check(const Rotor& rotor, const ExtensionValues& values, const SdfReport& r
   if (rotor.min_velocity > 0.0) report.problem(values.where("min_velocity"), "expected at most 0 rad/s");
 }
 
+// The limits of the joint hold for its motor.
+template <class Kind>
+void bind_to_joint(Kind& device, const Model& model, const ExtensionValues& values, const SdfReport& report) {
+  if constexpr (requires { device.rotor_inertia; }) {
+    const JointAxis& axis = model.joints[device.joint].axis;
+    const auto bind = [&](double& most, double limit, const std::string& quantity) {
+      if (most <= limit) return;
+      report.warning(values.where("max_" + quantity),
+                     "exceeds the <limit><" + quantity + "> of its joint, which holds");
+      most = limit;
+    };
+    bind(device.max_effort, axis.max_effort, "effort");
+    if constexpr (requires { device.max_velocity; }) bind(device.max_velocity, axis.max_velocity, "velocity");
+  }
+}
+
 // The keys that every sensor has.
 template <class Kind>
 Readout read_readout(const ExtensionValues& values) {
@@ -206,6 +224,7 @@ std::optional<Device> read_device(const ExtensionValues& values, References& ref
   const bool is_whole = references.find_all(values, device);
   check(device, values, report);
   if (!is_whole) return std::nullopt;
+  bind_to_joint(device, references.model(), values, report);
   return device;
 }
 

@@ -26,11 +26,13 @@ std::optional<JointType> read_type(const sdf::Joint& joint, const SdfReport& rep
     case sdf::JointType::CONTINUOUS: return JointType::revolute;
     case sdf::JointType::PRISMATIC: return JointType::prismatic;
     case sdf::JointType::BALL: return JointType::ball;
-    case sdf::JointType::UNIVERSAL: return JointType::universal;
+    case sdf::JointType::UNIVERSAL:
+    case sdf::JointType::REVOLUTE2: return JointType::universal;
+    case sdf::JointType::SCREW: return JointType::screw;
     default:
-      report.problem(joint.Element(),
-                     "the joint type '" + joint.Element()->Get<std::string>("type") +
-                         "' is not supported; expected fixed, revolute, continuous, prismatic, ball or universal");
+      report.problem(joint.Element(), "the joint type '" + joint.Element()->Get<std::string>("type") +
+                                          "' is not supported; expected fixed, revolute, continuous, prismatic, ball, "
+                                          "universal, revolute2, screw or gearbox");
       return std::nullopt;
   }
 }
@@ -58,6 +60,22 @@ void read_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report, JointA
     report.problem(sdf_axis.Element()->FindElement("limit"), "the lower limit exceeds the upper limit");
 }
 
+// Negative, they do not count.
+void read_motor_limits(const sdf::JointAxis& sdf_axis, JointAxis& axis) {
+  if (sdf_axis.Effort() >= 0.0) axis.max_effort = sdf_axis.Effort();
+  if (sdf_axis.MaxVelocity() >= 0.0) axis.max_velocity = sdf_axis.MaxVelocity();
+}
+
+// SDF has radians for each metre, of a left-handed thread; its default is 1.
+double read_thread_pitch(const sdf::Joint& sdf_joint, const SdfReport& report) {
+  const double radians_a_metre = sdf_joint.ThreadPitch();
+  if (radians_a_metre == 0.0 || !std::isfinite(radians_a_metre)) {
+    report.problem(find(sdf_joint.Element(), {"thread_pitch"}), "expected radians for each metre, other than 0");
+    return 1.0;
+  }
+  return -2.0 * M_PI / radians_a_metre;
+}
+
 // `place` is 0 for <axis>, 1 for <axis2>. Nothing if it has no direction; the report then has it.
 std::optional<JointAxis> read_axis(const sdf::Joint& sdf_joint, unsigned place, const SdfReport& report) {
   const sdf::JointAxis* const sdf_axis = sdf_joint.Axis(place);
@@ -83,6 +101,7 @@ std::optional<JointAxis> read_axis(const sdf::Joint& sdf_joint, unsigned place, 
   if (sdf_axis->XyzExpressedIn().empty())
     if (const auto written = written_unit_vector(element->FindElement("xyz"))) axis.direction = *written;
   read_dynamics(*sdf_axis, report, axis);
+  read_motor_limits(*sdf_axis, axis);
   if (sdf_joint.Type() != sdf::JointType::CONTINUOUS) read_limits(*sdf_axis, report, axis);
   return axis;
 }
@@ -118,6 +137,7 @@ void read_axes(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
     case JointType::fixed: return;
     case JointType::ball: return read_ball(sdf_joint, report, joint);
     case JointType::universal: return read_universal(sdf_joint, report, joint);
+    case JointType::screw: joint.thread_pitch = read_thread_pitch(sdf_joint, report); [[fallthrough]];
     case JointType::revolute:
     case JointType::prismatic:
       if (const std::optional<JointAxis> axis = read_axis(sdf_joint, 0, report)) joint.axis = *axis;
@@ -132,6 +152,7 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
   for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) {
     const sdf::Joint& sdf_joint = *sdf_model.JointByIndex(i);
     const sdf::ElementPtr element = sdf_joint.Element();
+    if (sdf_joint.Type() == sdf::JointType::GEARBOX) continue;  // it couples two others
     const std::optional<JointType> type = read_type(sdf_joint, reading.report);
     if (!type || !reading.frames_resolve) continue;
 

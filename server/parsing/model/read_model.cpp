@@ -1,6 +1,7 @@
 #include "server/parsing/model/read_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "server/parsing/model/not_supported.hpp"
@@ -9,20 +10,34 @@
 namespace cohort::parsing {
 namespace {
 
-bool every_link_has_one_parent(const sdf::Model& sdf_model, const Model& model, const SdfReport& report) {
-  std::vector<const Joint*> joint_above(model.links.size(), nullptr);
-  bool valid = true;
-  for (const Joint& joint : model.joints) {
-    const Joint*& above = joint_above[joint.child];
-    if (above != nullptr) {
-      report.problem(sdf_model.JointByName(joint.name)->Element(), "the link '" + model.links[joint.child].name +
-                                                                       "' is the child of joint '" + above->name +
-                                                                       "' already; closed loops are not supported");
-      valid = false;
-    }
-    above = &joint;
+// Joints in the order of the document make a tree as long as each connects a link that has no parent yet to one that
+// does not hang on it. The others close loops.
+void set_loops_apart(Model& model) {
+  const std::size_t none = model.links.size();
+  std::vector<std::size_t> parent(model.links.size(), none);  // of the world, the link itself
+  std::vector<Joint> tree;
+  for (Joint& joint : model.joints) {
+    std::size_t root = joint.parent;
+    while (root != Joint::world && parent[root] != none && parent[root] != root) root = parent[root];
+    const bool closes_loop = parent[joint.child] != none || root == joint.child;
+    if (!closes_loop) parent[joint.child] = joint.parent == Joint::world ? joint.child : joint.parent;
+    (closes_loop ? model.loop_joints : tree).push_back(std::move(joint));
   }
-  return valid;
+  model.joints = std::move(tree);
+}
+
+// What a joint that closes a loop says of how it moves.
+void warn_of_loops(const sdf::Model& sdf_model, const Model& model, const SdfReport& report) {
+  for (const Joint& joint : model.loop_joints) {
+    const JointAxis& axis = joint.axis;
+    const bool is_free = axis.damping == 0.0 && axis.friction == 0.0 && axis.spring_stiffness == 0.0 &&
+                         std::isinf(axis.lower) && std::isinf(axis.upper);
+    if (is_free && joint.type != JointType::screw) continue;
+    const sdf::Joint* const sdf_joint = sdf_model.JointByName(joint.name);
+    report.warning(sdf_joint != nullptr ? sdf_joint->Element() : sdf_model.Element(),
+                   "the joint '" + joint.name +
+                       "' closes a loop: it holds, but has no limits, damping, friction, spring or thread");
+  }
 }
 
 // Puts parents before children and otherwise keeps the order of the document. False if the links are not one tree.
@@ -57,21 +72,15 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
         break;
       }
   }
-  if (order.size() != count) {
-    const auto in_loop = std::find_if(model.joints.begin(), model.joints.end(),
-                                      [&](const Joint& joint) { return place[joint.child] == count; });
-    report.problem(sdf_model.JointByName(in_loop->name)->Element(), "is part of a loop of joints");
-    return false;
-  }
-
   std::vector<Link> links;
   links.reserve(order.size());
   for (const std::size_t link : order) links.push_back(std::move(model.links[link]));
   model.links = std::move(links);
-  for (Joint& joint : model.joints) {
-    if (joint.parent != Joint::world) joint.parent = place[joint.parent];
-    joint.child = place[joint.child];
-  }
+  for (std::vector<Joint>* joints : {&model.joints, &model.loop_joints})
+    for (Joint& joint : *joints) {
+      if (joint.parent != Joint::world) joint.parent = place[joint.parent];
+      joint.child = place[joint.child];
+    }
   for (Emitter& emitter : model.emitters) emitter.link = place[emitter.link];
   for (GripRing& ring : model.grip_rings) ring.link = place[ring.link];
   for (Fin& fin : model.fins) fin.link = place[fin.link];
@@ -155,7 +164,8 @@ void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& s
 }
 
 void ModelFlattener::add_joints(const sdf::Model& sdf_model, const std::string& scope) {
-  joint_count_ += sdf_model.JointCount();
+  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i)
+    joint_count_ += sdf_model.JointByIndex(i)->Type() == sdf::JointType::GEARBOX ? 0 : 1;
   for (Joint& joint : read_joints(sdf_model, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
   for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i)
     add_joints(*sdf_model.ModelByIndex(i), scope + sdf_model.ModelByIndex(i)->Name() + "::");
@@ -185,11 +195,12 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
     return model;
   }
   parts.add_joints(sdf_model, "");
-  const bool is_tree = reading.frames_resolve && model.joints.size() == parts.joint_count() &&
-                       every_link_has_one_parent(sdf_model, model, reading.report) &&
-                       order_links(sdf_model, model, reading.report);
   // Devices name links and joints: with some of those missing, each device would be reported for it.
-  if (!is_tree) return model;
+  if (!reading.frames_resolve || model.joints.size() != parts.joint_count()) return model;
+  set_loops_apart(model);
+  if (!order_links(sdf_model, model, reading.report)) return model;
+  warn_of_loops(sdf_model, model, reading.report);
+  model.couplings = read_couplings(sdf_model, model, "", reading);
   model.devices = read_devices(parts.scopes(), model, reading.report, reading.shape_files);
   for (Device& sensor : read_sdf_sensors(parts.sensors(), model, reading)) model.devices.push_back(std::move(sensor));
   return model;

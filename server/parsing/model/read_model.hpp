@@ -52,6 +52,11 @@ std::vector<Part> read_link_parts(const sdf::Link& sdf_link, const ModelReading&
 std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,
                                const ModelReading& reading);
 
+/// How joints of the model follow others, by its gearboxes and mimic joints. `scope` as above; the model's links and
+/// joints are read.
+std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& model, const std::string& scope,
+                                     const ModelReading& reading);
+
 /// Where `cohort:` devices stand: a model, or one inside of it.
 struct DeviceScope {
   sdf::ElementPtr model_element;

@@ -256,11 +256,9 @@ void Checker::check_joint(const XmlNode& joint, const std::string& path) {
   }
   for (const char* const end : {"parent", "child"})
     if (joint.child(end) == nullptr) problem(joint, path, "missing: <" + std::string(end) + " link=\"NAME\"/>");
-  for (const char* const ignored : {"mimic", "safety_controller", "calibration"})
+  for (const char* const ignored : {"safety_controller", "calibration"})
     if (const XmlNode* const node = joint.child(ignored))
-      warning(*node, path + "/" + ignored,
-              "<" + std::string(ignored) + "> is not supported and is ignored" +
-                  (node->name == "mimic" ? "; this joint moves by itself" : ""));
+      warning(*node, path + "/" + ignored, "<" + std::string(ignored) + "> is not supported and is ignored");
 }
 
 void Checker::check_end(const XmlNode& joint, const std::string& path, const char* end) {

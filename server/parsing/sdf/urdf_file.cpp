@@ -112,6 +112,22 @@ bool is_kept(const XmlNode& robot, const std::string& link, const std::set<std::
          is_kept(robot, *joint->child("parent")->attribute("link"), names);
 }
 
+XmlNode* find_joint(XmlNode& node, const std::string& name) {
+  for (XmlNode& child : node.children) {
+    if (child.name == "joint" && *child.attribute("name") == name) return &child;
+    if (XmlNode* const found = find_joint(child, name)) return found;
+  }
+  return nullptr;
+}
+
+// libsdformat's converter leaves <mimic> out.
+XmlNode extension_of(const XmlNode& mimic) {
+  XmlNode extension{prefixed("mimic"), mimic.line, nullptr, {}, "", {}};
+  for (const auto& [name, value] : mimic.attributes)
+    extension.children.push_back({prefixed(name), mimic.line, nullptr, {}, value, {}});
+  return extension;
+}
+
 void collect_names(const XmlNode& node, std::set<std::string>& names) {
   if (const std::string* const name = node.attribute("name")) names.insert(*name);
   for (const XmlNode& child : node.children) collect_names(child, names);
@@ -145,6 +161,10 @@ std::optional<XmlNode> sdf_of_urdf(const XmlNode& robot, const std::filesystem::
   }
   XmlNode tree = LineFinder(robot).tree(sdf->Root(), robot);
   tree.attributes = {{"version", sdf::SDF::Version()}, {"xmlns:cohort", "https://cohort-sim.org/sdf/1"}};
+  for (const XmlNode& joint : robot.children)
+    if (const XmlNode* const mimic = joint.name == "joint" ? joint.child("mimic") : nullptr)
+      if (XmlNode* const converted = find_joint(tree, *joint.attribute("name")))
+        converted->children.push_back(extension_of(*mimic));
   std::set<std::string> names;
   collect_names(tree, names);
   for (const XmlNode& link : robot.children)

@@ -133,7 +133,8 @@ class WorldWriter {
     add_value(element, "self_collide", model.self_collide);
     add_pose(element, instance.X_WM);
     for (std::size_t link = 0; link < model.links.size(); ++link) write_link(element, model, link);
-    for (const Joint& joint : model.joints) write_joint(element, joint, model);
+    for (const std::vector<Joint>* joints : {&model.joints, &model.loop_joints})
+      for (const Joint& joint : *joints) write_joint(element, joint, model);
     for (const Device& device : model.devices) write_device(element, model, device, folder_);
   }
 
@@ -182,11 +183,9 @@ class WorldWriter {
   }
 
   static void write_joint(XmlNode& parent, const Joint& joint, const Model& model) {
-    constexpr std::pair<JointType, const char*> names[] = {{JointType::fixed, "fixed"},
-                                                           {JointType::revolute, "revolute"},
-                                                           {JointType::prismatic, "prismatic"},
-                                                           {JointType::ball, "ball"},
-                                                           {JointType::universal, "universal"}};
+    constexpr std::pair<JointType, const char*> names[] = {
+        {JointType::fixed, "fixed"}, {JointType::revolute, "revolute"},   {JointType::prismatic, "prismatic"},
+        {JointType::ball, "ball"},   {JointType::universal, "universal"}, {JointType::screw, "screw"}};
     XmlNode& element = add_named(parent, "joint", without_scope_marks(joint.name));
     for (const auto& [type, name] : names)
       if (type == joint.type) element.attributes.emplace_back("type", name);
@@ -197,15 +196,26 @@ class WorldWriter {
     add_value(element, "child", without_scope_marks(model.links[joint.child].name));
     if (joint.type != JointType::fixed) write_axis(add(element, "axis"), joint.axis);
     if (joint.type == JointType::universal) write_axis(add(element, "axis2"), joint.second_axis);
+    if (joint.type == JointType::screw) add_value(element, "thread_pitch", -2.0 * M_PI / joint.thread_pitch);
+    for (const Coupling& coupling : model.couplings) {
+      if (&model.joints[coupling.follower] != &joint) continue;
+      XmlNode& mimic = add(element, prefixed("mimic").c_str());
+      add_key(mimic, "joint", without_scope_marks(model.joints[coupling.leader].name));
+      add_key(mimic, "multiplier", coupling.multiplier);
+      add_key(mimic, "offset", coupling.offset);
+    }
   }
 
   static void write_axis(XmlNode& element, const JointAxis& axis) {
     constexpr double no_limit = 1e16;  // as SDF writes it
     add_value(element, "xyz", axis.direction);
-    if (std::isfinite(axis.lower) || std::isfinite(axis.upper)) {
+    if (std::isfinite(axis.lower) || std::isfinite(axis.upper) || std::isfinite(axis.max_effort) ||
+        std::isfinite(axis.max_velocity)) {
       XmlNode& limit = add(element, "limit");
       add_value(limit, "lower", std::isfinite(axis.lower) ? axis.lower : -no_limit);
       add_value(limit, "upper", std::isfinite(axis.upper) ? axis.upper : no_limit);
+      if (std::isfinite(axis.max_effort)) add_value(limit, "effort", axis.max_effort);
+      if (std::isfinite(axis.max_velocity)) add_value(limit, "velocity", axis.max_velocity);
     }
     XmlNode& dynamics = add(element, "dynamics");
     add_value(dynamics, "damping", axis.damping);

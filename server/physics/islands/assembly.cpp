@@ -149,7 +149,8 @@ bool Assembly::may_touch(std::uint32_t solid, std::uint32_t other) const {
   };
   const int one = anchors.part_of_solid[solid].segment;
   const int two = anchors.part_of_solid[other].segment;
-  return one != two && above(one) != two && above(two) != one;
+  const LoopRows& loops = members[anchors.member(solid)].multibody->loops();
+  return one != two && above(one) != two && above(two) != one && !loops.connect(one, two);
 }
 
 double Assembly::look_ahead(Member& member) {
@@ -231,7 +232,7 @@ bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
 bool Assembly::is_in_flight(std::uint32_t index) {
   const Multibody& multibody = *members[index].multibody;
   if (!multibody.mechanism().has_free_root() || multibody.mechanism().is_free_body()) return false;
-  bool is_held = false;
+  bool is_held = multibody.loops().reach_the_world();
   for (const TrackRows& treel : multibody.treels()) treel.for_each_ground([&](std::uint32_t) { is_held = true; });
   connections.for_each_of(index, [&](const Connection&) { is_held = true; });
   for_each_pair(index, [&](const SolidPair&) { is_held = true; });

@@ -38,6 +38,12 @@ void Assembly::record_outside() {
           });
     }
     if (!member.record) continue;
+    member.multibody->loops().for_each_impulse([&](std::size_t parent, std::size_t child,
+                                                   const Eigen::Vector3d& point_W, const Eigen::Vector3d& linear_W,
+                                                   const Eigen::Vector3d& angular_W) {
+      member.record->add_outside(child, point_W, linear_W, angular_W);
+      if (parent != child) member.record->add_outside(parent, point_W, -linear_W, -angular_W);
+    });
     pushes.for_each_of(index, [&](const Pushes::Push& push) {
       member.record->add_outside(push.link, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
     });

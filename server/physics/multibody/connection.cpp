@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/physics/multibody/rotation.hpp"
 #include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
@@ -10,16 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Nothing is pulled together with more than this, however far apart it came.
-constexpr double most_linear_correction = 0.5;   // [m/s]
-constexpr double most_angular_correction = 5.0;  // [rad/s]
-
-double correction(double off, double most, double step) {
-  return std::clamp(-correction_share * off / step, -most, most);
-}
-
-// The rotation vector of a small rotation.
-Vector3d rotation_vector(const Eigen::Quaterniond& q) { return (q.w() < 0.0 ? -2.0 : 2.0) * q.vec(); }
 // And back, exactly: what does not slip must not creep.
 Eigen::Quaterniond rotation_of(const Vector3d& vector) {
   const Vector3d half = 0.5 * vector;

@@ -25,7 +25,8 @@ double velocity_to_rest(double way, double braking, double step) {
 
 }  // namespace
 
-JointRows::JointRows(const Mechanism& mechanism) : motor_of_(mechanism.dofs().size(), -1) {
+JointRows::JointRows(const Mechanism& mechanism)
+    : motor_of_(mechanism.dofs().size(), -1), follower_impulses_(mechanism.followers().size(), 0.0) {
   for (int i = 0; i < mechanism.dof_count(); ++i) {
     const Dof& dof = mechanism.dofs()[static_cast<std::size_t>(i)];
     if (dof.coordinate >= 0 && (std::isfinite(dof.axis.lower) || std::isfinite(dof.axis.upper)))
@@ -75,6 +76,15 @@ void JointRows::add_rows(Problem& problem, int index, const Multibody& body, dou
         motor.control == Control::velocity ? motor.target : velocity_towards_target(motor, row, problem, body, step);
     row.set_limits(-motor.max_effort * step, motor.max_effort * step);
     motor.most_change = row.inverse > 0.0 ? motor.max_effort * step / row.inverse : 0.0;
+  }
+  const std::vector<Mechanism::Follower>& followers = body.mechanism().followers();
+  for (std::size_t i = 0; i < followers.size(); ++i) {
+    const auto& [dof, leader, multiplier, offset] = followers[i];
+    const auto coordinate = [&](int of) {
+      return body.coordinate(body.mechanism().dofs()[static_cast<std::size_t>(of)]);
+    };
+    Row& row = problem.add_dofs_row(index, dof, leader, -multiplier, &follower_impulses_[i]);
+    row.target = -correction_share * (coordinate(dof) - multiplier * coordinate(leader) - offset) / step;
   }
   // One-sided rows, as a contact is: inactive until a step could pass the limit.
   for (Limit& limit : limits_) {

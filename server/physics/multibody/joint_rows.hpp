@@ -12,7 +12,7 @@ class Multibody;
 class Problem;
 struct Row;
 
-/// Motors, limits and friction of the joints of one body.
+/// Motors, limits, friction and couplings of the joints of one body.
 class JointRows {
  public:
   explicit JointRows(const Mechanism& mechanism);
@@ -48,6 +48,7 @@ class JointRows {
       visit(limit.upper_impulse);
     }
     for (auto& friction : self.frictions_) visit(friction.impulse);
+    for (auto& impulse : self.follower_impulses_) visit(impulse);
   }
 
  private:
@@ -80,6 +81,7 @@ class JointRows {
   std::vector<int> motor_of_;  // by dof, -1: none
   std::vector<Limit> limits_;
   std::vector<Friction> frictions_;
+  std::vector<double> follower_impulses_;  // by follower of the mechanism
 };
 
 }  // namespace cohort::physics

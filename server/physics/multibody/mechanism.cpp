@@ -57,6 +57,12 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   for (const description::Device& device : model.devices)
     if (const auto motor = description::motor_limits(device); motor && joints_[motor->joint].dofs > 0)
       dofs_[static_cast<std::size_t>(joints_[motor->joint].first_dof)].rotor_inertia = motor->rotor_inertia;
+  for (const description::Coupling& coupling : model.couplings) {
+    const JointPlace& follower = joints_[coupling.follower];
+    const JointPlace& leader = joints_[coupling.leader];
+    if (follower.dofs > 0 && leader.dofs > 0)
+      followers_.push_back({follower.first_dof, leader.first_dof, coupling.multiplier, coupling.offset});
+  }
   turn_to_principal_axes();
   find_light_segments();
 }
@@ -133,6 +139,12 @@ void Mechanism::add_link(std::size_t link, const std::vector<char>& welded) {
     case JointType::revolute: linked.segment = add_segment(parent, Motion::revolute, X_PJ, axis, &joint->axis); break;
     case JointType::prismatic: linked.segment = add_segment(parent, Motion::prismatic, X_PJ, axis, &joint->axis); break;
     case JointType::ball: linked.segment = add_segment(parent, Motion::ball, X_PJ, axis, &joint->axis); break;
+    case JointType::screw: {
+      const int middle = add_segment(parent, Motion::revolute, X_PJ, axis, &joint->axis);
+      linked.segment = add_segment(middle, Motion::prismatic, no_offset, axis, nullptr);
+      followers_.push_back({dof_count() - 1, dof_count() - 2, joint->thread_pitch / (2.0 * M_PI), 0.0});
+      break;
+    }
     case JointType::universal: {
       const int middle = add_segment(parent, Motion::revolute, X_PJ, axis, &joint->axis);
       linked.segment =

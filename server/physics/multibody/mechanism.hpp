@@ -62,6 +62,15 @@ class Mechanism {
   };
 
   const description::Model& model() const { return *model_; }
+  /// Lets the coordinate of a dof follow that of another one.
+  struct Follower {
+    int dof = 0;
+    int leader = 0;
+    double multiplier = 1.0;
+    double offset = 0.0;
+  };
+  const std::vector<Follower>& followers() const { return followers_; }
+
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<Dof>& dofs() const { return dofs_; }
   const LinkPlace& link(std::size_t index) const { return links_[index]; }
@@ -99,6 +108,7 @@ class Mechanism {
   std::vector<Dof> dofs_;
   std::vector<LinkPlace> links_;
   std::vector<JointPlace> joints_;
+  std::vector<Follower> followers_;
   std::vector<double> zero_coordinates_;
   std::vector<int> parents_;
   std::vector<char> is_light_;  // by segment

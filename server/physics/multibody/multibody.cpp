@@ -22,7 +22,8 @@ Multibody::Multibody(const Mechanism& mechanism, description::Dynamics dynamics,
       bullet_(dynamics == description::Dynamics::bullet ? std::make_unique<BulletBody>(mechanism) : nullptr),
       state_(bullet_ ? BodyState(mechanism, bullet_->memory()) : BodyState(mechanism)),
       X_WS_(mechanism.segments().size()),
-      joints_(mechanism) {
+      joints_(mechanism),
+      loops_(mechanism) {
   place(X_WM);
   build_devices();
 }
@@ -186,6 +187,13 @@ void Multibody::set_joint_state(std::size_t joint, std::span<const double> coord
     for (std::size_t i = 0; i < coordinates.size(); ++i)
       *state_.coordinates(place.first_coordinate + static_cast<int>(i)) = coordinates[i];
   }
+  for (const auto& [dof, leader, multiplier, offset] : mechanism_->followers()) {
+    if (leader != place.first_dof) continue;
+    const int coordinate = mechanism_->dofs()[static_cast<std::size_t>(leader)].coordinate;
+    *state_.coordinates(mechanism_->dofs()[static_cast<std::size_t>(dof)].coordinate) =
+        multiplier * *state_.coordinates(coordinate) + offset;
+    state_.velocities()[dof] = multiplier * state_.velocities()[leader];
+  }
   update_poses();
 }
 
@@ -234,6 +242,7 @@ TrackState Multibody::track(std::size_t device, Side side) const {
 
 void Multibody::add_rows(Problem& problem, int index, const Anchors& anchors, double step) {
   joints_.add_rows(problem, index, *this, step);
+  loops_.add_rows(problem, index, *this, step);
   for (TrackRows& treel : treels_) treel.add_rows(problem, index, anchors, step);
 }
 

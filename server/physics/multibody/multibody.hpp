@@ -12,6 +12,7 @@
 #include "server/physics/multibody/body_state.hpp"
 #include "server/physics/multibody/bullet_body.hpp"
 #include "server/physics/multibody/joint_rows.hpp"
+#include "server/physics/multibody/loop_rows.hpp"
 #include "server/physics/multibody/mechanism.hpp"
 #include "server/physics/multibody/track_rows.hpp"
 #include "server/physics/world/physics_world.hpp"
@@ -65,6 +66,9 @@ class Multibody {
   void set_track_velocity_target(std::size_t device, Side side, double velocity);
   TrackState track(std::size_t device, Side side) const;
 
+  const LoopRows& loops() const { return loops_; }
+  /// X_WM with all its joints at zero, of a root that is tied to the world.
+  const Pose& model_pose() const { return X_WM_; }
   /// Those drives that stand on tracks, not on wheels.
   std::vector<TrackRows>& treels() { return treels_; }
   const std::vector<TrackRows>& treels() const { return treels_; }
@@ -89,6 +93,7 @@ class Multibody {
   static void visit_state(Self& self, Visit&& visit) {
     BodyState::visit(self.state_, visit);
     JointRows::visit_state(self.joints_, visit);
+    LoopRows::visit_state(self.loops_, visit);
     for (auto& treel : self.treels_) TrackRows::visit_state(treel, visit);
     visit(self.last_step_);
   }
@@ -120,6 +125,7 @@ class Multibody {
   BodyState state_;
   std::vector<Pose> X_WS_;  // follow from the state
   JointRows joints_;
+  LoopRows loops_;
   std::vector<Drive> drives_;  // by device
   std::vector<TrackRows> treels_;
   std::vector<WheelDrive> wheels_;

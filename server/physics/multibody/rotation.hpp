@@ -27,6 +27,9 @@ inline Eigen::Quaterniond rotation_by(const Eigen::Vector3d& v) {
   return {cosine, axis.x(), axis.y(), axis.z()};
 }
 
+/// The rotation vector of a small rotation.
+inline Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) { return (q.w() < 0.0 ? -2.0 : 2.0) * q.vec(); }
+
 /// The rotation by `angle` about a unit vector.
 inline Eigen::Quaterniond rotation_about(const Eigen::Vector3d& axis, double angle) {
   const double sine = std::sin(0.5 * angle);

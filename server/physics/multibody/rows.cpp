@@ -78,6 +78,13 @@ Row& Problem::add_dof_row(int body, int dof, double* kept) {
   return finish_row(row, {body}, {});
 }
 
+Row& Problem::add_dofs_row(int body, int dof, int other, double share, double* kept) {
+  Row& row = begin_row({body}, {}, kept);
+  numbers_[row.numbers + static_cast<std::size_t>(dof)] = 1.0;
+  numbers_[row.numbers + static_cast<std::size_t>(other)] = share;
+  return finish_row(row, {body}, {});
+}
+
 // What the impulses of a plane give is a symmetric matrix, which has this as its greater eigenvalue.
 void Problem::join_to_cone() {
   Row& second = rows_.back();

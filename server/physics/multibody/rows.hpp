@@ -95,6 +95,8 @@ class Problem {
   Row& add_torque_row(Anchor a, Anchor b, const Eigen::Vector3d& direction_W, double* kept);
   /// Adds the row of the force or torque along one dof of a joint.
   Row& add_dof_row(int body, int dof, double* kept);
+  /// The same along one dof and, `share` times as much, along another one of the body.
+  Row& add_dofs_row(int body, int dof, int other, double share, double* kept);
 
   /// Makes a cone of the last two rows, whose directions are at right angles.
   void join_to_cone();

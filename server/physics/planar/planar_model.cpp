@@ -15,6 +15,9 @@ PlanarModel::PlanarModel(const description::Model& model)
       throw std::invalid_argument("a joint that moves against the world cannot be planar");
   if (!model.fins.empty()) throw std::invalid_argument("fin '" + model.fins[0].name + "' cannot be planar");
   if (!model.drags.empty()) throw std::invalid_argument("drag '" + model.drags[0].name + "' cannot be planar");
+  if (!model.loop_joints.empty()) throw std::invalid_argument("joints that close loops cannot be planar");
+  if (!mechanism_.followers().empty())
+    throw std::invalid_argument("joints that follow others, and screws, cannot be planar");
   for (const description::Device& device : model.devices) {
     if (const auto motor = description::motor_limits(device)) {
       add_motor(*motor, description::name_of(device));

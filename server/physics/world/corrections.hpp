@@ -7,6 +7,13 @@ namespace cohort::physics {
 
 /// Share of an overlap, of an overshoot or of a gap in a connection that one step takes away.
 inline constexpr double correction_share = 0.2;
+/// Nothing that came apart is pulled together, or turned back, faster than this.
+inline constexpr double most_linear_correction = 0.5;   ///< [m/s]
+inline constexpr double most_angular_correction = 5.0;  ///< [rad/s]
+/// The velocity that takes away a share of what is `off`.
+inline double correction(double off, double most, double step) {
+  return std::clamp(-correction_share * off / step, -most, most);
+}
 /// Slower than this nothing bounces [m/s]: what rests would never come to rest.
 inline constexpr double least_bounce = 0.05;
 /// Further from the origin a body has left the world [m].

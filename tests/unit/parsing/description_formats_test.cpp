@@ -175,10 +175,14 @@ TEST_F(Formats, AUrdfRobotHasItsDevicesAndSensorsInGazeboBlocks) {
 TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
   const World world =
       read_urdf(urdf_link("a") + urdf_link("b") + urdf_link("c") + urdf_joint("j", "continuous", "a", "b") + "\n" +
-                urdf_joint("k", "continuous", "a", "c", "<mimic joint=\"j\"/>") +
+                urdf_joint("k", "continuous", "a", "c", "<mimic joint=\"j\" multiplier=\"-0.5\"/>") +
                 "\n<transmission name=\"t\"/>\n<link name=\"ghost\"/>\n" + urdf_joint("g", "continuous", "a", "ghost"));
   const std::string warnings = texts_of(world.warnings);
-  EXPECT_NE(warnings.find("r.urdf:3: robot/joint[k]/mimic"), std::string::npos) << warnings;
+  EXPECT_EQ(warnings.find("mimic"), std::string::npos) << warnings;
+  ASSERT_EQ(world.models[0].couplings.size(), 1u);
+  EXPECT_EQ(world.models[0].joints[world.models[0].couplings[0].follower].name, "k");
+  EXPECT_EQ(world.models[0].joints[world.models[0].couplings[0].leader].name, "j");
+  EXPECT_EQ(world.models[0].couplings[0].multiplier, -0.5);
   EXPECT_NE(warnings.find("r.urdf:4: robot/transmission[t]"), std::string::npos) << warnings;
   EXPECT_NE(warnings.find("r.urdf:5: robot/link[ghost]: is left out"), std::string::npos) << warnings;
   EXPECT_EQ(world.models[0].links.size(), 3u);

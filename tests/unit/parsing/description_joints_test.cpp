@@ -15,6 +15,19 @@ std::string universal(const std::string& second) {
 
 using Joints = Description;
 
+// A joint k to a link b that follows another one.
+std::string mimic(const std::string& keys, const std::string& leader) {
+  return "\n<joint name=\"k\" type=\"revolute\"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>"
+         "<cohort:mimic>\n<cohort:joint>" +
+         leader + "</cohort:joint>" + keys + "</cohort:mimic></joint>";
+}
+std::string gearbox(double ratio, const std::string& parent, const std::string& child, const std::string& reference) {
+  return "\n<joint name=\"gears\" type=\"gearbox\"><parent>" + parent + "</parent><child>" + child +
+         "</child><gearbox_ratio>" + std::to_string(ratio) + "</gearbox_ratio><gearbox_reference_body>" + reference +
+         "</gearbox_reference_body><axis><xyz>0 0 1</xyz></axis><axis2><xyz>0 0 1</xyz></axis2></joint>";
+}
+const std::string in_mimic = "world/model[m]/joint[k]/cohort:mimic";
+
 TEST_F(Joints, AUniversalJointHasTwoAxesWithLimitsAndDynamicsOfTheirOwn) {
   const World world = read(model(
       links("ab") + universal("<axis2><xyz>0 2 0</xyz><limit><lower>-1</lower><upper>0.5</upper></limit><dynamics>"
@@ -82,14 +95,79 @@ TEST_F(Joints, LinksOfAModelCollideWithEachOtherIfItSaysSo) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
-TEST_F(Joints, EffortAndVelocityOfALimitAreSaidToBeIgnoredOnEitherAxis) {
-  const World world = read(
-      model(links("ab") +
-            universal("<axis2><xyz>0 1 0</xyz><limit><effort>3</effort>\n<velocity>2</velocity></limit></axis2>")));
-  const std::string all = texts_of(world.warnings);
-  EXPECT_EQ(world.warnings.size(), 2u) << all;
-  EXPECT_NE(all.find("<cohort:max_effort>"), std::string::npos) << all;
-  EXPECT_NE(all.find("<cohort:max_velocity>"), std::string::npos) << all;
+TEST_F(Joints, MotorsAreBoundByTheLimitsOfTheirJoints) {
+  const std::string limit = "<xyz>0 0 1</xyz><limit><effort>3</effort><velocity>2</velocity></limit>";
+  const auto motor_of = [](double effort) {
+    return "\n<cohort:velocity_motor "
+           "name=\"d\"><cohort:joint>j</cohort:joint><cohort:max_velocity>1</cohort:max_velocity>"
+           "\n<cohort:max_effort>" +
+           std::to_string(effort) + "</cohort:max_effort></cohort:velocity_motor>";
+  };
+  for (const double effort : {1.0, 5.0}) {
+    const World world = read(model(links("ab") + joint("j", "a", "b", limit) + motor_of(effort)));
+    EXPECT_EQ(world.models[0].joints[0].axis.max_effort, 3.0);
+    EXPECT_EQ(world.models[0].joints[0].axis.max_velocity, 2.0);
+    const auto& motor = std::get<VelocityMotor>(world.models[0].devices[0]);
+    EXPECT_EQ(motor.max_effort, std::min(effort, 3.0));
+    EXPECT_EQ(motor.max_velocity, 1.0);
+    EXPECT_EQ(texts_of(world.warnings).find("exceeds the <limit><effort> of its joint") != std::string::npos,
+              effort > 3.0);
+  }
+}
+
+TEST_F(Joints, AJointTooManyClosesALoop) {
+  const World world = read(model(links("abc") + joint("i", "a", "b") + joint("j", "a", "c") + joint("k", "b", "c") +
+                                 joint("l", "world", "a") + joint("m", "world", "b")));
+  const Model& found = world.models[0];
+  ASSERT_EQ(found.joints.size(), 3u);
+  ASSERT_EQ(found.loop_joints.size(), 2u);
+  EXPECT_EQ(found.loop_joints[0].name, "k");
+  EXPECT_EQ(found.loop_joints[0].parent, 1u);
+  EXPECT_EQ(found.loop_joints[0].child, 2u);
+  EXPECT_EQ(found.loop_joints[1].parent, Joint::world);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+}
+
+TEST_F(Joints, ALimitOfALoopsJointIsSaidToBeIgnored) {
+  const World world = read(model(links("ab") + joint("i", "a", "b") + joint("j", "world", "a") + "\n" +
+                                 joint("k", "world", "b", "<xyz>0 0 1</xyz><limit><lower>0</lower></limit>")));
+  EXPECT_NE(texts_of(world.warnings).find(":3: world/model[m]/joint[k]: the joint 'k' closes a loop"),
+            std::string::npos)
+      << texts_of(world.warnings);
+}
+
+TEST_F(Joints, ScrewsAndTwoHingesInARow) {
+  const World world =
+      read(model(links("abc") +
+                 "<joint name=\"s\" type=\"screw\"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis>"
+                 "<thread_pitch>-100</thread_pitch></joint>"
+                 "<joint name=\"r\" type=\"revolute2\"><parent>a</parent><child>c</child><axis><xyz>1 0 0</xyz></axis>"
+                 "<axis2><xyz>0 1 0</xyz></axis2></joint>"));
+  EXPECT_EQ(world.models[0].joints[0].type, JointType::screw);
+  EXPECT_NEAR(world.models[0].joints[0].thread_pitch, 2.0 * M_PI / 100.0, 1e-15) << "metres a turn, right-handed";
+  EXPECT_EQ(world.models[0].joints[1].type, JointType::universal);
+}
+
+TEST_F(Joints, FollowOthersByMimicAndByGearbox) {
+  const World followed =
+      read(model(links("abc") + joint("j", "a", "c") +
+                 mimic("<cohort:multiplier>-2</cohort:multiplier><cohort:offset>0.5</cohort:offset>", "j")));
+  ASSERT_EQ(followed.models[0].couplings.size(), 1u);
+  EXPECT_EQ(followed.models[0].couplings[0].follower, 1u);
+  EXPECT_EQ(followed.models[0].couplings[0].leader, 0u);
+  EXPECT_EQ(followed.models[0].couplings[0].multiplier, -2.0);
+  EXPECT_EQ(followed.models[0].couplings[0].offset, 0.5);
+
+  // The second joint turns the other way round: against the axis of the gearbox.
+  for (const double along : {1.0, -1.0}) {
+    const World geared = read(model(links("abc") + joint("i", "a", "b") +
+                                    joint("j", "a", "c", along > 0.0 ? "<xyz>0 0 1</xyz>" : "<xyz>0 0 -1</xyz>") +
+                                    gearbox(3.0, "b", "c", "a")));
+    ASSERT_EQ(geared.models[0].joints.size(), 2u);
+    ASSERT_EQ(geared.models[0].couplings.size(), 1u);
+    EXPECT_EQ(geared.models[0].couplings[0].follower, 1u);
+    EXPECT_EQ(geared.models[0].couplings[0].multiplier, -3.0 * along);
+  }
 }
 
 std::string device(const std::string& kind, const std::string& keys) {
@@ -139,16 +217,9 @@ const std::string in_drive = "world/model[m]/cohort:treel_drive[d]";
 std::string with_dynamics(const std::string& dynamics) {
   return model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz><dynamics>\n" + dynamics + "</dynamics>"));
 }
-std::string of_type(const std::string& type) {
-  return model(links("ab") + "\n" + joint("j", "a", "b", "<xyz>0 0 1</xyz>", type));
-}
-
 INSTANTIATE_TEST_SUITE_P(
     Joints, FlawOfAJoint,
     testing::Values(
-        Flaw{of_type("screw"), 3, in_joint, "'screw' is not supported; expected fixed, revolute"},
-        Flaw{of_type("gearbox"), 3, in_joint, "'gearbox' is not supported"},
-        Flaw{of_type("revolute2"), 3, in_joint, "'revolute2' is not supported"},
         Flaw{with_dynamics("<damping>-1</damping>"), 3, in_joint + "/axis/dynamics/damping", "expected a damping >= 0"},
         Flaw{with_dynamics("<friction>-1</friction>"), 3, in_joint + "/axis/dynamics/friction",
              "expected a friction >= 0"},
@@ -163,8 +234,21 @@ INSTANTIATE_TEST_SUITE_P(
                    universal("<axis2><xyz>0 1 0</xyz><limit><lower>1</lower><upper>0</upper></limit></axis2>")),
              3, in_joint + "/axis2/limit", "the lower limit exceeds"},
         Flaw{model(links("ab") + "\n" + universal("")), 3, in_joint + "/axis2", "missing"},
-        Flaw{model(links("ab") + joint("i", "a", "b") + "\n" + joint("j", "world", "b")), 3, in_joint,
-             "'b' is the child of joint 'i' already"},
+        Flaw{model(links("ab") + mimic("", "nobody")), 4, in_mimic + "/cohort:joint", "no joint 'nobody'"},
+        Flaw{model(links("ab") + mimic("", "k")), 3, in_mimic, "cannot follow itself"},
+        Flaw{model(links("abc") + joint("j", "a", "c", "<xyz>0 0 1</xyz>", "ball") + mimic("", "j")), 4,
+             in_mimic + "/cohort:joint", "has no single axis"},
+        Flaw{model(links("abc") + joint("j", "a", "c") + joint("l", "b", "c") + mimic("", "l")), 4,
+             in_mimic + "/cohort:joint", "closes a loop"},
+        Flaw{model(links("abc") + joint("i", "a", "b", "<xyz>0 0 1</xyz>", "prismatic") + joint("j", "a", "c") +
+                   gearbox(1, "b", "c", "a")),
+             3, "world/model[m]/joint[gears]",
+             "expected a revolute joint between 'b' and the gearbox_reference_body 'a'"},
+        Flaw{model(links("abc") + joint("i", "a", "b") + joint("j", "a", "c") + gearbox(1, "b", "c", "d")), 3,
+             "world/model[m]/joint[gears]", "no link 'd'"},
+        Flaw{model(links("ab") + "\n<joint name=\"j\" type=\"screw\"><parent>a</parent><child>b</child><axis>"
+                                 "<xyz>0 0 1</xyz></axis><thread_pitch>0</thread_pitch></joint>"),
+             3, in_joint + "/thread_pitch", "other than 0"},
         Flaw{model(links("ab") + joint("j", "world", "b")), 2, "world/model[m]",
              "the links 'a', 'b' have no joint to a parent link"},
         Flaw{model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "ball") +

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <optional>
+#include <sdf/JointAxis.hh>
+
+#include "server/core/text.hpp"
+#include "server/parsing/model/read_model.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+// Nothing, and reported, if there is no joint of this name that has an axis.
+std::optional<std::size_t> find_joint(const Model& model, const std::string& name, const sdf::ElementPtr& where,
+                                      const SdfReport& report) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    names.push_back(joint.name);
+    if (joint.name != name) continue;
+    if (joint.type != JointType::fixed && joint.type != JointType::ball) return i;
+    report.problem(where, "the joint '" + name + "' " +
+                              (joint.type == JointType::fixed ? "is fixed" : "is a ball: it has no single axis"));
+    return std::nullopt;
+  }
+  if (std::ranges::any_of(model.loop_joints, [&](const Joint& joint) { return joint.name == name; }))
+    report.problem(where, "the joint '" + name + "' closes a loop, and has no position of its own");
+  else
+    report.problem(where, "the model has no joint '" + name + "'" + suggestion(name, names));
+  return std::nullopt;
+}
+
+std::optional<Coupling> read_mimic(const sdf::ElementPtr& element, const std::string& follower, const Model& model,
+                                   const std::string& scope, const SdfReport& report) {
+  const auto values = ExtensionValues::read(element, *find_extension("mimic", "joint"), report);
+  if (!values) return std::nullopt;
+  const auto of_follower = find_joint(model, follower, element, report);
+  const auto of_leader = find_joint(model, scope + values->text("joint"), values->where("joint"), report);
+  if (!of_follower || !of_leader) return std::nullopt;
+  return Coupling{*of_follower, *of_leader, values->real("multiplier"), values->real("offset")};
+}
+
+// The joint between a link and the reference body, and whether it turns the link about this axis as it turns: 1 or -1.
+struct Turn {
+  std::size_t joint = 0;
+  double sense = 1.0;
+};
+std::optional<Turn> find_turn(const Model& model, std::size_t reference, std::size_t link,
+                              const Eigen::Vector3d& axis_M) {
+  for (std::size_t i = 0; i < model.joints.size(); ++i) {
+    const Joint& joint = model.joints[i];
+    const bool is_forwards = joint.parent == reference && joint.child == link;
+    const bool is_backwards = joint.parent == link && joint.child == reference;
+    if ((!is_forwards && !is_backwards) || joint.type != JointType::revolute) continue;
+    const Eigen::Vector3d its_axis_M =
+        model.links[joint.child].X_ML.orientation * (joint.X_LJ.orientation * joint.axis.direction);
+    return Turn{i, (is_forwards ? 1.0 : -1.0) * (its_axis_M.dot(axis_M) < 0.0 ? -1.0 : 1.0)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Coupling> read_gearbox(const sdf::Joint& sdf_joint, const Model& model, const std::string& scope,
+                                     const ModelReading& reading) {
+  const sdf::ElementPtr element = sdf_joint.Element();
+  const auto link_of = [&](const std::string& name) -> std::optional<std::size_t> {
+    const auto found = std::ranges::find(model.links, scope + name, &Link::name);
+    if (found != model.links.end()) return static_cast<std::size_t>(found - model.links.begin());
+    reading.report.problem(element, "the model has no link '" + name + "'");
+    return std::nullopt;
+  };
+  const sdf::ElementPtr body = element->FindElement("gearbox_reference_body");
+  if (!body) {
+    reading.report.problem(element, "missing: <gearbox_reference_body>", "gearbox_reference_body");
+    return std::nullopt;
+  }
+  const auto reference = link_of(body->Get<std::string>());
+  const auto parent = link_of(sdf_joint.ParentLinkName());
+  const auto child = link_of(sdf_joint.ChildLinkName());
+  if (!reference || !parent || !child || !reading.frames_resolve) return std::nullopt;
+  std::optional<Turn> turns[2];
+  for (const unsigned place : {0u, 1u}) {
+    const sdf::JointAxis* axis = sdf_joint.Axis(place);
+    if (axis == nullptr) axis = sdf_joint.Axis(0);
+    ignition::math::Vector3d direction;
+    if (axis == nullptr || !axis->ResolveXyz(direction).empty()) {
+      reading.report.problem(element, "missing: the direction of the axis, <axis><xyz>", "axis");
+      return std::nullopt;
+    }
+    const Pose X_LJ = resolved_pose(sdf_joint, reading, sdf_joint.ChildLinkName());
+    const std::size_t link = place == 0 ? *parent : *child;
+    turns[place] = find_turn(model, *reference, link,
+                             model.links[*child].X_ML.orientation * (X_LJ.orientation * to_eigen(direction)));
+    if (turns[place]) continue;
+    reading.report.problem(element, "expected a revolute joint between '" + model.links[link].name +
+                                        "' and the gearbox_reference_body '" + model.links[*reference].name + "'");
+    return std::nullopt;
+  }
+  const sdf::ElementPtr ratio = element->FindElement("gearbox_ratio");
+  const double by = ratio ? ratio->Get<double>() : 1.0;
+  return Coupling{turns[1]->joint, turns[0]->joint, -by * turns[0]->sense * turns[1]->sense, 0.0};
+}
+
+}  // namespace
+
+std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& model, const std::string& scope,
+                                     const ModelReading& reading) {
+  std::vector<Coupling> couplings;
+  const auto add = [&](const std::optional<Coupling>& coupling, const sdf::ElementPtr& where) {
+    if (!coupling) return;
+    const auto follows = [&](const Coupling& other) { return other.follower == coupling->follower; };
+    if (coupling->follower == coupling->leader)
+      reading.report.problem(where, "a joint cannot follow itself");
+    else if (std::ranges::any_of(couplings, follows))
+      reading.report.problem(where,
+                             "the joint '" + model.joints[coupling->follower].name + "' follows another one already");
+    else
+      couplings.push_back(*coupling);
+  };
+  for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i) {
+    const sdf::Joint& joint = *sdf_model.JointByIndex(i);
+    if (joint.Type() == sdf::JointType::GEARBOX) add(read_gearbox(joint, model, scope, reading), joint.Element());
+    const sdf::ElementPtr mimic = joint.Element()->FindElement("cohort:mimic");
+    if (mimic) add(read_mimic(mimic, scope + joint.Name(), model, scope, reading.report), mimic);
+  }
+  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
+    const sdf::Model& inner = *sdf_model.ModelByIndex(i);
+    for (const Coupling& coupling : read_couplings(inner, model, scope + inner.Name() + "::", reading))
+      couplings.push_back(coupling);
+  }
+  return couplings;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "server/physics/multibody/mechanism.hpp"
+
+namespace cohort::physics {
+
+class Multibody;
+class Problem;
+
+/// The joints of one body that close loops: rows between two of its segments, in place of what a tree of joints cannot
+/// have. What they come apart by is taken away by a share in each step.
+class LoopRows {
+ public:
+  explicit LoopRows(const Mechanism& mechanism);
+
+  void add_rows(Problem& problem, int index, const Multibody& body, double step);
+  /// Whether one of them holds on to the world.
+  bool reach_the_world() const;
+  /// Whether a joint connects the two segments.
+  bool connect(int segment, int other) const;
+  /// Calls `visit(parent, child, point_W, linear_W, angular_W)` for each joint: its two links, and the impulse on the
+  /// child in the last step, at a point [N s, N m s].
+  template <class Visit>
+  void for_each_impulse(Visit&& visit) const {
+    for (const Loop& loop : loops_) {
+      Eigen::Vector3d linear_W = Eigen::Vector3d::Zero();
+      Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();
+      for (int i = 0; i < loop.row_count; ++i)
+        (i < loop.linear_count ? linear_W : angular_W) += loop.impulses[at(i)] * loop.directions_W[at(i)];
+      visit(loop.parent_link, loop.child_link, loop.point_W, linear_W, angular_W);
+    }
+  }
+
+  /// Calls `visit` for each number of the state, always in the same order.
+  template <class Self, class Visit>
+  static void visit_state(Self& self, Visit&& visit) {
+    for (auto& loop : self.loops_)
+      for (auto& impulse : loop.impulses) visit(impulse);
+  }
+
+ private:
+  static constexpr std::size_t most_rows = 6;
+
+  struct Loop {
+    description::JointType type = description::JointType::fixed;
+    std::size_t parent_link = 0;
+    std::size_t child_link = 0;
+    int parent = -1;  // segment; -1: the world
+    int child = 0;
+    Pose X_SP_parent;  // the joint's frame as the parent carries it; of the world, in the model
+    Pose X_SP_child;
+    Eigen::Vector3d axis_P = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d second_axis_P = Eigen::Vector3d::UnitZ();
+    std::array<double, most_rows> impulses{};
+    // Of this step: rows against moving apart, then against turning.
+    std::array<Eigen::Vector3d, most_rows> directions_W{};
+    Eigen::Vector3d point_W = Eigen::Vector3d::Zero();
+    int linear_count = 0;
+    int row_count = 0;
+  };
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+  std::vector<Loop> loops_;
+};
+
+}  // namespace cohort::physics

@@ -1,0 +1,187 @@
+// Joints beyond a tree of hinges: loops, joints that follow others, screws.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/physics.hpp"
+
+namespace cohort::test {
+namespace {
+
+using description::Joint;
+using description::JointType;
+using Eigen::Vector3d;
+
+class Mechanisms : public EveryPhysics {
+ protected:
+  description::World space(double gravity = 0.0) const {
+    description::World world = empty_world();
+    world.physics = GetParam().world().physics;
+    world.physics.lowest = -100.0;
+    world.gravity = {0, 0, -gravity};
+    return world;
+  }
+  // A bar from its origin along `along`.
+  static description::Link bar(const std::string& name, const Vector3d& place, const Vector3d& along) {
+    const Vector3d size = Vector3d::Constant(0.02) + along.cwiseAbs();
+    description::Link link{name, {place}, solid_box(0.5, size), {}};
+    link.inertial.X_LI.position = 0.5 * along;
+    return link;
+  }
+  static Joint joint(const std::string& name, JointType type, std::size_t parent, std::size_t child,
+                     const Vector3d& axis, const Vector3d& place = Vector3d::Zero()) {
+    Joint joint;
+    joint.name = name;
+    joint.type = type;
+    joint.parent = parent;
+    joint.child = child;
+    joint.axis.direction = axis;
+    joint.X_LJ.position = place;
+    return joint;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Every, Mechanisms, ::testing::Values(treel, by_bullet(treel)), name_of);
+
+// Two bars of 0.2 m that stand 0.3 m apart and a coupler on top: what the crank turns by, the rocker does.
+TEST_P(Mechanisms, AFourBarLinkageTurnsAsAParallelogram) {
+  description::Model linkage;
+  linkage.name = "linkage";
+  linkage.links.push_back(bar("crank", {0, 0, 0}, {0, 0, 0.2}));
+  linkage.links.push_back(bar("coupler", {0, 0, 0.2}, {0.3, 0, 0}));
+  linkage.links.push_back(bar("rocker", {0.3, 0, 0}, {0, 0, 0.2}));
+  const Vector3d y = Vector3d::UnitY();
+  linkage.joints = {joint("crank_joint", JointType::revolute, Joint::world, 0, y),
+                    joint("elbow", JointType::revolute, 0, 1, y),
+                    joint("rocker_joint", JointType::revolute, Joint::world, 2, y)};
+  linkage.loop_joints = {joint("closing", JointType::revolute, 1, 2, y, {0, 0, 0.2})};
+  linkage.devices.emplace_back(description::VelocityMotor{"motor", 0, 2.0, 20.0, 0.0});
+  SmallWorld small(space(9.81));
+  const auto body = small.add(linkage, at(0, 0, 1));
+  small.world().set_joint_velocity_target(body, 0, 0.5);
+  double widest = 0.0;
+  double furthest_apart = 0.0;
+  for (int tick = 0; tick < 200; ++tick) {  // by 1 rad
+    small.world().step();
+    const Pose X_WC = small.world().link_pose(body, 1);
+    const Pose X_WR = small.world().link_pose(body, 2);
+    widest = std::max(widest, (X_WC * Vector3d(0.3, 0, 0) - X_WR * Vector3d(0, 0, 0.2)).norm());
+    furthest_apart = std::max(furthest_apart,
+                              std::abs(small.world().joint_position(body, 0) - small.world().joint_position(body, 2)));
+  }
+  EXPECT_NEAR(small.world().joint_position(body, 0), 1.0, 0.01);
+  EXPECT_LT(widest, 1e-4) << "the gap where the loop closes";
+  EXPECT_LT(furthest_apart, 1e-3);
+  EXPECT_NEAR(small.position(body, 1).y(), 0.0, 1e-6) << "it stays in its plane";
+}
+
+// A bar on a ball joint at one end; what holds its other end leaves it no way, or a hinge's.
+TEST_P(Mechanisms, EveryKindOfLoopHolds) {
+  for (const JointType type : {JointType::fixed, JointType::ball, JointType::revolute, JointType::universal}) {
+    SCOPED_TRACE("joint type " + std::to_string(static_cast<int>(type)));
+    description::Model model;
+    model.name = "held";
+    model.links.push_back(bar("bar", {0, 0, 0}, {0.4, 0, 0}));
+    model.joints = {joint("shoulder", JointType::ball, Joint::world, 0, Vector3d::UnitZ())};
+    Joint loop = joint("hand", type, Joint::world, 0, Vector3d::UnitX(), {0.4, 0, 0});
+    loop.second_axis.direction = Vector3d::UnitY();
+    model.loop_joints = {loop};
+    SmallWorld small(space(9.81));
+    const auto body = small.add(model, at(0, 0, 1));
+    for (int tick = 0; tick < 200; ++tick) {
+      small.world().push_body(body, 0, {Vector3d(0, 3.0, 0), Vector3d(0.01, 0, 0)});
+      small.world().step();
+    }
+    EXPECT_LT((small.world().link_pose(body, 0) * Vector3d(0.4, 0, 0) - Vector3d(0.4, 0, 1)).norm(), 1e-4);
+    const double turns = small.world().link_twist(body, 0).angular_W.x();
+    if (type == JointType::fixed)
+      EXPECT_NEAR(turns, 0.0, 1e-6);
+    else
+      EXPECT_GT(turns, 1.0) << "about itself it is free";
+  }
+}
+
+// Both hinges turn bars; one follows the other, backwards and twice as fast.
+TEST_P(Mechanisms, AFollowerFollowsAndIsFelt) {
+  description::Model model;
+  model.name = "pair";
+  model.links.push_back(bar("leader", {0, 0, 0}, {0.2, 0, 0}));
+  model.links.push_back(bar("follower", {0, 1, 0}, {0.2, 0, 0}));
+  const Vector3d z = Vector3d::UnitZ();
+  model.joints = {joint("first", JointType::revolute, Joint::world, 0, z),
+                  joint("second", JointType::revolute, Joint::world, 1, z)};
+  model.couplings = {{1, 0, -2.0, 0.0}};
+  model.devices.emplace_back(description::EffortMotor{"motor", 0, 1.0, 0.0});
+  SmallWorld small(space());
+  const auto body = small.add(model, at(0, 0, 1));
+  small.world().set_joint_effort_target(body, 0, 0.05);
+  small.run(0.5);
+  const double inertia = solid_box(0.5, {0.22, 0.02, 0.02}).inertia(2, 2) + 0.5 * 0.01;
+  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.05 * 0.5 / (inertia + 4.0 * inertia), 1e-4);
+  EXPECT_NEAR(small.world().joint_position(body, 1), -2.0 * small.world().joint_position(body, 0), 1e-6);
+}
+
+TEST_P(Mechanisms, AFollowerKeepsItsOffset) {
+  description::Model model;
+  model.name = "pair";
+  model.links.push_back(bar("leader", {0, 0, 0}, {0.2, 0, 0}));
+  model.links.push_back(bar("follower", {0, 1, 0}, {0.2, 0, 0}));
+  const Vector3d z = Vector3d::UnitZ();
+  model.joints = {joint("first", JointType::revolute, Joint::world, 0, z),
+                  joint("second", JointType::prismatic, Joint::world, 1, z)};
+  model.couplings = {{1, 0, 0.1, 0.3}};
+  model.devices.emplace_back(description::PositionMotor{"motor", 0, 2.0, 50.0, 0.0});
+  SmallWorld small(space(9.81));
+  const auto body = small.add(model, at(0, 0, 1));
+  small.world().set_joint_position_target(body, 0, 1.0);
+  small.run(3.0);
+  EXPECT_NEAR(small.world().joint_position(body, 0), 1.0, 1e-4);
+  EXPECT_NEAR(small.world().joint_position(body, 1), 0.4, 1e-4);
+}
+
+// A weight on a thread without friction turns itself down.
+TEST_P(Mechanisms, AWeightOnAScrewTurnsAsItSinks) {
+  constexpr double pitch = 0.05;
+  description::Model nut;
+  nut.name = "nut";
+  nut.links.push_back({"nut", {}, description::solid_cylinder(1.0, 0.05, 0.02, 0.0), {}});
+  Joint screw = joint("thread", JointType::screw, Joint::world, 0, Vector3d::UnitZ());
+  screw.thread_pitch = pitch;
+  nut.joints = {screw};
+  SmallWorld small(space(9.81));
+  const auto body = small.add(nut, at(0, 0, 1));
+  small.run(1.0);
+  const double radians_a_metre = 2.0 * M_PI / pitch;
+  const double inertia = description::solid_cylinder(1.0, 0.05, 0.02, 0.0).inertia(2, 2);
+  const double acceleration = 9.81 / (1.0 + inertia * radians_a_metre * radians_a_metre);
+  EXPECT_NEAR(small.velocity(body).z(), -acceleration, 1e-3 * acceleration);
+  EXPECT_NEAR(small.world().joint_position(body, 0) / radians_a_metre, small.position(body).z() - 1.0, 1e-6);
+}
+
+TEST_P(Mechanisms, GoOnFromASnapshotAndPassTheirForcesOn) {
+  description::Model model;
+  model.name = "frame";
+  model.links.push_back(bar("left", {0, 0, 0}, {0, 0, -0.2}));
+  model.links.push_back(bar("right", {0.3, 0, 0}, {0, 0, -0.2}));
+  model.links.push_back(bar("load", {0, 0, -0.2}, {0.3, 0, 0}));
+  const Vector3d y = Vector3d::UnitY();
+  model.joints = {joint("first", JointType::revolute, Joint::world, 0, y),
+                  joint("second", JointType::revolute, Joint::world, 1, y),
+                  joint("third", JointType::revolute, 0, 2, y)};
+  model.loop_joints = {joint("fourth", JointType::revolute, 1, 2, y, {0.3, 0, 0})};
+  model.couplings = {{1, 0, 1.0, 0.0}};
+  SmallWorld small(space(9.81));
+  const auto body = small.add(model, at(0, 0, 1));
+  small.world().record(body);
+  small.run(1.0);
+  // At rest both bars bear half of what hangs on them.
+  EXPECT_NEAR(small.world().joint_wrench(body, 0).force_W.z(), 0.75 * 9.81, 1e-3);
+  EXPECT_NEAR(small.world().joint_wrench(body, 1).force_W.z(), 0.75 * 9.81, 1e-3);
+  SmallWorld restored(small.description);
+  restore_from(small.world(), restored.world());
+  small.world().push_body(body, 2, {Vector3d(5, 0, 0), Vector3d::Zero()});
+  restored.world().push_body(body, 2, {Vector3d(5, 0, 0), Vector3d::Zero()});
+  for (SmallWorld* world : {&small, &restored}) world->run(1.0);
+  EXPECT_EQ(hash_of(small.world()), hash_of(restored.world()));
+}
+
+}  // namespace
+}  // namespace cohort::test

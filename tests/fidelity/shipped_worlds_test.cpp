@@ -55,7 +55,7 @@ TEST(ShippedExperiments, AreAllReadAndStepped) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(test::shipped_experiments)) {
     SCOPED_TRACE(entry.path().string());
-    const description::Experiment experiment = parsing::read_experiment(entry.path());
+    const description::Experiment experiment = test::with_dynamics_of_test(parsing::read_experiment(entry.path()));
     EXPECT_TRUE(experiment.world.warnings.empty());
     Simulation simulation(experiment, 1);
     for (int i = 0; i < 20; ++i) simulation.step();

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "client_sdk/src/plugin_loader.hpp"
@@ -20,15 +22,23 @@ namespace cohort::test {
 
 inline const std::filesystem::path shipped_experiments = COHORT_SOURCE_DIR "/worlds/experiments";
 
+/// The same with our own dynamics, if COHORT_TEST_DYNAMICS is `cohort`: all such tests are run with either.
+inline description::Experiment with_dynamics_of_test(description::Experiment experiment) {
+  const char* const dynamics = std::getenv("COHORT_TEST_DYNAMICS");
+  if (dynamics != nullptr && std::string_view(dynamics) == "cohort")
+    experiment.world.physics.dynamics = description::Dynamics::cohort;
+  return experiment;
+}
+
 /// One of worlds/experiments, run to its end with its controllers in this process.
 class ShippedExperiment {
  public:
   /// `watch` is called at every boundary, when all robots have sensed.
   explicit ShippedExperiment(const std::string& name, std::optional<std::uint64_t> seed = {}, double seconds = 0.0,
                              std::function<void(const ShippedExperiment&)> watch = {})
-      : experiment(parsing::read_experiment(
+      : experiment(with_dynamics_of_test(parsing::read_experiment(
             shipped_experiments / (name + ".yaml"), seed,
-            seconds > 0.0 ? std::optional(std::chrono::nanoseconds(std::llround(seconds * 1e9))) : std::nullopt)),
+            seconds > 0.0 ? std::optional(std::chrono::nanoseconds(std::llround(seconds * 1e9))) : std::nullopt))),
         simulation(experiment, 2) {
     std::vector<std::unique_ptr<LoadedPlugin>> plugins;
     std::vector<ControllerKind> kinds;

@@ -148,6 +148,12 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
   // SDF's default would be 1 ms, which libsdformat fills in where there is none.
   const sdf::Physics* const physics = sdf_world.PhysicsDefault();
   if (physics == nullptr || !physics->Element()) return;
+  if (const sdf::ParamPtr type = physics->Element()->GetAttribute("type"); type && type->GetSet()) {
+    const std::string name = type->GetAsString();
+    if (name != "bullet" && name != "ignored" && physics->Element()->GetExplicitlySetInFile())
+      report_.warning(physics->Element(),
+                      "the engine '" + name + "' is not here; Bullet's bodies are, with solvers of our own");
+  }
   const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
   if (!step || !step->GetExplicitlySetInFile()) return;
   constexpr double nanoseconds = 1e9;

@@ -342,6 +342,15 @@ TEST_F(Description, AnEmptyWorldHasSdfsGravityAndOurStep) {
   EXPECT_TRUE(world.instances.empty());
 }
 
+TEST_F(Description, AnotherEngineIsNamed) {
+  EXPECT_EQ(texts_of(read("<physics type=\"bullet\"/>").warnings), "");
+  EXPECT_EQ(texts_of(read("").warnings), "");
+  const World world = read("\n<physics type=\"dart\"/>");
+  EXPECT_EQ(world.warnings.size(), 1u);
+  EXPECT_NE(texts_of(world.warnings).find(":3: world/physics: the engine 'dart' is not here"), std::string::npos)
+      << texts_of(world.warnings);
+}
+
 TEST_F(Description, WhatIsNotSimulatedIsSaidOnceEach) {
   const World world = read(
       "<state world_name=\"w\"/>\n"

@@ -23,7 +23,16 @@ struct Surface {
   double rolling_resistance = 0.0;  ///< torque against rolling for each newton of normal force [m]
   std::uint32_t material = 0;       ///< index into World::materials
   bool is_grippable = false;        ///< by a gripper, anywhere
+  std::uint16_t category_bitmask = every_bit;
+  std::uint16_t collide_bitmask = every_bit;
+
+  static constexpr std::uint16_t every_bit = 0xFFFF;
 };
+
+/// By SDF's rule for bitmasks: one is of a category with which the other collides.
+inline bool may_collide(const Surface& a, const Surface& b) {
+  return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
+}
 
 struct Collision {
   std::string name;

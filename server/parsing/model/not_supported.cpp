@@ -45,8 +45,6 @@ constexpr Unsupported unsupported[] = {
     {"ode", "slip2"},
     {"bounce", "threshold"},
     {"contact", "collide_without_contact"},
-    {"contact", "collide_bitmask", "; everything collides with everything"},
-    {"contact", "category_bitmask", "; everything collides with everything"},
     {"contact", "ode", "; contacts are rigid"},
     {"contact", "bullet", "; contacts are rigid"},
     {"surface", "soft_contact"},

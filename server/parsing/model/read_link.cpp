@@ -113,6 +113,11 @@ bool read_grippable(const sdf::ElementPtr& collision, const SdfReport& report) {
   return values && values->flag("grippable");
 }
 
+// Of its 16 bits; SDF passes over those above.
+std::uint16_t read_bitmask(const sdf::ElementPtr& element, std::uint16_t by_default) {
+  return is_written(element) ? static_cast<std::uint16_t>(element->Get<unsigned int>()) : by_default;
+}
+
 Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& reading) {
   const Surface by_default;
   const SdfReport& report = reading.report;
@@ -127,6 +132,9 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
                        by_default.rolling_resistance, most, "expected a rolling resistance >= 0 m", report);
   surface.material = read_material(collision, reading);
   surface.is_grippable = read_grippable(collision, report);
+  const auto contact = find(collision, {"surface", "contact"});
+  surface.collide_bitmask = read_bitmask(find(contact, {"collide_bitmask"}), by_default.collide_bitmask);
+  surface.category_bitmask = read_bitmask(find(contact, {"category_bitmask"}), surface.collide_bitmask);
   return surface;
 }
 

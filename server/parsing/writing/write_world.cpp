@@ -162,11 +162,7 @@ class WorldWriter {
       XmlNode& shape = add_named(element, "collision", collision.name);
       add_pose(shape, collision.X_LC);
       std::visit(ShapeWriter{add(shape, "geometry"), folder_}, collision.shape);
-      XmlNode& surface = add(shape, "surface");
-      XmlNode& friction = add(surface, "friction");
-      add_value(add(friction, "ode"), "mu", collision.surface.friction);
-      add_value(add(friction, "bullet"), "rolling_friction", collision.surface.rolling_resistance);
-      add_value(add(surface, "bounce"), "restitution_coefficient", collision.surface.restitution);
+      write_surface(add(shape, "surface"), collision.surface);
       if (collision.surface.is_grippable) add_key(shape, "grippable", true);
       if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
     }
@@ -179,6 +175,19 @@ class WorldWriter {
     write_parts(model.drags);
     for (const Emitter& emitter : model.emitters)
       if (emitter.link == index) write_emitter(element, emitter);
+  }
+
+  static void write_surface(XmlNode& element, const Surface& surface) {
+    const Surface usual;
+    XmlNode& friction = add(element, "friction");
+    add_value(add(friction, "ode"), "mu", surface.friction);
+    add_value(add(friction, "bullet"), "rolling_friction", surface.rolling_resistance);
+    add_value(add(element, "bounce"), "restitution_coefficient", surface.restitution);
+    if (surface.collide_bitmask != usual.collide_bitmask || surface.category_bitmask != usual.category_bitmask) {
+      XmlNode& contact = add(element, "contact");
+      add_value(contact, "collide_bitmask", std::to_string(surface.collide_bitmask));
+      add_value(contact, "category_bitmask", std::to_string(surface.category_bitmask));
+    }
   }
 
   static void write_joint(XmlNode& parent, const Joint& joint, const Model& model) {

@@ -52,7 +52,7 @@ bool Collision::reports(std::uint32_t solid, std::uint32_t other) const {
 }
 
 bool Collision::makes_a_pair(std::uint32_t solid, std::uint32_t other) const {
-  if (!reports(solid, other)) return false;
+  if (!reports(solid, other) || !may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return false;
   if (!scene_.reaches_into(other, region_along(solid, ways_[solid] - ways_[other]))) return false;
   return scene_.solid(other).body != scene_.solid(solid).body || may_touch_(solid, other);
 }
@@ -196,6 +196,7 @@ double Collision::free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) 
   if (!((way_W - ways_[solid]).norm() > furthest_unseen_[solid])) return 1.0;  // as foreseen, or not a number
   double share = 1.0;
   scene_.for_each_static_overlap(region_along(solid, way_W), [&](std::uint32_t other) {
+    if (!may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return;
     const auto touches = [&](const SolidPair& pair) { return pair.b == other && pair.contact.count > 0; };
     if (std::ranges::any_of(pairs_[solid], touches)) return;  // the solver knows
     const Touch touch = first_touch(solid, other, way_W);

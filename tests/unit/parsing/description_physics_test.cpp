@@ -21,6 +21,10 @@ const Surface& surface_of(const World& world, std::size_t model) {
   return world.models[model].links[0].collisions[0].surface;
 }
 
+std::string contact(const std::string& content) {
+  return static_model_sdf(collision(ball, "<surface>\n<contact>" + content + "</contact></surface>"));
+}
+
 using Surfaces = Description;
 
 TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
@@ -45,6 +49,18 @@ TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByName) {
   EXPECT_EQ(world.warnings.size(), 3u) << all;
   for (const char* const name : {"bullet/friction: ", "bullet/friction2: ", "bullet/fdir1: "})
     EXPECT_NE(all.find(name), std::string::npos) << all;
+}
+
+TEST_F(Surfaces, HaveBitmasksOf16BitsAndTheCategoryIsTheOtherIfItIsNotGiven) {
+  const auto bits = [&](const std::string& content) {
+    const World world = read(contact(content));
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    return std::pair<int, int>(surface_of(world, 0).category_bitmask, surface_of(world, 0).collide_bitmask);
+  };
+  EXPECT_EQ(bits(""), std::pair(0xFFFF, 0xFFFF));
+  EXPECT_EQ(bits("<collide_bitmask>0x0A</collide_bitmask>"), std::pair(10, 10));
+  EXPECT_EQ(bits("<collide_bitmask>0xFFFF0001</collide_bitmask>"), std::pair(1, 1));
+  EXPECT_EQ(bits("<collide_bitmask>3</collide_bitmask><category_bitmask>0x4</category_bitmask>"), std::pair(4, 3));
 }
 
 TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
@@ -125,6 +141,8 @@ INSTANTIATE_TEST_SUITE_P(
                  ball,
                  "<surface><friction><bullet>\n<rolling_friction>-1</rolling_friction></bullet></friction></surface>")),
              3, in_collision + "/surface/friction/bullet/rolling_friction", "expected a rolling resistance >= 0 m"},
+        Flaw{contact("<collide_bitmask>0xG</collide_bitmask>"), 3, in_collision + "/surface/contact/collide_bitmask",
+             "'0xG'"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},
         Flaw{made_of("<cohort:name>x</cohort:name>"), 3, in_collision + "/cohort:material/cohort:name", "holds a name"},
         Flaw{made_of("a</cohort:material>\n<cohort:material>b"), 4, in_collision + "/cohort:material", "given twice"},

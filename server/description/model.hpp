@@ -67,6 +67,7 @@ struct Link {
   Eigen::Vector3d color = default_color();  ///< for cameras: that of the first visual; red, green, blue from 0 to 1
   std::vector<Visual> visuals{};            ///< those whose shape can be read
   bool feels_wind = false;                  ///< SDF's enable_wind
+  bool feels_gravity = true;                ///< SDF's gravity
 };
 
 /// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.

@@ -54,6 +54,82 @@ TEST_P(Surfaces, WhatIsFastPassesThroughWhatItDoesNotCollideWith) {
   EXPECT_LT(small.position(stopped).x(), 1.0);
 }
 
+// A boom on a hinge about y, and a weight on a hinge at its end. Nothing touches anything.
+description::Model boom(bool feels_gravity) {
+  description::Model model;
+  model.name = "boom";
+  description::Inertial arm = solid_box(0.2, {0.3, 0.02, 0.03});
+  arm.X_LI.position = {0.15, 0.01, 0.0};
+  model.links.push_back({"arm", {}, arm, {}});
+  model.links.push_back({"weight", {{0.3, 0, 0}}, solid_box(0.5, {0.02, 0.03, 0.04}), {}});
+  description::Joint joint;
+  joint.name = "hinge";
+  joint.type = description::JointType::revolute;
+  joint.parent = description::Joint::world;
+  joint.axis.direction = Vector3d::UnitY();
+  model.joints.push_back(joint);
+  joint.name = "wrist";
+  joint.parent = 0;
+  joint.child = 1;
+  model.joints.push_back(joint);
+  for (description::Link& link : model.links) link.feels_gravity = feels_gravity;
+  return model;
+}
+
+TEST_P(Surfaces, ALinkWithoutGravityFloatsAndGoesStraightOn) {
+  SmallWorld small(GetParam().world());
+  description::Model box = loose("box", Box{{0.1, 0.1, 0.1}}, solid_box(2.0, {0.1, 0.1, 0.1}));
+  box.links[0].inertial.X_LI.position = {0.02, 0, 0};
+  const auto falls = small.add(box, at(1, 0, 1));
+  box.links[0].feels_gravity = false;
+  const auto floats = small.add(box, at(0, 0, 1));
+  small.world().record(floats);
+  small.world().record(falls);
+  small.world().set_root_twist(floats, {Vector3d::Zero(), Vector3d(0.1, 0, 0)});
+  small.run(0.4);
+  EXPECT_TRUE(small.position(floats).isApprox(Vector3d(0.04, 0, 1), 1e-12)) << small.position(floats).transpose();
+  EXPECT_LT(small.position(falls).z(), 0.3);
+  // What an accelerometer adds to gravity's.
+  EXPECT_LT(small.world().link_acceleration(floats, 0, Vector3d::Zero()).norm(), 1e-9);
+  EXPECT_NEAR(small.world().link_acceleration(falls, 0, Vector3d::Zero()).z(), -g, 1e-9);
+}
+
+TEST_P(Surfaces, APendulumWithoutGravityStandsAndGoesRound) {
+  SmallWorld small(GetParam().world());
+  const auto body = small.add(boom(false), at(0, 0, 2));
+  small.world().record(body);
+  small.run(1.0);
+  EXPECT_LT(std::abs(small.world().joint_position(body, 0)), 1e-12);
+  EXPECT_LT(small.world().joint_wrench(body, 0).force_W.norm(), 1e-9);
+  EXPECT_LT(small.world().joint_wrench(body, 0).torque_W.norm(), 1e-9);
+}
+
+// A root that is free, whose momentum is kept: half of the weight is missing.
+TEST_P(Surfaces, WhatHasLinksWithAndWithoutGravityFallsByTheWeightThatIsThere) {
+  SmallWorld small(GetParam().world());
+  description::Model model = boom(true);
+  model.joints.erase(model.joints.begin());
+  model.links[0].inertial = model.links[1].inertial;
+  model.links[0].inertial.X_LI.position = {0.3, 0, 0};
+  model.links[1].feels_gravity = false;
+  const auto body = small.add(model, at(0, 0, 5));
+  small.run(0.5);
+  EXPECT_NEAR(small.velocity(body, 1).z(), -0.5 * g * 0.5, 1e-6);
+}
+
+TEST_P(Surfaces, AJointBearsNothingOfALinkWithoutGravity) {
+  SmallWorld small(GetParam().world());
+  description::Model model = boom(true);
+  for (description::Joint& joint : model.joints) joint.type = description::JointType::fixed;
+  model.links[1].feels_gravity = false;
+  const auto body = small.add(model, at(0, 0, 2));
+  small.world().record(body);
+  small.run(0.1);
+  EXPECT_LT(small.world().joint_wrench(body, 1).force_W.norm(), 1e-9);
+  EXPECT_TRUE(small.world().joint_wrench(body, 0).force_W.isApprox(Vector3d(0, 0, 0.2 * g), 1e-9));
+  EXPECT_TRUE(small.world().joint_wrench(body, 0).torque_W.isApprox(Vector3d(0.01, -0.15, 0) * 0.2 * g, 1e-9));
+}
+
 TEST(PlanarSurfaces, CollideOnlyWithThoseOfTheirBitmask) {
   SmallWorld small(planar.world());
   const Vector3d size(0.1, 0.1, 0.1);

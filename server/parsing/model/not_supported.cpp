@@ -23,7 +23,6 @@ constexpr Unsupported unsupported[] = {
     {"world", "state"},
     {"world", "population", "; use <cohort:population>"},
     {"model", "gripper"},
-    {"link", "gravity", "; gravity acts on every link"},
     {"link", "self_collide", "; <self_collide> of the model is for all of its links"},
     {"link", "kinematic"},
     {"link", "velocity_decay"},

@@ -190,6 +190,8 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
     link.collisions.push_back({sdf_collision.Name(), X_LC, *std::move(shape), surface});
   }
   if (reading.is_static) return link;
+  const sdf::ElementPtr gravity = find(sdf_link.Element(), {"gravity"});
+  link.feels_gravity = !is_written(gravity) || gravity->Get<bool>();
   const auto computed = read_inertial_from_density(sdf_link, link, reading.report);
   link.inertial = computed ? *computed : read_written_inertial(sdf_link, reading.report);
   return link;

@@ -143,6 +143,7 @@ class WorldWriter {
     XmlNode& element = add_named(parent, "link", without_scope_marks(link.name));
     add_pose(element, link.X_ML);
     if (link.feels_wind) add_value(element, "enable_wind", true);
+    if (!link.feels_gravity) add_value(element, "gravity", false);
     if (!is_static) {
       XmlNode& inertial = add(element, "inertial");
       add_pose(inertial, link.inertial.X_LI);

@@ -41,6 +41,11 @@ void Assembly::record_outside() {
     pushes.for_each_of(index, [&](const Pushes::Push& push) {
       member.record->add_outside(push.link, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
     });
+    for (const WeightlessLink& link : member.weightless) {
+      const description::Inertial& inertial = member.multibody->mechanism().model().links[link.link].inertial;
+      const Eigen::Vector3d centre_W = member.record->motion().pose_before(link.link) * inertial.X_LI.position;
+      member.record->add_outside(link.link, centre_W, -step * link.mass * gravity, Eigen::Vector3d::Zero());
+    }
     if (!member.fluid) continue;
     for (const FluidBody::Impulse& impulse : member.fluid->impulses())
       member.record->add_outside(impulse.link, impulse.point_W, impulse.impulse_W.linear, impulse.impulse_W.angular);

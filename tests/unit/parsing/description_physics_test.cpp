@@ -63,6 +63,19 @@ TEST_F(Surfaces, HaveBitmasksOf16BitsAndTheCategoryIsTheOtherIfItIsNotGiven) {
   EXPECT_EQ(bits("<collide_bitmask>3</collide_bitmask><category_bitmask>0x4</category_bitmask>"), std::pair(4, 3));
 }
 
+TEST_F(Surfaces, AreOfLinksThatMayNotFeelGravity) {
+  const auto link = [](const std::string& content) {
+    return "<model name=\"m\"><link name=\"l\">" + content +
+           "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link></model>";
+  };
+  for (const auto& [content, feels_gravity] :
+       {std::pair("", true), std::pair("<gravity>true</gravity>", true), std::pair("<gravity>0</gravity>", false)}) {
+    const World world = read(link(content));
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    EXPECT_EQ(world.models[0].links[0].feels_gravity, feels_gravity) << content;
+  }
+}
+
 TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
   const World world = read(made_of("rubber", "a") + made_of("wood", "b") + made_of("rubber", "c") +
                            static_model_sdf(collision(ball), "d") +

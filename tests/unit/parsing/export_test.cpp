@@ -175,7 +175,7 @@ TEST_F(ExportedWorlds, HaveAllThatSurfacesAndLinksSay) {
       "<contact><collide_bitmask>0x0F</collide_bitmask><category_bitmask>6</category_bitmask></contact>"
       "</surface>";
   const World world = read(
-      "<model name=\"odd\"><pose>0 0 0.3 0.1 0.2 0</pose><link name=\"l\">"
+      "<model name=\"odd\"><pose>0 0 0.3 0.1 0.2 0</pose><link name=\"l\"><gravity>false</gravity>"
       "<inertial><mass>1.3</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>"
       "<collision name=\"c\"><geometry><sphere><radius>0.1</radius></sphere></geometry>" +
       surface + "</collision></link></model>" + static_model_sdf(collision("<plane/>"), "ground"));

@@ -15,14 +15,15 @@
 /// C a collision, J a joint, S a sensor. A member `X_AB` is the pose of frame B in frame A.
 namespace cohort::description {
 
-/// Of two surfaces that touch, unless the world has a MaterialPair for them: the smaller friction, the larger
-/// restitution and the larger rolling resistance.
+/// Of two surfaces that touch: the smaller friction, the larger restitution and the larger rolling resistance, unless
+/// the world has a MaterialPair for them; the larger spinning resistance.
 struct Surface {
-  double friction = 1.0;            ///< Coulomb coefficient [1]
-  double restitution = 0.0;         ///< share of the normal velocity that comes back [1]
-  double rolling_resistance = 0.0;  ///< torque against rolling for each newton of normal force [m]
-  std::uint32_t material = 0;       ///< index into World::materials
-  bool is_grippable = false;        ///< by a gripper, anywhere
+  double friction = 1.0;             ///< Coulomb coefficient [1]
+  double restitution = 0.0;          ///< share of the normal velocity that comes back [1]
+  double rolling_resistance = 0.0;   ///< torque against rolling for each newton of normal force [m]
+  double spinning_resistance = 0.0;  ///< torque against turning about the normal, for each newton of it [m]
+  std::uint32_t material = 0;        ///< index into World::materials
+  bool is_grippable = false;         ///< by a gripper, anywhere
   std::uint16_t category_bitmask = every_bit;
   std::uint16_t collide_bitmask = every_bit;
 

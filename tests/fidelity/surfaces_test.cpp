@@ -130,6 +130,24 @@ TEST_P(Surfaces, AJointBearsNothingOfALinkWithoutGravity) {
   EXPECT_TRUE(small.world().joint_wrench(body, 0).torque_W.isApprox(Vector3d(0.01, -0.15, 0) * 0.2 * g, 1e-9));
 }
 
+// A ball that spins on the spot: the torque is c m g, and the ground's resistance is the smaller one.
+TEST_P(Surfaces, SpinningResistanceStopsABallThatTurnsOnTheSpot) {
+  SmallWorld small(GetParam().world());
+  Surface surface;
+  surface.spinning_resistance = 0.002;
+  const auto ball = small.add(loose("ball", Sphere{0.1}, solid_sphere(2.0, 0.1), surface), at(0, 0, 0.1));
+  const auto free = small.add(loose("ball", Sphere{0.1}, solid_sphere(2.0, 0.1)), at(1, 0, 0.1));
+  small.run(0.2);
+  for (const auto each : {ball, free}) small.world().set_root_twist(each, {Vector3d(0, 0, 10), Vector3d::Zero()});
+  small.run(1.0);
+  const double moment = 0.4 * 2.0 * 0.1 * 0.1;
+  EXPECT_NEAR(small.world().link_twist(ball, 0).angular_W.z(), 10.0 - 0.002 * 2.0 * g / moment, 0.05);
+  EXPECT_NEAR(small.world().link_twist(free, 0).angular_W.z(), 10.0, 1e-6);
+  small.run(2.0);
+  EXPECT_NEAR(small.world().link_twist(ball, 0).angular_W.z(), 0.0, 1e-6);
+  EXPECT_LT(small.position(ball).head<2>().norm(), 1e-6);
+}
+
 TEST(PlanarSurfaces, CollideOnlyWithThoseOfTheirBitmask) {
   SmallWorld small(planar.world());
   const Vector3d size(0.1, 0.1, 0.1);

@@ -35,7 +35,7 @@ constexpr Unsupported unsupported[] = {
     {"limit", "velocity", "; the velocity of a motor is the <cohort:max_velocity> of its <cohort:velocity_motor>"},
     {"limit", "stiffness", "; joint limits are rigid"},
     {"limit", "dissipation", "; joint limits are rigid"},
-    {"friction", "torsional"},
+    {"torsional", "ode"},
     {"bullet", "friction", "; friction is <friction><ode><mu>"},
     {"bullet", "friction2", "; friction is <friction><ode><mu>"},
     {"bullet", "fdir1", "; friction is the same in every direction"},
@@ -51,9 +51,9 @@ constexpr Unsupported unsupported[] = {
 };
 
 // What is looked into; all else is of no consequence or read elsewhere.
-constexpr std::string_view containers[] = {"link",  "joint",     "axis",    "axis2",    "dynamics",
-                                           "limit", "collision", "surface", "bounce",   "friction",
-                                           "ode",   "bullet",    "contact", "geometry", "mesh"};
+constexpr std::string_view containers[] = {"link",      "joint",   "axis",     "axis2",    "dynamics", "limit",
+                                           "collision", "surface", "bounce",   "friction", "ode",      "bullet",
+                                           "torsional", "contact", "geometry", "mesh"};
 
 bool is_container(std::string_view name) { return std::ranges::find(containers, name) != std::end(containers); }
 

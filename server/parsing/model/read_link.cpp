@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <sdf/Collision.hh>
 #include <sdf/Geometry.hh>
@@ -118,6 +119,21 @@ std::uint16_t read_bitmask(const sdf::ElementPtr& element, std::uint16_t by_defa
   return is_written(element) ? static_cast<std::uint16_t>(element->Get<unsigned int>()) : by_default;
 }
 
+// The torque against spinning for each newton: 3 pi / 16 times the radius of the patch of contact times the coefficient
+// ("Torsional friction", tutorial of Gazebo).
+double read_spinning_resistance(const sdf::ElementPtr& torsional, const SdfReport& report) {
+  const char* const expected = "expected a radius >= 0 m";
+  const double most = std::numeric_limits<double>::max();
+  const double coefficient =
+      read_coefficient(find(torsional, {"coefficient"}), 1.0, most, "expected a coefficient >= 0", report);
+  const double radius = read_coefficient(find(torsional, {"patch_radius"}), 0.0, most, expected, report);
+  read_coefficient(find(torsional, {"surface_radius"}), 0.0, most, expected, report);
+  const sdf::ElementPtr by_patch = find(torsional, {"use_patch_radius"});
+  if (!is_written(by_patch) || by_patch->Get<bool>()) return 3.0 * std::numbers::pi / 16.0 * radius * coefficient;
+  report.warning(by_patch, "a patch that grows with the depth of a contact is not supported; give a <patch_radius>");
+  return 0.0;
+}
+
 Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& reading) {
   const Surface by_default;
   const SdfReport& report = reading.report;
@@ -130,6 +146,7 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   surface.rolling_resistance =
       read_coefficient(find(collision, {"surface", "friction", "bullet", "rolling_friction"}),
                        by_default.rolling_resistance, most, "expected a rolling resistance >= 0 m", report);
+  surface.spinning_resistance = read_spinning_resistance(find(collision, {"surface", "friction", "torsional"}), report);
   surface.material = read_material(collision, reading);
   surface.is_grippable = read_grippable(collision, report);
   const auto contact = find(collision, {"surface", "contact"});

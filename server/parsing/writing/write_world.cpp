@@ -1,6 +1,7 @@
 #include "server/parsing/writing/write_world.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "server/parsing/keys/choices.hpp"
@@ -183,6 +184,12 @@ class WorldWriter {
     XmlNode& friction = add(element, "friction");
     add_value(add(friction, "ode"), "mu", surface.friction);
     add_value(add(friction, "bullet"), "rolling_friction", surface.rolling_resistance);
+    if (surface.spinning_resistance > 0.0) {
+      // Of this radius it is the coefficient, to the last bit.
+      XmlNode& torsional = add(friction, "torsional");
+      add_value(torsional, "coefficient", surface.spinning_resistance);
+      add_value(torsional, "patch_radius", 16.0 / (3.0 * std::numbers::pi));
+    }
     add_value(add(element, "bounce"), "restitution_coefficient", surface.restitution);
     if (surface.collide_bitmask != usual.collide_bitmask || surface.category_bitmask != usual.category_bitmask) {
       XmlNode& contact = add(element, "contact");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/core/state_visitors.hpp"
 #include "server/physics/contact/closed_form_contact.hpp"
 #include "server/physics/contact/same_point.hpp"
 
@@ -93,6 +94,7 @@ void Collision::find_contact(SolidPair& pair) {
     match_points(pair.contact, found, [](const ContactPoint& old, ContactPoint& point) {
       point.impulse = old.impulse;
       point.rolling_impulse = old.rolling_impulse;
+      point.spinning_impulse = old.spinning_impulse;
     });
     pair.contact = found;
     return;
@@ -212,8 +214,7 @@ void Collision::save(SnapshotWriter& writer) const {
     for (const SolidPair& pair : pairs) {
       writer.add(pair.b);
       writer.add(pair.contact.count);
-      for (const ContactPoint& point : pair.contact)
-        ContactPoint::visit_state(point, [&](const double& number) { writer.add(number); });
+      for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateSaver{writer});
       writer.add(pair.general.has_value());
       if (pair.general) pair.general->save(writer);
     }
@@ -233,8 +234,7 @@ void Collision::restore(SnapshotReader& reader) {
       reader.read(pair.contact.count);
       if (pair.b >= pairs_.size() || pair.contact.count < 0 || pair.contact.count > ContactPoints::most)
         throw SnapshotError("the snapshot has a contact of a solid that is not there");
-      for (ContactPoint& point : pair.contact)
-        ContactPoint::visit_state(point, [&](double& number) { reader.read(number); });
+      for (ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateRestorer{reader});
       bool is_general = false;
       reader.read(is_general);
       if (!is_general) continue;

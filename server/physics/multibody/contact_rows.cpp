@@ -80,6 +80,8 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
   } else {
     point.rolling_impulse = {};
   }
+  if (surfaces.spinning_resistance > 0.0)
+    limit_by_load(problem.add_torque_row(a, b, point.normal_W, &point.spinning_impulse), surfaces.spinning_resistance);
 }
 
 }  // namespace
@@ -87,7 +89,8 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
 ContactImpulse impulse_of(const ContactPoint& point) {
   const Tangents tangents = tangents_of(point.normal_W);
   return {point.impulse[0] * point.normal_W + point.impulse[1] * tangents.first + point.impulse[2] * tangents.second,
-          point.rolling_impulse[0] * tangents.first + point.rolling_impulse[1] * tangents.second};
+          point.rolling_impulse[0] * tangents.first + point.rolling_impulse[1] * tangents.second +
+              point.spinning_impulse * point.normal_W};
 }
 
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,

@@ -15,7 +15,8 @@ struct ContactImpulse {
 ContactImpulse impulse_of(const ContactPoint& point);
 
 /// Adds the rows of the points between `a`, a body, and `b`: for each along the normal, two along the surface with
-/// friction in a disc, and two against rolling where there is rolling resistance.
+/// friction in a disc, two against rolling where there is rolling resistance, and one against spinning where there is a
+/// resistance to that.
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
                       double step);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "server/description/world.hpp"
@@ -10,7 +11,8 @@ namespace cohort::physics {
 struct SurfacePair {
   double friction = 0.0;
   double restitution = 0.0;
-  double rolling_resistance = 0.0;  ///< [m]
+  double rolling_resistance = 0.0;   ///< [m]
+  double spinning_resistance = 0.0;  ///< [m]
 };
 
 /// Combines surfaces, with the world's pairs of materials before the rule for the rest.
@@ -21,8 +23,7 @@ class SurfacePairs {
 
  private:
   std::size_t materials_;
-  std::vector<SurfacePair> pairs_;  // materials_ x materials_
-  std::vector<char> is_given_;
+  std::vector<std::optional<description::MaterialPair>> pairs_;  // materials_ x materials_
 };
 
 /// Tracks are made of what the first wheel that they stand for is made of or, if they name none, their link: the first

@@ -63,6 +63,22 @@ TEST_F(Surfaces, HaveBitmasksOf16BitsAndTheCategoryIsTheOtherIfItIsNotGiven) {
   EXPECT_EQ(bits("<collide_bitmask>3</collide_bitmask><category_bitmask>0x4</category_bitmask>"), std::pair(4, 3));
 }
 
+std::string torsional(const std::string& content) {
+  return static_model_sdf(
+      collision(ball, "<surface><friction><torsional>" + content + "</torsional></friction></surface>"));
+}
+
+TEST_F(Surfaces, HaveTheSpinningResistanceOfTheirPatchOfContact) {
+  const World world = read(torsional("<coefficient>0.4</coefficient><patch_radius>0.03</patch_radius>"));
+  EXPECT_NEAR(surface_of(world, 0).spinning_resistance, 3.0 * M_PI / 16.0 * 0.03 * 0.4, 1e-15);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_EQ(surface_of(read(torsional("<coefficient>0.4</coefficient>")), 0).spinning_resistance, 0.0);
+  const World by_depth =
+      read(torsional("<use_patch_radius>false</use_patch_radius><surface_radius>0.1</surface_radius>"));
+  EXPECT_EQ(surface_of(by_depth, 0).spinning_resistance, 0.0);
+  EXPECT_NE(texts_of(by_depth.warnings).find("use_patch_radius: a patch that grows"), std::string::npos);
+}
+
 TEST_F(Surfaces, AreOfLinksThatMayNotFeelGravity) {
   const auto link = [](const std::string& content) {
     return "<model name=\"m\"><link name=\"l\">" + content +
@@ -156,6 +172,10 @@ INSTANTIATE_TEST_SUITE_P(
              3, in_collision + "/surface/friction/bullet/rolling_friction", "expected a rolling resistance >= 0 m"},
         Flaw{contact("<collide_bitmask>0xG</collide_bitmask>"), 3, in_collision + "/surface/contact/collide_bitmask",
              "'0xG'"},
+        Flaw{torsional("\n<patch_radius>-1</patch_radius>"), 3,
+             in_collision + "/surface/friction/torsional/patch_radius", "cannot have the value '-1'"},
+        Flaw{torsional("\n<coefficient>-1</coefficient>"), 3, in_collision + "/surface/friction/torsional/coefficient",
+             "cannot have the value '-1'"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},
         Flaw{made_of("<cohort:name>x</cohort:name>"), 3, in_collision + "/cohort:material/cohort:name", "holds a name"},
         Flaw{made_of("a</cohort:material>\n<cohort:material>b"), 4, in_collision + "/cohort:material", "given twice"},

@@ -171,8 +171,8 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
 
 TEST_F(ExportedWorlds, HaveAllThatSurfacesAndLinksSay) {
   const std::string surface =
-      "<surface>"
-      "<contact><collide_bitmask>0x0F</collide_bitmask><category_bitmask>6</category_bitmask></contact>"
+      "<surface><friction><torsional><coefficient>0.37</coefficient><patch_radius>0.013</patch_radius></torsional>"
+      "</friction><contact><collide_bitmask>0x0F</collide_bitmask><category_bitmask>6</category_bitmask></contact>"
       "</surface>";
   const World world = read(
       "<model name=\"odd\"><pose>0 0 0.3 0.1 0.2 0</pose><link name=\"l\"><gravity>false</gravity>"

@@ -16,7 +16,8 @@
 namespace cohort::description {
 
 /// Of two surfaces that touch: the smaller friction, the larger restitution and the larger rolling resistance, unless
-/// the world has a MaterialPair for them; the larger spinning resistance.
+/// the world has a MaterialPair for them; the larger spinning resistance. Of friction that has a direction that of the
+/// surface with the smaller coefficient along it holds, and the smaller coefficient across it.
 struct Surface {
   double friction = 1.0;             ///< Coulomb coefficient [1]
   double restitution = 0.0;          ///< share of the normal velocity that comes back [1]
@@ -24,10 +25,14 @@ struct Surface {
   double spinning_resistance = 0.0;  ///< torque against turning about the normal, for each newton of it [m]
   std::uint32_t material = 0;        ///< index into World::materials
   bool is_grippable = false;         ///< by a gripper, anywhere
+  /// Along which `friction` holds, a unit vector in C; zero: in every direction.
+  Eigen::Vector3d friction_direction = Eigen::Vector3d::Zero();
+  double second_friction = 1.0;  ///< Coulomb coefficient across that direction [1]
   std::uint16_t category_bitmask = every_bit;
   std::uint16_t collide_bitmask = every_bit;
 
   static constexpr std::uint16_t every_bit = 0xFFFF;
+  bool has_direction() const { return !friction_direction.isZero(0.0); }
 };
 
 /// By SDF's rule for bitmasks: one is of a category with which the other collides.

@@ -130,6 +130,55 @@ TEST_P(Surfaces, AJointBearsNothingOfALinkWithoutGravity) {
   EXPECT_TRUE(small.world().joint_wrench(body, 0).torque_W.isApprox(Vector3d(0.01, -0.15, 0) * 0.2 * g, 1e-9));
 }
 
+// Whose x slides and whose y holds, at several headings, and of which one turns as it does so.
+TEST_P(Surfaces, FrictionHasItsCoefficientsAlongAndAcrossItsDirection) {
+  constexpr double along = 0.1, across = 0.4, speed = 1.0;
+  for (const double yaw : {0.0, 0.4, 1.3}) {
+    SmallWorld small(GetParam().world());
+    Surface surface;
+    surface.friction = along;
+    surface.second_friction = across;
+    surface.friction_direction = Vector3d::UnitX();
+    const Vector3d size(0.2, 0.2, 0.04);
+    const auto one = small.add(loose("box", Box{size}, solid_box(1.0, size), surface), at(0, 0, 0.02, yaw));
+    const auto two = small.add(loose("box", Box{size}, solid_box(1.0, size), surface), at(0, 3, 0.02, yaw));
+    small.run(0.2);
+    const Vector3d x(std::cos(yaw), std::sin(yaw), 0), y(-std::sin(yaw), std::cos(yaw), 0);
+    small.world().set_root_twist(one, {Vector3d::Zero(), speed * x});
+    small.world().set_root_twist(two, {Vector3d::Zero(), speed * y});
+    const Vector3d before = small.position(two);
+    small.run(2.0);
+    EXPECT_NEAR(small.position(one).dot(x), speed * speed / (2.0 * along * g), 0.01);
+    EXPECT_NEAR(small.position(one).dot(y), 0.0, 0.01);
+    EXPECT_NEAR((small.position(two) - before).dot(y), speed * speed / (2.0 * across * g), 0.01);
+  }
+}
+
+TEST_P(Surfaces, ABoxOnASlopeStaysOnlyAcrossTheDirectionOfLittleFriction) {
+  constexpr double slope = 0.3;
+  for (const bool is_across : {false, true}) {
+    description::World world = GetParam().world();
+    world.instances[0].X_WM = turned(0, 0, 0, Vector3d::UnitY(), slope);
+    SmallWorld small(std::move(world));
+    Surface surface;
+    surface.friction = 0.1;
+    surface.friction_direction = is_across ? Vector3d::UnitY() : Vector3d::UnitX();
+    const Vector3d size(0.2, 0.2, 0.1);
+    const Eigen::Quaterniond lying(Eigen::AngleAxisd(slope, Vector3d::UnitY()));
+    const auto box =
+        small.add(loose("box", Box{size}, solid_box(1.0, size), surface), {lying * Vector3d(0, 0, 0.05), lying});
+    small.world().record(box);
+    small.run(0.5);
+    const Vector3d before = small.position(box);
+    const Vector3d velocity = small.velocity(box);
+    small.run(1.0);
+    if (is_across)
+      EXPECT_LT((small.position(box) - before).norm(), 0.4e-3);
+    else
+      EXPECT_NEAR((small.velocity(box) - velocity).norm(), g * (std::sin(slope) - 0.1 * std::cos(slope)), 0.01);
+  }
+}
+
 // A ball that spins on the spot: the torque is c m g, and the ground's resistance is the smaller one.
 TEST_P(Surfaces, SpinningResistanceStopsABallThatTurnsOnTheSpot) {
   SmallWorld small(GetParam().world());

@@ -119,6 +119,22 @@ std::uint16_t read_bitmask(const sdf::ElementPtr& element, std::uint16_t by_defa
   return is_written(element) ? static_cast<std::uint16_t>(element->Get<unsigned int>()) : by_default;
 }
 
+// As <ode> or, without it, <bullet> says.
+void read_friction(const sdf::ElementPtr& friction, const SdfReport& report, Surface& surface) {
+  const bool is_bullet = !find(friction, {"ode"}) && find(friction, {"bullet"});
+  const sdf::ElementPtr element = find(friction, {is_bullet ? "bullet" : "ode"});
+  const auto coefficient = [&](const char* name) {
+    return read_coefficient(find(element, {name}), 1.0, std::numeric_limits<double>::max(),
+                            "expected a coefficient >= 0", report);
+  };
+  surface.friction = coefficient(is_bullet ? "friction" : "mu");
+  surface.second_friction = coefficient(is_bullet ? "friction2" : "mu2");
+  const sdf::ElementPtr direction = find(element, {"fdir1"});
+  if (!is_written(direction)) return;
+  const auto unit = written_unit_vector(direction);
+  surface.friction_direction = unit ? *unit : to_eigen(direction->Get<ignition::math::Vector3d>()).normalized();
+}
+
 // The torque against spinning for each newton: 3 pi / 16 times the radius of the patch of contact times the coefficient
 // ("Torsional friction", tutorial of Gazebo).
 double read_spinning_resistance(const sdf::ElementPtr& torsional, const SdfReport& report) {
@@ -139,8 +155,7 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   const SdfReport& report = reading.report;
   const double most = std::numeric_limits<double>::max();
   Surface surface;
-  surface.friction = read_coefficient(find(collision, {"surface", "friction", "ode", "mu"}), by_default.friction, most,
-                                      "expected a coefficient >= 0", report);
+  read_friction(find(collision, {"surface", "friction"}), report, surface);
   surface.restitution = read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}),
                                          by_default.restitution, 1.0, "expected a coefficient from 0 to 1", report);
   surface.rolling_resistance =

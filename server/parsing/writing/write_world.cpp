@@ -182,7 +182,12 @@ class WorldWriter {
   static void write_surface(XmlNode& element, const Surface& surface) {
     const Surface usual;
     XmlNode& friction = add(element, "friction");
-    add_value(add(friction, "ode"), "mu", surface.friction);
+    XmlNode& ode = add(friction, "ode");
+    add_value(ode, "mu", surface.friction);
+    if (surface.has_direction()) {
+      add_value(ode, "mu2", surface.second_friction);
+      add_value(ode, "fdir1", surface.friction_direction);
+    }
     add_value(add(friction, "bullet"), "rolling_friction", surface.rolling_resistance);
     if (surface.spinning_resistance > 0.0) {
       // Of this radius it is the coefficient, to the last bit.

@@ -226,7 +226,18 @@ void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
 
 void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
   if (anchors.moves(pair.b) && anchors.of(pair.b).body < 0) return;
-  const SurfacePair both = surfaces.of(scene.solid(pair.a).surface, scene.solid(pair.b).surface);
+  const geometry::Solid& a = scene.solid(pair.a);
+  const geometry::Solid& b = scene.solid(pair.b);
+  const SurfacePair both = surfaces.of(a.surface, b.surface);
+  switch (both.directed) {
+    case SurfacePair::Directed::neither: pair.contact.friction_direction_W.setZero(); break;
+    case SurfacePair::Directed::by_first:
+      pair.contact.friction_direction_W = a.X_WC.orientation * a.surface.friction_direction;
+      break;
+    case SurfacePair::Directed::by_second:
+      pair.contact.friction_direction_W = b.X_WC.orientation * b.surface.friction_direction;
+      break;
+  }
   physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, step);
 }
 

@@ -59,7 +59,7 @@ void Assembly::record_pair(const SolidPair& pair) const {
   if (a == nullptr && b == nullptr) return;
   if (member_b != Anchors::nobody && !members[member_b].is_finite) return;
   for (const ContactPoint& point : pair.contact) {
-    const ContactImpulse impulse = impulse_of(point);
+    const ContactImpulse impulse = impulse_of(pair.contact, point);
     if (a != nullptr) a->add_outside(a->link_of(pair.a), point.position_W, impulse.linear_W, impulse.angular_W);
     if (b != nullptr) b->add_outside(b->link_of(pair.b), point.position_W, -impulse.linear_W, -impulse.angular_W);
   }

@@ -16,8 +16,18 @@ SurfacePairs::SurfacePairs(const description::World& world)
 namespace {
 
 SurfacePair of_coefficients(const description::Surface& a, const description::Surface& b) {
-  return {std::min(a.friction, b.friction), std::max(a.restitution, b.restitution),
-          std::max(a.rolling_resistance, b.rolling_resistance), std::max(a.spinning_resistance, b.spinning_resistance)};
+  SurfacePair both{std::min(a.friction, b.friction), std::max(a.restitution, b.restitution),
+                   std::max(a.rolling_resistance, b.rolling_resistance),
+                   std::max(a.spinning_resistance, b.spinning_resistance)};
+  if (a.has_direction() || b.has_direction()) {
+    const auto across = [](const description::Surface& s) {
+      return s.has_direction() ? s.second_friction : s.friction;
+    };
+    both.second_friction = std::min(across(a), across(b));
+    const bool by_first = a.has_direction() && (!b.has_direction() || a.friction <= b.friction);
+    both.directed = by_first ? SurfacePair::Directed::by_first : SurfacePair::Directed::by_second;
+  }
+  return both;
 }
 
 }  // namespace
@@ -27,6 +37,7 @@ SurfacePair SurfacePairs::of(const description::Surface& a, const description::S
   if (a.material >= materials_ || b.material >= materials_) return both;  // came later
   if (const auto& pair = pairs_[a.material * materials_ + b.material]) {
     both.friction = pair->friction;
+    both.directed = SurfacePair::Directed::neither;
     both.restitution = pair->restitution;
     both.rolling_resistance = pair->rolling_resistance;
   }

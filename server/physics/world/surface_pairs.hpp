@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,8 @@ struct SurfacePair {
   double restitution = 0.0;
   double rolling_resistance = 0.0;   ///< [m]
   double spinning_resistance = 0.0;  ///< [m]
+  double second_friction = 0.0;      ///< across the direction of friction
+  enum class Directed : std::uint8_t { neither, by_first, by_second } directed = Directed::neither;
 };
 
 /// Combines surfaces, with the world's pairs of materials before the rule for the rest.

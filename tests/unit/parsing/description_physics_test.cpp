@@ -40,11 +40,34 @@ TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
             0.0);
 }
 
-TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByName) {
-  const World world = read(static_model_sdf(
-      collision(ball,
-                "<surface><friction><bullet><friction>0.5</friction><friction2>0.5</friction2><fdir1>1 0 0</fdir1>"
-                "</bullet></friction></surface>")));
+std::string friction(const std::string& content) {
+  return static_model_sdf(collision(ball, "<surface><friction>" + content + "</friction></surface>"));
+}
+
+TEST_F(Surfaces, HaveFrictionAlongAndAcrossADirection) {
+  for (const char* const content : {"<ode><mu>0.3</mu><mu2>0.7</mu2><fdir1>0 2 0</fdir1></ode>",
+                                    "<bullet><friction>0.3</friction><friction2>0.7</friction2><fdir1>0 1 0</fdir1>"
+                                    "</bullet>"}) {
+    const World world = read(friction(content));
+    EXPECT_EQ(surface_of(world, 0).friction, 0.3);
+    EXPECT_EQ(surface_of(world, 0).second_friction, 0.7);
+    EXPECT_EQ(surface_of(world, 0).friction_direction, Eigen::Vector3d::UnitY());
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  }
+  for (const char* const content : {"<ode><mu>0.3</mu><mu2>0.7</mu2></ode>",
+                                    "<bullet><friction>0.3</friction><friction2>0.7</friction2></bullet>"}) {
+    const World world = read(friction(content));
+    EXPECT_FALSE(surface_of(world, 0).has_direction());
+    EXPECT_NE(texts_of(world.warnings).find("without <fdir1> friction is the same"), std::string::npos);
+  }
+}
+
+TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByNameBesideOdes) {
+  const World world =
+      read(static_model_sdf(collision(ball,
+                                      "<surface><friction><ode><mu>0.3</mu></ode><bullet><friction>0.5</"
+                                      "friction><friction2>0.5</friction2><fdir1>1 0 0</fdir1>"
+                                      "</bullet></friction></surface>")));
   const std::string all = texts_of(world.warnings);
   EXPECT_EQ(world.warnings.size(), 3u) << all;
   for (const char* const name : {"bullet/friction: ", "bullet/friction2: ", "bullet/fdir1: "})
@@ -174,6 +197,10 @@ INSTANTIATE_TEST_SUITE_P(
              "'0xG'"},
         Flaw{torsional("\n<patch_radius>-1</patch_radius>"), 3,
              in_collision + "/surface/friction/torsional/patch_radius", "cannot have the value '-1'"},
+        Flaw{friction("<ode>\n<mu2>-1</mu2></ode>"), 3, in_collision + "/surface/friction/ode/mu2",
+             "cannot have the value '-1'"},
+        Flaw{friction("<bullet>\n<fdir1>1 0</fdir1></bullet>"), 3, in_collision + "/surface/friction/bullet/fdir1",
+             "1 0"},
         Flaw{torsional("\n<coefficient>-1</coefficient>"), 3, in_collision + "/surface/friction/torsional/coefficient",
              "cannot have the value '-1'"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},

@@ -17,7 +17,8 @@ namespace cohort::description {
 
 /// Of two surfaces that touch: the smaller friction, the larger restitution and the larger rolling resistance, unless
 /// the world has a MaterialPair for them; the larger spinning resistance. Of friction that has a direction that of the
-/// surface with the smaller coefficient along it holds, and the smaller coefficient across it.
+/// surface with the smaller coefficient along it holds, and the smaller coefficient across it. Springs in series, and
+/// the sum of the dampings.
 struct Surface {
   double friction = 1.0;             ///< Coulomb coefficient [1]
   double restitution = 0.0;          ///< share of the normal velocity that comes back [1]
@@ -27,7 +28,9 @@ struct Surface {
   bool is_grippable = false;         ///< by a gripper, anywhere
   /// Along which `friction` holds, a unit vector in C; zero: in every direction.
   Eigen::Vector3d friction_direction = Eigen::Vector3d::Zero();
-  double second_friction = 1.0;  ///< Coulomb coefficient across that direction [1]
+  double second_friction = 1.0;                                ///< Coulomb coefficient across that direction [1]
+  double stiffness = std::numeric_limits<double>::infinity();  ///< of each point of contact [N/m]
+  double damping = 1.0;                                        ///< beside a stiffness [N s/m]
   std::uint16_t category_bitmask = every_bit;
   std::uint16_t collide_bitmask = every_bit;
 

@@ -179,6 +179,61 @@ TEST_P(Surfaces, ABoxOnASlopeStaysOnlyAcrossTheDirectionOfLittleFriction) {
   }
 }
 
+// Each of four points is a spring.
+TEST_P(Surfaces, ABoxOnSoftGroundSinksAsItsSpringsSay) {
+  const Vector3d size(0.2, 0.2, 0.1);
+  for (const double of_ground : {description::Surface{}.stiffness, 2e4}) {
+    description::World world = GetParam().world();
+    world.models[0].links[0].collisions[0].surface.stiffness = of_ground;
+    SmallWorld small(std::move(world));
+    Surface surface;
+    surface.stiffness = 1e4;
+    surface.damping = 50.0;
+    const auto box = small.add(loose("box", Box{size}, solid_box(2.0, size), surface), at(0, 0, 0.05));
+    small.run(3.0);
+    const double stiffness = 4.0 / (1.0 / 1e4 + 1.0 / of_ground);
+    EXPECT_NEAR(small.position(box).z(), 0.05 - 2.0 * g / stiffness, 1e-6);
+    EXPECT_LT(small.velocity(box).norm(), 1e-6);
+  }
+}
+
+// Its swing on one spring without damping, by which a step takes a part.
+TEST_P(Surfaces, ABallOnASpringSwingsWithItsPeriod) {
+  description::World world = GetParam().world();
+  world.step = std::chrono::microseconds(100);
+  world.models[0].links[0].collisions[0].surface.damping = 0.0;
+  SmallWorld small(std::move(world));
+  Surface surface;
+  surface.stiffness = 2e3;
+  surface.damping = 0.0;
+  constexpr double mass = 2.0, radius = 0.1;
+  const double rest = radius - mass * g / surface.stiffness;
+  const auto ball =
+      small.add(loose("ball", Sphere{radius}, solid_sphere(mass, radius), surface), at(0, 0, rest - 0.005));
+  const double half = M_PI * std::sqrt(mass / surface.stiffness);
+  small.run(0.5 * half);
+  EXPECT_NEAR(small.position(ball).z(), rest, 1e-4);
+  small.run(0.5 * half);
+  EXPECT_NEAR(small.position(ball).z(), rest + 0.005, 2e-4);
+}
+
+// What most models of Gazebo have: 1e6 N/m and little damping, ten to a step of 10 ms.
+TEST_P(Surfaces, BoxesWithTheSpringsOfGazebosModelsStandOnEachOther) {
+  SmallWorld small(GetParam().world());
+  Surface surface;
+  surface.stiffness = 1e6;
+  const Vector3d size(0.2, 0.2, 0.2);
+  std::vector<std::uint32_t> boxes;
+  for (int i = 0; i < 4; ++i)
+    boxes.push_back(small.add(loose("box", Box{size}, solid_box(5.0, size), surface), at(0, 0, 0.1 + 0.2 * i)));
+  small.run(10.0);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    EXPECT_NEAR(small.position(boxes[i]).z(), 0.1 + 0.2 * static_cast<double>(i), 1e-3);
+    EXPECT_LT(small.position(boxes[i]).head<2>().norm(), 1e-3);
+    EXPECT_LT(small.velocity(boxes[i]).norm(), 1e-4);
+  }
+}
+
 // A ball that spins on the spot: the torque is c m g, and the ground's resistance is the smaller one.
 TEST_P(Surfaces, SpinningResistanceStopsABallThatTurnsOnTheSpot) {
   SmallWorld small(GetParam().world());

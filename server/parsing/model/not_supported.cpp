@@ -40,8 +40,14 @@ constexpr Unsupported unsupported[] = {
     {"ode", "slip2"},
     {"bounce", "threshold"},
     {"contact", "collide_without_contact"},
-    {"contact", "ode", "; contacts are rigid"},
-    {"contact", "bullet", "; contacts are rigid"},
+    {"ode", "soft_cfm", "; contacts are soft by <kp> and <kd>"},
+    {"ode", "soft_erp", "; contacts are soft by <kp> and <kd>"},
+    {"ode", "max_vel"},
+    {"ode", "min_depth"},
+    {"bullet", "soft_cfm", "; contacts are soft by <kp> and <kd>"},
+    {"bullet", "soft_erp", "; contacts are soft by <kp> and <kd>"},
+    {"bullet", "split_impulse"},
+    {"bullet", "split_impulse_penetration_threshold"},
     {"surface", "soft_contact"},
     {"mesh", "submesh", "; all of the mesh is read"},
 };
@@ -78,7 +84,7 @@ bool is_second_friction_without_direction(const sdf::ElementPtr& element) {
 
 // What <ode> beside it says instead.
 bool is_bullets_beside_ode(const sdf::ElementPtr& element) {
-  constexpr std::string_view names[] = {"friction", "friction2", "fdir1"};
+  constexpr std::string_view names[] = {"friction", "friction2", "fdir1", "kp", "kd"};
   const sdf::ElementPtr parent = element->GetParent();
   return parent && parent->GetName() == "bullet" && parent->GetParent()->FindElement("ode") &&
          std::ranges::find(names, element->GetName()) != std::end(names) && !has_default_value(element);

@@ -135,6 +135,17 @@ void read_friction(const sdf::ElementPtr& friction, const SdfReport& report, Sur
   surface.friction_direction = unit ? *unit : to_eigen(direction->Get<ignition::math::Vector3d>()).normalized();
 }
 
+// As <ode> or, without it, <bullet> says.
+void read_softness(const sdf::ElementPtr& contact, const SdfReport& report, Surface& surface) {
+  const sdf::ElementPtr element = find(contact, {find(contact, {"ode"}) ? "ode" : "bullet"});
+  const sdf::ElementPtr stiffness = find(element, {"kp"});
+  if (is_written(stiffness)) surface.stiffness = stiffness->Get<double>();
+  if (!(surface.stiffness > 0.0) && !std::isnan(surface.stiffness))
+    report.problem(stiffness, "expected a stiffness > 0 N/m");
+  surface.damping = read_coefficient(find(element, {"kd"}), surface.damping, std::numeric_limits<double>::max(),
+                                     "expected a damping >= 0 N s/m", report);
+}
+
 // The torque against spinning for each newton: 3 pi / 16 times the radius of the patch of contact times the coefficient
 // ("Torsional friction", tutorial of Gazebo).
 double read_spinning_resistance(const sdf::ElementPtr& torsional, const SdfReport& report) {
@@ -165,6 +176,7 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   surface.material = read_material(collision, reading);
   surface.is_grippable = read_grippable(collision, report);
   const auto contact = find(collision, {"surface", "contact"});
+  read_softness(contact, report, surface);
   surface.collide_bitmask = read_bitmask(find(contact, {"collide_bitmask"}), by_default.collide_bitmask);
   surface.category_bitmask = read_bitmask(find(contact, {"category_bitmask"}), surface.collide_bitmask);
   return surface;

@@ -196,8 +196,17 @@ class WorldWriter {
       add_value(torsional, "patch_radius", 16.0 / (3.0 * std::numbers::pi));
     }
     add_value(add(element, "bounce"), "restitution_coefficient", surface.restitution);
-    if (surface.collide_bitmask != usual.collide_bitmask || surface.category_bitmask != usual.category_bitmask) {
-      XmlNode& contact = add(element, "contact");
+    const bool is_soft = std::isfinite(surface.stiffness);
+    const bool has_bitmasks =
+        surface.collide_bitmask != usual.collide_bitmask || surface.category_bitmask != usual.category_bitmask;
+    if (!is_soft && !has_bitmasks) return;
+    XmlNode& contact = add(element, "contact");
+    if (is_soft) {
+      XmlNode& soft = add(contact, "ode");
+      add_value(soft, "kp", surface.stiffness);
+      add_value(soft, "kd", surface.damping);
+    }
+    if (has_bitmasks) {
       add_value(contact, "collide_bitmask", std::to_string(surface.collide_bitmask));
       add_value(contact, "category_bitmask", std::to_string(surface.category_bitmask));
     }

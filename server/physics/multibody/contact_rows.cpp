@@ -54,17 +54,26 @@ void start_friction(ContactPoints& contact, bool on_the_world) {
   }
 }
 
+// A spring with a damper, as in Connection::add_yielding_rows; where there is a gap, it begins when that is closed.
+void soften(Row& push, double gap, const SurfacePair& surfaces, double step) {
+  const double resistance = step * surfaces.stiffness + surfaces.damping;
+  push.target = gap > 0.0 ? -gap / step : -surfaces.stiffness * gap / resistance;
+  push.soften(1.0 / (step * resistance));
+}
+
 void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangents, ContactPoint& point,
                     const SurfacePair& surfaces, double step) {
   const int normal = problem.row_count();
   Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, point.impulse.data());
   push.target = separating_velocity(point.gap, step);
   push.set_limits(0.0, unlimited);
+  bool bounces = false;
   if (surfaces.restitution > 0.0) {
     const double approach = -problem.velocity_before(push, a, b);
-    if (approach > least_bounce && approach * step > point.gap)
-      push.target = std::max(push.target, surfaces.restitution * approach);
+    bounces = approach > least_bounce && approach * step > point.gap;
+    if (bounces) push.target = std::max(push.target, surfaces.restitution * approach);
   }
+  if (surfaces.stiffness < SurfacePair::rigid && !bounces) soften(push, point.gap, surfaces, step);
 
   const auto limit_by_load = [&](Row& row, double coefficient) {
     row.limits = Row::Limits::friction;

@@ -27,6 +27,10 @@ SurfacePair of_coefficients(const description::Surface& a, const description::Su
     const bool by_first = a.has_direction() && (!b.has_direction() || a.friction <= b.friction);
     both.directed = by_first ? SurfacePair::Directed::by_first : SurfacePair::Directed::by_second;
   }
+  if (std::min(a.stiffness, b.stiffness) < SurfacePair::rigid) {
+    both.stiffness = 1.0 / (1.0 / a.stiffness + 1.0 / b.stiffness);
+    both.damping = a.damping + b.damping;
+  }
   return both;
 }
 

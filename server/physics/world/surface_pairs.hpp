@@ -10,12 +10,17 @@ namespace cohort::physics {
 
 /// What two surfaces do to each other.
 struct SurfacePair {
+  /// From here on a contact is rigid: it would give less than is ever seen [N/m].
+  static constexpr double rigid = 1e9;
+
   double friction = 0.0;
   double restitution = 0.0;
   double rolling_resistance = 0.0;   ///< [m]
   double spinning_resistance = 0.0;  ///< [m]
   double second_friction = 0.0;      ///< across the direction of friction
   enum class Directed : std::uint8_t { neither, by_first, by_second } directed = Directed::neither;
+  double stiffness = rigid;  ///< of each point [N/m]
+  double damping = 0.0;      ///< of each that is not rigid [N s/m]
 };
 
 /// Combines surfaces, with the world's pairs of materials before the rule for the rest.

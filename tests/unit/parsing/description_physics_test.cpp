@@ -40,6 +40,18 @@ TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
             0.0);
 }
 
+TEST_F(Surfaces, HaveTheStiffnessAndTheDampingOfOdeOrElseOfBullet) {
+  for (const char* const content : {"<ode><kp>2e5</kp><kd>30</kd></ode>", "<bullet><kp>2e5</kp><kd>30</kd></bullet>"}) {
+    const World world = read(contact(content));
+    EXPECT_EQ(surface_of(world, 0).stiffness, 2e5);
+    EXPECT_EQ(surface_of(world, 0).damping, 30.0);
+    EXPECT_EQ(texts_of(world.warnings).find("kp"), std::string::npos) << texts_of(world.warnings);
+  }
+  const World world = read(contact("<ode><max_vel>0.1</max_vel><min_depth>0.001</min_depth><kp>1e6</kp></ode>"));
+  EXPECT_EQ(world.warnings.size(), 2u) << texts_of(world.warnings);
+  EXPECT_EQ(surface_of(world, 0).damping, 1.0);  // SDF's default
+}
+
 std::string friction(const std::string& content) {
   return static_model_sdf(collision(ball, "<surface><friction>" + content + "</friction></surface>"));
 }
@@ -201,6 +213,10 @@ INSTANTIATE_TEST_SUITE_P(
              "cannot have the value '-1'"},
         Flaw{friction("<bullet>\n<fdir1>1 0</fdir1></bullet>"), 3, in_collision + "/surface/friction/bullet/fdir1",
              "1 0"},
+        Flaw{contact("<ode><kp>0</kp></ode>"), 3, in_collision + "/surface/contact/ode/kp",
+             "expected a stiffness > 0 N/m"},
+        Flaw{contact("<ode><kd>-1</kd></ode>"), 3, in_collision + "/surface/contact/ode/kd",
+             "expected a damping >= 0 N s/m"},
         Flaw{torsional("\n<coefficient>-1</coefficient>"), 3, in_collision + "/surface/friction/torsional/coefficient",
              "cannot have the value '-1'"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},

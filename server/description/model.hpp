@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ namespace cohort::description {
 /// Of two surfaces that touch: the smaller friction, the larger restitution and the larger rolling resistance, unless
 /// the world has a MaterialPair for them; the larger spinning resistance. Of friction that has a direction that of the
 /// surface with the smaller coefficient along it holds, and the smaller coefficient across it. Springs in series, and
-/// the sum of the dampings.
+/// the sum of the dampings. The larger bounce threshold of those that are given.
 struct Surface {
   double friction = 1.0;             ///< Coulomb coefficient [1]
   double restitution = 0.0;          ///< share of the normal velocity that comes back [1]
@@ -31,6 +32,7 @@ struct Surface {
   double second_friction = 1.0;                                ///< Coulomb coefficient across that direction [1]
   double stiffness = std::numeric_limits<double>::infinity();  ///< of each point of contact [N/m]
   double damping = 1.0;                                        ///< beside a stiffness [N s/m]
+  std::optional<double> bounce_threshold{};                    ///< slower than this nothing bounces [m/s]
   std::uint16_t category_bitmask = every_bit;
   std::uint16_t collide_bitmask = every_bit;
 

@@ -252,6 +252,61 @@ TEST_P(Surfaces, SpinningResistanceStopsABallThatTurnsOnTheSpot) {
   EXPECT_LT(small.position(ball).head<2>().norm(), 1e-6);
 }
 
+TEST_P(Surfaces, BounceOnlyAboveTheLargerThreshold) {
+  description::World world = GetParam().world();
+  world.models[0].links[0].collisions[0].surface.bounce_threshold = 0.5;
+  SmallWorld small(std::move(world));
+  const auto ball = [&](double x, double height, std::optional<double> threshold) {
+    Surface surface{1.0, 0.8};
+    surface.bounce_threshold = threshold;
+    return small.add(loose("ball", Sphere{0.05}, solid_sphere(1.0, 0.05), surface), at(x, 0, 0.05 + height));
+  };
+  const auto bounces = ball(0, 0.1, 0.2);    // arrives at 1.4 m/s
+  const auto too_slow = ball(1, 0.01, 0.2);  // at 0.44 m/s
+  const auto kept_down = ball(2, 0.1, 2.0);
+  double highest[] = {0, 0, 0};
+  for (int i = 0; i < 60; ++i) {
+    small.world().step();
+    for (const auto each : {bounces, too_slow, kept_down})
+      highest[each - bounces] = std::max(highest[each - bounces], small.velocity(each).z());
+  }
+  EXPECT_GT(highest[0], 0.8);
+  EXPECT_LT(highest[1], 0.01);
+  EXPECT_LT(highest[2], 0.1);  // it is pushed out of the ground that it fell into
+}
+
+// All of them at once, on a heap.
+TEST_P(Surfaces, GoOnFromASnapshotToTheSameBits) {
+  const auto fill = [](SmallWorld& small) {
+    Surface surface{0.5, 0.3};
+    surface.rolling_resistance = 0.001;
+    surface.spinning_resistance = 0.003;
+    surface.friction_direction = Vector3d::UnitX();
+    surface.second_friction = 0.2;
+    surface.stiffness = 1e5;
+    surface.bounce_threshold = 0.1;
+    for (int i = 0; i < 12; ++i) {
+      surface.collide_bitmask = surface.category_bitmask = static_cast<std::uint16_t>(1 + i % 3);
+      const description::Shape shape =
+          i % 2 == 0 ? description::Shape(Box{{0.1, 0.1, 0.1}}) : description::Shape(Sphere{0.05});
+      description::Model model = loose("thing", shape, solid_sphere(1.0, 0.05), surface);
+      model.links[0].feels_gravity = i != 5;
+      small.add(model, at(0.03 * (i % 2), 0.02 * (i % 3), 0.06 + 0.1 * i, 0.4 * i));
+    }
+    for (std::uint32_t body = 1; body <= 12; ++body)
+      small.world().set_root_twist(body, {Vector3d(0, 0, 3), Vector3d::Zero()});
+  };
+  SmallWorld world(GetParam().world()), other(GetParam().world());
+  fill(world);
+  fill(other);
+  world.run(0.7);
+  restore_from(world.world(), other.world());
+  EXPECT_EQ(hash_of(world.world()), hash_of(other.world()));
+  world.run(0.7);
+  other.run(0.7);
+  EXPECT_EQ(hash_of(world.world()), hash_of(other.world()));
+}
+
 TEST(PlanarSurfaces, CollideOnlyWithThoseOfTheirBitmask) {
   SmallWorld small(planar.world());
   const Vector3d size(0.1, 0.1, 0.1);

@@ -38,7 +38,6 @@ constexpr Unsupported unsupported[] = {
     {"torsional", "ode"},
     {"ode", "slip1"},
     {"ode", "slip2"},
-    {"bounce", "threshold"},
     {"contact", "collide_without_contact"},
     {"ode", "soft_cfm", "; contacts are soft by <kp> and <kd>"},
     {"ode", "soft_erp", "; contacts are soft by <kp> and <kd>"},

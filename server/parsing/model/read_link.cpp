@@ -169,6 +169,9 @@ Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& readi
   read_friction(find(collision, {"surface", "friction"}), report, surface);
   surface.restitution = read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}),
                                          by_default.restitution, 1.0, "expected a coefficient from 0 to 1", report);
+  const sdf::ElementPtr threshold = find(collision, {"surface", "bounce", "threshold"});
+  if (is_written(threshold))
+    surface.bounce_threshold = read_coefficient(threshold, 0.0, most, "expected a velocity >= 0 m/s", report);
   surface.rolling_resistance =
       read_coefficient(find(collision, {"surface", "friction", "bullet", "rolling_friction"}),
                        by_default.rolling_resistance, most, "expected a rolling resistance >= 0 m", report);

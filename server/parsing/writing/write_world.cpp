@@ -195,7 +195,9 @@ class WorldWriter {
       add_value(torsional, "coefficient", surface.spinning_resistance);
       add_value(torsional, "patch_radius", 16.0 / (3.0 * std::numbers::pi));
     }
-    add_value(add(element, "bounce"), "restitution_coefficient", surface.restitution);
+    XmlNode& bounce = add(element, "bounce");
+    add_value(bounce, "restitution_coefficient", surface.restitution);
+    if (surface.bounce_threshold) add_value(bounce, "threshold", *surface.bounce_threshold);
     const bool is_soft = std::isfinite(surface.stiffness);
     const bool has_bitmasks =
         surface.collide_bitmask != usual.collide_bitmask || surface.category_bitmask != usual.category_bitmask;

@@ -70,7 +70,7 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangen
   bool bounces = false;
   if (surfaces.restitution > 0.0) {
     const double approach = -problem.velocity_before(push, a, b);
-    bounces = approach > least_bounce && approach * step > point.gap;
+    bounces = approach > surfaces.bounce_threshold && approach * step > point.gap;
     if (bounces) push.target = std::max(push.target, surfaces.restitution * approach);
   }
   if (surfaces.stiffness < SurfacePair::rigid && !bounces) soften(push, point.gap, surfaces, step);

@@ -7,7 +7,7 @@ namespace cohort::physics {
 
 /// Share of an overlap, of an overshoot or of a gap in a connection that one step takes away.
 inline constexpr double correction_share = 0.2;
-/// Slower than this nothing bounces [m/s]: what rests would never come to rest.
+/// Slower than this nothing bounces whose surface does not say [m/s]: what rests would never come to rest.
 inline constexpr double least_bounce = 0.05;
 /// Further from the origin a body has left the world [m].
 inline constexpr double furthest_from_origin = 1e6;

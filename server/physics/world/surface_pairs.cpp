@@ -31,6 +31,7 @@ SurfacePair of_coefficients(const description::Surface& a, const description::Su
     both.stiffness = 1.0 / (1.0 / a.stiffness + 1.0 / b.stiffness);
     both.damping = a.damping + b.damping;
   }
+  both.bounce_threshold = std::max(a.bounce_threshold, b.bounce_threshold).value_or(least_bounce);
   return both;
 }
 

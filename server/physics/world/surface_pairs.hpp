@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/description/world.hpp"
+#include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
 
@@ -19,8 +20,9 @@ struct SurfacePair {
   double spinning_resistance = 0.0;  ///< [m]
   double second_friction = 0.0;      ///< across the direction of friction
   enum class Directed : std::uint8_t { neither, by_first, by_second } directed = Directed::neither;
-  double stiffness = rigid;  ///< of each point [N/m]
-  double damping = 0.0;      ///< of each that is not rigid [N s/m]
+  double stiffness = rigid;                ///< of each point [N/m]
+  double damping = 0.0;                    ///< of each that is not rigid [N s/m]
+  double bounce_threshold = least_bounce;  ///< [m/s]
 };
 
 /// Combines surfaces, with the world's pairs of materials before the rule for the rest.

@@ -52,6 +52,17 @@ TEST_F(Surfaces, HaveTheStiffnessAndTheDampingOfOdeOrElseOfBullet) {
   EXPECT_EQ(surface_of(world, 0).damping, 1.0);  // SDF's default
 }
 
+std::string bounce(const std::string& content) {
+  return static_model_sdf(collision(ball, "<surface>\n<bounce>" + content + "</bounce></surface>"));
+}
+
+TEST_F(Surfaces, HaveTheLeastVelocityThatBouncesIfTheyGiveIt) {
+  const World world = read(bounce("<threshold>0.3</threshold>"));
+  EXPECT_EQ(surface_of(world, 0).bounce_threshold, 0.3);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_FALSE(surface_of(read(bounce("")), 0).bounce_threshold);
+}
+
 std::string friction(const std::string& content) {
   return static_model_sdf(collision(ball, "<surface><friction>" + content + "</friction></surface>"));
 }
@@ -217,6 +228,8 @@ INSTANTIATE_TEST_SUITE_P(
              "expected a stiffness > 0 N/m"},
         Flaw{contact("<ode><kd>-1</kd></ode>"), 3, in_collision + "/surface/contact/ode/kd",
              "expected a damping >= 0 N s/m"},
+        Flaw{bounce("<threshold>-1</threshold>"), 3, in_collision + "/surface/bounce/threshold",
+             "expected a velocity >= 0 m/s"},
         Flaw{torsional("\n<coefficient>-1</coefficient>"), 3, in_collision + "/surface/friction/torsional/coefficient",
              "cannot have the value '-1'"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},

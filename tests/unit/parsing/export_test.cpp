@@ -173,7 +173,8 @@ TEST_F(ExportedWorlds, HaveAllThatSurfacesAndLinksSay) {
   const std::string surface =
       "<surface><friction><ode><mu>0.31</mu><mu2>0.7</mu2><fdir1>1 2 "
       "-0.3</fdir1></ode><torsional><coefficient>0.37</coefficient><patch_radius>0.013</patch_radius></torsional>"
-      "</friction><contact><collide_bitmask>0x0F</collide_bitmask><category_bitmask>6</category_bitmask>"
+      "</friction><bounce><restitution_coefficient>0.2</restitution_coefficient><threshold>0.07</threshold></"
+      "bounce><contact><collide_bitmask>0x0F</collide_bitmask><category_bitmask>6</category_bitmask>"
       "<ode><kp>30000.1</kp><kd>7.1</kd></ode></contact>"
       "</surface>";
   const World world = read(

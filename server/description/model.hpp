@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,34 @@
 /// C a collision, J a joint, S a sensor. A member `X_AB` is the pose of frame B in frame A.
 namespace cohort::description {
 
-/// Of two surfaces that touch, unless the world has a MaterialPair for them: the smaller friction, the larger
-/// restitution and the larger rolling resistance.
+/// Of two surfaces that touch: the smaller friction, the larger restitution and the larger rolling resistance, unless
+/// the world has a MaterialPair for them; the larger spinning resistance. Of friction that has a direction that of the
+/// surface with the smaller coefficient along it holds, and the smaller coefficient across it. Springs in series, and
+/// the sum of the dampings. The larger bounce threshold of those that are given.
 struct Surface {
-  double friction = 1.0;            ///< Coulomb coefficient [1]
-  double restitution = 0.0;         ///< share of the normal velocity that comes back [1]
-  double rolling_resistance = 0.0;  ///< torque against rolling for each newton of normal force [m]
-  std::uint32_t material = 0;       ///< index into World::materials
-  bool is_grippable = false;        ///< by a gripper, anywhere
+  double friction = 1.0;             ///< Coulomb coefficient [1]
+  double restitution = 0.0;          ///< share of the normal velocity that comes back [1]
+  double rolling_resistance = 0.0;   ///< torque against rolling for each newton of normal force [m]
+  double spinning_resistance = 0.0;  ///< torque against turning about the normal, for each newton of it [m]
+  std::uint32_t material = 0;        ///< index into World::materials
+  bool is_grippable = false;         ///< by a gripper, anywhere
+  /// Along which `friction` holds, a unit vector in C; zero: in every direction.
+  Eigen::Vector3d friction_direction = Eigen::Vector3d::Zero();
+  double second_friction = 1.0;                                ///< Coulomb coefficient across that direction [1]
+  double stiffness = std::numeric_limits<double>::infinity();  ///< of each point of contact [N/m]
+  double damping = 1.0;                                        ///< beside a stiffness [N s/m]
+  std::optional<double> bounce_threshold{};                    ///< slower than this nothing bounces [m/s]
+  std::uint16_t category_bitmask = every_bit;
+  std::uint16_t collide_bitmask = every_bit;
+
+  static constexpr std::uint16_t every_bit = 0xFFFF;
+  bool has_direction() const { return !friction_direction.isZero(0.0); }
 };
+
+/// By SDF's rule for bitmasks: one is of a category with which the other collides.
+inline bool may_collide(const Surface& a, const Surface& b) {
+  return ((a.category_bitmask & b.collide_bitmask) | (b.category_bitmask & a.collide_bitmask)) != 0;
+}
 
 struct Collision {
   std::string name;
@@ -58,6 +78,7 @@ struct Link {
   Eigen::Vector3d color = default_color();  ///< for cameras: that of the first visual; red, green, blue from 0 to 1
   std::vector<Visual> visuals{};            ///< those whose shape can be read
   bool feels_wind = false;                  ///< SDF's enable_wind
+  bool feels_gravity = true;                ///< SDF's gravity
 };
 
 /// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.

@@ -141,6 +141,24 @@ TEST_P(Fluids, ARotorIsDraggedAcrossItsAxis) {
   EXPECT_LT((small.velocity(body) - Vector3d(3 * share, -share, motor_constant * 400 * 400 / 2.0)).norm(), 1e-9);
 }
 
+// The momentum of the whole is kept in flight: what the air does counts to it.
+TEST_P(Fluids, ARotorLiftsABodyWithAJoint) {
+  SmallWorld small(air());
+  Model model = quadcopter();
+  model.links.push_back({"camera", {{0, 0, -0.1}}, solid_box(0.1, Vector3d::Constant(0.04)), {}});
+  description::Joint gimbal;
+  gimbal.name = "gimbal";
+  gimbal.type = description::JointType::revolute;
+  gimbal.child = 1;
+  gimbal.axis.direction = Vector3d::UnitZ();
+  model.joints.push_back(gimbal);
+  const auto body = small.add(model, at(0, 0, 3));
+  for (std::size_t rotor = 0; rotor < 4; ++rotor)
+    small.world().set_rotor_velocity_target(body, rotor, hover * std::sqrt((copter_mass + 0.1) / copter_mass));
+  small.run(2.0);
+  EXPECT_LT((small.position(body) - Vector3d(0, 0, 3)).norm(), 1e-6);
+}
+
 // A link that is welded to the world by the joint above it: what the joint bears is what acts on the link.
 Model anchored() {
   Model model;

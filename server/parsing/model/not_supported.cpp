@@ -23,7 +23,6 @@ constexpr Unsupported unsupported[] = {
     {"world", "state"},
     {"world", "population", "; use <cohort:population>"},
     {"model", "gripper"},
-    {"link", "gravity", "; gravity acts on every link"},
     {"link", "self_collide", "; <self_collide> of the model is for all of its links"},
     {"link", "kinematic"},
     {"link", "velocity_decay"},
@@ -34,27 +33,26 @@ constexpr Unsupported unsupported[] = {
     {"joint", "physics"},
     {"limit", "stiffness", "; joint limits are rigid"},
     {"limit", "dissipation", "; joint limits are rigid"},
-    {"friction", "torsional"},
-    {"bullet", "friction", "; friction is <friction><ode><mu>"},
-    {"bullet", "friction2", "; friction is <friction><ode><mu>"},
-    {"bullet", "fdir1", "; friction is the same in every direction"},
-    {"ode", "fdir1", "; friction is the same in every direction"},
+    {"torsional", "ode"},
     {"ode", "slip1"},
     {"ode", "slip2"},
-    {"bounce", "threshold"},
     {"contact", "collide_without_contact"},
-    {"contact", "collide_bitmask", "; everything collides with everything"},
-    {"contact", "category_bitmask", "; everything collides with everything"},
-    {"contact", "ode", "; contacts are rigid"},
-    {"contact", "bullet", "; contacts are rigid"},
+    {"ode", "soft_cfm", "; contacts are soft by <kp> and <kd>"},
+    {"ode", "soft_erp", "; contacts are soft by <kp> and <kd>"},
+    {"ode", "max_vel"},
+    {"ode", "min_depth"},
+    {"bullet", "soft_cfm", "; contacts are soft by <kp> and <kd>"},
+    {"bullet", "soft_erp", "; contacts are soft by <kp> and <kd>"},
+    {"bullet", "split_impulse"},
+    {"bullet", "split_impulse_penetration_threshold"},
     {"surface", "soft_contact"},
     {"mesh", "submesh", "; all of the mesh is read"},
 };
 
 // What is looked into; all else is of no consequence or read elsewhere.
-constexpr std::string_view containers[] = {"link",  "joint",     "axis",    "axis2",    "dynamics",
-                                           "limit", "collision", "surface", "bounce",   "friction",
-                                           "ode",   "bullet",    "contact", "geometry", "mesh"};
+constexpr std::string_view containers[] = {"link",      "joint",   "axis",     "axis2",    "dynamics", "limit",
+                                           "collision", "surface", "bounce",   "friction", "ode",      "bullet",
+                                           "torsional", "contact", "geometry", "mesh"};
 
 bool is_container(std::string_view name) { return std::ranges::find(containers, name) != std::end(containers); }
 
@@ -72,11 +70,21 @@ bool has_default_value(const sdf::ElementPtr& element) {
   return number ? number == parse_real(by_default) : text == by_default;
 }
 
-// Friction is the same in every direction: a second coefficient matters only where it differs from the first.
-bool is_second_friction(const sdf::ElementPtr& element) {
-  if (element->GetName() != "mu2" || !element->GetParent()) return false;
-  const sdf::ElementPtr first = element->GetParent()->FindElement("mu");
+// Without a direction friction is the same in every one: a second coefficient matters only where it differs from the
+// first.
+bool is_second_friction_without_direction(const sdf::ElementPtr& element) {
+  const bool is_ode = element->GetName() == "mu2";
+  if ((!is_ode && element->GetName() != "friction2") || element->GetParent()->FindElement("fdir1")) return false;
+  const sdf::ElementPtr first = element->GetParent()->FindElement(is_ode ? "mu" : "friction");
   return element->Get<double>() != (first ? first->Get<double>() : 1.0);
+}
+
+// What <ode> beside it says instead.
+bool is_bullets_beside_ode(const sdf::ElementPtr& element) {
+  constexpr std::string_view names[] = {"friction", "friction2", "fdir1", "kp", "kd"};
+  const sdf::ElementPtr parent = element->GetParent();
+  return parent && parent->GetName() == "bullet" && parent->GetParent()->FindElement("ode") &&
+         std::ranges::find(names, element->GetName()) != std::end(names) && !has_default_value(element);
 }
 
 }  // namespace
@@ -87,8 +95,11 @@ void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report
     if (child->GetName() == "sensor" && !is_sensor(child))
       report.warning(child, "a sensor of the type '" + child->Get<std::string>("type") + "' in a <" +
                                 element->GetName() + "> is not supported and is ignored");
-    if (is_second_friction(child))
-      report.warning(child, "<mu2> is not supported and is ignored; friction is the same in every direction");
+    if (is_bullets_beside_ode(child))
+      report.warning(child, "<" + child->GetName() + "> is ignored; what <ode> says holds");
+    else if (is_second_friction_without_direction(child))
+      report.warning(child,
+                     "<" + child->GetName() + "> is ignored; without <fdir1> friction is the same in every direction");
     for (const Unsupported& entry : unsupported)
       if (entry.parent == element->GetName() && entry.element == child->GetName() && !has_default_value(child))
         report.warning(child, "<" + child->GetName() + "> is not supported and is ignored" + entry.remark);

@@ -1,6 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <sdf/Collision.hh>
 #include <sdf/Geometry.hh>
@@ -113,20 +114,74 @@ bool read_grippable(const sdf::ElementPtr& collision, const SdfReport& report) {
   return values && values->flag("grippable");
 }
 
+// Of its 16 bits; SDF passes over those above.
+std::uint16_t read_bitmask(const sdf::ElementPtr& element, std::uint16_t by_default) {
+  return is_written(element) ? static_cast<std::uint16_t>(element->Get<unsigned int>()) : by_default;
+}
+
+// As <ode> or, without it, <bullet> says.
+void read_friction(const sdf::ElementPtr& friction, const SdfReport& report, Surface& surface) {
+  const bool is_bullet = !find(friction, {"ode"}) && find(friction, {"bullet"});
+  const sdf::ElementPtr element = find(friction, {is_bullet ? "bullet" : "ode"});
+  const auto coefficient = [&](const char* name) {
+    return read_coefficient(find(element, {name}), 1.0, std::numeric_limits<double>::max(),
+                            "expected a coefficient >= 0", report);
+  };
+  surface.friction = coefficient(is_bullet ? "friction" : "mu");
+  surface.second_friction = coefficient(is_bullet ? "friction2" : "mu2");
+  const sdf::ElementPtr direction = find(element, {"fdir1"});
+  if (!is_written(direction)) return;
+  const auto unit = written_unit_vector(direction);
+  surface.friction_direction = unit ? *unit : to_eigen(direction->Get<ignition::math::Vector3d>()).normalized();
+}
+
+// As <ode> or, without it, <bullet> says.
+void read_softness(const sdf::ElementPtr& contact, const SdfReport& report, Surface& surface) {
+  const sdf::ElementPtr element = find(contact, {find(contact, {"ode"}) ? "ode" : "bullet"});
+  const sdf::ElementPtr stiffness = find(element, {"kp"});
+  if (is_written(stiffness)) surface.stiffness = stiffness->Get<double>();
+  if (!(surface.stiffness > 0.0) && !std::isnan(surface.stiffness))
+    report.problem(stiffness, "expected a stiffness > 0 N/m");
+  surface.damping = read_coefficient(find(element, {"kd"}), surface.damping, std::numeric_limits<double>::max(),
+                                     "expected a damping >= 0 N s/m", report);
+}
+
+// The torque against spinning for each newton: 3 pi / 16 times the radius of the patch of contact times the coefficient
+// ("Torsional friction", tutorial of Gazebo).
+double read_spinning_resistance(const sdf::ElementPtr& torsional, const SdfReport& report) {
+  const char* const expected = "expected a radius >= 0 m";
+  const double most = std::numeric_limits<double>::max();
+  const double coefficient =
+      read_coefficient(find(torsional, {"coefficient"}), 1.0, most, "expected a coefficient >= 0", report);
+  const double radius = read_coefficient(find(torsional, {"patch_radius"}), 0.0, most, expected, report);
+  read_coefficient(find(torsional, {"surface_radius"}), 0.0, most, expected, report);
+  const sdf::ElementPtr by_patch = find(torsional, {"use_patch_radius"});
+  if (!is_written(by_patch) || by_patch->Get<bool>()) return 3.0 * std::numbers::pi / 16.0 * radius * coefficient;
+  report.warning(by_patch, "a patch that grows with the depth of a contact is not supported; give a <patch_radius>");
+  return 0.0;
+}
+
 Surface read_surface(const sdf::ElementPtr& collision, const ModelReading& reading) {
   const Surface by_default;
   const SdfReport& report = reading.report;
   const double most = std::numeric_limits<double>::max();
   Surface surface;
-  surface.friction = read_coefficient(find(collision, {"surface", "friction", "ode", "mu"}), by_default.friction, most,
-                                      "expected a coefficient >= 0", report);
+  read_friction(find(collision, {"surface", "friction"}), report, surface);
   surface.restitution = read_coefficient(find(collision, {"surface", "bounce", "restitution_coefficient"}),
                                          by_default.restitution, 1.0, "expected a coefficient from 0 to 1", report);
+  const sdf::ElementPtr threshold = find(collision, {"surface", "bounce", "threshold"});
+  if (is_written(threshold))
+    surface.bounce_threshold = read_coefficient(threshold, 0.0, most, "expected a velocity >= 0 m/s", report);
   surface.rolling_resistance =
       read_coefficient(find(collision, {"surface", "friction", "bullet", "rolling_friction"}),
                        by_default.rolling_resistance, most, "expected a rolling resistance >= 0 m", report);
+  surface.spinning_resistance = read_spinning_resistance(find(collision, {"surface", "friction", "torsional"}), report);
   surface.material = read_material(collision, reading);
   surface.is_grippable = read_grippable(collision, report);
+  const auto contact = find(collision, {"surface", "contact"});
+  read_softness(contact, report, surface);
+  surface.collide_bitmask = read_bitmask(find(contact, {"collide_bitmask"}), by_default.collide_bitmask);
+  surface.category_bitmask = read_bitmask(find(contact, {"category_bitmask"}), surface.collide_bitmask);
   return surface;
 }
 
@@ -182,6 +237,8 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
     link.collisions.push_back({sdf_collision.Name(), X_LC, *std::move(shape), surface});
   }
   if (reading.is_static) return link;
+  const sdf::ElementPtr gravity = find(sdf_link.Element(), {"gravity"});
+  link.feels_gravity = !is_written(gravity) || gravity->Get<bool>();
   const auto computed = read_inertial_from_density(sdf_link, link, reading.report);
   link.inertial = computed ? *computed : read_written_inertial(sdf_link, reading.report);
   return link;

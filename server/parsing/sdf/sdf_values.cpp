@@ -28,6 +28,11 @@ bool is_simulated(const std::string& name) {
          name.find(':') == std::string::npos;
 }
 
+bool is_hexadecimal(std::string_view text) {
+  return (text.starts_with("0x") || text.starts_with("0X")) && text.size() > 2 &&
+         text.find_first_not_of("0123456789abcdefABCDEF", 2) == std::string_view::npos;
+}
+
 void check_value(const sdf::ElementPtr& element, const SdfReport& report) {
   const sdf::ParamPtr value = element->GetValue();
   const std::string& type = value->GetTypeName();
@@ -41,6 +46,7 @@ void check_value(const sdf::ElementPtr& element, const SdfReport& report) {
   const std::string text = value->GetAsString();
   const std::vector<std::string_view> parts = words(text);
   for (const std::string_view part : parts) {
+    if (type == "unsigned int" && is_hexadecimal(part)) continue;
     const std::optional<double> number = parse_real(part);
     // A limit may be infinite.
     const bool valid = number && (std::isfinite(*number) || (std::isinf(*number) && count == 1));

@@ -1,6 +1,7 @@
 #include "server/parsing/writing/write_world.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "server/parsing/keys/choices.hpp"
@@ -144,6 +145,7 @@ class WorldWriter {
     XmlNode& element = add_named(parent, "link", without_scope_marks(link.name));
     add_pose(element, link.X_ML);
     if (link.feels_wind) add_value(element, "enable_wind", true);
+    if (!link.feels_gravity) add_value(element, "gravity", false);
     if (!is_static) {
       XmlNode& inertial = add(element, "inertial");
       add_pose(inertial, link.inertial.X_LI);
@@ -163,11 +165,7 @@ class WorldWriter {
       XmlNode& shape = add_named(element, "collision", collision.name);
       add_pose(shape, collision.X_LC);
       std::visit(ShapeWriter{add(shape, "geometry"), folder_}, collision.shape);
-      XmlNode& surface = add(shape, "surface");
-      XmlNode& friction = add(surface, "friction");
-      add_value(add(friction, "ode"), "mu", collision.surface.friction);
-      add_value(add(friction, "bullet"), "rolling_friction", collision.surface.rolling_resistance);
-      add_value(add(surface, "bounce"), "restitution_coefficient", collision.surface.restitution);
+      write_surface(add(shape, "surface"), collision.surface);
       if (collision.surface.is_grippable) add_key(shape, "grippable", true);
       if (collision.surface.material != 0) add_key(shape, "material", world_.materials[collision.surface.material]);
     }
@@ -180,6 +178,41 @@ class WorldWriter {
     write_parts(model.drags);
     for (const Emitter& emitter : model.emitters)
       if (emitter.link == index) write_emitter(element, emitter);
+  }
+
+  static void write_surface(XmlNode& element, const Surface& surface) {
+    const Surface usual;
+    XmlNode& friction = add(element, "friction");
+    XmlNode& ode = add(friction, "ode");
+    add_value(ode, "mu", surface.friction);
+    if (surface.has_direction()) {
+      add_value(ode, "mu2", surface.second_friction);
+      add_value(ode, "fdir1", surface.friction_direction);
+    }
+    add_value(add(friction, "bullet"), "rolling_friction", surface.rolling_resistance);
+    if (surface.spinning_resistance > 0.0) {
+      // Of this radius it is the coefficient, to the last bit.
+      XmlNode& torsional = add(friction, "torsional");
+      add_value(torsional, "coefficient", surface.spinning_resistance);
+      add_value(torsional, "patch_radius", 16.0 / (3.0 * std::numbers::pi));
+    }
+    XmlNode& bounce = add(element, "bounce");
+    add_value(bounce, "restitution_coefficient", surface.restitution);
+    if (surface.bounce_threshold) add_value(bounce, "threshold", *surface.bounce_threshold);
+    const bool is_soft = std::isfinite(surface.stiffness);
+    const bool has_bitmasks =
+        surface.collide_bitmask != usual.collide_bitmask || surface.category_bitmask != usual.category_bitmask;
+    if (!is_soft && !has_bitmasks) return;
+    XmlNode& contact = add(element, "contact");
+    if (is_soft) {
+      XmlNode& soft = add(contact, "ode");
+      add_value(soft, "kp", surface.stiffness);
+      add_value(soft, "kd", surface.damping);
+    }
+    if (has_bitmasks) {
+      add_value(contact, "collide_bitmask", std::to_string(surface.collide_bitmask));
+      add_value(contact, "category_bitmask", std::to_string(surface.category_bitmask));
+    }
   }
 
   static void write_joint(XmlNode& parent, const Joint& joint, const Model& model) {

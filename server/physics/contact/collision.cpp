@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/core/state_visitors.hpp"
 #include "server/physics/contact/closed_form_contact.hpp"
 #include "server/physics/contact/same_point.hpp"
 
@@ -52,7 +53,7 @@ bool Collision::reports(std::uint32_t solid, std::uint32_t other) const {
 }
 
 bool Collision::makes_a_pair(std::uint32_t solid, std::uint32_t other) const {
-  if (!reports(solid, other)) return false;
+  if (!reports(solid, other) || !may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return false;
   if (!scene_.reaches_into(other, region_along(solid, ways_[solid] - ways_[other]))) return false;
   return scene_.solid(other).body != scene_.solid(solid).body || may_touch_(solid, other);
 }
@@ -93,6 +94,7 @@ void Collision::find_contact(SolidPair& pair) {
     match_points(pair.contact, found, [](const ContactPoint& old, ContactPoint& point) {
       point.impulse = old.impulse;
       point.rolling_impulse = old.rolling_impulse;
+      point.spinning_impulse = old.spinning_impulse;
     });
     pair.contact = found;
     return;
@@ -196,6 +198,7 @@ double Collision::free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) 
   if (!((way_W - ways_[solid]).norm() > furthest_unseen_[solid])) return 1.0;  // as foreseen, or not a number
   double share = 1.0;
   scene_.for_each_static_overlap(region_along(solid, way_W), [&](std::uint32_t other) {
+    if (!may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return;
     const auto touches = [&](const SolidPair& pair) { return pair.b == other && pair.contact.count > 0; };
     if (std::ranges::any_of(pairs_[solid], touches)) return;  // the solver knows
     const Touch touch = first_touch(solid, other, way_W);
@@ -211,8 +214,7 @@ void Collision::save(SnapshotWriter& writer) const {
     for (const SolidPair& pair : pairs) {
       writer.add(pair.b);
       writer.add(pair.contact.count);
-      for (const ContactPoint& point : pair.contact)
-        ContactPoint::visit_state(point, [&](const double& number) { writer.add(number); });
+      for (const ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateSaver{writer});
       writer.add(pair.general.has_value());
       if (pair.general) pair.general->save(writer);
     }
@@ -232,8 +234,7 @@ void Collision::restore(SnapshotReader& reader) {
       reader.read(pair.contact.count);
       if (pair.b >= pairs_.size() || pair.contact.count < 0 || pair.contact.count > ContactPoints::most)
         throw SnapshotError("the snapshot has a contact of a solid that is not there");
-      for (ContactPoint& point : pair.contact)
-        ContactPoint::visit_state(point, [&](double& number) { reader.read(number); });
+      for (ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateRestorer{reader});
       bool is_general = false;
       reader.read(is_general);
       if (!is_general) continue;

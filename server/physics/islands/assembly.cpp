@@ -82,6 +82,9 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
   std::size_t shape = 0;
   for (std::size_t link = 0; link < links.size(); ++link) {
     const Mechanism::LinkPlace& place = body.mechanism().link(link);
+    const description::Inertial& inertial = links[link].inertial;
+    if (!links[link].feels_gravity)
+      member.weightless.push_back({link, place.segment, inertial.mass, place.X_SL * inertial.X_LI.position});
     for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
       const std::shared_ptr<const BulletShape>& shape_of_part = shapes[shape++];
       if (!place.collides) continue;
@@ -206,6 +209,10 @@ void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) const {
   pushes.for_each_of(member, [&](const Pushes::Push& push) {
     equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
   });
+  for (const WeightlessLink& link : members[member].weightless) {
+    const Eigen::Vector3d centre_W = members[member].multibody->segment_pose(link.segment) * link.centre_S;
+    equations.push(link.segment, centre_W, -step * link.mass * gravity, Eigen::Vector3d::Zero());
+  }
   if (FluidBody* const fluid = members[member].fluid.get()) fluid->apply(equations, media, step);
 }
 
@@ -220,7 +227,18 @@ void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
 
 void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
   if (anchors.moves(pair.b) && anchors.of(pair.b).body < 0) return;
-  const SurfacePair both = surfaces.of(scene.solid(pair.a).surface, scene.solid(pair.b).surface);
+  const geometry::Solid& a = scene.solid(pair.a);
+  const geometry::Solid& b = scene.solid(pair.b);
+  const SurfacePair both = surfaces.of(a.surface, b.surface);
+  switch (both.directed) {
+    case SurfacePair::Directed::neither: pair.contact.friction_direction_W.setZero(); break;
+    case SurfacePair::Directed::by_first:
+      pair.contact.friction_direction_W = a.X_WC.orientation * a.surface.friction_direction;
+      break;
+    case SurfacePair::Directed::by_second:
+      pair.contact.friction_direction_W = b.X_WC.orientation * b.surface.friction_direction;
+      break;
+  }
   physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, step);
 }
 

@@ -25,6 +25,14 @@ struct Part {
   Pose X_SC;
 };
 
+/// A link that gravity does not act on: it is pushed up by its weight.
+struct WeightlessLink {
+  std::size_t link = 0;
+  int segment = 0;
+  double mass = 0.0;         ///< [kg]
+  Eigen::Vector3d centre_S;  ///< of mass
+};
+
 /// A body that moves.
 struct Member {
   std::uint32_t body = 0;
@@ -38,6 +46,7 @@ struct Member {
   bool is_inside = true;                  ///< of the last step: it is still in the world
   std::unique_ptr<ForceRecord> record{};  ///< null: nobody asked for it
   std::unique_ptr<FluidBody> fluid{};     ///< null: neither air nor water acts on it
+  std::vector<WeightlessLink> weightless{};
 };
 
 /// The bodies of a world that move, and all that couples them to each other and to what stands still: what the rows of

@@ -47,6 +47,11 @@ void Assembly::record_outside() {
     pushes.for_each_of(index, [&](const Pushes::Push& push) {
       member.record->add_outside(push.link, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
     });
+    for (const WeightlessLink& link : member.weightless) {
+      const description::Inertial& inertial = member.multibody->mechanism().model().links[link.link].inertial;
+      const Eigen::Vector3d centre_W = member.record->motion().pose_before(link.link) * inertial.X_LI.position;
+      member.record->add_outside(link.link, centre_W, -step * link.mass * gravity, Eigen::Vector3d::Zero());
+    }
     if (!member.fluid) continue;
     for (const FluidBody::Impulse& impulse : member.fluid->impulses())
       member.record->add_outside(impulse.link, impulse.point_W, impulse.impulse_W.linear, impulse.impulse_W.angular);
@@ -60,7 +65,7 @@ void Assembly::record_pair(const SolidPair& pair) const {
   if (a == nullptr && b == nullptr) return;
   if (member_b != Anchors::nobody && !members[member_b].is_finite) return;
   for (const ContactPoint& point : pair.contact) {
-    const ContactImpulse impulse = impulse_of(point);
+    const ContactImpulse impulse = impulse_of(pair.contact, point);
     if (a != nullptr) a->add_outside(a->link_of(pair.a), point.position_W, impulse.linear_W, impulse.angular_W);
     if (b != nullptr) b->add_outside(b->link_of(pair.b), point.position_W, -impulse.linear_W, -impulse.angular_W);
   }

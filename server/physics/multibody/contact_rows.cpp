@@ -11,9 +11,19 @@ namespace {
 struct Tangents {
   Eigen::Vector3d first;
   Eigen::Vector3d second;
+  bool is_directed = false;
 };
 
-Tangents tangents_of(const Eigen::Vector3d& normal) {
+// A direction that stands on the surface, up to this, is none [rad].
+constexpr double upright = 1e-3;
+
+Tangents tangents_of(const ContactPoints& contact, const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d& direction = contact.friction_direction_W;
+  if (!direction.isZero(0.0)) {
+    const Eigen::Vector3d along = direction - normal.dot(direction) * normal;
+    const double length = along.norm();
+    if (length > upright) return {along / length, normal.cross(along / length), true};
+  }
   const Eigen::Vector3d across =
       std::abs(normal.z()) > 0.7 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d first = (across - normal.dot(across) * normal).normalized();
@@ -32,29 +42,38 @@ void start_friction(ContactPoints& contact, bool on_the_world) {
   double load = 0.0;
   Eigen::Vector3d sum_W = Eigen::Vector3d::Zero();
   for (const ContactPoint& point : contact) {
-    const Tangents tangents = tangents_of(point.normal_W);
+    const Tangents tangents = tangents_of(contact, point.normal_W);
     load += point.impulse[0];
     sum_W += point.impulse[1] * tangents.first + point.impulse[2] * tangents.second;
   }
   for (ContactPoint& point : contact) {
     const double share = on_the_world && load > 0.0 ? point.impulse[0] / load : 0.0;
-    const Tangents tangents = tangents_of(point.normal_W);
+    const Tangents tangents = tangents_of(contact, point.normal_W);
     point.impulse[1] = share * tangents.first.dot(sum_W);
     point.impulse[2] = share * tangents.second.dot(sum_W);
   }
 }
 
-void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, const SurfacePair& surfaces,
-                    double step) {
+// A spring with a damper, as in Connection::add_yielding_rows; where there is a gap, it begins when that is closed.
+void soften(Row& push, double gap, const SurfacePair& surfaces, double step) {
+  const double resistance = step * surfaces.stiffness + surfaces.damping;
+  push.target = gap > 0.0 ? -gap / step : -surfaces.stiffness * gap / resistance;
+  push.soften(1.0 / (step * resistance));
+}
+
+void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangents, ContactPoint& point,
+                    const SurfacePair& surfaces, double step) {
   const int normal = problem.row_count();
   Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, point.impulse.data());
   push.target = separating_velocity(point.gap, step);
   push.set_limits(0.0, unlimited);
+  bool bounces = false;
   if (surfaces.restitution > 0.0) {
     const double approach = -problem.velocity_before(push, a, b);
-    if (approach > least_bounce && approach * step > point.gap)
-      push.target = std::max(push.target, surfaces.restitution * approach);
+    bounces = approach > surfaces.bounce_threshold && approach * step > point.gap;
+    if (bounces) push.target = std::max(push.target, surfaces.restitution * approach);
   }
+  if (surfaces.stiffness < SurfacePair::rigid && !bounces) soften(push, point.gap, surfaces, step);
 
   const auto limit_by_load = [&](Row& row, double coefficient) {
     row.limits = Row::Limits::friction;
@@ -62,12 +81,18 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
     row.load_begin = normal;
     row.load_end = normal + 1;
   };
-  const Tangents tangents = tangents_of(point.normal_W);
-  if (surfaces.friction > 0.0) {
+  const bool is_directed = surfaces.directed != SurfacePair::Directed::neither;
+  const double friction =
+      is_directed ? std::min(surfaces.friction, surfaces.second_friction) : surfaces.friction;  // of a disc
+  if (tangents.is_directed) {
+    limit_by_load(problem.add_force_row(a, b, point.position_W, tangents.first, &point.impulse[1]), surfaces.friction);
+    limit_by_load(problem.add_force_row(a, b, point.position_W, tangents.second, &point.impulse[2]),
+                  surfaces.second_friction);
+  } else if (friction > 0.0) {
     Row& first = problem.add_force_row(a, b, point.position_W, tangents.first, &point.impulse[1]);
-    limit_by_load(first, surfaces.friction);
+    limit_by_load(first, friction);
     Row& second = problem.add_force_row(a, b, point.position_W, tangents.second, &point.impulse[2]);
-    limit_by_load(second, surfaces.friction);
+    limit_by_load(second, friction);
     problem.join_to_cone();
   } else {
     point.impulse[1] = point.impulse[2] = 0.0;
@@ -80,20 +105,24 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, ContactPoint& point, c
   } else {
     point.rolling_impulse = {};
   }
+  if (surfaces.spinning_resistance > 0.0)
+    limit_by_load(problem.add_torque_row(a, b, point.normal_W, &point.spinning_impulse), surfaces.spinning_resistance);
 }
 
 }  // namespace
 
-ContactImpulse impulse_of(const ContactPoint& point) {
-  const Tangents tangents = tangents_of(point.normal_W);
+ContactImpulse impulse_of(const ContactPoints& contact, const ContactPoint& point) {
+  const Tangents tangents = tangents_of(contact, point.normal_W);
   return {point.impulse[0] * point.normal_W + point.impulse[1] * tangents.first + point.impulse[2] * tangents.second,
-          point.rolling_impulse[0] * tangents.first + point.rolling_impulse[1] * tangents.second};
+          point.rolling_impulse[0] * tangents.first + point.rolling_impulse[1] * tangents.second +
+              point.spinning_impulse * point.normal_W};
 }
 
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
                       double step) {
   start_friction(contact, b.body < 0);
-  for (ContactPoint& point : contact) add_point_rows(problem, a, b, point, surfaces, step);
+  for (ContactPoint& point : contact)
+    add_point_rows(problem, a, b, tangents_of(contact, point.normal_W), point, surfaces, step);
 }
 
 }  // namespace cohort::physics

@@ -12,10 +12,12 @@ struct ContactImpulse {
   Eigen::Vector3d linear_W;
   Eigen::Vector3d angular_W;
 };
-ContactImpulse impulse_of(const ContactPoint& point);
+ContactImpulse impulse_of(const ContactPoints& contact, const ContactPoint& point);
 
-/// Adds the rows of the points between `a`, a body, and `b`: for each along the normal, two along the surface with
-/// friction in a disc, and two against rolling where there is rolling resistance.
+/// Adds the rows of the points between `a`, a body, and `b`: for each along the normal, soft if the surfaces are; two
+/// along the surface, with friction in a disc or, if it has a direction, by itself along and across it; two against
+/// rolling and one against spinning, where there is resistance to that. `contact.friction_direction_W` is that of
+/// `surfaces`.
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
                       double step);
 

@@ -38,7 +38,7 @@ class Equations {
             const Eigen::Vector3d& angular_impulse_W);
   /// What such pushes add up to, since `set_up`: their impulse, and its moment about the body's reference.
   const Spatial& pushed() const { return pushed_; }
-  /// Counts an impulse from outside as one of them, of whoever has changed the velocities himself.
+  /// Counts a push among them whose change of the velocities the caller has made.
   void count_push(const Eigen::Vector3d& point_W, const Spatial& impulse_W) {
     pushed_.angular += impulse_W.angular + (point_W - body_->reference()).cross(impulse_W.linear);
     pushed_.linear += impulse_W.linear;

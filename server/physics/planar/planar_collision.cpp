@@ -131,6 +131,7 @@ void PlanarCollision::find_pairs(std::uint32_t index, Memory& memory) {
 }
 
 void PlanarCollision::find_contact(std::uint32_t solid, std::uint32_t other, Memory& memory) {
+  if (!may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return;
   const auto& a = std::get<geometry::Footprint>(outlines_[solid]);
   PlanarPair pair;
   double lowest = a.lowest;

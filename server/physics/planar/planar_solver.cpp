@@ -71,7 +71,7 @@ void PlanarSolver::add_contact(const Anchors::Part& part_a, const Anchors::Part&
   if (surfaces.restitution > 0.0) {
     const double approach = along(rows.normal_W, rows.normal_lever_b, *rows.b.velocity) -
                             along(rows.normal_W, rows.normal_lever_a, *rows.a.velocity) - rows.normal_W.dot(by_joints);
-    if (approach > least_bounce && approach * step > point.gap)
+    if (approach > surfaces.bounce_threshold && approach * step > point.gap)
       target = std::max(target, surfaces.restitution * approach);
   }
   rows.normal_target = target - rows.normal_W.dot(by_joints);

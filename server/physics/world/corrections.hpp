@@ -14,7 +14,7 @@ inline constexpr double most_angular_correction = 5.0;  ///< [rad/s]
 inline double correction(double off, double most, double step) {
   return std::clamp(-correction_share * off / step, -most, most);
 }
-/// Slower than this nothing bounces [m/s]: what rests would never come to rest.
+/// Slower than this nothing bounces whose surface does not say [m/s]: what rests would never come to rest.
 inline constexpr double least_bounce = 0.05;
 /// Further from the origin a body has left the world [m].
 inline constexpr double furthest_from_origin = 1e6;

@@ -172,6 +172,24 @@ TEST_F(Formats, AUrdfRobotHasItsDevicesAndSensorsInGazeboBlocks) {
   EXPECT_EQ(model.grip_rings[0].radius, 0.1);
 }
 
+TEST_F(Formats, AUrdfRobotHasTheSurfacesAndTheGravityOfItsGazeboBlocks) {
+  write("r.urdf",
+        "<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" "
+        "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"1 1 1\"/></geometry></collision>"
+        "</link><gazebo reference=\"a\"><mu1>0.2</mu1><mu2>0.5</mu2><fdir1>1 0 0</fdir1><kp>1e5</kp><kd>10</kd>"
+        "<turnGravityOff>true</turnGravityOff></gazebo></robot>");
+  const World world = read("<include><uri>r.urdf</uri></include>");
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  const Link& link = world.models[0].links[0];
+  EXPECT_FALSE(link.feels_gravity);
+  const Surface& surface = link.collisions[0].surface;
+  EXPECT_EQ(surface.friction, 0.2);
+  EXPECT_EQ(surface.second_friction, 0.5);
+  EXPECT_EQ(surface.friction_direction, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(surface.stiffness, 1e5);
+  EXPECT_EQ(surface.damping, 10.0);
+}
+
 TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
   const World world =
       read_urdf(urdf_link("a") + urdf_link("b") + urdf_link("c") + urdf_joint("j", "continuous", "a", "b") + "\n" +

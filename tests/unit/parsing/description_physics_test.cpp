@@ -21,6 +21,10 @@ const Surface& surface_of(const World& world, std::size_t model) {
   return world.models[model].links[0].collisions[0].surface;
 }
 
+std::string contact(const std::string& content) {
+  return static_model_sdf(collision(ball, "<surface>\n<contact>" + content + "</contact></surface>"));
+}
+
 using Surfaces = Description;
 
 TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
@@ -36,15 +40,102 @@ TEST_F(Surfaces, HaveTheRollingResistanceThatBulletsElementGives) {
             0.0);
 }
 
-TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByName) {
-  const World world = read(static_model_sdf(
-      collision(ball,
-                "<surface><friction><bullet><friction>0.5</friction><friction2>0.5</friction2><fdir1>1 0 0</fdir1>"
-                "</bullet></friction></surface>")));
+TEST_F(Surfaces, HaveTheStiffnessAndTheDampingOfOdeOrElseOfBullet) {
+  for (const char* const content : {"<ode><kp>2e5</kp><kd>30</kd></ode>", "<bullet><kp>2e5</kp><kd>30</kd></bullet>"}) {
+    const World world = read(contact(content));
+    EXPECT_EQ(surface_of(world, 0).stiffness, 2e5);
+    EXPECT_EQ(surface_of(world, 0).damping, 30.0);
+    EXPECT_EQ(texts_of(world.warnings).find("kp"), std::string::npos) << texts_of(world.warnings);
+  }
+  const World world = read(contact("<ode><max_vel>0.1</max_vel><min_depth>0.001</min_depth><kp>1e6</kp></ode>"));
+  EXPECT_EQ(world.warnings.size(), 2u) << texts_of(world.warnings);
+  EXPECT_EQ(surface_of(world, 0).damping, 1.0);  // SDF's default
+}
+
+std::string bounce(const std::string& content) {
+  return static_model_sdf(collision(ball, "<surface>\n<bounce>" + content + "</bounce></surface>"));
+}
+
+TEST_F(Surfaces, HaveTheLeastVelocityThatBouncesIfTheyGiveIt) {
+  const World world = read(bounce("<threshold>0.3</threshold>"));
+  EXPECT_EQ(surface_of(world, 0).bounce_threshold, 0.3);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_FALSE(surface_of(read(bounce("")), 0).bounce_threshold);
+}
+
+std::string friction(const std::string& content) {
+  return static_model_sdf(collision(ball, "<surface><friction>" + content + "</friction></surface>"));
+}
+
+TEST_F(Surfaces, HaveFrictionAlongAndAcrossADirection) {
+  for (const char* const content : {"<ode><mu>0.3</mu><mu2>0.7</mu2><fdir1>0 2 0</fdir1></ode>",
+                                    "<bullet><friction>0.3</friction><friction2>0.7</friction2><fdir1>0 1 0</fdir1>"
+                                    "</bullet>"}) {
+    const World world = read(friction(content));
+    EXPECT_EQ(surface_of(world, 0).friction, 0.3);
+    EXPECT_EQ(surface_of(world, 0).second_friction, 0.7);
+    EXPECT_EQ(surface_of(world, 0).friction_direction, Eigen::Vector3d::UnitY());
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  }
+  for (const char* const content : {"<ode><mu>0.3</mu><mu2>0.7</mu2></ode>",
+                                    "<bullet><friction>0.3</friction><friction2>0.7</friction2></bullet>"}) {
+    const World world = read(friction(content));
+    EXPECT_FALSE(surface_of(world, 0).has_direction());
+    EXPECT_NE(texts_of(world.warnings).find("without <fdir1> friction is the same"), std::string::npos);
+  }
+}
+
+TEST_F(Surfaces, BulletsOwnFrictionIsSaidToBeIgnoredEachByNameBesideOdes) {
+  const World world =
+      read(static_model_sdf(collision(ball,
+                                      "<surface><friction><ode><mu>0.3</mu></ode><bullet><friction>0.5</"
+                                      "friction><friction2>0.5</friction2><fdir1>1 0 0</fdir1>"
+                                      "</bullet></friction></surface>")));
   const std::string all = texts_of(world.warnings);
   EXPECT_EQ(world.warnings.size(), 3u) << all;
   for (const char* const name : {"bullet/friction: ", "bullet/friction2: ", "bullet/fdir1: "})
     EXPECT_NE(all.find(name), std::string::npos) << all;
+}
+
+TEST_F(Surfaces, HaveBitmasksOf16BitsAndTheCategoryIsTheOtherIfItIsNotGiven) {
+  const auto bits = [&](const std::string& content) {
+    const World world = read(contact(content));
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    return std::pair<int, int>(surface_of(world, 0).category_bitmask, surface_of(world, 0).collide_bitmask);
+  };
+  EXPECT_EQ(bits(""), std::pair(0xFFFF, 0xFFFF));
+  EXPECT_EQ(bits("<collide_bitmask>0x0A</collide_bitmask>"), std::pair(10, 10));
+  EXPECT_EQ(bits("<collide_bitmask>0xFFFF0001</collide_bitmask>"), std::pair(1, 1));
+  EXPECT_EQ(bits("<collide_bitmask>3</collide_bitmask><category_bitmask>0x4</category_bitmask>"), std::pair(4, 3));
+}
+
+std::string torsional(const std::string& content) {
+  return static_model_sdf(
+      collision(ball, "<surface><friction><torsional>" + content + "</torsional></friction></surface>"));
+}
+
+TEST_F(Surfaces, HaveTheSpinningResistanceOfTheirPatchOfContact) {
+  const World world = read(torsional("<coefficient>0.4</coefficient><patch_radius>0.03</patch_radius>"));
+  EXPECT_NEAR(surface_of(world, 0).spinning_resistance, 3.0 * M_PI / 16.0 * 0.03 * 0.4, 1e-15);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_EQ(surface_of(read(torsional("<coefficient>0.4</coefficient>")), 0).spinning_resistance, 0.0);
+  const World by_depth =
+      read(torsional("<use_patch_radius>false</use_patch_radius><surface_radius>0.1</surface_radius>"));
+  EXPECT_EQ(surface_of(by_depth, 0).spinning_resistance, 0.0);
+  EXPECT_NE(texts_of(by_depth.warnings).find("use_patch_radius: a patch that grows"), std::string::npos);
+}
+
+TEST_F(Surfaces, AreOfLinksThatMayNotFeelGravity) {
+  const auto link = [](const std::string& content) {
+    return "<model name=\"m\"><link name=\"l\">" + content +
+           "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link></model>";
+  };
+  for (const auto& [content, feels_gravity] :
+       {std::pair("", true), std::pair("<gravity>true</gravity>", true), std::pair("<gravity>0</gravity>", false)}) {
+    const World world = read(link(content));
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    EXPECT_EQ(world.models[0].links[0].feels_gravity, feels_gravity) << content;
+  }
 }
 
 TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
@@ -125,6 +216,22 @@ INSTANTIATE_TEST_SUITE_P(
                  ball,
                  "<surface><friction><bullet>\n<rolling_friction>-1</rolling_friction></bullet></friction></surface>")),
              3, in_collision + "/surface/friction/bullet/rolling_friction", "expected a rolling resistance >= 0 m"},
+        Flaw{contact("<collide_bitmask>0xG</collide_bitmask>"), 3, in_collision + "/surface/contact/collide_bitmask",
+             "'0xG'"},
+        Flaw{torsional("\n<patch_radius>-1</patch_radius>"), 3,
+             in_collision + "/surface/friction/torsional/patch_radius", "cannot have the value '-1'"},
+        Flaw{friction("<ode>\n<mu2>-1</mu2></ode>"), 3, in_collision + "/surface/friction/ode/mu2",
+             "cannot have the value '-1'"},
+        Flaw{friction("<bullet>\n<fdir1>1 0</fdir1></bullet>"), 3, in_collision + "/surface/friction/bullet/fdir1",
+             "1 0"},
+        Flaw{contact("<ode><kp>0</kp></ode>"), 3, in_collision + "/surface/contact/ode/kp",
+             "expected a stiffness > 0 N/m"},
+        Flaw{contact("<ode><kd>-1</kd></ode>"), 3, in_collision + "/surface/contact/ode/kd",
+             "expected a damping >= 0 N s/m"},
+        Flaw{bounce("<threshold>-1</threshold>"), 3, in_collision + "/surface/bounce/threshold",
+             "expected a velocity >= 0 m/s"},
+        Flaw{torsional("\n<coefficient>-1</coefficient>"), 3, in_collision + "/surface/friction/torsional/coefficient",
+             "cannot have the value '-1'"},
         Flaw{made_of(" "), 3, in_collision + "/cohort:material", "expected a name"},
         Flaw{made_of("<cohort:name>x</cohort:name>"), 3, in_collision + "/cohort:material/cohort:name", "holds a name"},
         Flaw{made_of("a</cohort:material>\n<cohort:material>b"), 4, in_collision + "/cohort:material", "given twice"},

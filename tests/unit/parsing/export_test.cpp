@@ -169,6 +169,23 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
   expect_the_same_again(read(content));
 }
 
+TEST_F(ExportedWorlds, HaveAllThatSurfacesAndLinksSay) {
+  const std::string surface =
+      "<surface><friction><ode><mu>0.31</mu><mu2>0.7</mu2><fdir1>1 2 "
+      "-0.3</fdir1></ode><torsional><coefficient>0.37</coefficient><patch_radius>0.013</patch_radius></torsional>"
+      "</friction><bounce><restitution_coefficient>0.2</restitution_coefficient><threshold>0.07</threshold></"
+      "bounce><contact><collide_bitmask>0x0F</collide_bitmask><category_bitmask>6</category_bitmask>"
+      "<ode><kp>30000.1</kp><kd>7.1</kd></ode></contact>"
+      "</surface>";
+  const World world = read(
+      "<model name=\"odd\"><pose>0 0 0.3 0.1 0.2 0</pose><link name=\"l\"><gravity>false</gravity>"
+      "<inertial><mass>1.3</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>"
+      "<collision name=\"c\"><geometry><sphere><radius>0.1</radius></sphere></geometry>" +
+      surface + "</collision></link></model>" + static_model_sdf(collision("<plane/>"), "ground"));
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  expect_the_same_again(world);
+}
+
 TEST_F(ExportedWorlds, HaveTheirColorsTechniquesCamerasAndFilesOfSamples) {
   write("data/s.csv", "distance [m],angle [rad],reading_0 [1],reading_1 [1]\n0.1,0,0.5,2\n0.2,0,0.25,1\n");
   const std::string link = "<cohort:link>a</cohort:link>";

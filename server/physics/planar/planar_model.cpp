@@ -16,9 +16,9 @@ PlanarModel::PlanarModel(const description::Model& model)
   if (!model.fins.empty()) throw std::invalid_argument("fin '" + model.fins[0].name + "' cannot be planar");
   if (!model.drags.empty()) throw std::invalid_argument("drag '" + model.drags[0].name + "' cannot be planar");
   for (const description::Device& device : model.devices) {
-    if (const auto motor = description::motor_limits(device)) {
-      add_motor(*motor, description::name_of(device));
-    } else if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
+    for (const description::MotorLimits& motor : description::motor_limits(device))
+      add_motor(motor, description::name_of(device));
+    if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
       if (drive_ != nullptr) throw std::invalid_argument("more than one treel drive cannot be planar");
       if (mechanism_.link(drive->link).segment != 0)
         throw std::invalid_argument("treel drive '" + drive->name + "' is not on the root link '" +

@@ -7,6 +7,7 @@
 
 #include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
+#include "server/parsing/plugins/gazebo_plugins.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -81,6 +82,14 @@ bool is_second_friction(const sdf::ElementPtr& element) {
   return element->Get<double>() != (first ? first->Get<double>() : 1.0);
 }
 
+// The effort or velocity of a joint's <limit> that a plugin's motor has.
+bool is_limit_of_plugin(const sdf::ElementPtr& element) {
+  if (element->GetName() != "effort" && element->GetName() != "velocity") return false;
+  sdf::ElementPtr joint = element;
+  while (joint && joint->GetName() != "joint") joint = joint->GetParent();
+  return joint && is_named_by_plugin(joint);
+}
+
 }  // namespace
 
 void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report) {
@@ -91,6 +100,9 @@ void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report
                                 element->GetName() + "> is not supported and is ignored");
     if (is_second_friction(child))
       report.warning(child, "<mu2> is not supported and is ignored; friction is the same in every direction");
+    if (child->GetName() == "plugin") warn_of_unknown_plugin(child, report);
+    if (child->GetName() == "sensor") warn_of_unsupported(child, report);
+    if (is_limit_of_plugin(child)) continue;
     for (const Unsupported& entry : unsupported)
       if (entry.parent == element->GetName() && entry.element == child->GetName() && !has_default_value(child))
         report.warning(child, "<" + child->GetName() + "> is not supported and is ignored" + entry.remark);

@@ -19,6 +19,8 @@ class ActuatorOf : public Actuator {
   Mount mount_;
 };
 
+std::unique_ptr<Actuator> make_actuator(const description::AckermannDrive& drive, const Mount& mount);
+std::unique_ptr<Actuator> make_actuator(const description::DifferentialDrive& drive, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::EffortMotor& motor, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::Gripper& gripper, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::LedRing& leds, const Mount& mount);

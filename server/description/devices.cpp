@@ -16,6 +16,16 @@ struct FindReadout {
   }
 };
 
+// Of the wheels alone: the fastest is that on the outside of a turn.
+template <class Drive>
+std::vector<MotorLimits> wheel_motors(const Drive& drive) {
+  const double fastest = (drive.max_linear + 0.5 * drive.wheel_separation * drive.max_angular) / drive.wheel_radius;
+  std::vector<MotorLimits> motors;
+  for (const std::vector<std::size_t>* joints : {&drive.left_joints, &drive.right_joints})
+    for (const std::size_t joint : *joints) motors.push_back({joint, fastest, drive.max_torque, 0.0});
+  return motors;
+}
+
 }  // namespace
 
 Readout* readout_of(Device& device) { return std::visit(FindReadout<Readout>{}, device); }
@@ -25,14 +35,21 @@ const std::string& name_of(const Device& device) {
   return std::visit([](const auto& kind) -> const std::string& { return kind.name; }, device);
 }
 
-std::optional<MotorLimits> motor_limits(const Device& device) {
+std::vector<MotorLimits> motor_limits(const Device& device) {
   if (const auto* motor = std::get_if<VelocityMotor>(&device))
-    return MotorLimits{motor->joint, motor->max_velocity, motor->max_effort, motor->rotor_inertia};
+    return {{motor->joint, motor->max_velocity, motor->max_effort, motor->rotor_inertia}};
   if (const auto* motor = std::get_if<PositionMotor>(&device))
-    return MotorLimits{motor->joint, motor->max_velocity, motor->max_effort, motor->rotor_inertia};
+    return {{motor->joint, motor->max_velocity, motor->max_effort, motor->rotor_inertia}};
   if (const auto* motor = std::get_if<EffortMotor>(&device))
-    return MotorLimits{motor->joint, std::numeric_limits<double>::infinity(), motor->max_effort, motor->rotor_inertia};
-  return std::nullopt;
+    return {{motor->joint, std::numeric_limits<double>::infinity(), motor->max_effort, motor->rotor_inertia}};
+  if (const auto* drive = std::get_if<DifferentialDrive>(&device)) return wheel_motors(*drive);
+  if (const auto* drive = std::get_if<AckermannDrive>(&device)) {
+    std::vector<MotorLimits> motors = wheel_motors(*drive);
+    for (const std::size_t joint : {drive->left_steering_joint, drive->right_steering_joint})
+      motors.push_back({joint, drive->max_steering_velocity, drive->max_steering_torque, 0.0});
+    return motors;
+  }
+  return {};
 }
 
 }  // namespace cohort::description

@@ -64,6 +64,39 @@ struct EffortMotor {
   double rotor_inertia = 0.0;
 };
 
+/// A motor on each wheel of a vehicle that turns by their difference. Commands `NAME/0/linear` [m/s], forward, and
+/// `NAME/0/angular` [rad/s], counter-clockwise. A positive velocity of the joint of a wheel drives forward.
+struct DifferentialDrive {
+  std::string name;
+  std::vector<std::size_t> left_joints{};
+  std::vector<std::size_t> right_joints{};
+  double wheel_separation = 0.0;  ///< between the left wheels and the right ones [m]
+  double wheel_radius = 0.0;      ///< [m]
+  double max_torque = 0.0;        ///< of the motor of each wheel [N m]
+  double max_linear = 0.0;        ///< [m/s]
+  double max_angular = 0.0;       ///< [rad/s]
+};
+
+/// A vehicle that steers two wheels as a car: all of them roll about one centre. Commands as of a DifferentialDrive;
+/// it turns no tighter than its steering lets it.
+struct AckermannDrive {
+  std::string name;
+  std::vector<std::size_t> left_joints{};  ///< of the wheels that are driven
+  std::vector<std::size_t> right_joints{};
+  std::size_t left_steering_joint = 0;  ///< turns a wheel counter-clockwise at a positive position
+  std::size_t right_steering_joint = 0;
+  double wheel_separation = 0.0;       ///< between the left wheels and the right ones [m]
+  double wheel_radius = 0.0;           ///< [m]
+  double max_torque = 0.0;             ///< of the motor of each wheel [N m]
+  double wheel_base = 0.0;             ///< from the rear axle, which does not steer, to the steered wheels [m]
+  double kingpin_width = 0.0;          ///< between the axes of the steering joints [m]
+  double steering_limit = 0.0;         ///< of a wheel in the middle of the two [rad]
+  double max_linear = 0.0;             ///< [m/s]
+  double max_angular = 0.0;            ///< [rad/s]
+  double max_steering_velocity = 0.0;  ///< of each steering joint [rad/s]
+  double max_steering_torque = 0.0;    ///< [N m]
+};
+
 /// Position and velocity of one joint: observations `NAME/0/position` and `NAME/0/velocity`.
 struct JointEncoder {
   std::string name;
@@ -283,25 +316,25 @@ struct UserAction {
 
 /// The register: a new kind is one more here. In the order in which manuals have them, SDF's own ones last.
 using Device =
-    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, Rotor, LedRing, Loudspeaker, JointEncoder,
-                 TreelEncoder, ProximityRing, GroundSensors, LightSensors, Microphones, Accelerometer, Inclinometer,
-                 RangeAndBearing, OmnidirectionalCamera, PanoramicCamera, ClimateSensor, Battery, Gripper, TorqueSensor,
-                 TractionSensor, UserAction, Imu, ForceTorqueSensor, Lidar, ContactSensor, Altimeter, Magnetometer,
-                 LogicalCamera, AirPressureSensor>;
+    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, DifferentialDrive, AckermannDrive, Rotor,
+                 LedRing, Loudspeaker, JointEncoder, TreelEncoder, ProximityRing, GroundSensors, LightSensors,
+                 Microphones, Accelerometer, Inclinometer, RangeAndBearing, OmnidirectionalCamera, PanoramicCamera,
+                 ClimateSensor, Battery, Gripper, TorqueSensor, TractionSensor, UserAction, Imu, ForceTorqueSensor,
+                 Lidar, ContactSensor, Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);
 const Readout* readout_of(const Device& device);
 const std::string& name_of(const Device& device);
 
-/// What every kind of motor on a joint has.
+/// What any motor on a joint has.
 struct MotorLimits {
   std::size_t joint = 0;
   double max_velocity = 0.0;  ///< infinite of a motor that does not limit it
   double max_effort = 0.0;
   double rotor_inertia = 0.0;
 };
-/// Nothing if the device is no motor of a joint.
-std::optional<MotorLimits> motor_limits(const Device& device);
+/// Of all motors on joints that the device is; those of a TreelDrive depend on the fidelity and are not among them.
+std::vector<MotorLimits> motor_limits(const Device& device);
 
 }  // namespace cohort::description

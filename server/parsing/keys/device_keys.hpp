@@ -67,6 +67,62 @@ inline constexpr auto table_of<EffortMotor> = KeyTable{
         "of what turns in the motor, as the joint feels it", unless_default),
 };
 
+template <class Drive>
+constexpr auto left_joint_key = reference("left_joint", &Drive::left_joints, driven_joint, no_value,
+                                          "joint of a wheel on the left that is driven; any number");
+template <class Drive>
+constexpr auto right_joint_key = reference("right_joint", &Drive::right_joints, driven_joint, no_value,
+                                           "the same on the right");
+template <class Drive>
+constexpr auto max_linear_key = key("max_linear", &Drive::max_linear, positive, "m/s", "",
+                                    "greatest velocity, both ways");
+template <class Drive>
+constexpr auto max_angular_key = key("max_angular", &Drive::max_angular, positive, "rad/s", "",
+                                     "greatest velocity of turning, both ways");
+template <class Drive>
+constexpr auto wheel_separation_key = key("wheel_separation", &Drive::wheel_separation, positive, "m", "",
+                                          "between the left wheels and the right ones");
+template <class Drive>
+constexpr auto wheel_radius_key = key("wheel_radius", &Drive::wheel_radius, positive, "m", "", "of each wheel");
+template <class Drive>
+constexpr auto max_torque_key = key("max_torque", &Drive::max_torque, positive, "N m", "",
+                                    "of the motor of each wheel");
+
+template <>
+inline constexpr auto table_of<DifferentialDrive> = KeyTable{
+    actuator("differential_drive", "A motor on each wheel of a vehicle that turns by their difference."),
+    left_joint_key<DifferentialDrive>,
+    right_joint_key<DifferentialDrive>,
+    wheel_separation_key<DifferentialDrive>,
+    wheel_radius_key<DifferentialDrive>,
+    max_torque_key<DifferentialDrive>,
+    max_linear_key<DifferentialDrive>,
+    max_angular_key<DifferentialDrive>,
+};
+
+template <>
+inline constexpr auto table_of<AckermannDrive> = KeyTable{
+    actuator("ackermann_drive", "A vehicle that steers two of its wheels, as a car does."),
+    left_joint_key<AckermannDrive>,
+    right_joint_key<AckermannDrive>,
+    reference("left_steering_joint", &AckermannDrive::left_steering_joint, driven_joint, "",
+              "joint that steers the left wheel, counter-clockwise at a positive position"),
+    reference("right_steering_joint", &AckermannDrive::right_steering_joint, driven_joint, "", "the same on the right"),
+    wheel_separation_key<AckermannDrive>,
+    wheel_radius_key<AckermannDrive>,
+    max_torque_key<AckermannDrive>,
+    key("wheel_base", &AckermannDrive::wheel_base, positive, "m", "",
+        "from the rear axle, which does not steer, to the steered wheels"),
+    key("kingpin_width", &AckermannDrive::kingpin_width, positive, "m", "", "between the axes of the steering joints"),
+    key("steering_limit", &AckermannDrive::steering_limit, positive, "rad", "",
+        "greatest angle of a wheel in the middle of the two, less than a quarter turn"),
+    max_linear_key<AckermannDrive>,
+    max_angular_key<AckermannDrive>,
+    key("max_steering_velocity", &AckermannDrive::max_steering_velocity, positive, "rad/s", "",
+        "of each steering joint"),
+    key("max_steering_torque", &AckermannDrive::max_steering_torque, positive, "N m", "", "the same"),
+};
+
 /// In the order of Rotor::Direction.
 inline constexpr std::string_view rotor_directions[] = {"ccw", "cw"};
 

@@ -7,6 +7,7 @@
 
 #include "server/core/text.hpp"
 #include "server/parsing/model/read_model.hpp"
+#include "server/parsing/plugins/gazebo_plugins.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -100,6 +101,8 @@ void warn_of_unsupported(const sdf::ElementPtr& element, const SdfReport& report
     else if (is_second_friction_without_direction(child))
       report.warning(child,
                      "<" + child->GetName() + "> is ignored; without <fdir1> friction is the same in every direction");
+    if (child->GetName() == "plugin") warn_of_unknown_plugin(child, report);
+    if (child->GetName() == "sensor") warn_of_unsupported(child, report);
     for (const Unsupported& entry : unsupported)
       if (entry.parent == element->GetName() && entry.element == child->GetName() && !has_default_value(child))
         report.warning(child, "<" + child->GetName() + "> is not supported and is ignored" + entry.remark);

@@ -183,6 +183,11 @@ void check(const Battery& battery, const ExtensionValues& values, const SdfRepor
   if (battery.motor_efficiency > 1.0) report.problem(values.where("motor_efficiency"), "expected at most 1");
 }
 
+void check(const AckermannDrive& drive, const ExtensionValues& values, const SdfReport& report) {
+  if (drive.steering_limit >= 0.5 * std::numbers::pi)
+    report.problem(values.where("steering_limit"), "expected less than a quarter turn, pi/2");
+}
+
 void check(const Rotor& rotor, const ExtensionValues& values, const SdfReport& report) {
   if (rotor.min_velocity > 0.0) report.problem(values.where("min_velocity"), "expected at most 0 rad/s");
 }
@@ -259,8 +264,8 @@ void check_color(const ExtensionValues& values, std::string_view key, const SdfR
     report.problem(values.where(key), "expected red, green and blue from 0 to 1");
 }
 
-std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report,
-                                 ShapeFiles& files) {
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const std::vector<Counterpart>& of_plugins,
+                                 const Model& model, const SdfReport& report, ShapeFiles& files) {
   struct Found {
     sdf::ElementPtr element;
     const Extension* extension;
@@ -282,16 +287,21 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const M
   // Commands and observations are named after their device: two devices that command, or two that observe, cannot
   // share a name.
   std::set<std::pair<bool, std::string>> names;
+  const auto add = [&](const ExtensionValues& values, const Extension& extension) {
+    const DeviceKind& kind = kinds.at(extension.name);
+    const bool is_new = (!kind.commands || names.emplace(true, values.name()).second) &&
+                        (!kind.observes || names.emplace(false, values.name()).second);
+    if (!is_new) report.problem(values.element(), "another device of the model has the name '" + values.name() + "'");
+    if (std::optional<Device> device = kind.read(values, references, report)) devices.push_back(*std::move(device));
+  };
   for (const auto& [element, extension, prefix] : found) {
     std::optional<ExtensionValues> values = ExtensionValues::read(element, *extension, report);
     if (!values) continue;
     values->put_in_scope(prefix, *extension);
-    const DeviceKind& kind = kinds.at(extension->name);
-    const bool is_new = (!kind.commands || names.emplace(true, values->name()).second) &&
-                        (!kind.observes || names.emplace(false, values->name()).second);
-    if (!is_new) report.problem(element, "another device of the model has the name '" + values->name() + "'");
-    if (std::optional<Device> device = kind.read(*values, references, report)) devices.push_back(*std::move(device));
+    add(*values, *extension);
   }
+  for (const Counterpart& counterpart : of_plugins)
+    if (counterpart.link.empty()) add(counterpart.values, *counterpart.extension);
   return devices;
 }
 

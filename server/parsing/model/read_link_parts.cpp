@@ -18,18 +18,38 @@ void check_part(const Drag&, const ExtensionValues& values, const SdfReport& rep
     if (values.vector(key).minCoeff() < 0.0) report.problem(values.where(key), "expected three numbers >= 0");
 }
 
+template <class Part>
+Part read_part(const ExtensionValues& values, const SdfReport& report) {
+  Part part;
+  part.name = values.name();
+  read_values<Part>(values, part);
+  check_part(part, values, report);
+  return part;
+}
+
+template <class Part>
+void add_link_part(const Counterpart& counterpart, Model& model, std::vector<Part>& parts, const SdfReport& report) {
+  if (counterpart.extension->name != keys::table_of<Part>.head.name) return;
+  parts.push_back(read_part<Part>(counterpart.values, report));
+  while (model.links[parts.back().link].name != counterpart.link) ++parts.back().link;
+}
+
 }  // namespace
+
+void add_link_parts(const std::vector<Counterpart>& of_plugins, Model& model, const SdfReport& report) {
+  for (const Counterpart& counterpart : of_plugins) {
+    add_link_part(counterpart, model, model.fins, report);
+    add_link_part(counterpart, model, model.drags, report);
+  }
+}
 
 template <class Part>
 std::vector<Part> read_link_parts(const sdf::Link& sdf_link, const ModelReading& reading) {
   std::vector<Part> parts;
   const sdf::ElementPtr link = sdf_link.Element();
   for (sdf::ElementPtr child = link->GetFirstElement(); child; child = child->GetNextElement())
-    if (const auto values = read_as<Part>(child, reading.report)) {
-      parts.emplace_back().name = values->name();
-      read_values<Part>(*values, parts.back());
-      check_part(parts.back(), *values, reading.report);
-    }
+    if (const auto values = read_as<Part>(child, reading.report))
+      parts.push_back(read_part<Part>(*values, reading.report));
   return parts;
 }
 

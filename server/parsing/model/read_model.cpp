@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/parsing/model/not_supported.hpp"
+#include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 
 namespace cohort::parsing {
@@ -201,7 +202,13 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   if (!order_links(sdf_model, model, reading.report)) return model;
   warn_of_loops(sdf_model, model, reading.report);
   model.couplings = read_couplings(sdf_model, model, "", reading);
-  model.devices = read_devices(parts.scopes(), model, reading.report, reading.shape_files);
+  std::vector<Counterpart> of_plugins;
+  std::set<std::string> names;
+  for (const DeviceScope& scope : parts.scopes())
+    for (Counterpart& each : read_model_plugins(scope.model_element, scope.prefix, model, names, reading.report))
+      of_plugins.push_back(std::move(each));
+  add_link_parts(of_plugins, model, reading.report);
+  model.devices = read_devices(parts.scopes(), of_plugins, model, reading.report, reading.shape_files);
   for (Device& sensor : read_sdf_sensors(parts.sensors(), model, reading)) model.devices.push_back(std::move(sensor));
   return model;
 }

@@ -13,6 +13,7 @@
 
 #include "server/description/model.hpp"
 #include "server/parsing/model/shape_files.hpp"
+#include "server/parsing/plugins/plugin.hpp"
 #include "server/parsing/sdf/sdf_report.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
 
@@ -47,6 +48,9 @@ Emitter read_light(const sdf::Light& sdf_light, const ModelReading& reading);
 template <class Part>
 std::vector<Part> read_link_parts(const sdf::Link& sdf_link, const ModelReading& reading);
 
+/// Adds what plugins of a model whose links are read put into its links.
+void add_link_parts(const std::vector<Counterpart>& of_plugins, Model& model, const SdfReport& report);
+
 /// The joints of a model between `links`, in document order. Of a model inside of the one that is read, `scope` is the
 /// prefix of all names in it, such as `arm::`.
 std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Link>& links, const std::string& scope,
@@ -63,9 +67,9 @@ struct DeviceScope {
   std::string prefix;  ///< of all names in it, such as `arm::`
 };
 
-/// The devices of a model whose links and joints are read.
-std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const Model& model, const SdfReport& report,
-                                 ShapeFiles& files);
+/// The devices of a model whose links and joints are read: those of `cohort:` elements, then those of plugins.
+std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const std::vector<Counterpart>& of_plugins,
+                                 const Model& model, const SdfReport& report, ShapeFiles& files);
 
 /// Where one of SDF's own sensors stands.
 struct SensorPlace {

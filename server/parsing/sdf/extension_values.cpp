@@ -68,6 +68,34 @@ std::optional<ExtensionValues> ExtensionValues::read(const sdf::ElementPtr& elem
   return values;
 }
 
+std::optional<ExtensionValues> ExtensionValues::from_foreign(const sdf::ElementPtr& element, const std::string& name,
+                                                             const Extension& extension,
+                                                             const std::vector<ForeignValue>& values,
+                                                             const SdfReport& report) {
+  ExtensionValues read;
+  read.element_ = element;
+  read.name_ = name;
+  read.foreign_ = values;
+  bool valid = true;
+  for (const ExtensionKey& key : extension.keys) {
+    for (const ForeignValue& each : values) {
+      if (each.key != key.name) continue;
+      if (std::optional<Value> value = parse_value(each.text, key)) {
+        read.add(key.name, *std::move(value));
+      } else {
+        report.problem(each.where, why_wrong(each.text, key));
+        valid = false;
+      }
+    }
+    if (read.has(key.name) || key.fallback == no_value) continue;
+    if (key.required())
+      valid = false;
+    else
+      read.add(key.name, *parse_value(key.fallback, key));
+  }
+  return valid ? std::optional(std::move(read)) : std::nullopt;
+}
+
 void ExtensionValues::put_in_scope(const std::string& prefix, const Extension& extension) {
   if (prefix.empty()) return;
   name_ = prefix + name_;
@@ -76,6 +104,9 @@ void ExtensionValues::put_in_scope(const std::string& prefix, const Extension& e
 }
 
 sdf::ElementPtr ExtensionValues::where(std::string_view key, std::size_t place) const {
+  for (const ForeignValue& value : foreign_)
+    if (value.key == key && place-- == 0) return value.where;
+  if (!foreign_.empty()) return element_;
   sdf::ElementPtr child = element_->FindElement(prefixed(key));
   while (child && place-- > 0) child = child->GetNextElement(prefixed(key));
   return child ? child : element_;

@@ -14,6 +14,13 @@
 
 namespace cohort::parsing {
 
+/// What an element of another simulator says of a key of ours.
+struct ForeignValue {
+  std::string_view key;
+  std::string text;
+  sdf::ElementPtr where;  ///< it stands
+};
+
 /// A `cohort:` element that holds all that its table entry asks for. A key that is absent and has no fallback has no
 /// value; an extension without keys has its value under its own name.
 class ExtensionValues : public KeyValues {
@@ -21,6 +28,12 @@ class ExtensionValues : public KeyValues {
   /// Nothing if anything is wrong with the element; the report then has it.
   static std::optional<ExtensionValues> read(const sdf::ElementPtr& element, const Extension& extension,
                                              const SdfReport& report);
+
+  /// The same of an element of another simulator, of which `values` are known. A required key without a value is
+  /// nothing; whoever found no value has reported it.
+  static std::optional<ExtensionValues> from_foreign(const sdf::ElementPtr& element, const std::string& name,
+                                                     const Extension& extension,
+                                                     const std::vector<ForeignValue>& values, const SdfReport& report);
 
   const sdf::ElementPtr& element() const { return element_; }
   /// The attribute `name`.
@@ -41,6 +54,7 @@ class ExtensionValues : public KeyValues {
 
   sdf::ElementPtr element_;
   std::string name_;
+  std::vector<ForeignValue> foreign_;
 };
 
 /// Extensions among the children of `element`, in document order, each with its entry. A `cohort:` child that is none,

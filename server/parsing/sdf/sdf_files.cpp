@@ -14,6 +14,7 @@
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/sdf/sdf_errors.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
+#include "server/parsing/sdf/sdf_values.hpp"
 #include "server/parsing/sdf/urdf_file.hpp"
 #include "server/parsing/sdf/yaml_sdf.hpp"
 
@@ -113,7 +114,7 @@ XmlNode tree_of(const sdf::ElementPtr& element, const XmlNode& parent, const std
   XmlNode node{element->GetName(), source.line, source.file, {}, "", {}};
   for (const sdf::ParamPtr& attribute : element->GetAttributes())
     if (attribute->GetSet()) node.attributes.emplace_back(attribute->GetKey(), attribute->GetAsString());
-  if (element->GetValue() && element->GetValue()->GetSet()) node.text = element->GetValue()->GetAsString();
+  node.text = written_text(element);
   for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
     if (child->GetExplicitlySetInFile()) node.children.push_back(tree_of(child, source, nodes));
   return node;

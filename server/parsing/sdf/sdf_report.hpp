@@ -19,6 +19,8 @@ class SdfReport {
   /// `child` is added to the path of the element, for a child that is not there.
   void problem(const sdf::ElementPtr& element, std::string message, std::string_view child = {}) const;
   void warning(const sdf::ElementPtr& element, std::string message) const;
+  /// Only the first time that it is said of a file.
+  void warning_once(const sdf::ElementPtr& element, const std::string& message) const;
   void problem(Problem problem) const { problems_.push_back(std::move(problem)); }
 
  private:

@@ -98,6 +98,14 @@ bool is_written(const sdf::ElementPtr& element) {
   return element && element->GetValue() && element->GetValue()->GetSet();
 }
 
+std::string written_text(const sdf::ElementPtr& element) {
+  if (!element->GetValue()) return "";
+  bool is_foreign = element->GetName().find(':') != std::string::npos;
+  for (sdf::ElementPtr around = element->GetParent(); around && !is_foreign; around = around->GetParent())
+    is_foreign = around->GetName() == "plugin";
+  return is_foreign || element->GetValue()->GetSet() ? element->GetValue()->GetAsString() : "";
+}
+
 void check_numbers(const sdf::ElementPtr& element, const SdfReport& report) {
   if (element->GetExplicitlySetInFile() && element->GetValue()) check_value(element, report);
   for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <optional>
 #include <sdf/Element.hh>
+#include <string>
 
 #include "server/core/pose.hpp"
 #include "server/parsing/sdf/sdf_report.hpp"
@@ -27,6 +28,10 @@ sdf::ElementPtr find(sdf::ElementPtr element, std::initializer_list<const char*>
 /// Whether the element is there with a value: what is not written has none, even where libsdformat has added the
 /// element.
 bool is_written(const sdf::ElementPtr& element);
+
+/// The value of an element as text, or nothing. Below <plugin>, and where SDF does not know the element, libsdformat
+/// has what is written as the default of the value.
+std::string written_text(const sdf::ElementPtr& element);
 
 /// Checks that every number below `element`, except in what is not simulated, is a number and
 /// nothing else: libsdformat reads "1,5" as 1, "3 m" as 3 and an empty element as its default.

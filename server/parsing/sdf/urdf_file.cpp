@@ -69,10 +69,7 @@ class LineFinder {
     XmlNode node{element->GetName(), source->line, nullptr, {}, "", {}};
     for (const sdf::ParamPtr& attribute : element->GetAttributes())
       if (attribute->GetSet()) node.attributes.emplace_back(attribute->GetKey(), attribute->GetAsString());
-    // What stands in an element that SDF does not know is the default of its value.
-    const bool is_foreign = element->GetName().find(':') != std::string::npos;
-    if (element->GetValue() && (is_foreign || element->GetValue()->GetSet()))
-      node.text = element->GetValue()->GetAsString();
+    node.text = written_text(element);
     for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
       if (child->GetExplicitlySetInFile()) node.children.push_back(tree(child, *source));
     return node;

@@ -16,6 +16,7 @@
 #include "server/description/world.hpp"
 #include "server/parsing/model/not_supported.hpp"
 #include "server/parsing/model/read_model.hpp"
+#include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
@@ -248,6 +249,7 @@ std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
 void WorldReader::read_extensions(const sdf::World& sdf_world) {
   const auto extensions = extensions_in(sdf_world.Element(), report_);
   std::set<std::string_view> given;
+  read_world_plugins(sdf_world.Element(), world_, report_);  // what stands in elements of ours goes before it
   for (const auto& [element, extension] : extensions) {
     if (is_once(*extension) && !given.insert(extension->name).second)
       report_.problem(element, "<" + prefixed(extension->name) + "> is given twice");

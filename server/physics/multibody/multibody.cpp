@@ -32,15 +32,14 @@ void Multibody::build_devices() {
   const description::Model& model = mechanism_->model();
   drives_.resize(model.devices.size());
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    if (const auto motor = description::motor_limits(model.devices[device])) {
+    for (const description::MotorLimits& motor : description::motor_limits(model.devices[device])) {
       const std::string& name = description::name_of(model.devices[device]);
-      if (mechanism_->joint(motor->joint).dofs == 0)
-        throw std::invalid_argument("motor '" + name + "' drives the fixed joint '" + model.joints[motor->joint].name +
+      if (mechanism_->joint(motor.joint).dofs == 0)
+        throw std::invalid_argument("motor '" + name + "' drives the fixed joint '" + model.joints[motor.joint].name +
                                     "'");
-      add_motor(mechanism_->joint(motor->joint).first_dof, motor->max_effort, motor->max_velocity, name);
-    } else if (const auto* drive = std::get_if<description::TreelDrive>(&model.devices[device])) {
-      add_drive(device, *drive);
+      add_motor(mechanism_->joint(motor.joint).first_dof, motor.max_effort, motor.max_velocity, name);
     }
+    if (const auto* drive = std::get_if<description::TreelDrive>(&model.devices[device])) add_drive(device, *drive);
   }
 }
 

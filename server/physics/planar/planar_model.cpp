@@ -19,9 +19,9 @@ PlanarModel::PlanarModel(const description::Model& model)
   if (!mechanism_.followers().empty())
     throw std::invalid_argument("joints that follow others, and screws, cannot be planar");
   for (const description::Device& device : model.devices) {
-    if (const auto motor = description::motor_limits(device)) {
-      add_motor(*motor, description::name_of(device));
-    } else if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
+    for (const description::MotorLimits& motor : description::motor_limits(device))
+      add_motor(motor, description::name_of(device));
+    if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
       if (drive_ != nullptr) throw std::invalid_argument("more than one treel drive cannot be planar");
       if (mechanism_.link(drive->link).segment != 0)
         throw std::invalid_argument("treel drive '" + drive->name + "' is not on the root link '" +

@@ -46,9 +46,9 @@ Battery::Battery(const description::Battery& battery, const Mount& mount)
       energy_(battery.capacity * battery.charge) {
   const std::vector<description::Device>& devices = mount.model().devices;
   for (std::size_t device = 0; device < devices.size(); ++device) {
-    if (const auto motor = description::motor_limits(devices[device]))
-      motor_joints_.push_back(motor->joint);
-    else if (std::holds_alternative<description::TreelDrive>(devices[device]))
+    for (const description::MotorLimits& motor : description::motor_limits(devices[device]))
+      motor_joints_.push_back(motor.joint);
+    if (std::holds_alternative<description::TreelDrive>(devices[device]))
       drives_.push_back(device);
     else if (std::holds_alternative<description::Rotor>(devices[device]))
       rotors_.push_back(device);

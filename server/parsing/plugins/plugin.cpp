@@ -1,0 +1,189 @@
+#include "server/parsing/plugins/plugin.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "server/core/text.hpp"
+#include "server/parsing/sdf/sdf_values.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+// Where a plugin listens and what it publishes: nothing that moves or is measured depends on it.
+constexpr std::string_view of_no_consequence[] = {"ros",
+                                                  "topic",
+                                                  "sub_topic",
+                                                  "odom_topic",
+                                                  "tf_topic",
+                                                  "frame_id",
+                                                  "child_frame_id",
+                                                  "odom_publish_frequency",
+                                                  "update_rate",
+                                                  "updateRate",
+                                                  "robotNamespace",
+                                                  "robot_namespace",
+                                                  "namespace",
+                                                  "commandTopic",
+                                                  "command_topic",
+                                                  "odometryTopic",
+                                                  "odometry_topic",
+                                                  "odometryFrame",
+                                                  "odometry_frame",
+                                                  "robotBaseFrame",
+                                                  "robot_base_frame",
+                                                  "publish_odom",
+                                                  "publish_odom_tf",
+                                                  "publish_wheel_tf",
+                                                  "publishOdom",
+                                                  "publishOdomTF",
+                                                  "publishTf",
+                                                  "publishWheelTF",
+                                                  "publishWheelJointState",
+                                                  "odometrySource",
+                                                  "odometry_source",
+                                                  "num_wheel_pairs",
+                                                  "rosDebugLevel",
+                                                  "alwaysOn",
+                                                  "always_on",
+                                                  "use_actuator_msg",
+                                                  "actuator_number",
+                                                  "actuatorNumber",
+                                                  "motorNumber",
+                                                  "commandSubTopic",
+                                                  "motorSpeedPubTopic",
+                                                  "actuatorTopic",
+                                                  "rotorVelocitySlowdownSim"};
+
+}  // namespace
+
+std::string number_text(double value) {
+  char buffer[32];
+  return {std::begin(buffer), std::to_chars(std::begin(buffer), std::end(buffer), value).ptr};
+}
+
+std::string text_of_parameter(const sdf::ElementPtr& parameter) {
+  return parameter->GetValue() ? std::string(trimmed(parameter->GetValue()->GetAsString())) : std::string();
+}
+
+std::vector<sdf::ElementPtr> Plugin::all(ParameterNames names) {
+  asked_.insert(names.begin(), names.end());
+  std::vector<sdf::ElementPtr> found;
+  for (sdf::ElementPtr child = element_->GetFirstElement(); child; child = child->GetNextElement())
+    if (std::find(names.begin(), names.end(), child->GetName()) != names.end()) found.push_back(child);
+  return found;
+}
+
+sdf::ElementPtr Plugin::first(ParameterNames names) {
+  const std::vector<sdf::ElementPtr> found = all(names);
+  return found.empty() ? nullptr : found.front();
+}
+
+template <class Value>
+std::optional<Value> Plugin::value(ParameterNames names, ExtensionValue kind) {
+  const sdf::ElementPtr parameter = first(names);
+  if (!parameter) return std::nullopt;
+  const ExtensionKey key{"", kind, "", "", ""};
+  const std::string text = text_of_parameter(parameter);
+  if (const auto parsed = parse_value(text, key)) return std::get<Value>(*parsed);
+  report_.problem(parameter, why_wrong(text, key));
+  return std::nullopt;
+}
+
+std::optional<double> Plugin::number(ParameterNames names, ExtensionValue kind) { return value<double>(names, kind); }
+
+std::optional<Eigen::Vector3d> Plugin::vector(ParameterNames names) {
+  return value<Eigen::Vector3d>(names, ExtensionValue::vector);
+}
+
+std::string Plugin::text_or(const std::string& fallback, ParameterNames names) {
+  const sdf::ElementPtr parameter = first(names);
+  return parameter ? text_of_parameter(parameter) : fallback;
+}
+
+void Plugin::warn_of_unread() const {
+  std::string unread;
+  for (sdf::ElementPtr child = element_->GetFirstElement(); child; child = child->GetNextElement()) {
+    const std::string name = "<" + child->GetName() + ">";
+    if (asked_.contains(child->GetName()) || unread.find(name) != std::string::npos ||
+        std::ranges::find(of_no_consequence, child->GetName()) != std::end(of_no_consequence))
+      continue;
+    unread += (unread.empty() ? "" : ", ") + name;
+  }
+  if (!unread.empty()) report_.warning_once(element_, "of this plugin nothing is made of " + unread);
+}
+
+ModelPlugin::Values& ModelPlugin::Values::take(std::string_view key, ParameterNames names,
+                                               const std::string& fallback) {
+  const std::vector<sdf::ElementPtr> found = plugin_.all(names);
+  const auto& of = *std::ranges::find(extension_.keys, key, &ExtensionKey::name);
+  for (const sdf::ElementPtr& parameter : found) {
+    values_.push_back({of.name, text_of_parameter(parameter), parameter});
+    if (!of.repeats) break;
+  }
+  if (!found.empty()) return *this;
+  if (!fallback.empty()) return set(key, fallback);
+  if (of.required()) plugin_.report().problem(plugin_.element(), "missing: " + std::string(of.doc), *names.begin());
+  return *this;
+}
+
+ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, const std::string& text,
+                                              const sdf::ElementPtr& where) {
+  values_.push_back({key, text, where ? where : plugin_.element()});
+  return *this;
+}
+
+ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, double value, const sdf::ElementPtr& where) {
+  return set(key, number_text(value), where);
+}
+
+ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, const Pose& X) {
+  std::string text;
+  for (const double number : X.position) text += number_text(number) + " ";
+  for (const double number : X.orientation.coeffs()) text += number_text(number) + " ";  // x y z w
+  return set(key, text);
+}
+
+void ModelPlugin::Values::finish(std::string name, const std::string& link) {
+  std::replace(name.begin(), name.end(), '/', '_');
+  std::string unique = name;
+  const auto used = [&] { return std::string(extension_.topic) + "/" + plugin_.prefix_ + unique; };
+  for (int i = 1; !plugin_.names_.insert(used()).second; ++i) unique = name + "_" + std::to_string(i);
+  if (auto values = ExtensionValues::from_foreign(plugin_.element(), unique, extension_, values_, plugin_.report())) {
+    values->put_in_scope(plugin_.prefix_, extension_);
+    plugin_.counterparts.push_back({&extension_, *std::move(values), link.empty() ? "" : plugin_.prefix_ + link});
+  }
+}
+
+const Joint* ModelPlugin::joint(const sdf::ElementPtr& parameter) const {
+  const std::string name = text_of_parameter(parameter);
+  std::vector<std::string> names;
+  for (const Joint& each : model_.joints) {
+    if (each.name == prefix_ + name) return &each;
+    names.push_back(each.name);
+  }
+  report().problem(parameter, "the model has no joint '" + name + "'" + suggestion(name, names));
+  return nullptr;
+}
+
+std::vector<std::pair<const Joint*, sdf::ElementPtr>> ModelPlugin::joints(ParameterNames names) {
+  std::vector<std::pair<const Joint*, sdf::ElementPtr>> found;
+  for (const sdf::ElementPtr& parameter : all(names))
+    if (const Joint* const each = joint(parameter)) found.emplace_back(each, parameter);
+  return found;
+}
+
+std::optional<double> ModelPlugin::limit(const Joint& joint, const char* what) const {
+  for (sdf::ElementPtr each = model_element_->GetFirstElement(); each; each = each->GetNextElement()) {
+    if (each->GetName() != "joint" || prefix_ + each->Get<std::string>("name") != joint.name) continue;
+    const sdf::ElementPtr limit = find(each, {"axis", "limit", what});
+    if (!limit || !is_written(limit)) return std::nullopt;
+    const auto value = limit->Get<double>();
+    constexpr double no_limit = 1e16;  // and so is nothing, or less, to many a file
+    return value > 0.0 && value < no_limit ? std::optional(value) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace cohort::parsing

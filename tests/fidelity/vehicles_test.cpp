@@ -1,0 +1,152 @@
+// Vehicles as they were made for Gazebo, with its plugins: they go where their kinematics says.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "server/parsing/world/read_world.hpp"
+#include "server/simulation/simulation.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/sensing_world.hpp"
+
+namespace cohort::test {
+namespace {
+
+using description::Dynamics;
+using description::Fidelity;
+using Eigen::Vector3d;
+
+constexpr const char* ground =
+    "<model name='ground'><static>true</static><link name='link'><collision name='c'><geometry><plane/></geometry>"
+    "</collision></link></model>";
+
+std::string box_inertial(double mass, double inertia) {
+  const std::string i = std::to_string(inertia);
+  return "<inertial><mass>" + std::to_string(mass) + "</mass><inertia><ixx>" + i + "</ixx><iyy>" + i + "</iyy><izz>" +
+         i + "</izz></inertia></inertial>";
+}
+std::string wheel(const std::string& name, double x, double y, double radius) {
+  return "<link name='" + name + "'><pose>" + std::to_string(x) + " " + std::to_string(y) + " " +
+         std::to_string(radius) + " -1.5707963267948966 0 0</pose>" + box_inertial(0.5, 0.002) +
+         "<collision name='c'><geometry><cylinder><radius>" + std::to_string(radius) +
+         "</radius><length>0.02</length></cylinder></geometry></collision></link>";
+}
+// Turned so that a positive velocity drives forward: the z axis of a wheel's link points to the left.
+std::string axle(const std::string& name, const std::string& parent, const std::string& child) {
+  return "<joint name='" + name + "' type='revolute'><parent>" + parent + "</parent><child>" + child +
+         "</child><axis><xyz>0 0 1</xyz></axis></joint>";
+}
+std::string ball(const std::string& name, double x, double radius) {
+  return "<link name='" + name + "'><pose>" + std::to_string(x) + " 0 " + std::to_string(radius) + " 0 0 0</pose>" +
+         box_inertial(0.2, 0.001) + "<collision name='c'><geometry><sphere><radius>" + std::to_string(radius) +
+         "</radius></sphere></geometry><surface><friction><ode><mu>0</mu></ode></friction></surface></collision></link>"
+         "<joint name='" +
+         name + "_joint' type='ball'><parent>chassis</parent><child>" + name + "</child></joint>";
+}
+std::string chassis(const std::string& size, const std::string& pose) {
+  return "<link name='chassis'><pose>" + pose + "</pose>" + box_inertial(8.0, 0.2) +
+         "<collision name='c'><geometry><box><size>" + size + "</size></box></geometry></collision></link>";
+}
+
+std::string two_wheels(const std::string& plugin) {
+  return "<model name='robot'>" + chassis("0.4 0.24 0.1", "0 0 0.12 0 0 0") + wheel("left", 0, 0.16, 0.1) +
+         wheel("right", 0, -0.16, 0.1) + ball("front", 0.15, 0.05) + ball("back", -0.15, 0.05) +
+         axle("left_joint", "chassis", "left") + axle("right_joint", "chassis", "right") + plugin + "</model>";
+}
+constexpr const char* diff_drive =
+    "<plugin filename='gz-sim-diff-drive-system' name='gz::sim::systems::DiffDrive'><left_joint>left_joint</left_joint>"
+    "<right_joint>right_joint</right_joint><wheel_separation>0.32</wheel_separation><wheel_radius>0.1</wheel_radius>"
+    "<topic>cmd_vel</topic></plugin>";
+
+std::string steered(const std::string& side, double y) {
+  return "<link name='" + side + "_knuckle'><pose>0.5 " + std::to_string(y) + " 0.1 0 0 0</pose>" +
+         box_inertial(0.3, 0.002) + "</link>" + wheel("front_" + side, 0.5, y, 0.1) + "<joint name='" + side +
+         "_steering' type='revolute'><parent>chassis</parent><child>" + side +
+         "_knuckle</child><axis><xyz>0 0 1</xyz><limit><lower>-0.9</lower><upper>0.9</upper></limit></axis></joint>" +
+         axle("front_" + side + "_joint", side + "_knuckle", "front_" + side);
+}
+const std::string car =
+    "<model name='robot'>" + chassis("0.7 0.2 0.1", "0.25 0 0.2 0 0 0") + wheel("left", 0, 0.2, 0.1) +
+    wheel("right", 0, -0.2, 0.1) + axle("left_joint", "chassis", "left") + axle("right_joint", "chassis", "right") +
+    steered("left", 0.2) + steered("right", -0.2) +
+    "<plugin filename='libignition-gazebo6-ackermann-steering-system.so' "
+    "name='ignition::gazebo::systems::AckermannSteering'><left_joint>left_joint</left_joint>"
+    "<right_joint>right_joint</right_joint><left_steering_joint>left_steering</left_steering_joint>"
+    "<right_steering_joint>right_steering</right_steering_joint><kingpin_width>0.4</kingpin_width>"
+    "<steering_limit>0.6</steering_limit><wheel_base>0.5</wheel_base><wheel_separation>0.4</wheel_separation>"
+    "<wheel_radius>0.1</wheel_radius></plugin></model>";
+
+struct Motion {
+  double linear = 0.0;   // of the robot's origin, along its x axis [m/s]
+  double angular = 0.0;  // [rad/s]
+};
+
+class Vehicles : public ::testing::TestWithParam<std::pair<Fidelity, Dynamics>> {
+ protected:
+  void load(const std::string& content) {
+    const auto file = folder_.path() / "world.sdf";
+    write_file(file, "<sdf version='1.9'><world name='w'>" + std::string(ground) + content + "</world></sdf>");
+    world_.experiment.world = parsing::read_world(file, 1);
+    world_.world().physics.fidelity = GetParam().first;
+    world_.world().physics.dynamics = GetParam().second;
+    EXPECT_TRUE(world_.world().warnings.empty()) << world_.world().warnings.front().text();
+  }
+  // After the commands have acted for `time` [s], over the second that follows.
+  Motion drive(double linear, double angular, double time) {
+    world_.command(0, "cmd_vel/0/linear", {linear});
+    world_.command(0, "cmd_vel/0/angular", {angular});
+    const int second = static_cast<int>(std::chrono::seconds(1) / world_.world().step);
+    world_.step(static_cast<int>(time * second));
+    Motion motion;
+    for (int tick = 0; tick < second; ++tick) {
+      const Pose before = pose();
+      world_.step();
+      const Pose turned{Vector3d::Zero(), before.orientation.conjugate() * pose().orientation};
+      motion.linear += (before.orientation.conjugate() * (pose().position - before.position)).x();
+      motion.angular += 2.0 * std::atan2(turned.orientation.z(), turned.orientation.w());
+    }
+    return motion;
+  }
+  double height() { return pose().position.z(); }
+
+  SensingWorld world_;
+
+ private:
+  Pose pose() {
+    Simulation& simulation = world_.simulation();
+    const std::uint32_t body = simulation.body_of(0);
+    const description::World& world = world_.world();
+    const Pose& X_ML = world.models[world.instances[body].model].links[0].X_ML;
+    return simulation.world().link_pose(body, 0) * X_ML.inverse();
+  }
+  ScratchFolder folder_;
+};
+INSTANTIATE_TEST_SUITE_P(Every, Vehicles,
+                         ::testing::Values(std::pair(Fidelity::articulated, Dynamics::cohort),
+                                           std::pair(Fidelity::articulated, Dynamics::bullet),
+                                           std::pair(Fidelity::treel, Dynamics::bullet)));
+
+TEST_P(Vehicles, OfGazeboWithDiffDriveReachTheTwistThatTheyAreTold) {
+  load(two_wheels(diff_drive));
+  for (const auto& [linear, angular] : {std::pair(0.5, 0.5), std::pair(0.5, 0.0), std::pair(-0.5, -0.6)}) {
+    const Motion motion = drive(linear, angular, 2.0);
+    EXPECT_NEAR(motion.linear, linear, 0.02 * std::abs(linear));
+    EXPECT_NEAR(motion.angular, angular, 0.02 * std::abs(angular) + 1e-4);
+  }
+  EXPECT_NEAR(height(), 0.0, 0.01) << "it stays on its wheels";
+}
+
+TEST_P(Vehicles, OfGazeboWithAckermannSteeringTurnWithTheRadiusOfTheirKinematics) {
+  load(car);
+  for (const double radius : {1.5, -2.5}) {
+    const Motion motion = drive(0.5, 0.5 / radius, 2.0);
+    EXPECT_NEAR(motion.linear / motion.angular, radius, 0.05 * std::abs(radius));
+    EXPECT_NEAR(motion.linear, 0.5, 0.02);
+  }
+  const Motion tightest = drive(0.3, 3.0, 2.0);
+  EXPECT_NEAR(tightest.linear / tightest.angular, 0.5 / std::sin(0.6), 0.05) << "no tighter than it steers";
+  EXPECT_NEAR(height(), 0.0, 0.01);
+}
+
+}  // namespace
+}  // namespace cohort::test

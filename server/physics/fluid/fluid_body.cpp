@@ -196,8 +196,9 @@ double FluidBody::response(const Equations& equations) {
 // After `response`.
 void FluidBody::push(double impulse, Equations& equations) {
   if (equations.size() > 0) add_scaled(impulse, response_.data(), equations.velocity(), equations.stride());
-  impulses_.push_back(
-      {aimed_.link, aimed_.point_W, {impulse * aimed_.impulse_W.angular, impulse * aimed_.impulse_W.linear}});
+  const Spatial impulse_W{impulse * aimed_.impulse_W.angular, impulse * aimed_.impulse_W.linear};
+  equations.note_push(aimed_.point_W, impulse_W.linear, impulse_W.angular);
+  impulses_.push_back({aimed_.link, aimed_.point_W, impulse_W});
 }
 
 void FluidBody::push(const Place& place, const Vector3d& point_W, const Spatial& impulse_W, Equations& equations) {

@@ -111,6 +111,11 @@ void Equations::push(int segment, const Eigen::Vector3d& point_W, const Eigen::V
   add_torque(segment, angular_impulse_W, generalised.data());
   respond(generalised.data(), response.data());
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += response[at(i)];
+  note_push(point_W, impulse_W, angular_impulse_W);
+}
+
+void Equations::note_push(const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
+                          const Eigen::Vector3d& angular_impulse_W) {
   pushed_.angular += angular_impulse_W + (point_W - body_->reference()).cross(impulse_W);
   pushed_.linear += impulse_W;
 }

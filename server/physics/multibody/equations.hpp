@@ -36,6 +36,9 @@ class Equations {
   /// Changes the velocities by an impulse at `point_W` of a segment and an angular impulse on it [N s, N m s].
   void push(int segment, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
             const Eigen::Vector3d& angular_impulse_W);
+  /// Of one that changed the velocities already.
+  void note_push(const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
+                 const Eigen::Vector3d& angular_impulse_W);
   /// What such pushes add up to, since `set_up`: their impulse, and its moment about the body's reference.
   const Spatial& pushed() const { return pushed_; }
   /// Changes the velocities by an impulse along one dof of a joint.

@@ -108,6 +108,7 @@ class Vehicles : public ::testing::TestWithParam<std::pair<Fidelity, Dynamics>> 
     return motion;
   }
   double height() { return pose().position.z(); }
+  double forward() { return pose().position.x(); }
 
   SensingWorld world_;
 
@@ -146,6 +147,62 @@ TEST_P(Vehicles, OfGazeboWithAckermannSteeringTurnWithTheRadiusOfTheirKinematics
   const Motion tightest = drive(0.3, 3.0, 2.0);
   EXPECT_NEAR(tightest.linear / tightest.angular, 0.5 / std::sin(0.6), 0.05) << "no tighter than it steers";
   EXPECT_NEAR(height(), 0.0, 0.01);
+}
+
+TEST_P(Vehicles, OfGazeboWithControllersOfJointsMoveThemAsTheyAreTold) {
+  load("<model name='arm'><pose>0 0 1 0 0 0</pose><link name='base'>" + box_inertial(1.0, 0.1) +
+       "</link><link name='a'>" + box_inertial(1.0, 0.1) + "</link><link name='b'>" + box_inertial(1.0, 0.1) +
+       "</link><joint name='tie' type='fixed'><parent>world</parent><child>base</child></joint>" +
+       axle("spin", "base", "a") + axle("place", "base", "b") +
+       "<plugin filename='gz-sim-joint-controller-system' name='v'><joint_name>spin</joint_name></plugin>"
+       "<plugin filename='gz-sim-joint-position-controller-system' name='p'><joint_name>place</joint_name></plugin>"
+       "<plugin filename='gz-sim-joint-state-publisher-system' name='s'/></model>");
+  world_.command(0, "spin/0/velocity", {2.0});
+  world_.command(0, "place/0/position", {0.7});
+  world_.step(100);
+  EXPECT_NEAR(world_.read(0, "spin/0/velocity"), 2.0, 0.01);
+  EXPECT_NEAR(world_.read(0, "place/0/position"), 0.7, 0.001);
+}
+
+// Four of RotorS's motors lift 1.5 kg.
+TEST_P(Vehicles, OfGazeboWithMotorsOfAMulticopterFly) {
+  std::string copter =
+      "<model name='copter'><pose>0 0 1 0 0 0</pose><link name='base'>" + box_inertial(1.46, 0.02) + "</link>";
+  for (int i = 0; i < 4; ++i) {
+    const std::string number = std::to_string(i);
+    copter += "<link name='rotor_" + number + "'><pose>" + (i < 2 ? "0.2 " : "-0.2 ") + (i % 2 == 0 ? "0.2" : "-0.2") +
+              " 0.05 0 0 0</pose>" + box_inertial(0.01, 1e-4) + "</link>" +
+              axle("joint_" + number, "base", "rotor_" + number) +
+              "<plugin filename='libignition-gazebo-multicopter-motor-model-system.so' name='m" + number +
+              "'><jointName>joint_" + number + "</jointName><linkName>rotor_" + number +
+              "</linkName><turningDirection>" + (i == 0 || i == 3 ? "ccw" : "cw") + "</turningDirection></plugin>";
+  }
+  load(copter + "</model>");
+  const double velocity = std::sqrt(1.5 * 9.8 / 4.0 / 8.54858e-06);  // it hovers
+  for (int i = 0; i < 4; ++i) world_.command(0, "joint_" + std::to_string(i) + "/0/velocity", {1.1 * velocity});
+  world_.step(100);
+  EXPECT_GT(height(), 1.5) << "1/2 0.21 g t^2 is 1 m, less drag and what the motors take to get there";
+  EXPECT_LT(height(), 2.1);
+}
+
+TEST_P(Vehicles, OfGazeboWithAThrusterSwim) {
+  load(
+      "<plugin filename='gz-sim-buoyancy-system' name='gz::sim::systems::Buoyancy'><uniform_fluid_density>1000"
+      "</uniform_fluid_density></plugin><model name='boat'><pose>0 0 1 0 0 0</pose><link name='hull'>" +
+      box_inertial(7.999, 0.1) +
+      "<collision name='c'><geometry><box><size>0.4 0.2 0.1</size></box></geometry></collision></link>"
+      "<link name='propeller'><pose>-0.3 0 0 0 1.5707963267948966 0</pose>" +
+      box_inertial(0.001, 1e-5) + "</link>" + axle("shaft", "hull", "propeller") +
+      "<plugin filename='gz-sim-thruster-system' name='t'><joint_name>shaft</joint_name><propeller_diameter>0.1"
+      "</propeller_diameter><thrust_coefficient>0.04</thrust_coefficient></plugin><plugin "
+      "filename='gz-sim-hydrodynamics-system' name='h'><link_name>hull</link_name><xU>-10</xU><yV>-10</yV><zW>-10</zW>"
+      "<kP>-5</kP><mQ>-5</mQ><nR>-5</nR></plugin></model>");
+  const double motor_constant = 1000.0 * 0.04 * 1e-4;
+  world_.command(0, "shaft/0/velocity", {std::sqrt(5.0 / motor_constant)});  // 5 N, as 10 N s/m at 0.5 m/s
+  world_.step(500);
+  const double before = forward();
+  world_.step(100);
+  EXPECT_NEAR(forward() - before, 0.5, 0.02);
 }
 
 }  // namespace

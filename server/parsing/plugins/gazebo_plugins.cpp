@@ -329,7 +329,7 @@ void wind_effects(Plugin& plugin, World& world) {
 }
 
 // By their order in docs/gazebo.md.
-constexpr PluginKind kinds[] = {
+constexpr PluginKind known_plugins[] = {
     {"DiffDrive", diff_drive},
     {"AckermannSteering", ackermann_steering},
     {"JointController", joint_controller},
@@ -398,9 +398,9 @@ std::string plain(std::string_view name) {
   return letters;
 }
 
-const PluginKind* find_kind(std::string_view name) {
-  const auto found = std::ranges::find(kinds, plain(name), [](const PluginKind& kind) { return plain(kind.name); });
-  return found == std::end(kinds) ? nullptr : found;
+const PluginKind* find_plugin(std::string_view name) {
+  const auto found = std::ranges::find(known_plugins, plain(name), [](const PluginKind& kind) { return plain(kind.name); });
+  return found == std::end(known_plugins) ? nullptr : found;
 }
 
 std::string attribute_of(const sdf::ElementPtr& plugin, const char* name) {
@@ -438,15 +438,15 @@ bool drives_one_of(const Counterpart& counterpart, const std::set<std::string>& 
 
 }  // namespace
 
-std::span<const PluginKind> plugin_kinds() { return kinds; }
+std::span<const PluginKind> plugin_kinds() { return known_plugins; }
 
 const PluginKind* plugin_kind_of(const sdf::ElementPtr& plugin) {
   const std::string name = attribute_of(plugin, "name");
   constexpr std::string_view before_class = "::systems::";
   const std::size_t place = name.find(before_class);
   const PluginKind* const by_class =
-      place == std::string::npos ? nullptr : find_kind(name.substr(place + before_class.size()));
-  return by_class != nullptr ? by_class : find_kind(attribute_of(plugin, "filename"));
+      place == std::string::npos ? nullptr : find_plugin(name.substr(place + before_class.size()));
+  return by_class != nullptr ? by_class : find_plugin(attribute_of(plugin, "filename"));
 }
 
 void warn_of_unknown_plugin(const sdf::ElementPtr& plugin, const SdfReport& report) {

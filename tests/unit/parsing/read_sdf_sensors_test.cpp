@@ -41,17 +41,17 @@ class SdfSensors : public Description {
 TEST_F(SdfSensors, ALidarIsReadWithItsScanItsRangeAndItsNoise) {
   for (const char* const type : {"lidar", "gpu_lidar", "ray", "gpu_ray"}) {
     const std::string element = std::string(type).ends_with("ray") ? "ray" : "lidar";
-    const auto lidar = std::get<Lidar>(device(on_a_link(
-        sensor(type,
-               "<pose>0.1 0.2 0.3 0 0 0</pose><update_rate>20</update_rate><always_on>true</always_on>"
-               "<visualize>true</visualize><topic>scan</topic><plugin name=\"p\" filename=\"f\"/><" +
-                   element +
-                   "><scan><horizontal><samples>8</samples><resolution>2</resolution><min_angle>-1.1</min_angle>"
-                   "<max_angle>0.9</max_angle></horizontal><vertical><samples>3</samples><min_angle>-0.2"
-                   "</min_angle><max_angle>0.3</max_angle></vertical></scan><range><min>0.1</min><max>12.5</max>"
-                   "<resolution>0.02</resolution></range><noise><type>gaussian</type><mean>0.01</mean>"
-                   "<stddev>0.03</stddev></noise></" +
-                   element + ">"))));
+    const auto lidar = std::get<Lidar>(device(on_a_link(sensor(
+        type,
+        "<pose>0.1 0.2 0.3 0 0 0</pose><update_rate>20</update_rate><always_on>true</always_on>"
+        "<visualize>true</visualize><topic>scan</topic><plugin name=\"p\" filename=\"libgazebo_ros_ray_sensor.so\"/><" +
+            element +
+            "><scan><horizontal><samples>8</samples><resolution>2</resolution><min_angle>-1.1</min_angle>"
+            "<max_angle>0.9</max_angle></horizontal><vertical><samples>3</samples><min_angle>-0.2"
+            "</min_angle><max_angle>0.3</max_angle></vertical></scan><range><min>0.1</min><max>12.5</max>"
+            "<resolution>0.02</resolution></range><noise><type>gaussian</type><mean>0.01</mean>"
+            "<stddev>0.03</stddev></noise></" +
+            element + ">"))));
     EXPECT_EQ(lidar.name, "s");
     EXPECT_EQ(lidar.X_LS.position, Eigen::Vector3d(0.1, 0.2, 0.3));
     EXPECT_EQ(lidar.columns, 16u) << "samples times resolution";

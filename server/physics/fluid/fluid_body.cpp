@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "server/physics/fluid/fluid_forces.hpp"
-#include "server/physics/multibody/lanes.hpp"
+#include "server/physics/mechanism/lanes.hpp"
 
 namespace cohort::physics {
 namespace {

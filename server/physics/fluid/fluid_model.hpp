@@ -4,7 +4,7 @@
 
 #include "server/physics/fluid/floating_shape.hpp"
 #include "server/physics/fluid/media.hpp"
-#include "server/physics/multibody/mechanism.hpp"
+#include "server/physics/mechanism/mechanism.hpp"
 
 namespace cohort::physics {
 

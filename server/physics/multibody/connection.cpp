@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/physics/multibody/rotation.hpp"
+#include "server/physics/mechanism/rotation.hpp"
 #include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {

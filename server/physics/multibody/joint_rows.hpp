@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/physics/multibody/mechanism.hpp"
+#include "server/physics/mechanism/mechanism.hpp"
 
 namespace cohort::physics {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "server/physics/multibody/rotation.hpp"
+#include "server/physics/mechanism/rotation.hpp"
 #include "server/physics/multibody/whole_body.hpp"
 
 namespace cohort::physics {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/physics/multibody/equations.hpp"
-#include "server/physics/multibody/lanes.hpp"
+#include "server/physics/mechanism/lanes.hpp"
 #include "server/physics/world/anchors.hpp"
 
 namespace cohort::physics {

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "server/description/model.hpp"
-#include "server/physics/multibody/ground.hpp"
+#include "server/physics/mechanism/ground.hpp"
 #include "server/physics/world/anchors.hpp"
 #include "server/physics/world/physics_world.hpp"
 #include "server/physics/world/surface_pairs.hpp"

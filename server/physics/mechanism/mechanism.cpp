@@ -1,8 +1,8 @@
-#include "server/physics/multibody/mechanism.hpp"
+#include "server/physics/mechanism/mechanism.hpp"
 
 #include <Eigen/Eigenvalues>
 
-#include "server/physics/multibody/rotation.hpp"
+#include "server/physics/mechanism/rotation.hpp"
 
 namespace cohort::physics {
 namespace {

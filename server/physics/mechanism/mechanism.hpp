@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "server/description/world.hpp"
-#include "server/physics/multibody/lanes.hpp"
+#include "server/physics/mechanism/lanes.hpp"
 
 namespace cohort::physics {
 

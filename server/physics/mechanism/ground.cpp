@@ -1,4 +1,4 @@
-#include "server/physics/multibody/ground.hpp"
+#include "server/physics/mechanism/ground.hpp"
 
 namespace cohort::physics {
 namespace {

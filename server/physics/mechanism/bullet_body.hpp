@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "server/physics/multibody/body_state.hpp"
+#include "server/physics/mechanism/body_state.hpp"
 
 class btMatrix3x3;
 class btMultiBody;

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "server/physics/multibody/mechanism.hpp"
+#include "server/physics/mechanism/mechanism.hpp"
 
 namespace cohort::physics {
 

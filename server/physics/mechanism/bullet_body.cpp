@@ -1,4 +1,4 @@
-#include "server/physics/multibody/bullet_body.hpp"
+#include "server/physics/mechanism/bullet_body.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "server/physics/multibody/body_state.hpp"
+#include "server/physics/mechanism/body_state.hpp"
 
 #include <algorithm>
 #include <utility>

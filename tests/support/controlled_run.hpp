@@ -24,15 +24,15 @@ class ControlledRun {
   const ReservedDomain& domain() const { return domain_; }
 
   std::vector<std::string> ctl(const std::vector<std::string>& arguments) const {
-    std::vector<std::string> command = {cohort_program(), "ctl",       "--domain",
-                                        domain_.text(),   "--timeout", patience_in_seconds};
+    std::vector<std::string> command = {cohort_program(), "ctl", "--domain", domain_.text()};
     command.insert(command.end(), arguments.begin(), arguments.end());
     return command;
   }
   /// `cohort ctl` as people type it; what it printed, if it says that it is done.
-  std::string done(const std::vector<std::string>& arguments) const {
+  std::string done(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"--timeout", patience_in_seconds});
     const Ended ended = run_to_end(ctl(arguments));
-    EXPECT_EQ(ended.exit_code, 0) << arguments.front() << ": " << ended.err << ended.out;
+    EXPECT_EQ(ended.exit_code, 0) << arguments[2] << ": " << ended.err << ended.out;
     return ended.out;
   }
   nlohmann::json status() const { return nlohmann::json::parse(done({"status", "--json"})); }

@@ -399,7 +399,8 @@ std::string plain(std::string_view name) {
 }
 
 const PluginKind* find_plugin(std::string_view name) {
-  const auto found = std::ranges::find(known_plugins, plain(name), [](const PluginKind& kind) { return plain(kind.name); });
+  const auto found =
+      std::ranges::find(known_plugins, plain(name), [](const PluginKind& kind) { return plain(kind.name); });
   return found == std::end(known_plugins) ? nullptr : found;
 }
 

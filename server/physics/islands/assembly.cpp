@@ -259,7 +259,7 @@ bool Assembly::is_in_flight(std::uint32_t index) {
 
 // A body that another one has just hit may be much faster than at the beginning of the step, from which it was foreseen
 // what it would touch. It waits before what stands in its way, and touches it in the next step.
-void Assembly::keep_from_passing_through(Member& member) {
+void Assembly::keep_from_passing_through(Member& member) const {
   Multibody& multibody = *member.multibody;
   if (!multibody.mechanism().has_free_root()) return;
   if (!(step * multibody.greatest_speed(member.reach) > member.furthest_unseen)) return;

@@ -153,7 +153,7 @@ struct Assembly {
   /// Of the collision `number` of a link.
   void add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
                  const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape);
-  void keep_from_passing_through(Member& member);
+  void keep_from_passing_through(Member& member) const;
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;
   ForceRecord* record_of(std::uint32_t member) const {
     return member == Anchors::nobody ? nullptr : members[member].record.get();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "server/physics/multibody/multibody.hpp"
 #include "server/physics/mechanism/rotation.hpp"
+#include "server/physics/multibody/multibody.hpp"
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/world/corrections.hpp"
 

@@ -11,9 +11,9 @@
 #include "server/geometry/scene/scene.hpp"
 #include "server/physics/mechanism/body_state.hpp"
 #include "server/physics/mechanism/bullet_body.hpp"
+#include "server/physics/mechanism/mechanism.hpp"
 #include "server/physics/multibody/joint_rows.hpp"
 #include "server/physics/multibody/loop_rows.hpp"
-#include "server/physics/mechanism/mechanism.hpp"
 #include "server/physics/multibody/track_rows.hpp"
 #include "server/physics/world/physics_world.hpp"
 

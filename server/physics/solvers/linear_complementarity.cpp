@@ -32,57 +32,62 @@ bool LinearComplementarity::solve(std::span<const double> matrix, std::span<cons
 
 // Moves x of `row` from zero until it may stay, and with it all that are in between.
 bool LinearComplementarity::drive(std::size_t row) {
-  double& excess = excess_[row];
-  while (true) {
-    if (excess >= 0.0 && x_[row] <= lower_[row]) {
-      places_[row] = Place::lower;
-      return true;
-    }
-    if (excess <= 0.0 && x_[row] >= upper_[row]) {
-      places_[row] = Place::upper;
-      return true;
-    }
-    const double sense = excess < 0.0 ? 1.0 : -1.0;
+  while (!may_stay(row)) {
+    const double sense = excess_[row] < 0.0 ? 1.0 : -1.0;
     find_directions(row, sense);
     if (!(sense * change_of_excess_[row] > 0.0) || moves_left_-- == 0) return false;
-
-    // How far until the first of all rows has to change its place.
-    double way = -excess / change_of_excess_[row];
-    std::size_t first = row;
-    Place becomes = Place::between;
-    const auto reaches = [&](double its_way, std::size_t its_row, Place place) {
-      if (its_way >= way) return;
-      way = std::max(0.0, its_way);
-      first = its_row;
-      becomes = place;
-    };
-    reaches(sense > 0.0 ? upper_[row] - x_[row] : x_[row] - lower_[row], row,
-            sense > 0.0 ? Place::upper : Place::lower);
-    for (std::size_t i = 0; i < between_.size(); ++i) {
-      const std::size_t other = between_[i];
-      if (change_of_x_[i] > 0.0) reaches((upper_[other] - x_[other]) / change_of_x_[i], other, Place::upper);
-      if (change_of_x_[i] < 0.0) reaches((lower_[other] - x_[other]) / change_of_x_[i], other, Place::lower);
-    }
-    for (std::size_t other = 0; other < size_; ++other) {
-      if (lower_[other] == upper_[other]) continue;
-      const double change = change_of_excess_[other];
-      if ((places_[other] == Place::lower && change < 0.0) || (places_[other] == Place::upper && change > 0.0))
-        reaches(-excess_[other] / change, other, Place::between);
-    }
-
-    x_[row] += sense * way;
-    for (std::size_t i = 0; i < between_.size(); ++i) x_[between_[i]] += way * change_of_x_[i];
-    for (std::size_t other = 0; other < size_; ++other) excess_[other] += way * change_of_excess_[other];
-    if (becomes == Place::between) {
-      excess_[first] = 0.0;
-      if (!insert(first)) return false;
-    } else {
-      x_[first] = becomes == Place::upper ? upper_[first] : lower_[first];
-      if (first != row) remove(static_cast<std::size_t>(std::ranges::find(between_, first) - between_.begin()));
-      places_[first] = becomes;
-    }
-    if (first == row) return true;
+    const Change change = first_change(row, sense);
+    x_[row] += sense * change.way;
+    for (std::size_t i = 0; i < between_.size(); ++i) x_[between_[i]] += change.way * change_of_x_[i];
+    for (std::size_t other = 0; other < size_; ++other) excess_[other] += change.way * change_of_excess_[other];
+    if (!make(change)) return false;
+    if (change.row == row) return true;
   }
+  return true;
+}
+
+// At a limit, with an excess that keeps it there: then that is its place.
+bool LinearComplementarity::may_stay(std::size_t row) {
+  const bool at_lower = excess_[row] >= 0.0 && x_[row] <= lower_[row];
+  const bool at_upper = excess_[row] <= 0.0 && x_[row] >= upper_[row];
+  if (at_lower || at_upper) places_[row] = at_lower ? Place::lower : Place::upper;
+  return at_lower || at_upper;
+}
+
+LinearComplementarity::Change LinearComplementarity::first_change(std::size_t row, double sense) const {
+  Change first{-excess_[row] / change_of_excess_[row], row, Place::between};
+  const auto reaches = [&](double way, std::size_t its_row, Place place) {
+    if (way < first.way) first = {std::max(0.0, way), its_row, place};
+  };
+  if (sense > 0.0)
+    reaches(upper_[row] - x_[row], row, Place::upper);
+  else
+    reaches(x_[row] - lower_[row], row, Place::lower);
+  for (std::size_t i = 0; i < between_.size(); ++i) {
+    const std::size_t other = between_[i];
+    if (change_of_x_[i] > 0.0) reaches((upper_[other] - x_[other]) / change_of_x_[i], other, Place::upper);
+    if (change_of_x_[i] < 0.0) reaches((lower_[other] - x_[other]) / change_of_x_[i], other, Place::lower);
+  }
+  for (std::size_t other = 0; other < size_; ++other) {
+    if (lower_[other] == upper_[other]) continue;
+    const double change = change_of_excess_[other];
+    if ((places_[other] == Place::lower && change < 0.0) || (places_[other] == Place::upper && change > 0.0))
+      reaches(-excess_[other] / change, other, Place::between);
+  }
+  return first;
+}
+
+bool LinearComplementarity::make(const Change& change) {
+  const std::size_t row = change.row;
+  if (change.becomes == Place::between) {
+    excess_[row] = 0.0;
+    return insert(row);
+  }
+  x_[row] = change.becomes == Place::upper ? upper_[row] : lower_[row];
+  if (places_[row] == Place::between)
+    remove(static_cast<std::size_t>(std::ranges::find(between_, row) - between_.begin()));
+  places_[row] = change.becomes;
+  return true;
 }
 
 // How x of the rows in between, and the excess of all others, change with x of `row`.

@@ -23,7 +23,17 @@ class LinearComplementarity {
  private:
   enum class Place : unsigned char { later, between, lower, upper };
 
+  /// The first row that has to change its place while x of another one moves.
+  struct Change {
+    double way = 0.0;  ///< of that x until then
+    std::size_t row = 0;
+    Place becomes = Place::between;
+  };
+
   bool drive(std::size_t row);
+  bool may_stay(std::size_t row);
+  Change first_change(std::size_t row, double sense) const;
+  bool make(const Change& change);
   void find_directions(std::size_t row, double sense);
   bool insert(std::size_t row);
   void remove(std::size_t position);

@@ -141,7 +141,8 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
       odd_joint("three", "ball", "a", "f",
                 "<axis><xyz>0 0 1</xyz><dynamics><damping>0.02</damping></dynamics></axis>") +
       odd_joint("four", "prismatic", "d", "e", "<axis><xyz>0.3 -0.7 0.1</xyz></axis>") +
-      odd_joint("five", "fixed", "f", "g", "") + odd_joint("six", "revolute", "g", "d", "<axis><xyz>0.2 0.7 0.1</xyz></axis>") +
+      odd_joint("five", "fixed", "f", "g", "") +
+      odd_joint("six", "revolute", "g", "d", "<axis><xyz>0.2 0.7 0.1</xyz></axis>") +
       "<cohort:velocity_motor name=\"m\"><cohort:joint>one</cohort:joint><cohort:max_velocity>1.7</cohort:max_velocity>"
       "<cohort:max_effort>0.3</cohort:max_effort></cohort:velocity_motor>"
       "<cohort:effort_motor name=\"push\"><cohort:joint>four</cohort:joint><cohort:max_effort>0.7</cohort:max_effort>"

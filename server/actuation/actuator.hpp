@@ -9,6 +9,7 @@
 #include "server/core/channel.hpp"
 #include "server/description/world.hpp"
 #include "server/emission/emitters.hpp"
+#include "server/gripping/detachable_joints.hpp"
 #include "server/gripping/grippers.hpp"
 #include "server/physics/world/physics_world.hpp"
 
@@ -31,6 +32,7 @@ struct Mount {
   emission::Emitters& emitters;
   const description::World& description;
   gripping::Grippers& grippers;
+  gripping::DetachableJoints& detachable_joints;
   UserActions& actions;
   std::uint32_t body;  ///< the robot's, which is its index among the description's instances
   std::size_t device;  ///< index in the robot's model

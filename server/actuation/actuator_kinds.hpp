@@ -20,6 +20,8 @@ class ActuatorOf : public Actuator {
 };
 
 std::unique_ptr<Actuator> make_actuator(const description::AckermannDrive& drive, const Mount& mount);
+std::unique_ptr<Actuator> make_actuator(const description::Belt& belt, const Mount& mount);
+std::unique_ptr<Actuator> make_actuator(const description::DetachableJoint& joint, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::DifferentialDrive& drive, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::EffortMotor& motor, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::Gripper& gripper, const Mount& mount);
@@ -28,6 +30,7 @@ std::unique_ptr<Actuator> make_actuator(const description::Loudspeaker& speaker,
 std::unique_ptr<Actuator> make_actuator(const description::PositionMotor& motor, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::RangeAndBearing& device, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::Rotor& rotor, const Mount& mount);
+std::unique_ptr<Actuator> make_actuator(const description::TrackedDrive& drive, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::TreelDrive& drive, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::UserAction& action, const Mount& mount);
 std::unique_ptr<Actuator> make_actuator(const description::VelocityMotor& motor, const Mount& mount);

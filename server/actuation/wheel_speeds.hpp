@@ -6,7 +6,7 @@
 
 namespace cohort::actuation {
 
-/// The commands of a vehicle on wheels: a twist in its plane.
+/// The commands of a vehicle on wheels or tracks: a twist in its plane.
 template <class Drive>
 std::vector<Channel> twist_channels(const Drive& drive) {
   return {{drive.name + "/0/linear", "m/s", 1, -drive.max_linear, drive.max_linear, 0.0},

@@ -19,6 +19,11 @@ std::optional<Number> parse(std::string_view text) {
 
 }  // namespace
 
+std::string shortest_text(double number) {
+  char text[32];
+  return {std::begin(text), std::to_chars(std::begin(text), std::end(text), number).ptr};
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(white_space);
   if (begin == std::string_view::npos) return {};

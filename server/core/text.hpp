@@ -9,7 +9,7 @@
 
 #include "client_sdk/text/edit_distance.hpp"
 
-/// Reading what a person typed: whole and strict, and the same in every locale.
+/// Reading what a person typed: whole and strict, and the same in every locale. Numbers that are read as they were.
 namespace cohort {
 
 /// Without white space at either end.
@@ -23,6 +23,9 @@ std::optional<double> parse_real(std::string_view text);
 
 /// A non-negative whole number of at most 64 bits.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
+
+/// The shortest text that is read as this number again, to the bit.
+std::string shortest_text(double number);
 
 /// The known name that an unknown one is a slip away from, or nothing.
 std::optional<std::string> nearest(std::string_view unknown, const std::vector<std::string>& known);

@@ -52,4 +52,13 @@ std::vector<MotorLimits> motor_limits(const Device& device) {
   return {};
 }
 
+std::vector<BeltPlace> belts_of(const Device& device) {
+  if (const auto* belt = std::get_if<Belt>(&device)) return {{belt->link, belt->axis_L.normalized()}};
+  std::vector<BeltPlace> belts;
+  if (const auto* drive = std::get_if<TrackedDrive>(&device))
+    for (const std::vector<std::size_t>* links : {&drive->left_links, &drive->right_links})
+      for (const std::size_t link : *links) belts.push_back({link, Eigen::Vector3d::UnitY()});
+  return belts;
+}
+
 }  // namespace cohort::description

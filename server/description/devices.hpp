@@ -10,6 +10,7 @@
 
 #include "server/core/pose.hpp"
 #include "server/description/fluid_devices.hpp"
+#include "server/description/input_error.hpp"
 #include "server/description/readout.hpp"
 #include "server/description/samples.hpp"
 #include "server/description/sdf_sensors.hpp"
@@ -95,6 +96,31 @@ struct AckermannDrive {
   double max_angular = 0.0;            ///< [rad/s]
   double max_steering_velocity = 0.0;  ///< of each steering joint [rad/s]
   double max_steering_torque = 0.0;    ///< [N m]
+};
+
+/// A link whose surface runs round it, as that of a conveyor or of the track of a vehicle. At a positive velocity it
+/// runs as that of a wheel that turns about the axis: with the axis to the left what lies on top is carried forward,
+/// and what stands on the ground drives forward. Friction of the link's collisions alone limits what it carries.
+/// Command `NAME/0/velocity` [m/s].
+struct Belt {
+  std::string name;
+  std::size_t link = 0;
+  Eigen::Vector3d axis_L = Eigen::Vector3d::UnitY();  ///< of any length but 0
+  double max_velocity = 0.0;                          ///< [m/s]
+  double velocity = 0.0;                              ///< where nobody commands it [m/s]
+};
+
+/// Belts on both sides of a vehicle that turns by their difference, about the y axes of their links. Commands as of a
+/// DifferentialDrive.
+struct TrackedDrive {
+  std::string name;
+  std::vector<std::size_t> left_links{};
+  std::vector<std::size_t> right_links{};
+  double track_separation = 0.0;     ///< between the middles of the left tracks and of the right ones [m]
+  double steering_efficiency = 1.0;  ///< share of the difference of the tracks that turns it; the rest slips [1]
+  double max_velocity = std::numeric_limits<double>::infinity();  ///< of each track [m/s]
+  double max_linear = 0.0;                                        ///< [m/s]
+  double max_angular = 0.0;                                       ///< [rad/s]
 };
 
 /// Position and velocity of one joint: observations `NAME/0/position` and `NAME/0/velocity`.
@@ -293,6 +319,16 @@ struct Gripper {
   Readout readout{};
 };
 
+/// Holds a link of another object of the world fast, until it is told to let go. Command `NAME/0/attached`, 1 at first.
+struct DetachableJoint {
+  std::string name;
+  std::size_t link = 0;
+  std::string child;            ///< scoped name of the object
+  std::string child_link{};     ///< of it; empty: its root link
+  bool may_be_missing = false;  ///< that there is no such object is no mistake
+  Problem child_place{};        ///< where a file says so, without a message
+};
+
 /// Of a joint's motor: observation `NAME/0/torque` [N m], or of a sliding one `NAME/0/force` [N].
 struct TorqueSensor {
   std::string name;
@@ -315,12 +351,12 @@ struct UserAction {
 };
 
 /// The register: a new kind is one more here. In the order in which manuals have them, SDF's own ones last.
-using Device =
-    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, DifferentialDrive, AckermannDrive, Rotor,
-                 LedRing, Loudspeaker, JointEncoder, TreelEncoder, ProximityRing, GroundSensors, LightSensors,
-                 Microphones, Accelerometer, Inclinometer, RangeAndBearing, OmnidirectionalCamera, PanoramicCamera,
-                 ClimateSensor, Battery, Gripper, TorqueSensor, TractionSensor, UserAction, Imu, ForceTorqueSensor,
-                 Lidar, ContactSensor, Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
+using Device = std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, DifferentialDrive, AckermannDrive,
+                            Belt, TrackedDrive, Rotor, LedRing, Loudspeaker, JointEncoder, TreelEncoder, ProximityRing,
+                            GroundSensors, LightSensors, Microphones, Accelerometer, Inclinometer, RangeAndBearing,
+                            OmnidirectionalCamera, PanoramicCamera, ClimateSensor, Battery, Gripper, DetachableJoint,
+                            TorqueSensor, TractionSensor, UserAction, Imu, ForceTorqueSensor, Lidar, ContactSensor,
+                            Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);
@@ -336,5 +372,12 @@ struct MotorLimits {
 };
 /// Of all motors on joints that the device is; those of a TreelDrive depend on the fidelity and are not among them.
 std::vector<MotorLimits> motor_limits(const Device& device);
+
+/// A link whose surface a device drives.
+struct BeltPlace {
+  std::size_t link = 0;
+  Eigen::Vector3d axis_L;  ///< unit
+};
+std::vector<BeltPlace> belts_of(const Device& device);
 
 }  // namespace cohort::description

@@ -135,6 +135,7 @@ struct Coupling {
 struct Model {
   std::string name;
   bool is_static = false;
+  bool may_sleep = true;      ///< steps may pass over an instance that has been still for a while
   bool self_collide = false;  ///< links of one instance collide with each other, but for those that a joint connects
   std::vector<Link> links;
   std::vector<Joint> joints;

@@ -51,6 +51,7 @@ struct PhysicsSettings {
   std::uint32_t iterations = 10;                             ///< of the iterative solver, at the most
   std::uint32_t direct_bodies = 4;                           ///< hybrid: the largest island that is solved directly
   double lowest = -std::numeric_limits<double>::infinity();  ///< a body below this z has left the world [m]
+  bool sleeping = true;                                      ///< steps pass over what has been still for a while
   bool strict = false;                                       ///< a body that breaks or leaves the world ends the run
 };
 

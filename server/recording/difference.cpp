@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <set>
 #include <span>
 #include <utility>
+
+#include "server/core/text.hpp"
 
 namespace cohort::recording {
 namespace {
@@ -13,13 +14,6 @@ namespace {
 constexpr std::size_t most_listed = 20;
 
 bool is_same(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
-
-// The shortest text that reads as this number.
-std::string text_of(double value) {
-  char text[32];
-  const auto end = std::to_chars(std::begin(text), std::end(text), value);
-  return {std::begin(text), end.ptr};
-}
 
 // Collects what differs, the first value of each thing that has several.
 class Differences {
@@ -33,7 +27,7 @@ class Differences {
   /// True if they are the same.
   bool compare(const std::string& quantity, const std::string& detail, double first, double second) {
     if (is_same(first, second)) return true;
-    add(quantity, detail, text_of(first), text_of(second));
+    add(quantity, detail, shortest_text(first), shortest_text(second));
     return false;
   }
   template <class Values>
@@ -116,8 +110,8 @@ void compare_contacts(const Simulation& first, const Simulation& second, Differe
 // A value that acts from this tick on: the new one, or the one that stands. -0.0 and 0.0 are two.
 std::string value_at(const Commands& changes, std::uint32_t robot, std::uint32_t place, const Simulation& simulation) {
   for (std::size_t i = 0; i < changes.robots.size(); ++i)
-    if (changes.robots[i] == robot && changes.places[i] == place) return text_of(changes.values[i]);
-  return text_of(simulation.command(robot)[place]);
+    if (changes.robots[i] == robot && changes.places[i] == place) return shortest_text(changes.values[i]);
+  return shortest_text(simulation.command(robot)[place]);
 }
 
 std::string channel_at(const std::vector<cohort::Channel>& channels, std::uint32_t place) {

@@ -51,8 +51,8 @@ void observe(const sensing::Sensor& sensor, sensing::SignalChain& chain, std::ui
 }  // namespace
 
 Robots::Robots(const description::Experiment& experiment, physics::World& world, emission::Emitters& emitters,
-               gripping::Grippers& grippers, actuation::UserActions& actions, const Objects& objects,
-               WorkerPool& workers)
+               gripping::Grippers& grippers, gripping::DetachableJoints& detachable_joints,
+               actuation::UserActions& actions, const Objects& objects, WorkerPool& workers)
     : experiment_(experiment), objects_(objects), workers_(workers), scratch_(workers.threads()) {
   const description::World& description = experiment.world;
   robots_.resize(description.robots.size());
@@ -74,8 +74,8 @@ Robots::Robots(const description::Experiment& experiment, physics::World& world,
         append(kind.observation, sensor->channels());
         add_sensor(id, std::move(sensor), model.devices[device]);
       }
-      if (auto actuator =
-              actuation::make_actuator({world, emitters, description, grippers, actions, robot.body, device})) {
+      if (auto actuator = actuation::make_actuator(
+              {world, emitters, description, grippers, detachable_joints, actions, robot.body, device})) {
         const std::vector<Channel> channels = actuator->channels();
         append(kind.command, channels);
         robot.actuators.push_back({std::move(actuator), total_size(channels)});

@@ -43,7 +43,8 @@ class Robots {
 
   /// Keeps references to all that it is given.
   Robots(const description::Experiment& experiment, physics::World& world, emission::Emitters& emitters,
-         gripping::Grippers& grippers, actuation::UserActions& actions, const Objects& objects, WorkerPool& workers);
+         gripping::Grippers& grippers, gripping::DetachableJoints& detachable_joints, actuation::UserActions& actions,
+         const Objects& objects, WorkerPool& workers);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(robots_.size()); }
   const std::string& name(std::uint32_t robot) const { return experiment_.world.robot(robot).name; }

@@ -24,9 +24,10 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
       breakable_joints_(experiment_.world, *world_),
       emitters_(experiment_.world, *world_),
       grippers_(experiment_.world, *world_),
+      detachable_joints_(experiment_.world, *world_),
       actions_(experiment_.world, *world_),
       objects_(experiment_, *world_),
-      robots_(experiment_, *world_, emitters_, grippers_, actions_, objects_, workers_),
+      robots_(experiment_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_),
       schedule_(experiment_, *world_, objects_, emitters_, actions_),
       spawned_models_(experiment_) {
   note_bodies();
@@ -191,6 +192,7 @@ std::vector<std::byte> Simulation::save() const {
   schedule_.save(writer);
   emitters_.save(writer);
   grippers_.save(writer);
+  detachable_joints_.save(writer);
   actions_.save(writer);
   robots_.save(writer);
   writer.add(touches_.robot_ticks);
@@ -221,6 +223,7 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   emitters_.restore(reader);
   emitters_.update(workers_);
   grippers_.restore(reader);
+  detachable_joints_.restore(reader);
   actions_.restore(reader);
   robots_.restore(reader);
   reader.read(touches_.robot_ticks);
@@ -252,6 +255,7 @@ std::uint64_t Simulation::computed_state_hash() const {
   schedule_.hash(hash);
   emitters_.hash(hash);
   grippers_.hash(hash);
+  detachable_joints_.hash(hash);
   actions_.hash(hash);
   spawned_models_.hash(hash);
   return hash.value();

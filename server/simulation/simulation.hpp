@@ -183,6 +183,7 @@ class Simulation {
   BreakableJoints breakable_joints_;
   emission::Emitters emitters_;
   gripping::Grippers grippers_;
+  gripping::DetachableJoints detachable_joints_;
   actuation::UserActions actions_;
   Objects objects_;
   Robots robots_;

@@ -118,8 +118,8 @@ TEST(Dynamics, BulletsAndOursAgreeOnRandomMechanisms) {
         Draws draws(1000 * seed + state);
         set_random_state(*body, draws);
       }
-      of_bullets.set_up(bullets, gravity, step);
-      of_ours.set_up(ours, gravity, step);
+      of_bullets.set_up(bullets, gravity, step, false);
+      of_ours.set_up(ours, gravity, step, false);
       const Eigen::Index size = of_ours.size();
       const Numbers expected(of_ours.velocity(), size);
       const Numbers before(ours.velocities(), size);

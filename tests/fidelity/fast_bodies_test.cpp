@@ -89,7 +89,8 @@ TEST_P(FastBodies, BounceAsTheirRestitutionSays) {
   const auto body = small.add(ball(0.01, springy), at(0, 0, 0));
   small.world().set_root_twist(body, {Vector3d::Zero(), Vector3d(8.0, 0, 0)});
   small.run(0.2);
-  EXPECT_NEAR(small.velocity(body).x(), -6.4, 1e-3);
+  // The solver gives way by 1e-5 of the 14.4 m/s.
+  EXPECT_NEAR(small.velocity(body).x(), -6.4, 2e-4);
 }
 
 // Neither the corner beside its way nor the wall behind its end holds it up.

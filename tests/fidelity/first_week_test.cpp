@@ -13,12 +13,18 @@ using Eigen::Vector3d;
 
 class FirstWeek : public EveryPhysics {
  protected:
+  // What creeps must not be hidden by what sleeps.
+  static description::World awake(const Physics& physics, double friction = 1.0) {
+    description::World world = physics.world(friction);
+    world.physics.sleeping = false;
+    return world;
+  }
   // Boxes of these masses [kg] and of 100 mm, one on the other.
   struct Stack {
     SmallWorld small;
     std::vector<std::uint32_t> boxes;
 
-    Stack(const Physics& physics, const std::vector<double>& masses) : small(physics.world()) {
+    Stack(const Physics& physics, const std::vector<double>& masses) : small(awake(physics)) {
       const Vector3d size = Vector3d::Constant(0.1);
       for (const double mass : masses)
         boxes.push_back(small.add(loose("box", Box{size}, solid_box(mass, size)),
@@ -56,7 +62,7 @@ TEST_P(FirstWeek, WallsAndPyramidsStand) {
   };
   for (const Heap& heap : {Heap{7, true, 30.0, 1e-3}, Heap{5, false, 30.0, 1e-3}, Heap{10, false, 5.0, 0.05}}) {
     SCOPED_TRACE((heap.is_pyramid ? "pyramid of " : "wall of ") + std::to_string(heap.rows) + " rows");
-    SmallWorld small(GetParam().world());
+    SmallWorld small(awake(GetParam()));
     std::vector<std::pair<std::uint32_t, Vector3d>> bricks;
     for (int row = 0; row < heap.rows; ++row)
       for (int i = 0; i < (heap.is_pyramid ? heap.rows - row : heap.rows); ++i) {
@@ -103,7 +109,7 @@ TEST_P(FirstWeek, AFootOnARailSticksToTheFloor) {
       joint.axis.direction = link == 0 ? Vector3d::UnitX() : Vector3d::UnitZ();
       hopper.joints.push_back(joint);
     }
-    SmallWorld small(GetParam().world());
+    SmallWorld small(awake(GetParam()));
     const auto body = small.add(hopper, at(0, 0, 0, heading));
     const Vector3d along(std::cos(heading), std::sin(heading), 0);
     for (int tick = 0; tick < 100; ++tick) {
@@ -141,7 +147,7 @@ TEST_P(FirstWeek, AnArmStopsAtItsLimit) {
       arm.devices.emplace_back(description::VelocityMotor{"motor", 0, 100.0, 1.0, 0.0});
     else
       arm.devices.emplace_back(description::EffortMotor{"motor", 0, 1.0, 0.0});
-    SmallWorld small(GetParam().world());
+    SmallWorld small(awake(GetParam()));
     const auto body = small.add(arm, at(0, 0, 0.5));
     const double place[] = {0.5 - 0.02};
     const double rest[] = {0.0};
@@ -181,7 +187,7 @@ TEST_P(FirstWeek, FingersHoldABox) {
     gripper.joints.push_back(slide);
     gripper.devices.emplace_back(description::EffortMotor{name + "_motor", gripper.joints.size() - 1, 5.0, 0.0});
   }
-  SmallWorld small(GetParam().world());
+  SmallWorld small(awake(GetParam()));
   const auto body = small.add(gripper, at(0, 0, 0));
   const Vector3d size = Vector3d::Constant(0.05);
   const auto box = small.add(loose("box", Box{size}, solid_box(0.2, size)), at(0, 0, 0.4));
@@ -196,7 +202,7 @@ TEST_P(FirstWeek, FingersHoldABox) {
 TEST_P(FirstWeek, ACylinderTipsWhereItsCentreLeavesItsRim) {
   const auto falls = [&](double degrees, double yaw) {
     const double slope = degrees * M_PI / 180.0;
-    SmallWorld small(GetParam().world());
+    SmallWorld small(awake(GetParam()));
     small.description.models.clear();
     small.description.instances.clear();
     const Vector3d normal(std::sin(slope), 0, std::cos(slope));
@@ -244,7 +250,7 @@ TEST_P(FirstWeek, HullsTouchWhatTheyLieOn) {
   const std::vector<description::Shape> tables{Box{{1.0, 1.0, 0.1}}, box_mesh({1.0, 1.0, 0.1}), surface};
   for (std::size_t table = 0; table < tables.size(); ++table) {
     SCOPED_TRACE("table " + std::to_string(table));
-    SmallWorld small(GetParam().world());
+    SmallWorld small(awake(GetParam()));
     small.add(static_shape("table", tables[table]), at(0, 0, 0.05));
     const auto hull = small.add(loose("hull", box_mesh(size), solid_box(1.0, size)), at(0, 0, 0.155));
     small.run(5.0);
@@ -254,7 +260,7 @@ TEST_P(FirstWeek, HullsTouchWhatTheyLieOn) {
 
 // A world in which robots grip and let go for days keeps what holds, and nothing else.
 TEST_P(FirstWeek, GripsThatWereReleasedLeaveNothingBehind) {
-  SmallWorld small(GetParam().world());
+  SmallWorld small(awake(GetParam()));
   const Vector3d size = Vector3d::Constant(0.1);
   const auto one = small.add(loose("box", Box{size}, solid_box(1.0, size)), at(0, 0, 0.05));
   const auto other = small.add(loose("box", Box{size}, solid_box(1.0, size)), at(0.11, 0, 0.05));

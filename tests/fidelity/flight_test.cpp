@@ -33,41 +33,18 @@ class Flight : public EveryPhysics {
     hinge.axis.direction = axis;
     return model;
   }
-  // Of all links about the origin.
-  struct Whole {
-    double energy = 0.0;
-    Vector3d momentum = Vector3d::Zero();
-    Vector3d angular_momentum = Vector3d::Zero();
-  };
-  static Whole whole(SmallWorld& small, std::uint32_t body) {
-    Whole sum;
-    const description::Model& model = small.description.models[small.world().model_of(body)];
-    for (std::size_t link = 0; link < model.links.size(); ++link) {
-      const Pose X_WL = small.world().link_pose(body, link);
-      const physics::Twist twist = small.world().link_twist(body, link);
-      const description::Inertial& inertial = model.links[link].inertial;
-      const Vector3d arm = X_WL.orientation * inertial.X_LI.position;
-      const Vector3d v = twist.linear_W + twist.angular_W.cross(arm);
-      const Eigen::Matrix3d R = (X_WL.orientation * inertial.X_LI.orientation).toRotationMatrix();
-      const Vector3d spin = R * inertial.inertia * R.transpose() * twist.angular_W;
-      sum.energy += 0.5 * inertial.mass * v.squaredNorm() + 0.5 * spin.dot(twist.angular_W);
-      sum.momentum += inertial.mass * v;
-      sum.angular_momentum += spin + inertial.mass * (X_WL.position + arm).cross(v);
-    }
-    return sum;
-  }
   static void expect_kept(SmallWorld& small, std::uint32_t body, double share_of_energy) {
-    const Whole before = whole(small, body);
-    double least = before.energy;
-    double most = before.energy;
+    const WholeMotion before = whole_motion(small, body);
+    double least = before.kinetic_energy;
+    double most = before.kinetic_energy;
     for (int second = 0; second < 60; ++second) {
       small.run(1.0);
-      least = std::min(least, whole(small, body).energy);
-      most = std::max(most, whole(small, body).energy);
+      least = std::min(least, whole_motion(small, body).kinetic_energy);
+      most = std::max(most, whole_motion(small, body).kinetic_energy);
     }
-    const Whole after = whole(small, body);
-    EXPECT_GT(least, (1.0 - share_of_energy) * before.energy);
-    EXPECT_LT(most, (1.0 + share_of_energy) * before.energy);
+    const WholeMotion after = whole_motion(small, body);
+    EXPECT_GT(least, (1.0 - share_of_energy) * before.kinetic_energy);
+    EXPECT_LT(most, (1.0 + share_of_energy) * before.kinetic_energy);
     EXPECT_LT((after.angular_momentum - before.angular_momentum).norm(), 1e-9 * before.angular_momentum.norm());
     EXPECT_LT((after.momentum - before.momentum).norm(), 1e-9);
   }
@@ -109,10 +86,10 @@ TEST_P(Flight, PushesAndGravityChangeTheMomentumOfTheWhole) {
   const double angle[] = {0.0};
   const double speed[] = {50.0};
   small.world().set_joint_state(body, 0, angle, speed);
-  const Whole before = whole(small, body);
+  const WholeMotion before = whole_motion(small, body);
   small.world().push_body(body, 0, {Vector3d(3, 0, 0), Vector3d(0, 0.2, 0)});
   small.world().step();
-  const Whole after = whole(small, body);
+  const WholeMotion after = whole_motion(small, body);
   EXPECT_LT((after.momentum - before.momentum - Vector3d(0.03, 0, -0.01 * 1.2 * 9.81)).norm(), 1e-12);
 }
 

@@ -12,16 +12,6 @@ using description::JointType;
 using Eigen::Vector3d;
 using physics::Wrench;
 
-Joint joint(const std::string& name, JointType type, std::size_t parent, std::size_t child, const Vector3d& axis) {
-  Joint joint;
-  joint.name = name;
-  joint.type = type;
-  joint.parent = parent;
-  joint.child = child;
-  joint.axis.direction = axis;
-  return joint;
-}
-
 description::Inertial mass_at(double mass, const Vector3d& p_LI) {
   description::Inertial inertial = solid_box(mass, {0.02, 0.03, 0.04});
   inertial.X_LI.position = p_LI;
@@ -37,8 +27,8 @@ description::Model crane(JointType hinge) {
   model.name = "crane";
   model.links.push_back({"boom", {}, mass_at(boom_mass, {0.5 * boom_length, 0, 0}), {}});
   model.links.push_back({"weight", {{boom_length, 0, 0}}, mass_at(weight_mass, Vector3d::Zero()), {}});
-  model.joints.push_back(joint("hinge", hinge, Joint::world, 0, Vector3d::UnitY()));
-  model.joints.push_back(joint("weld", JointType::fixed, 0, 1, Vector3d::UnitZ()));
+  model.joints.push_back(joint_of("hinge", hinge, Joint::world, 0, Vector3d::UnitY()));
+  model.joints.push_back(joint_of("weld", JointType::fixed, 0, 1, Vector3d::UnitZ()));
   return model;
 }
 
@@ -116,9 +106,9 @@ TEST(JointForces, AlongItsAxisAJointPassesWhatItsMotorSpringAndDamperGive) {
   model.links.push_back({"turning", {{0.1, 0, 0}}, mass_at(0.4, {0.05, 0.02, 0.01}), {}});
   model.links.push_back({"sliding", {{0.2, 0, 0}}, mass_at(0.3, {0.03, 0, 0.05}), {}});
   model.links.push_back({"ball", {{-0.1, 0.1, 0}}, mass_at(0.2, {-0.05, 0.02, 0}), {}});
-  model.joints.push_back(joint("hinge", JointType::revolute, 0, 1, Vector3d(0, 1, 1).normalized()));
-  model.joints.push_back(joint("rail", JointType::prismatic, 1, 2, Vector3d::UnitX()));
-  model.joints.push_back(joint("socket", JointType::ball, 0, 3, Vector3d::UnitX()));
+  model.joints.push_back(joint_of("hinge", JointType::revolute, 0, 1, Vector3d(0, 1, 1).normalized()));
+  model.joints.push_back(joint_of("rail", JointType::prismatic, 1, 2, Vector3d::UnitX()));
+  model.joints.push_back(joint_of("socket", JointType::ball, 0, 3, Vector3d::UnitX()));
   model.joints[0].axis.damping = 0.02;
   model.joints[1].axis.damping = 0.5;
   model.joints[1].axis.spring_stiffness = 30.0;
@@ -155,7 +145,7 @@ TEST(JointForces, LegsOnTheFloorCarryWhatStandsOnThem) {
                            {{x, 0, 0.05}},
                            mass_at(0.1, Vector3d::Zero()),
                            {{"foot", {}, description::Box{{0.001, 0.2, 0.1}}, {1.0, 0}}}});
-    model.joints.push_back(joint("weld", JointType::fixed, 0, model.links.size() - 1, Vector3d::UnitZ()));
+    model.joints.push_back(joint_of("weld", JointType::fixed, 0, model.links.size() - 1, Vector3d::UnitZ()));
   }
   const auto body = small.add(model, at(0, 0, 0));
   small.world().record(body);

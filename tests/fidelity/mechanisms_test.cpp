@@ -28,16 +28,16 @@ class Mechanisms : public EveryPhysics {
     link.collisions.push_back({"bar", {0.5 * along}, description::Box{size}, {}});
     return link;
   }
-  static Joint joint(const std::string& name, JointType type, std::size_t parent, std::size_t child,
-                     const Vector3d& axis, const Vector3d& place = Vector3d::Zero()) {
-    Joint joint;
-    joint.name = name;
-    joint.type = type;
-    joint.parent = parent;
-    joint.child = child;
-    joint.axis.direction = axis;
-    joint.X_LJ.position = place;
-    return joint;
+  // Two bars on the world, of which the second follows the first.
+  static description::Model pair(JointType second, double multiplier, double offset) {
+    description::Model model;
+    model.name = "pair";
+    model.links.push_back(bar("leader", {0, 0, 0}, {0.2, 0, 0}));
+    model.links.push_back(bar("follower", {0, 1, 0}, {0.2, 0, 0}));
+    model.joints = {joint_of("first", JointType::revolute, Joint::world, 0, Vector3d::UnitZ()),
+                    joint_of("second", second, Joint::world, 1, Vector3d::UnitZ())};
+    model.couplings = {{1, 0, multiplier, offset}};
+    return model;
   }
 };
 INSTANTIATE_TEST_SUITE_P(Every, Mechanisms, ::testing::Values(treel, by_bullet(treel)), name_of);
@@ -52,10 +52,10 @@ TEST_P(Mechanisms, AFourBarLinkageTurnsAsAParallelogram) {
   linkage.links.push_back(bar("coupler", {0, 0, 0.2}, {0.3, 0, 0}));
   linkage.links.push_back(bar("rocker", {0.3, 0, 0}, {0, 0, 0.2}));
   const Vector3d y = Vector3d::UnitY();
-  linkage.joints = {joint("crank_joint", JointType::revolute, Joint::world, 0, y),
-                    joint("elbow", JointType::revolute, 0, 1, y),
-                    joint("rocker_joint", JointType::revolute, Joint::world, 2, y)};
-  linkage.loop_joints = {joint("closing", JointType::revolute, 1, 2, y, {0, 0, 0.2})};
+  linkage.joints = {joint_of("crank_joint", JointType::revolute, Joint::world, 0, y),
+                    joint_of("elbow", JointType::revolute, 0, 1, y),
+                    joint_of("rocker_joint", JointType::revolute, Joint::world, 2, y)};
+  linkage.loop_joints = {joint_of("closing", JointType::revolute, 1, 2, y, {0, 0, 0.2})};
   linkage.devices.emplace_back(description::VelocityMotor{"motor", 0, 2.0, 20.0, 0.0});
   SmallWorld small(space(9.81));
   const auto body = small.add(linkage, at(0, 0, 1));
@@ -83,8 +83,8 @@ TEST_P(Mechanisms, EveryKindOfLoopHolds) {
     description::Model model;
     model.name = "held";
     model.links.push_back(bar("bar", {0, 0, 0}, {0.4, 0, 0}));
-    model.joints = {joint("shoulder", JointType::ball, Joint::world, 0, Vector3d::UnitZ())};
-    Joint loop = joint("hand", type, Joint::world, 0, Vector3d::UnitX(), {0.4, 0, 0});
+    model.joints = {joint_of("shoulder", JointType::ball, Joint::world, 0, Vector3d::UnitZ())};
+    Joint loop = joint_of("hand", type, Joint::world, 0, Vector3d::UnitX(), {0.4, 0, 0});
     loop.second_axis.direction = Vector3d::UnitY();
     model.loop_joints = {loop};
     SmallWorld small(space(9.81));
@@ -104,14 +104,7 @@ TEST_P(Mechanisms, EveryKindOfLoopHolds) {
 
 // Both hinges turn bars; one follows the other, backwards and twice as fast.
 TEST_P(Mechanisms, AFollowerFollowsAndIsFelt) {
-  description::Model model;
-  model.name = "pair";
-  model.links.push_back(bar("leader", {0, 0, 0}, {0.2, 0, 0}));
-  model.links.push_back(bar("follower", {0, 1, 0}, {0.2, 0, 0}));
-  const Vector3d z = Vector3d::UnitZ();
-  model.joints = {joint("first", JointType::revolute, Joint::world, 0, z),
-                  joint("second", JointType::revolute, Joint::world, 1, z)};
-  model.couplings = {{1, 0, -2.0, 0.0}};
+  description::Model model = pair(JointType::revolute, -2.0, 0.0);
   model.devices.emplace_back(description::EffortMotor{"motor", 0, 1.0, 0.0});
   SmallWorld small(space());
   const auto body = small.add(model, at(0, 0, 1));
@@ -123,14 +116,7 @@ TEST_P(Mechanisms, AFollowerFollowsAndIsFelt) {
 }
 
 TEST_P(Mechanisms, AFollowerKeepsItsOffset) {
-  description::Model model;
-  model.name = "pair";
-  model.links.push_back(bar("leader", {0, 0, 0}, {0.2, 0, 0}));
-  model.links.push_back(bar("follower", {0, 1, 0}, {0.2, 0, 0}));
-  const Vector3d z = Vector3d::UnitZ();
-  model.joints = {joint("first", JointType::revolute, Joint::world, 0, z),
-                  joint("second", JointType::prismatic, Joint::world, 1, z)};
-  model.couplings = {{1, 0, 0.1, 0.3}};
+  description::Model model = pair(JointType::prismatic, 0.1, 0.3);
   model.devices.emplace_back(description::PositionMotor{"motor", 0, 2.0, 50.0, 0.0});
   SmallWorld small(space(9.81));
   const auto body = small.add(model, at(0, 0, 1));
@@ -146,7 +132,7 @@ TEST_P(Mechanisms, AWeightOnAScrewTurnsAsItSinks) {
   description::Model nut;
   nut.name = "nut";
   nut.links.push_back({"nut", {}, description::solid_cylinder(1.0, 0.05, 0.02, 0.0), {}});
-  Joint screw = joint("thread", JointType::screw, Joint::world, 0, Vector3d::UnitZ());
+  Joint screw = joint_of("thread", JointType::screw, Joint::world, 0, Vector3d::UnitZ());
   screw.thread_pitch = pitch;
   nut.joints = {screw};
   SmallWorld small(space(9.81));
@@ -166,10 +152,10 @@ TEST_P(Mechanisms, GoOnFromASnapshotAndPassTheirForcesOn) {
   model.links.push_back(bar("right", {0.3, 0, 0}, {0, 0, -0.2}));
   model.links.push_back(bar("load", {0, 0, -0.2}, {0.3, 0, 0}));
   const Vector3d y = Vector3d::UnitY();
-  model.joints = {joint("first", JointType::revolute, Joint::world, 0, y),
-                  joint("second", JointType::revolute, Joint::world, 1, y),
-                  joint("third", JointType::revolute, 0, 2, y)};
-  model.loop_joints = {joint("fourth", JointType::revolute, 1, 2, y, {0.3, 0, 0})};
+  model.joints = {joint_of("first", JointType::revolute, Joint::world, 0, y),
+                  joint_of("second", JointType::revolute, Joint::world, 1, y),
+                  joint_of("third", JointType::revolute, 0, 2, y)};
+  model.loop_joints = {joint_of("fourth", JointType::revolute, 1, 2, y, {0.3, 0, 0})};
   model.couplings = {{1, 0, 1.0, 0.0}};
   SmallWorld small(space(9.81));
   const auto body = small.add(model, at(0, 0, 1));

@@ -149,6 +149,55 @@ TEST_P(Vehicles, OfGazeboWithAckermannSteeringTurnWithTheRadiusOfTheirKinematics
   EXPECT_NEAR(height(), 0.0, 0.01);
 }
 
+std::string track(const std::string& side, double y) {
+  std::string link = "<link name='" + side + "'><pose>0 " + std::to_string(y) + " 0.05 0 0 0</pose>" +
+                     box_inertial(2.0, 0.05) +
+                     "<collision name='c'><geometry><box><size>0.5 0.1 0.1</size></box></geometry></collision>";
+  for (const std::string x : {"0.25", "-0.25"})
+    link += "<collision name='c" + x + "'><pose>" + x + " 0 0 1.5707963267948966 0 0</pose><geometry><cylinder>" +
+            "<radius>0.05</radius><length>0.1</length></cylinder></geometry></collision>";
+  return link + "</link><joint name='" + side + "_joint' type='fixed'><parent>chassis</parent><child>" + side +
+         "</child></joint><plugin filename='gz-sim-track-controller-system' "
+         "name='gz::sim::systems::TrackController'><link>" +
+         side + "</link><min_velocity>-1</min_velocity><max_velocity>1</max_velocity></plugin>";
+}
+const std::string tracked =
+    "<model name='robot'>" + chassis("0.6 0.24 0.1", "0 0 0.12 0 0 0") + track("left", 0.2) + track("right", -0.2) +
+    "<plugin filename='gz-sim-tracked-vehicle-system' name='gz::sim::systems::TrackedVehicle'><left_track><link>left"
+    "</link></left_track><right_track><link>right</link></right_track><tracks_separation>0.4</tracks_separation>"
+    "<tracks_height>0.1</tracks_height><steering_efficiency>0.38</steering_efficiency></plugin></model>";
+
+TEST_P(Vehicles, OfGazeboWithTracksDriveAndTurnAsTheyAreTold) {
+  load(tracked);
+  for (const double linear : {0.5, -0.3}) {
+    const Motion motion = drive(linear, 0.0, 1.0);
+    EXPECT_NEAR(motion.linear, linear, 0.01 * std::abs(linear));
+    EXPECT_NEAR(motion.angular, 0.0, 1e-3);
+  }
+  for (const double angular : {0.5, -0.5}) {
+    const Motion motion = drive(0.0, angular, 1.0);
+    EXPECT_NEAR(motion.linear, 0.0, 0.01);
+    EXPECT_NEAR(motion.angular, angular, 0.1 * std::abs(angular)) << "with the efficiency of its tracks";
+  }
+  const Motion fastest = drive(1.0, 0.9, 1.0);
+  EXPECT_LT(fastest.linear, 0.95) << "the outer track is no faster than it may be";
+  EXPECT_NEAR(height(), 0.0, 0.002);
+}
+
+TEST_P(Vehicles, OfGazeboWithATrackControllerCarryWhatLiesOnThem) {
+  load(
+      "<model name='conveyor'><pose>0 0 0.5 0 0 0</pose><link name='base'>" + box_inertial(5.0, 0.5) +
+      "<collision name='c'><geometry><box><size>5 0.4 0.1</size></box></geometry></collision></link><joint name='tie' "
+      "type='fixed'><parent>world</parent><child>base</child></joint><plugin filename='gz-sim-track-controller-system' "
+      "name='gz::sim::systems::TrackController'><link>base</link></plugin></model><model name='box'><pose>0 0 0.6 0 0 "
+      "0</pose><link name='link'>" +
+      box_inertial(1.0, 0.002) +
+      "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision></link></model>");
+  world_.command(0, "base/0/velocity", {0.5});
+  world_.step(200);
+  EXPECT_NEAR(world_.simulation().world().link_twist(2, 0).linear_W.x(), 0.5, 1e-3);
+}
+
 TEST_P(Vehicles, OfGazeboWithControllersOfJointsMoveThemAsTheyAreTold) {
   load("<model name='arm'><pose>0 0 1 0 0 0</pose><link name='base'>" + box_inertial(1.0, 0.1) +
        "</link><link name='a'>" + box_inertial(1.0, 0.1) + "</link><link name='b'>" + box_inertial(1.0, 0.1) +

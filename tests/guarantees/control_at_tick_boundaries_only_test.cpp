@@ -278,15 +278,14 @@ TEST(ControlAtTickBoundariesOnly, WhatCannotBeIsRefusedWithASentence) {
 
 // As fast as it can, from two processes' worth of participants: what makes sense, what does not, and another's name.
 TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
-  const FieldOfRobots field(4, 60.0);
+  const FieldOfRobots field(4, 5.0);
   const std::string expected = reference(field);
-  ControlledRun run(field);
-  EXPECT_TRUE(run.comes_to([](const auto& now) { return now["tick"] > 0; }));
+  ControlledRun run(field, {"--paused"});
+  EXPECT_EQ(run.done({"step"}), "paused at tick 1\n");
   Stranger first(run.domain(), 0x1111), second(run.domain(), 0x2222);
-  std::atomic<bool> enough = false;
-  const auto flood = [&](Stranger& stranger) {
+  const auto flood = [](const std::stop_token& enough, Stranger& stranger) {
     std::uint64_t number = 1;
-    while (!enough) {
+    while (!enough.stop_requested()) {
       stranger.send(of(Operation::get_status), ++number);
       stranger.send(of(Operation::save_snapshot), ++number);
       ++number;
@@ -298,11 +297,9 @@ TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
       stranger.send(large, ++number);
     }
   };
-  std::thread one(flood, std::ref(first)), two(flood, std::ref(second));
+  std::jthread one(flood, std::ref(first)), two(flood, std::ref(second));
+  run.done({"resume"});
   const auto summary = run.finish();
-  enough = true;
-  one.join();
-  two.join();
   EXPECT_EQ(summary["state_hash"], expected);
   bool is_named = false;
   for (const auto& event : events_of(summary, "rejected"))

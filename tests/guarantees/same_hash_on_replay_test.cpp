@@ -127,7 +127,7 @@ TEST(SameHashOnReplayOf, ARunThatIsControlled) {
 // Answers that miss their deadlines, under each policy with which a run goes on.
 TEST(SameHashOnReplayOf, ARunWithMissedDeadlines) {
   for (const char* on_late : {"hold", "zero", "detach"}) {
-    const FieldOfRobots field(3, 6.0, ", delay: 1, deadline: 0.05, on_late: " + std::string(on_late));
+    const FieldOfRobots field(3, 20.0, ", delay: 1, deadline: 0.05, on_late: " + std::string(on_late));
     const ReservedDomain domain;
     const std::filesystem::path file = field / "run.mcap";
     Process server(field.serve(domain, {"--speed", "4", "--record", file}), {{"COHORT_LOG", "info"}});
@@ -139,7 +139,7 @@ TEST(SameHashOnReplayOf, ARunWithMissedDeadlines) {
     stopped.signal(SIGCONT);
     ASSERT_EQ(server.wait_for_exit(), 0) << server.output();
     EXPECT_GT(field.summary()["late"], 0);
-    expect_identical(verified(file), 601);
+    expect_identical(verified(file), 2001);
   }
 }
 

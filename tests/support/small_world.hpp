@@ -42,6 +42,32 @@ class SmallWorld {
   std::unique_ptr<physics::World> world_;
 };
 
+/// All links of a body taken together, about the origin.
+struct WholeMotion {
+  double kinetic_energy = 0.0;    ///< [J]
+  double potential_energy = 0.0;  ///< of its weight, 0 at z = 0 [J]
+  Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();
+};
+inline WholeMotion whole_motion(SmallWorld& small, std::uint32_t body) {
+  WholeMotion sum;
+  const description::Model& model = small.description.models[small.world().model_of(body)];
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    const Pose X_WL = small.world().link_pose(body, link);
+    const physics::Twist twist = small.world().link_twist(body, link);
+    const description::Inertial& inertial = model.links[link].inertial;
+    const Eigen::Vector3d arm = X_WL.orientation * inertial.X_LI.position;
+    const Eigen::Vector3d v = twist.linear_W + twist.angular_W.cross(arm);
+    const Eigen::Matrix3d R = (X_WL.orientation * inertial.X_LI.orientation).toRotationMatrix();
+    const Eigen::Vector3d spin = R * inertial.inertia * R.transpose() * twist.angular_W;
+    sum.kinetic_energy += 0.5 * inertial.mass * v.squaredNorm() + 0.5 * spin.dot(twist.angular_W);
+    sum.potential_energy += inertial.mass * g * (X_WL.position + arm).z();
+    sum.momentum += inertial.mass * v;
+    sum.angular_momentum += spin + inertial.mass * (X_WL.position + arm).cross(v);
+  }
+  return sum;
+}
+
 /// Of the state of every body, and of all contacts and connections.
 inline std::uint64_t hash_of(const physics::World& world) {
   StateHash hash;
@@ -73,6 +99,20 @@ inline description::Inertial solid_box(double mass, const Eigen::Vector3d& size)
       (mass / 12.0 * Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
           .asDiagonal();
   return inertial;
+}
+
+/// A joint of two links of a model, or of the world and one, about or along this axis; `place`: its, in the child.
+inline description::Joint joint_of(const std::string& name, description::JointType type, std::size_t parent,
+                                   std::size_t child, const Eigen::Vector3d& axis,
+                                   const Eigen::Vector3d& place = Eigen::Vector3d::Zero()) {
+  description::Joint joint;
+  joint.name = name;
+  joint.type = type;
+  joint.parent = parent;
+  joint.child = child;
+  joint.axis.direction = axis;
+  joint.X_LJ.position = place;
+  return joint;
 }
 
 using description::solid_sphere;

@@ -11,7 +11,7 @@ const { parse } = rosmsg;
 const { MessageReader } = serialization;
 const { FoxgloveClient } = protocol;
 
-const patience = 30_000; // [ms]
+const patience = Number(process.env.COHORT_PATIENCE ?? 30_000); // [ms]
 
 const [, , scenario, page, argument] = process.argv;
 const address = new URL(page.replace(/^http/, "ws"));

@@ -124,6 +124,7 @@ export async function runScenario(scenarios) {
   });
   try {
     const page = await browser.newPage({ viewport: { width: 960, height: 640 } });
+    page.setDefaultTimeout(patience);
     const errors = [];
     page.on("pageerror", (error) => errors.push(error.message));
     await page.goto(address);

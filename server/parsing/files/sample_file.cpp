@@ -1,8 +1,6 @@
 #include "server/parsing/files/sample_file.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -30,12 +28,6 @@ std::vector<std::string_view> split(std::string_view line) {
     if (comma == std::string_view::npos) return fields;
     line.remove_prefix(comma + 1);
   }
-}
-
-std::string shortest(double number) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-  return {digits.data(), end};
 }
 
 std::string reading_name(std::size_t index) { return "reading_" + std::to_string(index); }
@@ -131,17 +123,17 @@ class SampleReader {
       if (distance < 0.0) return refuse(number, "distance", "expected at least 0 m");
       if (!distances.empty() && distance < distances.back())
         return refuse(number, "distance",
-                      "expected at least " + shortest(distances.back()) + ", as in the line before");
+                      "expected at least " + shortest_text(distances.back()) + ", as in the line before");
       if (!distances.empty() && angles_here_ < angles.size())
         return refuse(number, "angle",
-                      "expected " + shortest(angles[angles_here_]) + " at the distance before this " +
+                      "expected " + shortest_text(angles[angles_here_]) + " at the distance before this " +
                           "one: every distance has the angles of the first");
       distances.push_back(distance);
       angles_here_ = 0;
     }
     if (distances.size() == 1) {
       if (!angles.empty() && angle <= angles.back())
-        return refuse(number, "angle", "expected more than " + shortest(angles.back()) + ", as angles ascend");
+        return refuse(number, "angle", "expected more than " + shortest_text(angles.back()) + ", as angles ascend");
       if (!angles.empty() && angle - angles.front() >= 2.0 * std::numbers::pi)
         return refuse(number, "angle",
                       "expected less than a full turn from the first, which is taken to follow the last");
@@ -150,7 +142,7 @@ class SampleReader {
       return refuse(number, "angle", "expected the next distance: every distance has the angles of the first");
     } else if (angle != angles[angles_here_]) {
       return refuse(number, "angle",
-                    "expected " + shortest(angles[angles_here_]) + ": every distance has the angles of the first");
+                    "expected " + shortest_text(angles[angles_here_]) + ": every distance has the angles of the first");
     }
     ++angles_here_;
     return true;
@@ -166,7 +158,7 @@ class SampleReader {
       add_problem(last_line, "", "expected at least one line of samples after the header");
     else if (angles_here_ < samples_.angles.size())
       add_problem(last_line, "angle",
-                  "the file ends before the angle " + shortest(samples_.angles[angles_here_]) +
+                  "the file ends before the angle " + shortest_text(samples_.angles[angles_here_]) +
                       ": every distance has the angles of the first");
   }
 
@@ -193,8 +185,8 @@ std::string samples_as_text(const Samples& samples) {
   std::size_t next = 0;
   for (const double distance : samples.distances)
     for (const double angle : samples.angles) {
-      text += shortest(distance) + "," + shortest(angle);
-      for (std::size_t i = 0; i < samples.count(); ++i) text += "," + shortest(samples.readings[next++]);
+      text += shortest_text(distance) + "," + shortest_text(angle);
+      for (std::size_t i = 0; i < samples.count(); ++i) text += "," + shortest_text(samples.readings[next++]);
       text += '\n';
     }
   return text;

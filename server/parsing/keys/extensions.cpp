@@ -83,6 +83,7 @@ constexpr ExtensionKey physics[] = {
     {"iterations", count, "1", "10", "of the iterative solver, at the most"},
     {"direct_bodies", count, "1", "4", "`hybrid`: the most bodies that are solved directly together"},
     {"lowest", real, "m", no_value, "a body below this z has left the world"},
+    {"sleeping", flag, "", "true", "whether steps pass over what has been still for a while"},
     {"strict", flag, "", "false", "whether a body that breaks or leaves the world ends the run"},
 };
 

@@ -12,6 +12,7 @@ namespace cohort::parsing {
 
 enum class ExtensionValue {
   name,          ///< of a link, joint or device of the same model, or of a material
+  object,        ///< scoped name of an object of the world, or of a link of it
   uri,           ///< model://NAME or a path
   choice,        ///< one of ExtensionKey::choices
   flag,          ///< `true` or `false`

@@ -60,6 +60,7 @@ struct MemberKey : ExtensionKey {
 enum class Referent {
   link,
   root_link,
+  belt_link,  ///< one whose surface nothing else drives
   joint,
   moving_joint,  ///< one that has an angle or a way: its first axis is meant
   driven_joint,  ///< a moving one that has no other motor

@@ -60,6 +60,7 @@ std::optional<KeyValues::Value> parse_value(std::string_view text, const Extensi
   using Value = KeyValues::Value;
   switch (key.value) {
     case ExtensionValue::name:
+    case ExtensionValue::object:
     case ExtensionValue::uri:
       if (text.empty()) return std::nullopt;
       return Value(std::string(text));
@@ -112,7 +113,8 @@ std::optional<KeyValues::Value> parse_value(std::string_view text, const Extensi
 
 std::string expected(const ExtensionKey& key) {
   switch (key.value) {
-    case ExtensionValue::name: return "a name";
+    case ExtensionValue::name:
+    case ExtensionValue::object: return "a name";
     case ExtensionValue::uri: return "model://NAME or a path";
     case ExtensionValue::choice: {
       std::string list;

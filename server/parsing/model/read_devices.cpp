@@ -69,6 +69,7 @@ class References {
   ShapeFiles& files_;
   std::set<std::size_t> motorised_;  // joints
   std::set<std::size_t> wheels_;     // joints
+  std::set<std::size_t> belts_;      // links
 };
 
 bool References::find(const ExtensionValues& values, const keys::Reference& key,
@@ -97,6 +98,12 @@ std::optional<std::size_t> References::find_index(Referent to, const std::string
     const std::optional<std::size_t> link = find_named("link", model_.links, name, where);
     if (to == Referent::link || !link || *link == 0) return link;
     report_.problem(where, "expected the root link, '" + model_.links[0].name + "'");
+    return std::nullopt;
+  }
+  if (to == Referent::belt_link) {
+    const std::optional<std::size_t> link = find_named("link", model_.links, name, where);
+    if (!link || belts_.insert(*link).second) return link;
+    report_.problem(where, "the link '" + name + "' has a belt already");
     return std::nullopt;
   }
   const std::optional<std::size_t> joint = find_named("joint", model_.joints, name, where);
@@ -188,6 +195,16 @@ void check(const AckermannDrive& drive, const ExtensionValues& values, const Sdf
     report.problem(values.where("steering_limit"), "expected less than a quarter turn, pi/2");
 }
 
+void check(const Belt& belt, const ExtensionValues& values, const SdfReport& report) {
+  if (belt.axis_L.isZero(0.0)) report.problem(values.where("axis"), "expected a direction, not 0 0 0");
+  if (std::abs(belt.velocity) > belt.max_velocity)
+    report.problem(values.where("velocity"), "exceeds <cohort:max_velocity>");
+}
+
+void check(const TrackedDrive& drive, const ExtensionValues& values, const SdfReport& report) {
+  if (drive.steering_efficiency > 1.0) report.problem(values.where("steering_efficiency"), "expected at most 1");
+}
+
 void check(const Rotor& rotor, const ExtensionValues& values, const SdfReport& report) {
   if (rotor.min_velocity > 0.0) report.problem(values.where("min_velocity"), "expected at most 0 rad/s");
 }
@@ -226,6 +243,7 @@ std::optional<Device> read_device(const ExtensionValues& values, References& ref
   // What is said of a single quantity holds before what is said of all: its noise comes later.
   if constexpr (keys::Senses<Kind>) device.readout = read_readout<Kind>(values);
   read_values<Kind>(values, device);
+  if constexpr (requires { device.child_place; }) device.child_place = report.place_of(values.where("child"));
   const bool is_whole = references.find_all(values, device);
   check(device, values, report);
   if (!is_whole) return std::nullopt;

@@ -60,10 +60,13 @@ void read_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report, JointA
     report.problem(sdf_axis.Element()->FindElement("limit"), "the lower limit exceeds the upper limit");
 }
 
-// Negative, they do not count.
+// Negative, they do not count; nor where they are 0, as exporters write of what they do not know.
 void read_motor_limits(const sdf::JointAxis& sdf_axis, JointAxis& axis) {
-  if (sdf_axis.Effort() >= 0.0) axis.max_effort = sdf_axis.Effort();
-  if (sdf_axis.MaxVelocity() >= 0.0) axis.max_velocity = sdf_axis.MaxVelocity();
+  const auto read = [](double limit, double& most) {
+    if (limit > 0.0 && limit < no_limit) most = limit;
+  };
+  read(sdf_axis.Effort(), axis.max_effort);
+  read(sdf_axis.MaxVelocity(), axis.max_velocity);
 }
 
 // SDF has radians for each metre, of a left-handed thread; its default is 1.

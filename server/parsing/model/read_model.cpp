@@ -180,6 +180,7 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   model.name = sdf_model.Name();
   model.is_static = reading.is_static;
   model.self_collide = sdf_model.SelfCollide();
+  model.may_sleep = sdf_model.AllowAutoDisable();
   warn_of_unsupported(element, reading.report);
 
   ModelFlattener parts(model, reading);
@@ -192,6 +193,7 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
           parts.sensors(), [&](const SensorPlace& sensor) { return sensor.prefix == scope.prefix; });
       if (!extensions_in(scope.model_element, reading.report).empty() || has_sensor)
         reading.report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
+      warn_of_static_belts(scope.model_element, reading.report);
     }
     return model;
   }

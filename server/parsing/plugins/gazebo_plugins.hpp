@@ -27,6 +27,9 @@ const PluginKind* plugin_kind_of(const sdf::ElementPtr& plugin);
 /// Warns of a <plugin> that is not in the register, once in a file.
 void warn_of_unknown_plugin(const sdf::ElementPtr& plugin, const SdfReport& report);
 
+/// Warns of the plugins of a static model that would make a conveyor of it.
+void warn_of_static_belts(const sdf::ElementPtr& model_element, const SdfReport& report);
+
 /// What the plugins of a model, or of one inside of it, are here, whose links and joints are read. What a `cohort:`
 /// device of `model_element` drives, a plugin does not. `names`: those that plugins of the whole model have given away.
 std::vector<Counterpart> read_model_plugins(const sdf::ElementPtr& model_element, const std::string& prefix,

@@ -1,7 +1,6 @@
 #include "server/parsing/plugins/plugin.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -57,11 +56,6 @@ constexpr std::string_view of_no_consequence[] = {"ros",
                                                   "rotorVelocitySlowdownSim"};
 
 }  // namespace
-
-std::string number_text(double value) {
-  char buffer[32];
-  return {std::begin(buffer), std::to_chars(std::begin(buffer), std::end(buffer), value).ptr};
-}
 
 std::string text_of_parameter(const sdf::ElementPtr& parameter) {
   return parameter->GetValue() ? std::string(trimmed(parameter->GetValue()->GetAsString())) : std::string();
@@ -135,13 +129,13 @@ ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, const std::s
 }
 
 ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, double value, const sdf::ElementPtr& where) {
-  return set(key, number_text(value), where);
+  return set(key, shortest_text(value), where);
 }
 
 ModelPlugin::Values& ModelPlugin::Values::set(std::string_view key, const Pose& X) {
   std::string text;
-  for (const double number : X.position) text += number_text(number) + " ";
-  for (const double number : X.orientation.coeffs()) text += number_text(number) + " ";  // x y z w
+  for (const double number : X.position) text += shortest_text(number) + " ";
+  for (const double number : X.orientation.coeffs()) text += shortest_text(number) + " ";  // x y z w
   return set(key, text);
 }
 
@@ -152,7 +146,7 @@ void ModelPlugin::Values::finish(std::string name, const std::string& link) {
   for (int i = 1; !plugin_.names_.insert(used()).second; ++i) unique = name + "_" + std::to_string(i);
   if (auto values = ExtensionValues::from_foreign(plugin_.element(), unique, extension_, values_, plugin_.report())) {
     values->put_in_scope(plugin_.prefix_, extension_);
-    plugin_.counterparts.push_back({&extension_, *std::move(values), link.empty() ? "" : plugin_.prefix_ + link});
+    plugin_.counterparts_.push_back({&extension_, *std::move(values), link.empty() ? "" : plugin_.prefix_ + link});
   }
 }
 
@@ -172,18 +166,6 @@ std::vector<std::pair<const Joint*, sdf::ElementPtr>> ModelPlugin::joints(Parame
   for (const sdf::ElementPtr& parameter : all(names))
     if (const Joint* const each = joint(parameter)) found.emplace_back(each, parameter);
   return found;
-}
-
-std::optional<double> ModelPlugin::limit(const Joint& joint, const char* what) const {
-  for (sdf::ElementPtr each = model_element_->GetFirstElement(); each; each = each->GetNextElement()) {
-    if (each->GetName() != "joint" || prefix_ + each->Get<std::string>("name") != joint.name) continue;
-    const sdf::ElementPtr limit = find(each, {"axis", "limit", what});
-    if (!limit || !is_written(limit)) return std::nullopt;
-    const auto value = limit->Get<double>();
-    constexpr double no_limit = 1e16;  // and so is nothing, or less, to many a file
-    return value > 0.0 && value < no_limit ? std::optional(value) : std::nullopt;
-  }
-  return std::nullopt;
 }
 
 }  // namespace cohort::parsing

@@ -49,9 +49,6 @@ class Plugin {
   std::set<std::string, std::less<>> asked_;
 };
 
-/// With as many digits as give the same bits again.
-std::string number_text(double value);
-
 /// Its value; empty if it has none.
 std::string text_of_parameter(const sdf::ElementPtr& parameter);
 
@@ -65,11 +62,11 @@ struct Counterpart {
 /// A plugin of a model whose links and joints are read, while it is turned into what it is here.
 class ModelPlugin : public Plugin {
  public:
-  /// The model is that in which `model_element` stands, perhaps as a model inside of another one: `prefix` is that of
-  /// all names in it. `names` are those that plugins have given away.
-  ModelPlugin(const sdf::ElementPtr& element, const sdf::ElementPtr& model_element, const std::string& prefix,
-              const Model& model, std::set<std::string>& names, const SdfReport& report)
-      : Plugin(element, report), model_element_(model_element), prefix_(prefix), model_(model), names_(names) {}
+  /// Of a model, or of one inside of it: `prefix` is that of all names there. `names` are those that plugins have given
+  /// away.
+  ModelPlugin(const sdf::ElementPtr& element, const std::string& prefix, const Model& model,
+              std::set<std::string>& names, const SdfReport& report)
+      : Plugin(element, report), prefix_(prefix), model_(model), names_(names) {}
 
   /// Values of keys, for one counterpart.
   class Values {
@@ -96,8 +93,6 @@ class ModelPlugin : public Plugin {
   const Joint* joint(const sdf::ElementPtr& parameter) const;
   /// Every joint that the parameters of these names say, with where.
   std::vector<std::pair<const Joint*, sdf::ElementPtr>> joints(ParameterNames names);
-  /// What <limit> of a joint says of its effort or velocity, if it is a limit.
-  std::optional<double> limit(const Joint& joint, const char* what) const;
   const Model& model() const { return model_; }
   /// Whether a joint is one of this model, and not of one inside of it or around it.
   bool has_joint(const Joint& joint) const {
@@ -106,10 +101,11 @@ class ModelPlugin : public Plugin {
   bool has_link(const Link& link, const std::string& name) const { return link.name == prefix_ + name; }
   std::string without_scope(const std::string& name) const { return name.substr(prefix_.size()); }
 
-  std::vector<Counterpart> counterparts;
+  /// What it became.
+  std::vector<Counterpart>& counterparts() { return counterparts_; }
 
  private:
-  sdf::ElementPtr model_element_;
+  std::vector<Counterpart> counterparts_;
   std::string prefix_;
   const Model& model_;
   std::set<std::string>& names_;

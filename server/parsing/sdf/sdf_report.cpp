@@ -5,15 +5,20 @@
 
 namespace cohort::parsing {
 
-void SdfReport::problem(const sdf::ElementPtr& element, std::string message, std::string_view child) const {
+Problem SdfReport::place_of(const sdf::ElementPtr& element) const {
   Location location = files_.locate(element);
-  if (!child.empty()) location.element += "/" + std::string(child);
-  problems_.push_back({std::move(location.file), location.line, std::move(location.element), std::move(message)});
+  return {std::move(location.file), location.line, std::move(location.element), ""};
+}
+
+void SdfReport::problem(const sdf::ElementPtr& element, std::string message, std::string_view child) const {
+  Problem& problem = problems_.emplace_back(place_of(element));
+  if (!child.empty()) problem.element += "/" + std::string(child);
+  problem.message = std::move(message);
 }
 
 void SdfReport::warning(const sdf::ElementPtr& element, std::string message) const {
-  Location location = files_.locate(element);
-  warnings_.push_back({std::move(location.file), location.line, std::move(location.element), std::move(message)});
+  warnings_.push_back(place_of(element));
+  warnings_.back().message = std::move(message);
 }
 
 void SdfReport::warning_once(const sdf::ElementPtr& element, const std::string& message) const {

@@ -21,6 +21,8 @@ class SdfReport {
   void warning(const sdf::ElementPtr& element, std::string message) const;
   /// Only the first time that it is said of a file.
   void warning_once(const sdf::ElementPtr& element, const std::string& message) const;
+  /// Where it is, without a message.
+  Problem place_of(const sdf::ElementPtr& element) const;
   void problem(Problem problem) const { problems_.push_back(std::move(problem)); }
 
  private:

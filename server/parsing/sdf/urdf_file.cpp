@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "server/parsing/sdf/sdf_schema.hpp"
+#include "server/parsing/sdf/sdf_values.hpp"
 
 namespace cohort::parsing {
 namespace {

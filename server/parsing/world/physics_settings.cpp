@@ -1,5 +1,7 @@
 #include "server/parsing/world/physics_settings.hpp"
 
+#include <cmath>
+
 #include "server/parsing/keys/choices.hpp"
 #include "server/parsing/yaml/yaml_values.hpp"
 
@@ -12,8 +14,33 @@ PhysicsSettings with_values(PhysicsSettings settings, const KeyValues& values) {
   if (values.has("iterations")) settings.iterations = static_cast<std::uint32_t>(values.whole("iterations"));
   if (values.has("direct_bodies")) settings.direct_bodies = static_cast<std::uint32_t>(values.whole("direct_bodies"));
   if (values.has("lowest")) settings.lowest = values.real("lowest");
+  if (values.has("sleeping")) settings.sleeping = values.flag("sleeping");
   if (values.has("strict")) settings.strict = values.flag("strict");
   return settings;
+}
+
+std::optional<std::chrono::nanoseconds> read_step(const sdf::Physics* physics, const SdfReport& report) {
+  if (physics == nullptr || !physics->Element()) return std::nullopt;
+  const sdf::ParamPtr type = physics->Element()->GetAttribute("type");
+  if (const std::string engine = type && type->GetSet() ? type->GetAsString() : "ignored";
+      engine != "bullet" && engine != "ignored" && physics->Element()->GetExplicitlySetInFile())
+    report.warning(physics->Element(),
+                   "the engine '" + engine + "' is not here; Bullet's bodies are, with solvers of our own");
+  // SDF's default would be 1 ms, which libsdformat fills in where there is none.
+  const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
+  if (!step || !step->GetExplicitlySetInFile()) return std::nullopt;
+  constexpr double nanoseconds = 1e9;
+  constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
+  constexpr double longest = 1.0;
+  const auto seconds = step->Get<double>();
+  if (!(seconds > 0.0 && seconds <= longest)) {
+    if (!std::isnan(seconds)) report.problem(step, "expected a step > 0 s and <= 1 s");
+    return std::nullopt;
+  }
+  const double count = std::round(seconds * nanoseconds);
+  if (count < 1.0 || std::abs(seconds * nanoseconds - count) > rounding)
+    report.problem(step, "expected a whole number of nanoseconds, not " + step->GetValue()->GetAsString() + " s");
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(count));
 }
 
 KeyValues read_physics_map(const YamlNode& node, const std::string& path, const YamlReport& report) {

@@ -20,6 +20,7 @@
 #include "server/parsing/sdf/extension_values.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
+#include "server/parsing/world/check_detachable_joints.hpp"
 #include "server/parsing/world/physics_settings.hpp"
 #include "server/parsing/world/population.hpp"
 #include "server/parsing/world/read_breakable_joints.hpp"
@@ -108,6 +109,7 @@ World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& lat
   read_lights(sdf_world, file);
   read_extensions(sdf_world);
   for (const LaterObject& object : later) add_later(object);
+  if (problems_.empty()) check_detachable_joints(world_, problems_);
   return finished();
 }
 
@@ -146,29 +148,7 @@ void WorldReader::read_settings(const sdf::World& sdf_world) {
   check_numbers(sdf_world.Element(), report_);
   warn_of_unsupported(sdf_world.Element(), report_);
 
-  // SDF's default would be 1 ms, which libsdformat fills in where there is none.
-  const sdf::Physics* const physics = sdf_world.PhysicsDefault();
-  if (physics == nullptr || !physics->Element()) return;
-  if (const sdf::ParamPtr type = physics->Element()->GetAttribute("type"); type && type->GetSet()) {
-    const std::string name = type->GetAsString();
-    if (name != "bullet" && name != "ignored" && physics->Element()->GetExplicitlySetInFile())
-      report_.warning(physics->Element(),
-                      "the engine '" + name + "' is not here; Bullet's bodies are, with solvers of our own");
-  }
-  const sdf::ElementPtr step = physics->Element()->FindElement("max_step_size");
-  if (!step || !step->GetExplicitlySetInFile()) return;
-  constexpr double nanoseconds = 1e9;
-  constexpr double rounding = 1e-3;  // of a nanosecond: 1/100 s has no exact binary number
-  constexpr double longest = 1.0;
-  const auto seconds = step->Get<double>();
-  if (!(seconds > 0.0 && seconds <= longest)) {
-    if (!std::isnan(seconds)) report_.problem(step, "expected a step > 0 s and <= 1 s");
-    return;
-  }
-  const double count = std::round(seconds * nanoseconds);
-  if (count < 1.0 || std::abs(seconds * nanoseconds - count) > rounding)
-    report_.problem(step, "expected a whole number of nanoseconds, not " + step->GetValue()->GetAsString() + " s");
-  world_.step = std::chrono::nanoseconds(static_cast<std::int64_t>(count));
+  if (const auto step = read_step(sdf_world.PhysicsDefault(), report_)) world_.step = *step;
 }
 
 void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {

@@ -1,6 +1,7 @@
 #include <chrono>
 #include <type_traits>
 
+#include "server/core/text.hpp"
 #include "server/parsing/keys/choices.hpp"
 #include "server/parsing/keys/device_keys.hpp"
 #include "server/parsing/writing/write_sdf_sensors.hpp"
@@ -31,6 +32,8 @@ std::vector<std::string> texts_of_value(const ExtensionKey& key, const Member& v
 template <class Struct, class Member>
 std::vector<std::string> texts_of(const keys::MemberKey<Struct, Member>& key, const Struct& from, const auto&...) {
   std::vector<std::string> texts = texts_of_value(key, from.*key.member);
+  if (key.value == ExtensionValue::object)
+    for (std::string& text : texts) text = without_scope_marks(text);
   const bool is_default = key.omits_default && texts == texts_of_value(key, Struct{}.*key.member);
   const bool is_needless = key.is_needed != nullptr && !key.is_needed(from);
   if (is_default || is_needless) texts.clear();
@@ -46,7 +49,8 @@ std::vector<std::string> texts_of(const keys::NoiseKey<Struct>& key, const Struc
 
 std::string name_of(const keys::Reference& key, std::size_t index, const Model& model) {
   if (key.to == keys::Referent::drive) return name_of(model.devices[index]);
-  const bool is_link = key.to == keys::Referent::link || key.to == keys::Referent::root_link;
+  using enum keys::Referent;
+  const bool is_link = key.to == link || key.to == root_link || key.to == belt_link;
   return without_scope_marks(is_link ? model.links[index].name : model.joints[index].name);
 }
 
@@ -131,11 +135,7 @@ struct EmitterWriter {
 
 }  // namespace
 
-std::string text_of(double number) {
-  char buffer[32];
-  const auto end = std::to_chars(std::begin(buffer), std::end(buffer), number).ptr;
-  return {std::begin(buffer), end};
-}
+std::string text_of(double number) { return shortest_text(number); }
 std::string text_of(const Eigen::Vector2d& v) { return text_of(v.x()) + " " + text_of(v.y()); }
 std::string text_of(const Eigen::Vector3d& v) { return text_of(v.x()) + " " + text_of(v.y()) + " " + text_of(v.z()); }
 std::string text_of(const Pose& X) {

@@ -124,6 +124,7 @@ class WorldWriter {
     add_key(physics, "iterations", static_cast<std::uint64_t>(settings.iterations));
     add_key(physics, "direct_bodies", static_cast<std::uint64_t>(settings.direct_bodies));
     if (std::isfinite(settings.lowest)) add_key(physics, "lowest", settings.lowest);
+    add_key(physics, "sleeping", settings.sleeping);
     add_key(physics, "strict", settings.strict);
   }
 
@@ -132,6 +133,7 @@ class WorldWriter {
     XmlNode& element = add_named(parent, "model", instance.name);
     add_value(element, "static", model.is_static);
     add_value(element, "self_collide", model.self_collide);
+    add_value(element, "allow_auto_disable", model.may_sleep);
     add_pose(element, instance.X_WM);
     for (std::size_t link = 0; link < model.links.size(); ++link) write_link(element, model, link);
     for (const std::vector<Joint>* joints : {&model.joints, &model.loop_joints})

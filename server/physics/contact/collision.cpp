@@ -17,6 +17,7 @@ void Collision::add(std::shared_ptr<const BulletShape> shape) {
   constexpr double nearly = 0.9;
   furthest_unseen_.push_back(nearly * geometry::half_thickness_of(scene_.solid(solid).shape));
   ways_.emplace_back(Eigen::Vector3d::Zero());
+  is_asleep_.push_back(0);
   shapes_.push_back(std::move(shape));
   pairs_.emplace_back();
 }
@@ -49,6 +50,7 @@ geometry::Bounds Collision::region_along(std::uint32_t solid, const Eigen::Vecto
 
 bool Collision::reports(std::uint32_t solid, std::uint32_t other) const {
   if (!scene_.solid(other).moves) return true;
+  if (is_asleep_[solid] != is_asleep_[other]) return is_asleep_[other] != 0;
   return is_fast(solid) == is_fast(other) ? solid < other : is_fast(solid);
 }
 

@@ -11,8 +11,8 @@
 
 namespace cohort::physics {
 
-/// Two solids that are near each other. `a` moves; if both do, it is the one that is fast or, if both are or neither
-/// is, has the lower index.
+/// Two solids that are near each other. `a` moves; if both do, it is the one that is awake, or fast or, if both are or
+/// neither is, has the lower index.
 struct SolidPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -42,6 +42,8 @@ class Collision {
   /// Where a solid that is fast will be at the end of the step if nothing holds it, less where it is [m]; zero for one
   /// that is not. Different solids from different threads, before `detect`.
   void set_way(std::uint32_t solid, const Eigen::Vector3d& way_W) { ways_[solid] = way_W; }
+  /// What sleeps leaves its pairs as they are, and reports none with what is awake. Not while others `detect`.
+  void set_asleep(std::uint32_t solid, bool asleep) { is_asleep_[solid] = asleep ? 1 : 0; }
   /// All places of the solid in the step, and `margin` around them.
   geometry::Bounds region_of(std::uint32_t solid) const { return region_along(solid, ways_[solid]); }
 
@@ -91,6 +93,7 @@ class Collision {
   std::vector<std::vector<SolidPair>> pairs_;  // by solid, ascending b
   std::vector<double> furthest_unseen_;        // by solid
   std::vector<Eigen::Vector3d> ways_;          // by solid
+  std::vector<std::uint8_t> is_asleep_;        // by solid
 };
 
 }  // namespace cohort::physics

@@ -37,7 +37,8 @@ struct ContactPoints {
 
   std::array<ContactPoint, most> points;
   int count = 0;
-  /// Along which the solver has laid the first tangent of each; zero: anywhere. Told anew in every step.
+  /// Along which the solver has laid the first tangent of each, of a belt its axis; zero: anywhere. Told anew in every
+  /// step.
   Eigen::Vector3d friction_direction_W = Eigen::Vector3d::Zero();
 
   void add(const Eigen::Vector3d& position_W, const Eigen::Vector3d& normal_W, double gap) {

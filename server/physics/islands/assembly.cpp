@@ -70,13 +70,14 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
                                    std::span<const std::shared_ptr<const BulletShape>> shapes) {
   const auto index = static_cast<std::uint32_t>(members.size());
   const Multibody& body = *multibody;
-  std::shared_ptr<const FluidModel>& fluid = fluid_models_[&body.mechanism()];
+  std::shared_ptr<const FluidModel>& fluid = fluid_models[&body.mechanism()];
   if (!fluid) fluid = std::make_shared<const FluidModel>(body.mechanism(), media);
   Member& member = members.emplace_back();
   member.body = body.body();
   member.multibody = std::move(multibody);
   if (!fluid->is_empty()) member.fluid = std::make_unique<FluidBody>(fluid);
   anchors.index_of_member.push_back(-1);
+  ++revision;
   const description::Model& model = body.mechanism().model();
   const std::vector<description::Link>& links = model.links;
   std::size_t shape = 0;
@@ -101,6 +102,7 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
 }
 
 void Assembly::take_out(std::uint32_t member) {
+  ++revision;
   members[member].is_active = false;
   if (members[member].record) members[member].record->forget();
   connections.release_of(member);
@@ -117,6 +119,8 @@ void Assembly::put_back(std::uint32_t index) {
     if (member.fluid) member.fluid->stop();
   }
   member.is_active = member.is_finite = member.is_inside = true;
+  member.still_steps = 0;
+  ++revision;
   place_solids_of(member);
   for (const Part& part : member.parts) scene.put_back(part.solid);
 }
@@ -135,6 +139,12 @@ void Assembly::place(std::uint32_t index, const Pose& X_WM) {
 void Assembly::place_solids_of(const Member& member) {
   for (const Part& part : member.parts)
     scene.set_pose(part.solid, member.multibody->segment_pose(part.segment) * part.X_SC);
+}
+
+void Assembly::set_asleep(std::uint32_t index, bool asleep) {
+  members[index].is_asleep = asleep;
+  ++revision;
+  for (const Part& part : members[index].parts) collision.set_asleep(part.solid, asleep);
 }
 
 // Solids of one body: only if the model says so, and not beside a joint, where they overlap by design.
@@ -199,12 +209,15 @@ void Assembly::look_around(const Member& member, double furthest, std::vector<st
     for (const std::uint32_t solid : near)
       if (scene.solid(solid).body != member.body && scene.reaches_into(solid, region)) candidates.push_back(solid);
     treel.find_ground(scene, surfaces, X_WS, candidates);
+    treel.find_belts([&](const Ground& ground) { return surface_of(ground.solid).velocity_at(ground.normal_W); });
   }
 }
 
 void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) const {
   Equations& equations = bodies[anchors.index_of_member[member]];
-  equations.set_up(*members[member].multibody, gravity, step);
+  bool is_touched = false;
+  for_each_pair(member, [&](const SolidPair&) { is_touched = true; });
+  equations.set_up(*members[member].multibody, gravity, step, is_touched);
   members[member].multibody->apply_efforts(equations, step);
   pushes.for_each_of(member, [&](const Pushes::Push& push) {
     equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
@@ -230,8 +243,11 @@ void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
   const geometry::Solid& a = scene.solid(pair.a);
   const geometry::Solid& b = scene.solid(pair.b);
   const SurfacePair both = surfaces.of(a.surface, b.surface);
+  const RunningSurfaces running{surface_of(pair.a), surface_of(pair.b)};
   switch (both.directed) {
-    case SurfacePair::Directed::neither: pair.contact.friction_direction_W.setZero(); break;
+    case SurfacePair::Directed::neither:
+      pair.contact.friction_direction_W = running.a.is_belt() ? running.a.axis_W : running.b.axis_W;
+      break;
     case SurfacePair::Directed::by_first:
       pair.contact.friction_direction_W = a.X_WC.orientation * a.surface.friction_direction;
       break;
@@ -239,7 +255,12 @@ void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
       pair.contact.friction_direction_W = b.X_WC.orientation * b.surface.friction_direction;
       break;
   }
-  physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, step);
+  physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, running, step);
+}
+
+RunningSurface Assembly::surface_of(std::uint32_t solid) const {
+  if (!anchors.moves(solid)) return {};
+  return members[anchors.member(solid)].multibody->surface_of(scene.solid(solid).link);
 }
 
 bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
@@ -284,7 +305,7 @@ void Assembly::integrate(std::uint32_t index, const Problem& problem) {
   else
     multibody.integrate(equations.velocity(), step);
   keep_from_passing_through(member);
-  if (member.record) member.record->finish(multibody, equations.velocity(), gravity, step);
+  if (member.record) member.record->finish(multibody, equations.velocity(), !equations.is_symmetric(), gravity, step);
   if (member.fluid) member.fluid->finish_step();
   const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
   member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest_from_origin;

@@ -42,11 +42,16 @@ struct Member {
   double furthest_unseen = std::numeric_limits<double>::infinity();  ///< the least of its parts [m]
   bool is_fast = false;                                              ///< one of its parts is, in this step
   bool is_active = true;
+  std::uint32_t still_steps = 0;  ///< in a row, and no more than it takes to fall asleep
+  bool is_asleep = false;
+  std::uint32_t next_asleep = 0;          ///< round all that fell asleep together, this one too
   bool is_finite = true;                  ///< of the last step: its velocities were
   bool is_inside = true;                  ///< of the last step: it is still in the world
   std::unique_ptr<ForceRecord> record{};  ///< null: nobody asked for it
   std::unique_ptr<FluidBody> fluid{};     ///< null: neither air nor water acts on it
   std::vector<WeightlessLink> weightless{};
+
+  bool is_awake() const { return is_active && !is_asleep; }
 };
 
 /// The bodies of a world that move, and all that couples them to each other and to what stands still: what the rows of
@@ -64,9 +69,12 @@ struct Assembly {
   Anchors anchors;
   Collision collision;
   std::vector<Member> members;
+  std::uint64_t revision = 0;  ///< changes when a member comes, goes, falls asleep or wakes
   Connections connections;
   Pushes pushes;
   Media media;
+  bool has_records = false;  ///< of any member
+  std::map<const Mechanism*, std::shared_ptr<const FluidModel>> fluid_models;
 
   /// One thread alone. `shapes`: of the model's collisions, in their order. Returns the solids.
   std::vector<std::uint32_t> add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
@@ -81,6 +89,8 @@ struct Assembly {
   /// At rest at X_WM, with its joints as they are. One thread alone.
   void place(std::uint32_t index, const Pose& X_WM);
   void place_solids_of(const Member& member);
+  /// One thread alone.
+  void set_asleep(std::uint32_t index, bool asleep);
   /// From the next step on keeps what goes through the member's joints. One thread alone.
   void record(std::uint32_t index);
   /// Tells the records what acted on their bodies in this step; after it, before anything is released or taken out. One
@@ -153,6 +163,8 @@ struct Assembly {
   /// Of the collision `number` of a link.
   void add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
                  const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape);
+  /// Of a solid: how its surface runs.
+  RunningSurface surface_of(std::uint32_t solid) const;
   void keep_from_passing_through(Member& member) const;
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;
   ForceRecord* record_of(std::uint32_t member) const {
@@ -160,9 +172,6 @@ struct Assembly {
   }
   void record_pair(const SolidPair& pair) const;
   void record_connection(const Connection& connection) const;
-
-  bool has_records_ = false;
-  std::map<const Mechanism*, std::shared_ptr<const FluidModel>> fluid_models_;
 };
 
 }  // namespace cohort::physics

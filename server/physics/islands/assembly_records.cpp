@@ -7,7 +7,7 @@ namespace cohort::physics {
 void Assembly::record(std::uint32_t index) {
   Member& member = members[index];
   if (member.record) return;
-  has_records_ = true;
+  has_records = true;
   const Mechanism& mechanism = member.multibody->mechanism();
   const std::vector<description::Link>& links = mechanism.model().links;
   std::vector<std::size_t> links_of_parts;
@@ -18,10 +18,10 @@ void Assembly::record(std::uint32_t index) {
 }
 
 void Assembly::record_outside() {
-  if (!has_records_) return;
+  if (!has_records) return;
   for (std::uint32_t index = 0; index < members.size(); ++index) {
     const Member& member = members[index];
-    if (!member.is_active) continue;
+    if (!member.is_awake()) continue;
     if (!member.is_finite) {  // it took no part
       if (member.record) member.record->forget();
       continue;

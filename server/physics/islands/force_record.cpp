@@ -22,11 +22,30 @@ void ForceRecord::begin(const Multibody& body) {
   reference_W_ = body.reference();
 }
 
-void ForceRecord::finish(const Multibody& body, const double* velocities, const Vector3d& gravity, double step) {
+void ForceRecord::finish(const Multibody& body, const double* velocities, bool in_the_middle, const Vector3d& gravity,
+                         double step) {
   step_ = step;
   motion_.after(body, parents_.size());
-  find_accelerations(velocities, step);
-  needed_.resize(parents_.size());
+  needed_.assign(parents_.size(), {Vector3d::Zero(), Vector3d::Zero()});
+  std::vector<double> accelerations(velocities_.size());
+  for (std::size_t i = 0; i < velocities_.size(); ++i) accelerations[i] = (velocities[i] - velocities_[i]) / step;
+  if (!in_the_middle) return add_needed(1.0, velocities_, accelerations, gravity);
+
+  // Bias forces are quadratic in the velocities: those of the middle, but for what is of second order in the change.
+  std::vector<double> middle(velocities_.size());
+  std::vector<double> half_the_change(velocities_.size());
+  for (std::size_t i = 0; i < velocities_.size(); ++i) {
+    half_the_change[i] = 0.5 * (velocities[i] - velocities_[i]);
+    middle[i] = velocities_[i] + half_the_change[i];
+  }
+  add_needed(1.0, middle, accelerations, gravity);
+  add_needed(-1.0, half_the_change, std::vector<double>(velocities_.size(), 0.0), Vector3d::Zero());
+}
+
+// What each link needs for these velocities and accelerations.
+void ForceRecord::add_needed(double factor, const std::vector<double>& velocities,
+                             const std::vector<double>& accelerations, const Vector3d& gravity) {
+  find_accelerations(velocities, accelerations);
   for (std::size_t link = 0; link < parents_.size(); ++link) {
     const description::Inertial& inertial = mechanism_.model().links[link].inertial;
     const auto segment = static_cast<std::size_t>(mechanism_.link(link).segment);
@@ -38,25 +57,23 @@ void ForceRecord::finish(const Multibody& body, const double* velocities, const 
         motion.acceleration_W + motion.angular_acceleration_W.cross(arm_W) + w.cross(w.cross(arm_W));
     const Eigen::Matrix3d R = X_WI.orientation.toRotationMatrix();
     const Eigen::Matrix3d inertia_W = R * inertial.inertia * R.transpose();
-    Wrench& needed = needed_[link];
-    needed.force_W = inertial.mass * (acceleration_W - gravity);
-    needed.torque_W = inertia_W * motion.angular_acceleration_W + w.cross(inertia_W * w) +
-                      (X_WI.position - reference_W_).cross(needed.force_W);
+    const Vector3d force_W = inertial.mass * (acceleration_W - gravity);
+    needed_[link].force_W += factor * force_W;
+    needed_[link].torque_W += factor * (inertia_W * motion.angular_acceleration_W + w.cross(inertia_W * w) +
+                                        (X_WI.position - reference_W_).cross(force_W));
   }
 }
 
 // From the root to the leaves, of the segments' origins (Craig, "Introduction to robotics", section 6.5).
-void ForceRecord::find_accelerations(const double* velocities, double step) {
+void ForceRecord::find_accelerations(const std::vector<double>& velocities, const std::vector<double>& accelerations) {
   segments_.resize(X_WS_.size());
   const Vector3d zero = Vector3d::Zero();
   for (std::size_t s = 0; s < X_WS_.size(); ++s) {
     const Segment& segment = mechanism_.segments()[s];
-    const double* before = velocities_.data() + segment.first_dof;
-    const double* after = velocities + segment.first_dof;
-    const auto velocity = [&](int i) { return Vector3d(before[i], before[i + 1], before[i + 2]); };
-    const auto acceleration = [&](int i) -> Vector3d {
-      return (Vector3d(after[i], after[i + 1], after[i + 2]) - velocity(i)) / step;
-    };
+    const double* v = velocities.data() + segment.first_dof;
+    const double* a = accelerations.data() + segment.first_dof;
+    const auto velocity = [&](int i) { return Vector3d(v[i], v[i + 1], v[i + 2]); };
+    const auto acceleration = [&](int i) { return Vector3d(a[i], a[i + 1], a[i + 2]); };
     SegmentMotion& motion = segments_[s];
     motion = {zero, zero, zero};
     if (segment.parent >= 0) {
@@ -79,13 +96,13 @@ void ForceRecord::find_accelerations(const double* velocities, double step) {
       }
       case Motion::revolute: {
         const Vector3d axis_W = X_WS_[s].orientation * segment.axis_S;
-        motion.angular_velocity_W += before[0] * axis_W;
-        motion.angular_acceleration_W += (after[0] - before[0]) / step * axis_W + w.cross(before[0] * axis_W);
+        motion.angular_velocity_W += v[0] * axis_W;
+        motion.angular_acceleration_W += a[0] * axis_W + w.cross(v[0] * axis_W);
         break;
       }
       case Motion::prismatic: {
         const Vector3d axis_W = X_WS_[s].orientation * segment.axis_S;
-        motion.acceleration_W += (after[0] - before[0]) / step * axis_W + 2.0 * w.cross(before[0] * axis_W);
+        motion.acceleration_W += a[0] * axis_W + 2.0 * w.cross(v[0] * axis_W);
         break;
       }
       case Motion::ball: {

@@ -11,10 +11,10 @@ namespace cohort::physics {
 /// What went through the joints of one body in its last step: inverse dynamics of each link, also of links that are
 /// welded into one segment (recursive Newton-Euler; Featherstone, "Rigid body dynamics algorithms", 2008, chapter 5).
 ///
-/// It takes the accelerations that the step found, at the place and the velocities where the step began: these are the
-/// equations that the solver solved, so what goes through a joint along its axis is what its motor, friction, damping,
-/// spring and limits gave, to the last digits. Kept for those bodies alone of which somebody asked for it, and no part
-/// of the state.
+/// It takes the accelerations that the step found, at the place and the velocities where the step began, or at those of
+/// its middle where the equations do (Equations::is_symmetric): these are the equations that the solver solved, so what
+/// goes through a joint along its axis is what its motor, friction, damping, spring and limits gave, to the last
+/// digits. Kept for those bodies alone of which somebody asked for it, and no part of the state.
 class ForceRecord {
  public:
   /// `links_of_solids`: of the body's solids in their order, of which `first_solid` is the first.
@@ -22,8 +22,9 @@ class ForceRecord {
 
   /// Call these two around the integration of a step.
   void begin(const Multibody& body);
-  /// `velocities`: those that the solver found.
-  void finish(const Multibody& body, const double* velocities, const Eigen::Vector3d& gravity, double step);
+  /// `velocities`: those that the solver found; `in_the_middle`: with bias forces of the middle of the step.
+  void finish(const Multibody& body, const double* velocities, bool in_the_middle, const Eigen::Vector3d& gravity,
+              double step);
   /// What acted from outside on a link during the step that was finished, as an impulse at a point and an angular
   /// impulse [N s, N m s]; nothing if there is no such step.
   void add_outside(std::size_t link, const Eigen::Vector3d& point_W, const Eigen::Vector3d& impulse_W,
@@ -35,7 +36,7 @@ class ForceRecord {
   const MotionRecord& motion() const { return motion_; }
   /// On the joint's child by its parent, about the joint's origin where the step began; zero if the last step is not
   /// known.
-  Wrench joint_wrench(std::size_t joint) const;
+  Wrench joint_wrench(std::size_t index) const;
 
  private:
   struct SegmentMotion {
@@ -43,7 +44,9 @@ class ForceRecord {
     Eigen::Vector3d angular_acceleration_W;
     Eigen::Vector3d acceleration_W;  // of the segment's origin
   };
-  void find_accelerations(const double* velocities, double step);
+  void add_needed(double factor, const std::vector<double>& velocities, const std::vector<double>& accelerations,
+                  const Eigen::Vector3d& gravity);
+  void find_accelerations(const std::vector<double>& velocities, const std::vector<double>& accelerations);
 
   const Mechanism& mechanism_;
   std::uint32_t first_solid_;

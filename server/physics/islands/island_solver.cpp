@@ -14,6 +14,8 @@ namespace {
 // beyond, that takes too long.
 constexpr std::size_t most_solved_as_group = 6;
 constexpr double unsettled = 1e-4;  // [m/s or rad/s]
+// The direct solver and that of groups want symmetric equations, which those of what spins fast are not.
+constexpr std::uint32_t passes_where_fast = 10;
 
 // Whether nothing but other bodies that move keeps it where it is.
 bool is_carried(std::uint32_t member, const Assembly& assembly) {
@@ -58,7 +60,7 @@ void keep_impulses(const Problem& problem) {
 void IslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
   sound_.clear();
   for (const std::uint32_t member : members)
-    if (assembly.members[member].is_active) sound_.push_back(member);
+    if (assembly.members[member].is_awake()) sound_.push_back(member);
   while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
 }
 
@@ -88,18 +90,22 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
     assembly.for_each_pair(member, [&](SolidPair& pair) { assembly.add_contact_rows(pair, problem_); });
 
   const bool directly = is_solved_directly(assembly.settings, sound_.size());
+  const bool is_symmetric = std::ranges::all_of(
+      sound_, [&](std::uint32_t member) { return bodies_[assembly.anchors.index_of_member[member]].is_symmetric(); });
   bool is_solved = false;
-  if (directly) {
+  if (directly && is_symmetric) {
     is_solved = solve_directly(problem_);
-  } else if (has_light_connections && sound_.size() <= most_solved_as_group) {
+  } else if (is_symmetric && has_light_connections && sound_.size() <= most_solved_as_group) {
     is_solved = group_solver_.solve(problem_) || solve_directly(problem_);
   } else {
     is_solved = solve_by_active_set(problem_);
   }
   if (!is_solved) {
     const double share_of_last = has_connections ? start_of_connected : 1.0;
-    const double change = solve_iteratively(problem_, assembly.settings.iterations, share_of_last);
-    if (!has_connections && is_unsettled_heap(change, sound_, assembly)) settle(assembly.settings.iterations);
+    const std::uint32_t passes = assembly.settings.iterations * (is_symmetric ? 1 : passes_where_fast);
+    const double change = solve_iteratively(problem_, passes, share_of_last);
+    if (!has_connections && is_unsettled_heap(change, sound_, assembly))
+      settle(assembly.settings.iterations, is_symmetric);
   }
   if (!all_are_finite()) return false;
 
@@ -109,10 +115,10 @@ bool IslandSolver::try_to_solve(Assembly& assembly) {
 }
 
 // All at once, if that is not too dear; by more passes otherwise.
-void IslandSolver::settle(std::uint32_t iterations) {
+void IslandSolver::settle(std::uint32_t iterations, bool is_symmetric) {
   SequentialImpulses impulses(problem_);
   impulses.take_back();
-  if (group_solver_.solve(problem_)) return;
+  if (is_symmetric && group_solver_.solve(problem_)) return;
   impulses.put_in();
   for (std::uint32_t i = 0; i < passes_of_heaps * iterations; ++i)
     if (impulses.pass(i % 2 == 0) <= unsettled) return;

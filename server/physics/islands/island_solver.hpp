@@ -16,7 +16,7 @@ class IslandSolver {
 
  private:
   bool try_to_solve(Assembly& assembly);
-  void settle(std::uint32_t iterations);
+  void settle(std::uint32_t iterations, bool is_symmetric);
 
   IslandBodies bodies_;
   Problem problem_{bodies_};

@@ -15,6 +15,10 @@ class Islands {
   void link(std::uint32_t a, std::uint32_t b);
   /// After the last link: sorts the members.
   void finish();
+  /// Then: what each of [0, count) is called from now on, ascending.
+  void rename(std::span<const std::uint32_t> names) {
+    for (std::uint32_t& member : members_) member = names[member];
+  }
 
   /// Islands are in the order of their least members.
   std::uint32_t count() const { return static_cast<std::uint32_t>(begin_.size()) - 1; }

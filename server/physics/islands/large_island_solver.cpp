@@ -20,7 +20,7 @@ constexpr unsigned last_colour = 63;
 void LargeIslandSolver::solve(Assembly& assembly, std::span<const std::uint32_t> members) {
   sound_.clear();
   for (const std::uint32_t member : members)
-    if (assembly.members[member].is_active) sound_.push_back(member);
+    if (assembly.members[member].is_awake()) sound_.push_back(member);
   while (!sound_.empty() && !try_to_solve(assembly)) leave_out_broken(sound_, assembly);
 }
 

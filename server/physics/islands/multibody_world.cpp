@@ -22,6 +22,7 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
       shapes_(description.models.size()),
       assembly_(description),
       large_island_solver_(workers),
+      sleep_(assembly_),
       memory_(workers.threads()) {
   bodies_.reserve(description.instances.size());
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
@@ -34,6 +35,7 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
 std::uint32_t MultibodyWorld::add_body(std::size_t model, const Pose& X_WM) {
   const std::uint32_t body = create_body(model, X_WM);
   assembly_.scene.build();
+  if (is_static(body)) sleep_.wake_all();
   return body;
 }
 
@@ -117,15 +119,15 @@ Eigen::Vector3d MultibodyWorld::link_acceleration(std::uint32_t body, std::size_
   return Eigen::Vector3d::Zero();
 }
 
-Wrench MultibodyWorld::connection_wrench(std::uint32_t index) const {
-  const Connection* const connection = assembly_.connections.find(index);
+Wrench MultibodyWorld::connection_wrench(std::uint32_t number) const {
+  const Connection* const connection = assembly_.connections.find(number);
   if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   return connection->wrench_on_a(assembly_.pose_of(connection->a()), assembly_.pose_of(connection->b()),
                                  assembly_.step);
 }
 
-Wrench MultibodyWorld::connection_reaction(std::uint32_t index) const {
-  const Connection* const connection = assembly_.connections.find(index);
+Wrench MultibodyWorld::connection_reaction(std::uint32_t number) const {
+  const Connection* const connection = assembly_.connections.find(number);
   if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   return connection->wrench_on_b(assembly_.pose_of(connection->a()), assembly_.pose_of(connection->b()),
                                  assembly_.step);
@@ -133,47 +135,81 @@ Wrench MultibodyWorld::connection_reaction(std::uint32_t index) const {
 
 void MultibodyWorld::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
                                      std::span<const double> velocities) {
+  wake(body);
   multibody(body).set_joint_state(joint, coordinates, velocities);
   assembly_.place_solids_of(assembly_.members[bodies_[body].member]);
   assembly_.scene.update();
 }
 
 void MultibodyWorld::step() {
-  detect();
-  find_islands();
-  solve_islands();
-  report_contacts();
-  assembly_.connections.settle([&](const Connection::End& end) { return assembly_.pose_of(end); }, assembly_.step);
-  assembly_.record_outside();
+  find_awake();
+  quarantined_.clear();
+  const bool all_is_as_it_was = awake_.empty() && reported_at_ == assembly_.revision;
+  if (!all_is_as_it_was) {
+    detect();
+    find_islands();
+    solve_islands();
+    report_contacts();
+    assembly_.connections.settle([&](const Connection::End& end) { return assembly_.pose_of(end); }, assembly_.step);
+    assembly_.record_outside();
+  }
   assembly_.connections.break_overloaded(assembly_.step);
-  quarantine();
   assembly_.pushes.clear();
+  if (all_is_as_it_was) return;
+  quarantine();
   assembly_.scene.update();
+  sleep_.fall_asleep(islands_);
+}
+
+void MultibodyWorld::find_awake() {
+  if (awake_at_ == assembly_.revision) return;
+  awake_at_ = assembly_.revision;
+  awake_.clear();
+  for (std::uint32_t member = 0; member < assembly_.members.size(); ++member)
+    if (assembly_.members[member].is_awake()) awake_.push_back(member);
 }
 
 void MultibodyWorld::detect() {
   std::vector<Member>& members = assembly_.members;
-  workers_.for_each_chunk(members.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
+  workers_.for_each_chunk(awake_.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
     double& furthest = memory_[worker].furthest;
-    for (std::size_t i = begin; i < end; ++i)
-      if (members[i].is_active) furthest = std::max(furthest, assembly_.look_ahead(members[i]));
+    for (std::size_t i = begin; i < end; ++i) furthest = std::max(furthest, assembly_.look_ahead(members[awake_[i]]));
   });
   double furthest = 0.0;
   for (Memory& memory : memory_) furthest = std::max(furthest, std::exchange(memory.furthest, 0.0));
-  workers_.for_each_chunk(members.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
+  workers_.for_each_chunk(awake_.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
     Memory& memory = memory_[worker];
     for (std::size_t i = begin; i < end; ++i)
-      if (members[i].is_active) assembly_.look_around(members[i], furthest, memory.near, memory.candidates);
+      assembly_.look_around(members[awake_[i]], furthest, memory.near, memory.candidates);
   });
 }
 
 void MultibodyWorld::find_islands() {
-  const auto count = static_cast<std::uint32_t>(assembly_.members.size());
+  // NOLINTNEXTLINE(modernize-loop-convert): they become more, as what is touched wakes.
+  for (std::size_t i = 0; i < awake_.size(); ++i)
+    assembly_.for_each_coupled(awake_[i], [&](std::uint32_t other) {
+      if (assembly_.members[other].is_asleep) wake_group_of(other);
+    });
+  find_awake();
+  const auto count = static_cast<std::uint32_t>(awake_.size());
+  place_among_awake_.resize(assembly_.members.size());
+  for (std::uint32_t place = 0; place < count; ++place) place_among_awake_[awake_[place]] = place;
   islands_.reset(count);
-  for (std::uint32_t member = 0; member < count; ++member)
-    if (assembly_.members[member].is_active)
-      assembly_.for_each_coupled(member, [&](std::uint32_t other) { islands_.link(member, other); });
+  for (std::uint32_t place = 0; place < count; ++place)
+    assembly_.for_each_coupled(awake_[place],
+                               [&](std::uint32_t other) { islands_.link(place, place_among_awake_[other]); });
   islands_.finish();
+  islands_.rename(awake_);
+}
+
+// Its pairs with what touched it are of this step already, and not its own.
+void MultibodyWorld::wake_group_of(std::uint32_t sleeper) {
+  constexpr double slow = 0.0;
+  for (const std::uint32_t member : sleep_.group_of(sleeper)) {
+    assembly_.look_around(assembly_.members[member], slow, memory_[0].near, memory_[0].candidates);
+    awake_.push_back(member);
+  }
+  sleep_.wake(sleeper);
 }
 
 // The small ones first, each by one worker; then the large ones, each by all workers.
@@ -188,13 +224,16 @@ void MultibodyWorld::solve_islands() {
   });
   for (std::uint32_t island = 0; island < islands_.count(); ++island)
     if (is_large(island)) large_island_solver_.solve(assembly_, islands_.members(island));
+  if (!assembly_.settings.sleeping) return;
+  workers_.for_each_chunk(awake_.size(), members_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) sleep_.count(awake_[i]);
+  });
 }
 
 void MultibodyWorld::quarantine() {
-  quarantined_.clear();
-  for (std::uint32_t index = 0; index < assembly_.members.size(); ++index) {
+  for (const std::uint32_t index : awake_) {
     const Member& member = assembly_.members[index];
-    if (!member.is_active || (member.is_finite && member.is_inside)) continue;
+    if (member.is_finite && member.is_inside) continue;
     using Reason = Quarantine::Reason;
     quarantined_.push_back({member.body, member.is_finite ? Reason::left_world : Reason::not_finite});
     assembly_.take_out(index);
@@ -215,21 +254,48 @@ std::uint32_t MultibodyWorld::connect(std::uint32_t body_a, std::size_t link_a, 
     end_b = {bodies_[body_b].member, segment, static_cast<std::uint32_t>(link_b),
              b.segment_pose(segment).inverse() * X_WP, body_b};
   }
+  wake(body_a);
+  if (!is_static(body_b)) wake(body_b);
   return assembly_.connections.add(end_a, end_b, limits);
 }
 
+void MultibodyWorld::disconnect(std::uint32_t number) {
+  sleep_.wake_ends(number);
+  assembly_.connections.release(number);
+}
+
+void MultibodyWorld::set_connection_give(std::uint32_t number, const ConnectionGive& give) {
+  sleep_.wake_ends(number);
+  assembly_.connections.set_give(number, give);
+}
+
+PlacedBody& MultibodyWorld::wake(std::uint32_t body) {
+  sleep_.wake(bodies_[body].member);
+  return bodies_[body];
+}
+
+// Those of what sleeps first: they stay until somebody wakes or falls asleep.
 void MultibodyWorld::report_contacts() {
-  contacts_.clear();
-  const geometry::Scene& scene = assembly_.scene;
-  for (std::uint32_t member = 0; member < assembly_.members.size(); ++member) {
-    assembly_.for_each_pair(member, [&](const SolidPair& pair) {
-      for (const ContactPoint& point : pair.contact) {
-        if (point.gap > 0.0 && point.impulse[0] == 0.0) continue;  // near, but it did not touch
-        contacts_.push_back({scene.solid(pair.a).body, scene.solid(pair.b).body, point.position_W, point.normal_W,
-                             point.gap, point.impulse[0], pair.a, pair.b});
-      }
-    });
+  if (reported_at_ != assembly_.revision) {
+    reported_at_ = assembly_.revision;
+    contacts_.clear();
+    for (std::uint32_t member = 0; member < assembly_.members.size(); ++member)
+      if (assembly_.members[member].is_asleep) report_contacts_of(member);
+    contacts_asleep_ = contacts_.size();
   }
+  contacts_.resize(contacts_asleep_);
+  for (const std::uint32_t member : awake_) report_contacts_of(member);
+}
+
+void MultibodyWorld::report_contacts_of(std::uint32_t member) {
+  const geometry::Scene& scene = assembly_.scene;
+  assembly_.for_each_pair(member, [&](const SolidPair& pair) {
+    for (const ContactPoint& point : pair.contact) {
+      if (point.gap > 0.0 && point.impulse[0] == 0.0) continue;  // near, but it did not touch
+      contacts_.push_back({scene.solid(pair.a).body, scene.solid(pair.b).body, point.position_W, point.normal_W,
+                           point.gap, point.impulse[0], pair.a, pair.b});
+    }
+  });
 }
 
 }  // namespace cohort::physics

@@ -8,8 +8,10 @@
 #include "server/physics/islands/island_solver.hpp"
 #include "server/physics/islands/islands.hpp"
 #include "server/physics/islands/large_island_solver.hpp"
+#include "server/physics/islands/sleep.hpp"
 #include "server/physics/world/physics_world.hpp"
 #include "server/physics/world/placed_body.hpp"
+
 namespace cohort::physics {
 
 /// One step of the bodies of a world: where they touch, which of them hang together, and, island by island, their
@@ -22,6 +24,9 @@ class MultibodyWorld final : public World {
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   bool is_active(std::uint32_t body) const override;
+  bool is_asleep(std::uint32_t body) const override {
+    return !is_static(body) && assembly_.members[bodies_[body].member].is_asleep;
+  }
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
   void remove_body(std::uint32_t index) override;
   void put_back_body(std::uint32_t index) override;
@@ -43,7 +48,7 @@ class MultibodyWorld final : public World {
     return multibody(body).track(drive, side);
   }
   void record(std::uint32_t body) override {
-    if (!is_static(body)) assembly_.record(bodies_[body].member);
+    if (!is_static(body)) assembly_.record(wake(body).member);
   }
   Wrench joint_wrench(std::uint32_t body, std::size_t joint) const override;
   Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const override;
@@ -53,26 +58,27 @@ class MultibodyWorld final : public World {
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
-  void disconnect(std::uint32_t connection) override { assembly_.connections.release(connection); }
+  void disconnect(std::uint32_t number) override;
   bool is_connected(std::uint32_t connection) const override { return assembly_.connections.holds(connection); }
-  void set_connection_give(std::uint32_t connection, const ConnectionGive& give) override {
-    assembly_.connections.set_give(connection, give);
-  }
-  Wrench connection_wrench(std::uint32_t connection) const override;
-  Wrench connection_reaction(std::uint32_t connection) const override;
+  void set_connection_give(std::uint32_t number, const ConnectionGive& give) override;
+  Wrench connection_wrench(std::uint32_t number) const override;
+  Wrench connection_reaction(std::uint32_t number) const override;
   std::span<const std::uint32_t> broken_connections() const override { return assembly_.connections.broken(); }
 
   void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
-    multibody(body).set_joint_target(joint, JointRows::Control::velocity, velocity);
+    set_joint_target(body, joint, JointRows::Control::velocity, velocity);
   }
   void set_joint_position_target(std::uint32_t body, std::size_t joint, double position) override {
-    multibody(body).set_joint_target(joint, JointRows::Control::position, position);
+    set_joint_target(body, joint, JointRows::Control::position, position);
   }
   void set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort) override {
-    multibody(body).set_joint_target(joint, JointRows::Control::effort, effort);
+    set_joint_target(body, joint, JointRows::Control::effort, effort);
   }
   void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) override {
-    multibody(body).set_track_velocity_target(drive, side, velocity);
+    if (multibody(body).set_track_velocity_target(drive, side, velocity)) wake(body);
+  }
+  void set_belt_velocity_target(std::uint32_t body, std::size_t link, double velocity) override {
+    if (multibody(body).set_belt_velocity(link, velocity)) wake(body);
   }
   double rotor_velocity(std::uint32_t body, std::size_t device) const override {
     return assembly_.members[bodies_[body].member].fluid->rotor_velocity(device);
@@ -80,7 +86,10 @@ class MultibodyWorld final : public World {
   void set_rotor_velocity_target(std::uint32_t body, std::size_t device, double velocity) override {
     assembly_.members[bodies_[body].member].fluid->set_rotor_target(device, velocity);
   }
-  void set_root_twist(std::uint32_t body, const Twist& twist) override { multibody(body).set_root_twist(twist); }
+  void set_root_twist(std::uint32_t body, const Twist& twist) override {
+    wake(body);
+    multibody(body).set_root_twist(twist);
+  }
   void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
                        std::span<const double> velocities) override;
 
@@ -101,11 +110,19 @@ class MultibodyWorld final : public World {
   std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, std::uint32_t body);
   std::uint32_t create_body(std::size_t model, const Pose& X_WM);
   void find_lowest();
+  void find_awake();
   void detect();
   void find_islands();
   void solve_islands();
   void quarantine();
   void report_contacts();
+  void report_contacts_of(std::uint32_t member);
+  void wake_group_of(std::uint32_t sleeper);
+  // Of a body that moves: it and what sleeps with it.
+  PlacedBody& wake(std::uint32_t body);
+  void set_joint_target(std::uint32_t body, std::size_t joint, JointRows::Control control, double target) {
+    if (multibody(body).set_joint_target(joint, control, target)) wake(body);
+  }
   // Of a body that moves.
   Multibody& multibody(std::uint32_t body) { return *assembly_.members[bodies_[body].member].multibody; }
   const Multibody& multibody(std::uint32_t body) const { return *assembly_.members[bodies_[body].member].multibody; }
@@ -124,6 +141,14 @@ class MultibodyWorld final : public World {
   LargeIslandSolver large_island_solver_;
   std::vector<Contact> contacts_;
   std::vector<Quarantine> quarantined_;
+  Sleep sleep_;
+  std::vector<std::uint32_t> awake_;              // members, ascending
+  std::vector<std::uint32_t> place_among_awake_;  // by member
+  std::size_t contacts_asleep_ = 0;               // of contacts_, the first
+  // Of the assembly, when awake_ was found and when contacts_ were.
+  static constexpr std::uint64_t never = 0xffffffffffffffff;
+  std::uint64_t awake_at_ = never;
+  std::uint64_t reported_at_ = never;
   std::vector<Memory> memory_;  // by worker
 };
 

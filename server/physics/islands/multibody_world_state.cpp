@@ -9,9 +9,11 @@ void MultibodyWorld::hash_body(std::uint32_t body, StateHash& hash) const {
   hash_changes(bodies_[body], hash);
   if (is_static(body)) return;
   StateHasher{hash}(is_active(body));
+  const Member& member = assembly_.members[bodies_[body].member];
+  StateHasher{hash}.unusual(member.still_steps, 0u);
+  StateHasher{hash}.unusual(member.is_asleep, false);
   Multibody::visit_state(multibody(body), StateHasher{hash});
-  if (const FluidBody* fluid = assembly_.members[bodies_[body].member].fluid.get())
-    FluidBody::visit_state(*fluid, StateHasher{hash});
+  if (const FluidBody* fluid = member.fluid.get()) FluidBody::visit_state(*fluid, StateHasher{hash});
 }
 
 void MultibodyWorld::hash_contacts(StateHash& hash) const {
@@ -32,6 +34,9 @@ void MultibodyWorld::save(SnapshotWriter& writer) const {
     save(member.is_active);
     save(member.is_finite);
     save(member.is_inside);
+    save(member.still_steps);
+    save(member.is_asleep);
+    save(member.next_asleep);
     Multibody::visit_state(*member.multibody, save);
     if (const FluidBody* fluid = member.fluid.get()) FluidBody::visit_state(*fluid, save);
   }
@@ -47,19 +52,26 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
   restore_changes(reader, *this);
   for (std::uint32_t index = 0; index < assembly_.members.size(); ++index) {
     bool is_active = true;
+    bool is_asleep = false;
     restore(is_active);
     Member& member = assembly_.members[index];
     restore(member.is_finite);
     restore(member.is_inside);
+    restore(member.still_steps);
+    restore(is_asleep);
+    restore(member.next_asleep);
     Multibody::visit_state(*member.multibody, restore);
     if (member.fluid) FluidBody::visit_state(*member.fluid, restore);
     member.multibody->update_poses();
     assembly_.place_solids_of(member);
     if (!is_active) assembly_.take_out(index);
+    assembly_.set_asleep(index, is_asleep);
   }
   assembly_.scene.update();
   assembly_.connections.restore(reader, assembly_.members.size());
   assembly_.collision.restore(reader);
+  sleep_.check_groups();
+  find_awake();
   report_contacts();
 }
 

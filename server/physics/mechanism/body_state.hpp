@@ -25,12 +25,14 @@ class BodyState {
   BodyState(const Mechanism& mechanism, Memory memory);
 
   Eigen::Vector3d reference() const { return Eigen::Map<const Eigen::Vector3d>(memory_.reference); }
+  // NOLINTBEGIN(readability-make-member-function-const): what they give access to is the state.
   void set_reference(const Eigen::Vector3d& reference_W) {
     Eigen::Map<Eigen::Vector3d>(memory_.reference) = reference_W;
   }
   Eigen::Quaterniond root_rotation() const;
   void set_root_rotation(const Eigen::Quaterniond& rotation);
   double* velocities() { return memory_.velocities; }
+  // NOLINTEND(readability-make-member-function-const)
   const double* velocities() const { return memory_.velocities; }
   /// From this one on, as many as its segment has; nullptr if there is none.
   double* coordinates(int first) {

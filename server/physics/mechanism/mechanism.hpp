@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -88,8 +89,9 @@ class Mechanism {
   bool is_light(int segment) const { return is_light_[static_cast<std::size_t>(segment)] != 0; }
 
   int dof_count() const { return static_cast<int>(dofs_.size()); }
-  /// Doubles that a vector of velocities takes in the solver, padded with zeros.
-  std::ptrdiff_t stride() const { return (dof_count() + lanes - 1) / lanes * lanes; }
+  /// Doubles that a vector of velocities takes in the solver, padded with zeros; also what is welded to the world has
+  /// some.
+  std::ptrdiff_t stride() const { return (std::max(dof_count(), 1) + lanes - 1) / lanes * lanes; }
   /// By dof: the next one on the way to the root, -1: none.
   const std::vector<int>& parents() const { return parents_; }
   /// Whether the way from each dof to the root is the next lower dof, and so on down to 0.

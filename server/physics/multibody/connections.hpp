@@ -57,7 +57,7 @@ class Connections {
 
  private:
   struct Numbered {
-    std::uint32_t number;
+    std::uint32_t number = 0;
     Connection connection;
   };
   Connection* find(std::uint32_t connection);

@@ -11,7 +11,7 @@ namespace {
 struct Tangents {
   Eigen::Vector3d first;
   Eigen::Vector3d second;
-  bool is_directed = false;
+  bool are_along = false;  // the first is along the direction of friction
 };
 
 // A direction that stands on the surface, up to this, is none [rad].
@@ -61,8 +61,13 @@ void soften(Row& push, double gap, const SurfacePair& surfaces, double step) {
   push.soften(1.0 / (step * resistance));
 }
 
+// Of a rigid track on the ground any share of the load under each of its points would do, and a vehicle that turns
+// wanders with what the solver happens to find. So points under belts give a little, by this share of what they would
+// with no load at all: what is deeper bears more.
+constexpr double give_of_belts = 0.05;
+
 void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangents, ContactPoint& point,
-                    const SurfacePair& surfaces, double step) {
+                    const SurfacePair& surfaces, const RunningSurfaces& running, double step) {
   const int normal = problem.row_count();
   Row& push = problem.add_force_row(a, b, point.position_W, point.normal_W, point.impulse.data());
   push.target = separating_velocity(point.gap, step);
@@ -73,7 +78,10 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangen
     bounces = approach > surfaces.bounce_threshold && approach * step > point.gap;
     if (bounces) push.target = std::max(push.target, surfaces.restitution * approach);
   }
-  if (surfaces.stiffness < SurfacePair::rigid && !bounces) soften(push, point.gap, surfaces, step);
+  if (surfaces.stiffness < SurfacePair::rigid && !bounces)
+    soften(push, point.gap, surfaces, step);
+  else if (running.has_belt() && push.inverse > 0.0)
+    push.soften(give_of_belts / push.inverse);
 
   const auto limit_by_load = [&](Row& row, double coefficient) {
     row.limits = Row::Limits::friction;
@@ -84,15 +92,18 @@ void add_point_rows(Problem& problem, Anchor a, Anchor b, const Tangents& tangen
   const bool is_directed = surfaces.directed != SurfacePair::Directed::neither;
   const double friction =
       is_directed ? std::min(surfaces.friction, surfaces.second_friction) : surfaces.friction;  // of a disc
-  if (tangents.is_directed) {
-    limit_by_load(problem.add_force_row(a, b, point.position_W, tangents.first, &point.impulse[1]), surfaces.friction);
-    limit_by_load(problem.add_force_row(a, b, point.position_W, tangents.second, &point.impulse[2]),
-                  surfaces.second_friction);
+  const Eigen::Vector3d running_W = running.velocity_at(point.normal_W);
+  const auto rub = [&](const Eigen::Vector3d& tangent, double coefficient, double* kept) {
+    Row& row = problem.add_force_row(a, b, point.position_W, tangent, kept);
+    row.target = tangent.dot(running_W);
+    limit_by_load(row, coefficient);
+  };
+  if (is_directed && tangents.are_along) {
+    rub(tangents.first, surfaces.friction, &point.impulse[1]);
+    rub(tangents.second, surfaces.second_friction, &point.impulse[2]);
   } else if (friction > 0.0) {
-    Row& first = problem.add_force_row(a, b, point.position_W, tangents.first, &point.impulse[1]);
-    limit_by_load(first, friction);
-    Row& second = problem.add_force_row(a, b, point.position_W, tangents.second, &point.impulse[2]);
-    limit_by_load(second, friction);
+    rub(tangents.first, friction, &point.impulse[1]);
+    rub(tangents.second, friction, &point.impulse[2]);
     problem.join_to_cone();
   } else {
     point.impulse[1] = point.impulse[2] = 0.0;
@@ -119,10 +130,10 @@ ContactImpulse impulse_of(const ContactPoints& contact, const ContactPoint& poin
 }
 
 void add_contact_rows(Problem& problem, Anchor a, Anchor b, ContactPoints& contact, const SurfacePair& surfaces,
-                      double step) {
+                      const RunningSurfaces& running, double step) {
   start_friction(contact, b.body < 0);
   for (ContactPoint& point : contact)
-    add_point_rows(problem, a, b, tangents_of(contact, point.normal_W), point, surfaces, step);
+    add_point_rows(problem, a, b, tangents_of(contact, point.normal_W), point, surfaces, running, step);
 }
 
 }  // namespace cohort::physics

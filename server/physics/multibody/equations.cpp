@@ -1,6 +1,9 @@
 #include "server/physics/multibody/equations.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "server/physics/multibody/gyroscopic.hpp"
 
 namespace cohort::physics {
 namespace {
@@ -9,7 +12,7 @@ constexpr int free_root_dofs = 6;
 
 }  // namespace
 
-void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step) {
+void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_touched) {
   body_ = &body;
   mechanism_ = &body.mechanism();
   size_ = mechanism_->dof_count();
@@ -19,7 +22,45 @@ void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, do
   find_joint_axes(body, axes_);
   find_efforts(step);
   body.bullet() != nullptr ? solve_by_bullet(gravity, step) : solve_by_mass_matrix(gravity, step);
+  is_symmetric_ = !has_stiff_gyroscopic_torques(body, step, is_touched);
+  if (!is_symmetric_) take_bias_of_the_middle(step);
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += body.velocities()[i];
+}
+
+// What was found is the change by the bias forces of the beginning of the step. Those of its middle, which neither give
+// energy nor take any, are others by half the change times their growth; and so are they for all that impulses change.
+// They are quadratic in the velocities: half the difference between one more and one less of a velocity is the growth.
+void Equations::take_bias_of_the_middle(double step) {
+  if (!is_inverted_) {
+    inverse_.assign(at(size_ * stride_), 0.0);
+    for (int i = 0; i < size_; ++i) {
+      inverse_[at(i * (stride_ + 1))] = 1.0;
+      matrix_.solve(inverse_.data() + i * stride_);
+    }
+    is_inverted_ = true;
+  }
+  bias_.set_up(*body_, axes_);
+  std::vector<double> velocities(body_->velocities(), body_->velocities() + size_);
+  std::vector<double> growth(at(stride_), 0.0);
+  std::vector<double> at_less(at(stride_), 0.0);
+  middle_.reset(size_);
+  response_.assign(at(stride_), 0.0);
+  for (int column = 0; column < size_; ++column) {
+    const auto find_bias_with = [&](double more, double* bias) {
+      const double velocity = std::exchange(velocities[at(column)], velocities[at(column)] + more);
+      bias_.find(velocities.data(), Eigen::Vector3d::Zero(), bias);
+      velocities[at(column)] = velocity;
+    };
+    find_bias_with(1.0, growth.data());
+    find_bias_with(-1.0, at_less.data());
+    for (int row = 0; row < size_; ++row) growth[at(row)] = 0.5 * (growth[at(row)] - at_less[at(row)]);
+    respond(growth.data(), response_.data());
+    for (int row = 0; row < size_; ++row)
+      middle_(row, column) = (row == column ? 1.0 : 0.0) + 0.5 * step * response_[at(row)];
+  }
+  middle_.factorise();
+  middle_.solve(velocity_.data());
+  for (int i = 0; i < size_; ++i) middle_.solve(inverse_.data() + i * stride_);
 }
 
 // What dampers and springs do, of which the part that comes from how they move in this step resists like inertia.
@@ -40,10 +81,12 @@ void Equations::find_efforts(double step) {
 }
 
 void Equations::solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step) {
-  matrix_.set_up(*body_, axes_, gravity);
+  bias_.set_up(*body_, axes_);
+  matrix_.set_up(*body_, axes_, bias_.inertias());
+  bias_.find(body_->velocities(), gravity, velocity_.data());
   for (int i = 0; i < size_; ++i) {
     matrix_.add_inertia(i, added_inertia_[at(i)]);
-    velocity_[at(i)] = step * (-matrix_.bias(i) + efforts_[at(i)]);
+    velocity_[at(i)] = step * (-velocity_[at(i)] + efforts_[at(i)]);
   }
   matrix_.factorise();
   matrix_.solve(velocity_.data());

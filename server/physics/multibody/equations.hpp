@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "server/physics/mechanism/linear_system.hpp"
+#include "server/physics/multibody/bias_forces.hpp"
 #include "server/physics/multibody/joint_axes.hpp"
 #include "server/physics/multibody/mass_matrix.hpp"
 #include "server/physics/multibody/multibody.hpp"
@@ -11,18 +13,24 @@ namespace cohort::physics {
 /// The equations of motion of one multibody over one step: its velocities without any impulse, and how an impulse
 /// changes them, by the dynamics that the body has: Bullet's, or our own mass matrix. Damping and springs of the joints
 /// are implicit: they are part of the inertia, and so stable at any stiffness; so is what the rotors of geared motors
-/// resist (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6).
+/// resist (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6). Bias forces are those of the beginning
+/// of the step or, where something spins fast, of its middle by the linearly implicit midpoint rule.
 ///
 /// One object serves many bodies one after the other; it keeps its memory.
 class Equations {
  public:
-  /// For the present state of `body`, under `gravity` [m/s^2], over `step` [s].
-  void set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step);
+  /// For the present state of `body`, under `gravity` [m/s^2], over `step` [s]. `is_touched`: whether by something
+  /// else.
+  void set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_touched);
 
   const Multibody& body() const { return *body_; }
   const Mechanism& mechanism() const { return *mechanism_; }
   int size() const { return size_; }                 ///< degrees of freedom
   std::ptrdiff_t stride() const { return stride_; }  ///< doubles of every vector below, zero beyond `size`
+
+  /// Whether an impulse along one dof changes another as much as the other way round: not where something spins so fast
+  /// that its gyroscopic torques are taken in the middle of the step.
+  bool is_symmetric() const { return is_symmetric_; }
 
   /// The velocities: at first without impulses, then as the solver changes them.
   double* velocity() { return velocity_.data(); }
@@ -52,6 +60,7 @@ class Equations {
   void find_efforts(double step);
   void solve_by_mass_matrix(const Eigen::Vector3d& gravity, double step);
   void solve_by_bullet(const Eigen::Vector3d& gravity, double step);
+  void take_bias_of_the_middle(double step);
   void add_generalised(int segment, const Spatial& force, double* jacobian) const;
 
   const Multibody* body_ = nullptr;
@@ -62,6 +71,9 @@ class Equations {
   std::vector<double> efforts_;        // of dampers and springs, by dof
   std::vector<double> added_inertia_;  // by them and by rotors, by dof
   MassMatrix matrix_;
+  BiasForces bias_;
+  LinearSystem middle_;
+  bool is_symmetric_ = true;
   std::vector<double> inverse_;  // size_ x stride_: by dof, the response to a unit impulse along it
   bool is_inverted_ = false;     // whether inverse_ is of this body
   std::vector<double> velocity_;

@@ -8,7 +8,13 @@ void find_joint_axes(const Multibody& body, std::vector<Spatial>& axes) {
   axes.resize(static_cast<std::size_t>(body.mechanism().dof_count()));
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const Segment& segment = segments[s];
-    if (segment.motion == Motion::free) continue;
+    if (segment.motion == Motion::free) {
+      for (int i = 0; i < 3; ++i) {
+        axes[static_cast<std::size_t>(i)] = {Eigen::Vector3d::Unit(i), Eigen::Vector3d::Zero()};
+        axes[static_cast<std::size_t>(3 + i)] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Unit(i)};
+      }
+      continue;
+    }
     const Pose& X_WS = body.segment_pose(static_cast<int>(s));
     const Eigen::Matrix3d R = X_WS.orientation.toRotationMatrix();
     for (int i = 0; i < segment.dofs; ++i) {

@@ -13,7 +13,7 @@ struct Spatial {
 };
 
 /// By dof, the velocity that a unit of it gives to all that hangs on it, about the body's reference point in world
-/// axes. Those of a free root stay unused.
+/// axes.
 void find_joint_axes(const Multibody& body, std::vector<Spatial>& axes);
 
 }  // namespace cohort::physics

@@ -24,9 +24,13 @@ class JointRows {
   /// each dof.
   void add_motor(int dof, double max_effort, double max_velocity);
   bool has_motor(int dof) const { return motor_of_[static_cast<std::size_t>(dof)] >= 0; }
-  void set_target(int dof, Control control, double target) {
-    motor(dof).control = control;
-    motor(dof).target = target;
+  /// Whether that is something new.
+  bool set_target(int dof, Control control, double target) {
+    Motor& told = motor(dof);
+    const bool is_new = told.control != control || told.target != target;
+    told.control = control;
+    told.target = target;
+    return is_new;
   }
   /// Impulse of the motor over the last step [N s] or [N m s].
   double motor_impulse(int dof) const { return motor(dof).impulse; }

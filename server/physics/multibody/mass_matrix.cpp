@@ -10,92 +10,36 @@ constexpr int most_inverted = 12;
 
 }  // namespace
 
-void MassMatrix::set_up(const Multibody& body, const std::vector<Spatial>& axes, const Eigen::Vector3d& gravity) {
-  body_ = &body;
+void MassMatrix::set_up(const Multibody& body, const std::vector<Spatial>& axes,
+                        const std::vector<SpatialInertia>& inertias) {
   mechanism_ = &body.mechanism();
   axes_ = &axes;
   size_ = mechanism_->dof_count();
   stride_ = mechanism_->stride();
-  work_.resize(mechanism_->segments().size());
   matrix_.assign(at(size_ * stride_), 0.0);
-  bias_.assign(at(size_), 0.0);
-  move_outwards(gravity);
+  composite_.assign(inertias.begin(), inertias.end());
   gather_inwards();
 }
 
-// Velocities and, with the joints unaccelerated, accelerations from the root to the leaves, and the force that this
-// takes of each segment. Gravity is an acceleration of the world upwards.
-void MassMatrix::move_outwards(const Eigen::Vector3d& gravity) {
-  const Eigen::Vector3d reference = body_->reference();
-  const double* velocities = body_->velocities();
-  const Spatial resting{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  const Spatial world{Eigen::Vector3d::Zero(), -gravity};
-  for (std::size_t s = 0; s < work_.size(); ++s) {
-    const Segment& segment = mechanism_->segments()[s];
-    const Pose& X_WS = body_->segment_pose(static_cast<int>(s));
-    const Eigen::Matrix3d R = X_WS.orientation.toRotationMatrix();
-    Work& work = work_[s];
-    work.velocity = segment.parent < 0 ? resting : work_[at(segment.parent)].velocity;
-    work.acceleration = segment.parent < 0 ? world : work_[at(segment.parent)].acceleration;
-
-    if (segment.motion == Motion::free) {
-      work.velocity = {{velocities[0], velocities[1], velocities[2]}, {velocities[3], velocities[4], velocities[5]}};
-      // The reference moves along: where its own acceleration is zero, that of the space around it is not.
-      work.acceleration.linear -= work.velocity.angular.cross(work.velocity.linear);
-    } else {
-      Spatial joint = resting;
-      for (int i = 0; i < segment.dofs; ++i) {
-        const int dof = segment.first_dof + i;
-        const Spatial& axis = (*axes_)[at(dof)];
-        joint.angular += velocities[dof] * axis.angular;
-        joint.linear += velocities[dof] * axis.linear;
-      }
-      work.velocity.angular += joint.angular;
-      work.velocity.linear += joint.linear;
-      work.acceleration.angular += work.velocity.angular.cross(joint.angular);
-      work.acceleration.linear += work.velocity.angular.cross(joint.linear) + work.velocity.linear.cross(joint.angular);
-    }
-
-    const Eigen::Vector3d arm = X_WS.position + R * segment.centre_S - reference;
-    work.mass = segment.mass;
-    work.moment = segment.mass * arm;
-    work.inertia = R * segment.inertia_S * R.transpose();
-    work.inertia += segment.mass * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
-
-    const Spatial& v = work.velocity;
-    const Spatial& a = work.acceleration;
-    const Eigen::Vector3d angular_momentum = work.inertia * v.angular + work.moment.cross(v.linear);
-    const Eigen::Vector3d linear_momentum = work.mass * v.linear - work.moment.cross(v.angular);
-    // That of a body on its own is left to how it moves on: Multibody::integrate.
-    const Eigen::Vector3d gyroscopic =
-        mechanism_->is_free_body() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(v.angular.cross(angular_momentum));
-    work.force.angular =
-        work.inertia * a.angular + work.moment.cross(a.linear) + gyroscopic + v.linear.cross(linear_momentum);
-    work.force.linear = work.mass * a.linear - work.moment.cross(a.angular) + v.angular.cross(linear_momentum);
-  }
-}
-
-// Forces and inertias from the leaves to the root: the bias force of each dof and its row of the mass matrix.
+// From the leaves to the root.
 void MassMatrix::gather_inwards() {
-  for (std::size_t s = work_.size(); s-- > 0;) {
+  for (std::size_t s = composite_.size(); s-- > 0;) {
     const Segment& segment = mechanism_->segments()[s];
-    const Work& work = work_[s];
+    const SpatialInertia& beyond = composite_[s];
     if (segment.motion == Motion::free) {
-      take_free_root(work);
+      take_free_root(beyond);
     } else {
-      for (int i = segment.first_dof; i < segment.first_dof + segment.dofs; ++i) take_joint(i, work);
+      for (int i = segment.first_dof; i < segment.first_dof + segment.dofs; ++i) take_joint(i, beyond);
     }
     if (segment.parent < 0) continue;
-    Work& parent = work_[at(segment.parent)];
-    parent.force.angular += work.force.angular;
-    parent.force.linear += work.force.linear;
-    parent.inertia += work.inertia;
-    parent.moment += work.moment;
-    parent.mass += work.mass;
+    SpatialInertia& parent = composite_[at(segment.parent)];
+    parent.inertia += beyond.inertia;
+    parent.moment += beyond.moment;
+    parent.mass += beyond.mass;
   }
 }
 
-void MassMatrix::take_free_root(const Work& whole) {
+void MassMatrix::take_free_root(const SpatialInertia& whole) {
   const Eigen::Vector3d& h = whole.moment;
   double* m = matrix_.data();
   for (int i = 0; i < 3; ++i)
@@ -107,16 +51,11 @@ void MassMatrix::take_free_root(const Work& whole) {
   m[4 * stride_ + 2] = h.x();
   m[5 * stride_ + 0] = h.y();
   m[5 * stride_ + 1] = -h.x();
-  for (int i = 0; i < 3; ++i) {
-    bias_[at(i)] = whole.force.angular[i];
-    bias_[at(3 + i)] = whole.force.linear[i];
-  }
 }
 
 // `beyond`: the joint's segment with all that hangs on it.
-void MassMatrix::take_joint(int dof, const Work& beyond) {
+void MassMatrix::take_joint(int dof, const SpatialInertia& beyond) {
   const Spatial& axis = (*axes_)[at(dof)];
-  bias_[at(dof)] = axis.angular.dot(beyond.force.angular) + axis.linear.dot(beyond.force.linear);
   const Spatial momentum{beyond.inertia * axis.angular + beyond.moment.cross(axis.linear),
                          beyond.mass * axis.linear - beyond.moment.cross(axis.angular)};
   double* row = matrix_.data() + dof * stride_;

@@ -23,7 +23,8 @@ Multibody::Multibody(const Mechanism& mechanism, description::Dynamics dynamics,
       state_(bullet_ ? BodyState(mechanism, bullet_->memory()) : BodyState(mechanism)),
       X_WS_(mechanism.segments().size()),
       joints_(mechanism),
-      loops_(mechanism) {
+      loops_(mechanism),
+      belts_(mechanism) {
   place(X_WM);
   build_devices();
 }
@@ -196,8 +197,8 @@ void Multibody::set_joint_state(std::size_t joint, std::span<const double> coord
   update_poses();
 }
 
-void Multibody::set_joint_target(std::size_t joint, JointRows::Control control, double target) {
-  joints_.set_target(mechanism_->joint(joint).first_dof, control, target);
+bool Multibody::set_joint_target(std::size_t joint, JointRows::Control control, double target) {
+  return joints_.set_target(mechanism_->joint(joint).first_dof, control, target);
 }
 
 double Multibody::joint_effort(std::size_t joint) const {
@@ -206,16 +207,16 @@ double Multibody::joint_effort(std::size_t joint) const {
   return joints_.motor_impulse(place.first_dof) / last_step_;
 }
 
-void Multibody::set_track_velocity_target(std::size_t device, Side side, double velocity) {
+bool Multibody::set_track_velocity_target(std::size_t device, Side side, double velocity) {
   const Drive& drive = drives_[device];
-  if (drive.treel >= 0) {
-    treels_[static_cast<std::size_t>(drive.treel)].set_target(side, velocity);
-    return;
-  }
+  if (drive.treel >= 0) return treels_[static_cast<std::size_t>(drive.treel)].set_target(side, velocity);
   const WheelDrive& wheels = wheels_[static_cast<std::size_t>(drive.wheels)];
   const auto s = static_cast<std::size_t>(side);
+  bool is_new = false;
   for (std::size_t i = 0; i < wheels.dofs[s].size(); ++i)
-    joints_.set_target(wheels.dofs[s][i], JointRows::Control::velocity, wheels.senses[s][i] * velocity / wheels.radius);
+    is_new |= joints_.set_target(wheels.dofs[s][i], JointRows::Control::velocity,
+                                 wheels.senses[s][i] * velocity / wheels.radius);
+  return is_new;
 }
 
 TrackState Multibody::track(std::size_t device, Side side) const {

@@ -12,6 +12,7 @@
 #include "server/physics/mechanism/body_state.hpp"
 #include "server/physics/mechanism/bullet_body.hpp"
 #include "server/physics/mechanism/mechanism.hpp"
+#include "server/physics/multibody/belts.hpp"
 #include "server/physics/multibody/joint_rows.hpp"
 #include "server/physics/multibody/loop_rows.hpp"
 #include "server/physics/multibody/track_rows.hpp"
@@ -58,16 +59,20 @@ class Multibody {
   void set_root_twist(const Twist& twist);
   void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
 
-  /// The joint has to have a motor.
-  void set_joint_target(std::size_t joint, JointRows::Control control, double target);
+  /// Whether that is something new. The joint has to have a motor.
+  bool set_joint_target(std::size_t joint, JointRows::Control control, double target);
   /// Of the joint's motor over the last step [N m] or [N], 0 if it has none.
   double joint_effort(std::size_t joint) const;
-  /// The device has to be a treel drive.
-  void set_track_velocity_target(std::size_t device, Side side, double velocity);
+  /// Whether that is something new. The device has to be a treel drive.
+  bool set_track_velocity_target(std::size_t device, Side side, double velocity);
   TrackState track(std::size_t device, Side side) const;
 
+  /// The link has to have a belt. Whether it is another one than before.
+  bool set_belt_velocity(std::size_t link, double velocity) { return belts_.set_velocity(link, velocity); }
+  RunningSurface surface_of(std::size_t link) const { return belts_.of_link(link, X_WS_); }
+
   const LoopRows& loops() const { return loops_; }
-  /// X_WM with all its joints at zero, of a root that is tied to the world.
+  /// X_WM where it was placed: what joints to the world hold on to.
   const Pose& model_pose() const { return X_WM_; }
   /// Those drives that stand on tracks, not on wheels.
   std::vector<TrackRows>& treels() { return treels_; }
@@ -95,6 +100,7 @@ class Multibody {
     JointRows::visit_state(self.joints_, visit);
     LoopRows::visit_state(self.loops_, visit);
     for (auto& treel : self.treels_) TrackRows::visit_state(treel, visit);
+    Belts::visit_state(self.belts_, visit);
     visit(self.last_step_);
   }
   /// After the state was changed through `visit_state`.
@@ -126,6 +132,7 @@ class Multibody {
   std::vector<Pose> X_WS_;  // follow from the state
   JointRows joints_;
   LoopRows loops_;
+  Belts belts_;
   std::vector<Drive> drives_;  // by device
   std::vector<TrackRows> treels_;
   std::vector<WheelDrive> wheels_;

@@ -70,7 +70,8 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
   const int first = problem.row_count();
   std::array<int, 3> begin{first, first, first};  // of the normal rows of each side, and one past the last
   std::array<double, 2> friction{infinity, infinity};
-  std::array<Anchor, 2> under;  // what each track stands on: of two things the one under its rear
+  std::array<Anchor, 2> under;               // what each track stands on: of two things the one under its rear
+  std::array<Eigen::Vector3d, 2> running_W;  // how that runs
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::size_t side = i / 2;
     Point& point = points_[i];
@@ -79,6 +80,7 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
     } else {
       const Ground& ground = *point.ground;
       under[side] = anchors.of(ground.solid);
+      running_W[side] = point.running_W;
       friction[side] = std::min(friction[side], point.friction);
       Row& row = problem.add_force_row(hull, under[side], point.position_W, ground.normal_W, &point.impulse);
       row.target = separating_velocity(ground.gap, step);
@@ -95,7 +97,8 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
       Track& track = tracks_[s];
       track.row = problem.row_count();
       Row& row = problem.add_force_row(hull, under[s], point_of(side), along->forward_W, &track.impulse);
-      row.target = track.target;
+      track.carried = along->forward_W.dot(running_W[s]);
+      row.target = track.target + track.carried;
       row.limits = Row::Limits::friction;
       row.friction = friction[s];
       row.cap = drive_.max_torque / drive_.wheel_radius * step;
@@ -104,6 +107,7 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
     }
     const std::size_t stands = tracks_[0].row >= 0 ? 0 : 1;
     Row& row = problem.add_force_row(hull, under[stands], middle(), along->left_W, &lateral_impulse_);
+    row.target = along->left_W.dot(running_W[stands]);
     row.limits = Row::Limits::friction;
     row.friction = std::min(friction[0], friction[1]);
     row.load_begin = begin[0];
@@ -121,7 +125,8 @@ void TrackRows::read_rows(const Problem& problem, double step) {
     if (track.row >= 0) {
       const Row& row = problem.rows()[static_cast<std::size_t>(track.row)];
       const bool slips = row.upper < row.cap && std::abs(row.impulse) >= row.upper;
-      if (!slips) track.state.velocity = problem.velocity(row);  // one that grips turns as the ground goes by
+      if (!slips)
+        track.state.velocity = problem.velocity(row) - track.carried;  // one that grips turns as the ground goes by
     }
     track.state.position += track.state.velocity * step;
     track.state.traction = track.impulse / step;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "server/description/model.hpp"
 #include "server/physics/mechanism/ground.hpp"
@@ -22,7 +23,8 @@ class TrackRows {
   TrackRows(const description::Model& model, const description::TreelDrive& drive, const Pose& X_SL)
       : drive_(drive), surface_(surface_of_tracks(model, drive)), X_SL_(X_SL) {}
 
-  void set_target(Side side, double velocity) { side_of(side).target = velocity; }
+  /// Whether that is something new.
+  bool set_target(Side side, double velocity) { return std::exchange(side_of(side).target, velocity) != velocity; }
   const TrackState& track(Side side) const { return side_of(side).state; }
 
   /// Where the ground is looked for. `X_WS`: the root segment.
@@ -30,6 +32,12 @@ class TrackRows {
   /// Looks for what each ground point stands on. `candidates`: the solids of other bodies in the ground region.
   void find_ground(const geometry::Scene& scene, const SurfacePairs& surfaces, const Pose& X_WS,
                    std::span<const std::uint32_t> candidates);
+  /// Asks how the surface of what was found runs: `velocity_of(ground)` against its body [m/s].
+  template <class VelocityOf>
+  void find_belts(const VelocityOf& velocity_of) {
+    for (Point& point : points_)
+      if (point.ground) point.running_W = velocity_of(*point.ground);
+  }
   /// Calls `visit(solid)` for what was found.
   template <class Visit>
   void for_each_ground(Visit&& visit) const {
@@ -67,6 +75,7 @@ class TrackRows {
     TrackState state;
     double impulse = 0.0;  // of the drive row
     int row = -1;          // of this step, -1 while no ground point of this side touches
+    double carried = 0.0;  // of this step: how fast the surface under it runs forwards [m/s]
   };
   struct Point {
     double impulse = 0.0;
@@ -74,6 +83,7 @@ class TrackRows {
     Eigen::Vector3d position_W = Eigen::Vector3d::Zero();
     std::optional<Ground> ground;
     double friction = 0.0;  // against it
+    Eigen::Vector3d running_W = Eigen::Vector3d::Zero();
   };
   /// Directions on the ground in this step, those of a track that rolls forwards and to its left; zero if nothing is
   /// under the tracks.

@@ -21,6 +21,8 @@ PlanarModel::PlanarModel(const description::Model& model)
   for (const description::Device& device : model.devices) {
     for (const description::MotorLimits& motor : description::motor_limits(device))
       add_motor(motor, description::name_of(device));
+    if (!description::belts_of(device).empty())
+      throw std::invalid_argument("the belts of '" + description::name_of(device) + "' cannot be planar");
     if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
       if (drive_ != nullptr) throw std::invalid_argument("more than one treel drive cannot be planar");
       if (mechanism_.link(drive->link).segment != 0)

@@ -36,13 +36,14 @@ namespace cohort::physics {
 class PlanarWorld final : public World {
  public:
   /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, water,
-  /// ground that is not level, none under a body, a joint that moves against the world, a rotor, a fin, drag, a link
-  /// that feels a wind, or a robot that leans by more than a milliradian.
+  /// ground that is not level, none under a body, a joint that moves against the world, a belt, a rotor, a fin, drag,
+  /// a link that feels a wind, or a robot that leans by more than a milliradian.
   PlanarWorld(const description::World& description, WorkerPool& workers);
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
   bool is_active(std::uint32_t body) const override;
+  bool is_asleep(std::uint32_t) const override { return false; }
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
   void remove_body(std::uint32_t index) override;
   void put_back_body(std::uint32_t index) override;
@@ -91,6 +92,7 @@ class PlanarWorld final : public World {
   void set_track_velocity_target(std::uint32_t body, std::size_t, Side side, double velocity) override {
     grounds_[bodies_[body].member].set_target(side, velocity);
   }
+  void set_belt_velocity_target(std::uint32_t, std::size_t, double) override {}     // none can be planar
   double rotor_velocity(std::uint32_t, std::size_t) const override { return 0.0; }  // none can be planar
   void set_rotor_velocity_target(std::uint32_t, std::size_t, double) override {}
   void set_root_twist(std::uint32_t body, const Twist& twist) override {

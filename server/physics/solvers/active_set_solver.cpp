@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "server/physics/mechanism/linear_system.hpp"
+
 namespace cohort::physics {
 namespace {
 
@@ -14,15 +16,18 @@ enum class Place : std::uint8_t { between, lower, upper };
 class Guessing {
  public:
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): of each array only the first `count_` are ever read.
-  explicit Guessing(Problem& problem) : problem_(problem), rows_(problem.rows()), count_(problem.row_count()) {
+  explicit Guessing(Problem& problem)
+      : problem_(problem),
+        rows_(problem.rows()),
+        count_(problem.row_count()),
+        is_symmetric_(problem.equations(0).is_symmetric()) {
     for (int i = 0; i < count_; ++i) {
       const Row& row = row_at(i);
       const double* jacobian = problem.numbers() + row.numbers;
       wanted_[i] = row.target - dot(jacobian, row.velocity_a, row.stride_a);
-      for (int j = 0; j <= i; ++j) {
-        const Row& other = row_at(j);
-        gains_[i][j] = gains_[j][i] = dot(jacobian, problem.numbers() + other.numbers + other.stride_a, row.stride_a);
-      }
+      for (int j = 0; j <= i; ++j) gains_[i][j] = gains_[j][i] = gain(i, j);
+      if (!is_symmetric_)
+        for (int j = 0; j < i; ++j) gains_[j][i] = gain(j, i);
       gains_[i][i] *= 1.0 + give;
       gains_[i][i] += row.softness;
       impulses_[i] = row.impulse;
@@ -40,7 +45,8 @@ class Guessing {
 
   bool run() {
     for (int guess = 0; guess < most_guesses; ++guess) {
-      solve();
+      divide();
+      is_symmetric_ ? solve() : solve_skew();
       const bool limits_hold = set_limits();
       if (places_hold() && limits_hold) return true;
     }
@@ -63,6 +69,12 @@ class Guessing {
   static constexpr double velocity_tolerance = 1e-10;  // [m/s or rad/s]
   static constexpr double impulse_tolerance = 1e-12;   // [N s or N m s]
 
+  // Velocity of row i by a unit impulse in row j.
+  double gain(int i, int j) const {
+    const Row& other = row_at(j);
+    return dot(problem_.numbers() + row_at(i).numbers, problem_.numbers() + other.numbers + other.stride_a,
+               other.stride_a);
+  }
   const Row& row_at(int i) const { return rows_[static_cast<std::size_t>(i)]; }
 
   // From the impulses as they are. False if that moved the limit of a row that is at it.
@@ -85,24 +97,31 @@ class Guessing {
     return hold;
   }
 
-  // The impulses of the rows in between, with the others at their limits: factors L D L' of their gains.
-  void solve() {
-    int free_count = 0;
-    int bound_count = 0;
+  void divide() {
+    free_count_ = bound_count_ = 0;
     for (int i = 0; i < count_; ++i) {
       if (places_[i] == Place::between) {
-        free_[free_count++] = i;
+        free_[free_count_++] = i;
       } else {
-        bound_[bound_count++] = i;
+        bound_[bound_count_++] = i;
         impulses_[i] = places_[i] == Place::lower ? lower_[i] : upper_[i];
       }
     }
+  }
+  // Of a row in between: the velocity that the others at their limits leave to it.
+  double left_for(int row) const {
+    double left = wanted_[row];
+    for (int j = 0; j < bound_count_; ++j) left -= gains_[row][bound_[j]] * impulses_[bound_[j]];
+    return left;
+  }
+
+  // The impulses of the rows in between: factors L D L' of their gains.
+  void solve() {
     std::array<double, most_rows> x{};
     std::array<double, most_rows> inverse{};  // of D
-    for (int i = 0; i < free_count; ++i) {
+    for (int i = 0; i < free_count_; ++i) {
       const auto& gains = gains_[free_[i]];
-      double right = wanted_[free_[i]];
-      for (int j = 0; j < bound_count; ++j) right -= gains[bound_[j]] * impulses_[bound_[j]];
+      double right = left_for(free_[i]);
       auto& factors = factors_[i];  // first L D, then L
       double diagonal = gains[free_[i]];
       for (int j = 0; j < i; ++j) {
@@ -119,12 +138,26 @@ class Guessing {
       inverse[i] = 1.0 / diagonal;
       x[i] = right;
     }
-    for (int i = free_count - 1; i >= 0; --i) {
+    for (int i = free_count_ - 1; i >= 0; --i) {
       double value = x[i] * inverse[i];
-      for (int j = i + 1; j < free_count; ++j) value -= factors_[j][i] * x[j];
+      for (int j = i + 1; j < free_count_; ++j) value -= factors_[j][i] * x[j];
       x[i] = value;
       impulses_[free_[i]] = value;
     }
+  }
+
+  // The same of gains that are not symmetric.
+  void solve_skew() {
+    LinearSystem system;
+    system.reset(free_count_);
+    std::array<double, most_rows> x{};
+    for (int i = 0; i < free_count_; ++i) {
+      x[i] = left_for(free_[i]);
+      for (int j = 0; j < free_count_; ++j) system(i, j) = gains_[free_[i]][free_[j]];
+    }
+    system.factorise();
+    system.solve(x.data());
+    for (int i = 0; i < free_count_; ++i) impulses_[free_[i]] = x[i];
   }
 
   // Whether the impulses agree with the guess; if not, moves the rows that do not.
@@ -155,6 +188,9 @@ class Guessing {
   Problem& problem_;
   std::vector<Row>& rows_;
   int count_;
+  bool is_symmetric_;
+  int free_count_ = 0;
+  int bound_count_ = 0;
   std::array<std::array<double, most_rows>, most_rows> gains_;  // velocity of row i by a unit impulse in row j
   std::array<std::array<double, most_rows>, most_rows> factors_;
   std::array<int, most_rows> free_;   // rows in between

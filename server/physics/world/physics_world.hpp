@@ -91,6 +91,9 @@ class World {
   virtual std::span<const Quarantine> quarantined() const = 0;
   /// Whether the body is in the world: neither quarantined nor removed.
   virtual bool is_active(std::uint32_t body) const = 0;
+  /// Whether steps leave the body as it is until something touches it: it has been still for half a second, with all
+  /// that it hangs together with. Never of a static or a planar body.
+  virtual bool is_asleep(std::uint32_t body) const = 0;
 
   /// Adds an instance of one of the description's models, which may have come since the world was built; between steps.
   /// Returns its body, the next free index. Throws std::invalid_argument for a model that cannot be simulated, or not
@@ -158,6 +161,9 @@ class World {
   /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
   virtual void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) = 0;
 
+  /// Of a link that is a belt: of its surface along it [m/s].
+  virtual void set_belt_velocity_target(std::uint32_t body, std::size_t link, double velocity) = 0;
+
   /// `device`: index of a Rotor among the model's devices; its velocity [rad/s].
   virtual double rotor_velocity(std::uint32_t body, std::size_t device) const = 0;
   /// What its velocity goes to, with its time constants [rad/s].
@@ -170,7 +176,8 @@ class World {
   virtual void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
                                std::span<const double> velocities) = 0;
 
-  /// In the order of the bodies' solids: the same for any number of workers.
+  /// Those between bodies that sleep first, each in the order of the bodies' solids: the same for any number of
+  /// workers.
   virtual std::span<const Contact> contacts() const = 0;
 
   /// Adds all that decides how `body` goes on: pose, velocities, joints, tracks, targets, warm-start impulses.

@@ -115,6 +115,13 @@ TEST_F(Joints, MotorsAreBoundByTheLimitsOfTheirJoints) {
   }
 }
 
+TEST_F(Joints, LimitsOfZeroOfAMotorAreNone) {
+  const World world = read(model(
+      links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz><limit><effort>0</effort><velocity>0</velocity></limit>")));
+  EXPECT_EQ(world.models[0].joints[0].axis.max_effort, infinity);
+  EXPECT_EQ(world.models[0].joints[0].axis.max_velocity, infinity);
+}
+
 TEST_F(Joints, AJointTooManyClosesALoop) {
   const World world = read(model(links("abc") + joint("i", "a", "b") + joint("j", "a", "c") + joint("k", "b", "c") +
                                  joint("l", "world", "a") + joint("m", "world", "b")));

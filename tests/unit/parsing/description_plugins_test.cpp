@@ -62,10 +62,10 @@ TEST_F(Plugins, ThatAreUnknownAreNamedOnceInAFile) {
   const std::string unknown = plugin("libfoo.so", "<x/>") + plugin("libfoo.so", "<y/>");
   expect_warning(unknown, "the plugin 'libfoo.so' has no counterpart here and is ignored");
   const World world = read(unknown + "\n" + plugin("gz-sim-physics-system", "") +
-                           model_with(unknown + plugin("gz-sim-detachable-joint-system", "")));
+                           model_with(unknown + plugin("gz-sim-elevator-system", "")));
   ASSERT_EQ(world.warnings.size(), 2u) << texts_of(world.warnings);
   EXPECT_EQ(world.warnings[0].line, 2);
-  EXPECT_NE(world.warnings[1].message.find("gz-sim-detachable-joint-system"), std::string::npos);
+  EXPECT_NE(world.warnings[1].message.find("gz-sim-elevator-system"), std::string::npos);
 }
 
 TEST_F(Plugins, ThatNeedNothingHereAreNotSpokenOf) {
@@ -238,6 +238,126 @@ TEST_F(Plugins, OfTheWorldAreWaterAirAndWind) {
   EXPECT_EQ(windy.air.wind_force, 0.5);
 }
 
+std::string track(const std::string& side, const std::string& link) {
+  return "<" + side + "_track><link>" + link + "</link></" + side + "_track>";
+}
+std::string controller(const std::string& parameters) {
+  return plugin("gz-sim-track-controller-system", parameters, "gz::sim::systems::TrackController");
+}
+const std::string tracks = track("left", "b") + track("right", "c");
+
+TEST_F(Plugins, TrackedVehicleIsATrackedDrive) {
+  const std::string whole =
+      tracks +
+      "<tracks_separation>0.4</tracks_separation><tracks_height>0.18</tracks_height><steering_efficiency>0.6"
+      "</steering_efficiency><linear_velocity><min_velocity>-2</min_velocity><max_velocity>2</max_velocity>"
+      "</linear_velocity><angular_velocity><max_velocity>1.5</max_velocity></angular_velocity>";
+  const std::string limits = "<min_velocity>-3</min_velocity><max_velocity>3</max_velocity>";
+  const auto drive = device<TrackedDrive>(plugin("gz-sim-tracked-vehicle-system", whole) +
+                                          controller("<link>b</link>" + limits) + controller("<link>c</link>"));
+  EXPECT_EQ(drive.name, "cmd_vel");
+  EXPECT_EQ(drive.left_links, std::vector<std::size_t>{1});
+  EXPECT_EQ(drive.right_links, std::vector<std::size_t>{2});
+  EXPECT_EQ(drive.track_separation, 0.4);
+  EXPECT_EQ(drive.steering_efficiency, 0.6);
+  EXPECT_EQ(drive.max_velocity, 3.0) << "that of its tracks' controllers, which are no belts of their own";
+  EXPECT_EQ(drive.max_linear, 2.0);
+  EXPECT_EQ(drive.max_angular, 1.5);
+
+  const auto plain = device<TrackedDrive>(plugin("libignition-gazebo6-tracked-vehicle-system.so", tracks));
+  EXPECT_EQ(plain.steering_efficiency, 0.5);
+  EXPECT_EQ(plain.max_linear, 10.0);
+  EXPECT_EQ(plain.max_angular, 2.0 * 10.0 * 0.5 / 1.0);
+}
+
+TEST_F(Plugins, TrackControllerIsABelt) {
+  const auto belt = device<Belt>(
+      controller("<link>b</link><min_velocity>-2</min_velocity><max_velocity>2</max_velocity>"
+                 "<velocity_topic>t</velocity_topic><track_orientation>0 0 1.5707963267948966</track_orientation>"));
+  EXPECT_EQ(belt.name, "b");
+  EXPECT_EQ(belt.link, 1u);
+  EXPECT_EQ(belt.max_velocity, 2.0);
+  EXPECT_TRUE(belt.axis_L.isApprox(-Eigen::Vector3d::UnitX(), 1e-12)) << belt.axis_L.transpose();
+  EXPECT_EQ(device<Belt>(controller("<link>b</link>")).axis_L, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(device<Belt>(controller("<link>b</link>")).max_velocity, 10.0);
+  expect_warning(plugin("gz-sim-track-controller-system",
+                        "<link>b</link><max_velocity>1</max_velocity><max_acceleration>1</max_acceleration>"),
+                 "of this plugin nothing is made of <max_acceleration>");
+}
+
+TEST_F(Plugins, TrackControllerOfAStaticModelIsIgnoredWithAWarning) {
+  const World world = read("<model name=\"m\"><static>true</static>" + links("b") + "\n" +
+                           plugin("gz-sim-track-controller-system", "<link>b</link>") + "</model>");
+  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+  expect_problem(world.warnings, folder_ / "world.sdf", {"", 3, "world/model[m]/plugin[p]", "the model is static"});
+}
+
+TEST_F(Plugins, OfTracksHaveTheirFlawsReportedWithTheirPlace) {
+  const auto vehicle = [](const std::string& parameters) {
+    return plugin("gz-sim-tracked-vehicle-system", parameters);
+  };
+  expect_flaw(vehicle(track("left", "b")), "/right_track", "missing: a track");
+  expect_flaw(vehicle(track("left", "b") + track("right", "x")), "/right_track/link", "has no link 'x'");
+  expect_flaw(vehicle(track("left", "b") + track("right", "b")), "/right_track/link", "has a belt already");
+  expect_flaw(vehicle(tracks + "<right_track/>"), "/right_track/link", "missing: the link");
+  expect_flaw(vehicle(tracks + "<tracks_separation>0</tracks_separation>"), "/tracks_separation", "a number > 0");
+  expect_flaw(vehicle(tracks + "<steering_efficiency>2</steering_efficiency>"), "/steering_efficiency", "at most 1");
+  const std::string nowhere = plugin("gz-sim-track-controller-system", "");
+  expect_flaw(nowhere, "/link", "missing");
+}
+
+TEST_F(Plugins, DoNotDriveTheBeltsOfDevices) {
+  const std::string device =
+      "<cohort:belt name=\"mine\"><cohort:link>b</cohort:link><cohort:max_velocity>1</cohort:max_velocity>"
+      "</cohort:belt><cohort:loudspeaker name=\"horn\"><cohort:link>c</cohort:link></cohort:loudspeaker>";
+  const Model model = read_model(device + controller("<link>b</link>") + controller("<link>c</link>"));
+  ASSERT_EQ(model.devices.size(), 3u);
+  EXPECT_EQ(std::get<Belt>(model.devices[0]).name, "mine");
+  EXPECT_EQ(std::get<Belt>(model.devices[2]).name, "c") << "a loudspeaker on it drives nothing";
+}
+
+// A world with a model of this plugin, on line 3, and a crate on line 5.
+std::string with_crate(const std::string& parameters) {
+  return model_with(plugin("gz-sim-detachable-joint-system", parameters)) + "\n<model name=\"crate\">" + links("xy") +
+         joint("j", "x", "y", "<xyz>0 1 0</xyz>") + "</model>";
+}
+
+TEST_F(Plugins, DetachableJointHoldsAnObject) {
+  const World world =
+      read(with_crate("<parent_link>b</parent_link><child_model>crate</child_model><child_link>y</child_link>"
+                      "<detach_topic>t</detach_topic><attach_topic>t</attach_topic><output_topic>t</output_topic>"));
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  const auto its = std::get<DetachableJoint>(world.models.at(0).devices.at(0));
+  EXPECT_EQ(its.name, "crate");
+  EXPECT_EQ(its.link, 1u);
+  EXPECT_EQ(its.child, "crate");
+  EXPECT_EQ(its.child_link, "y");
+  EXPECT_FALSE(its.may_be_missing);
+}
+
+TEST_F(Plugins, DetachableJointOfAnObjectThatIsNotThereIsAWarningUnlessItIsSuppressed) {
+  const std::string missing = "<parent_link>b</parent_link><child_model>crat</child_model><child_link>y</child_link>";
+  const World world = read(with_crate(missing));
+  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+  expect_problem(world.warnings, folder_ / "world.sdf",
+                 {"", 3, "world/model[m]/plugin[p]/child_model",
+                  "no object is called 'crat'; did you mean 'crate'?; nothing is held"});
+  EXPECT_TRUE(read(with_crate(missing + "<suppress_child_warning>true</suppress_child_warning>")).warnings.empty());
+}
+
+TEST_F(Plugins, DetachableJointWithFlawsIsReportedWithItsPlace) {
+  const auto expect = [&](const std::string& parameters, const std::string& child, const std::string& message) {
+    SCOPED_TRACE(parameters);
+    expect_only_flaw({"", 3, "world/model[m]/plugin[p]" + child, message}, write_world(with_crate(parameters)));
+  };
+  const std::string link = "<parent_link>b</parent_link>";
+  expect(link + "<child_model>crate</child_model><child_link>z</child_link>", "/child_model",
+         "'crate' has no link 'z'");
+  expect(link + "<child_model>m</child_model><child_link>a</child_link>", "/child_model", "another object than 'm'");
+  expect("<parent_link>z</parent_link><child_model>crate</child_model>", "/parent_link", "has no link 'z'");
+  expect(link, "/child_model", "missing");
+}
+
 TEST_F(Plugins, OfAModelInsideOfAModelDriveItsJoints) {
   const Model model =
       read("<model name=\"o\">" + links("a") + "\n" + model_with(plugin("libgz-sim-diff-drive-system.so", wheels)) +
@@ -278,7 +398,13 @@ TEST_F(Plugins, OfOlderVersionsOfSdfAreReadAsWell) {
 
 TEST_F(Plugins, AreWrittenBackAsDevices) {
   const World world = read(model_with(plugin("gz-sim-diff-drive-system", wheels) +
-                                      plugin("gz-sim-lift-drag-system", "<link_name>b</link_name>")));
+                                      plugin("gz-sim-lift-drag-system", "<link_name>b</link_name>") +
+                                      plugin("gz-sim-tracked-vehicle-system", tracks) +
+                                      plugin("gz-sim-track-controller-system", "<link>a</link>") +
+                                      plugin("gz-sim-detachable-joint-system",
+                                             "<parent_link>a</parent_link><child_model>o</child_model><child_link>b"
+                                             "</child_link>")) +
+                           "<model name=\"o\">" + links("b") + "</model>");
   const std::string text = parsing::xml_text(parsing::sdf_of(world, folder_));
   EXPECT_EQ(text.find("<plugin"), std::string::npos);
   const World again = parsing::read_world(write("again.sdf", text), 1);

@@ -37,6 +37,7 @@ description::World describe(const Mechanism& mechanism, description::Dynamics dy
     place(world, static_shape("floor", Plane{}, surface), "floor", {});
   }
   world.physics.dynamics = dynamics;
+  world.physics.sleeping = false;
   world.physics.lowest = -1e3;
   return world;
 }

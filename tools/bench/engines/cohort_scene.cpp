@@ -88,6 +88,7 @@ description::World describe(const Scene& scene, description::Dynamics dynamics) 
   world.step = std::chrono::nanoseconds(std::llround(1e9 * scene.step));
   world.gravity = {0.0, 0.0, -scene.gravity};
   world.physics.dynamics = dynamics;
+  world.physics.sleeping = false;
   world.physics.strict = true;  // a body that breaks is a result, not a saving
   if (scene.drive == Drive::wheels) world.physics.fidelity = description::Fidelity::articulated;
   if (scene.planar) world.physics.fidelity = description::Fidelity::planar;

@@ -1,0 +1,72 @@
+#include "server/gripping/detachable_joints.hpp"
+
+#include <algorithm>
+
+namespace cohort::gripping {
+
+DetachableJoints::DetachableJoints(const description::World& description, physics::World& world) : world_(world) {
+  const auto& instances = description.instances;
+  for (std::uint32_t body = 0; body < instances.size(); ++body) {
+    const description::Model& model = description.models[instances[body].model];
+    for (std::size_t device = 0; device < model.devices.size(); ++device) {
+      const auto* const its = std::get_if<description::DetachableJoint>(&model.devices[device]);
+      if (its == nullptr) continue;
+      numbers_[{body, device}] = static_cast<std::uint32_t>(joints_.size());
+      Joint& joint = joints_.emplace_back(Joint{.body = body, .link = its->link});
+      const auto child = std::ranges::find(instances, its->child, &description::Instance::name);
+      if (child == instances.end()) continue;
+      const auto& links = description.models[child->model].links;
+      const auto link =
+          its->child_link.empty() ? links.begin() : std::ranges::find(links, its->child_link, &description::Link::name);
+      if (link == links.end()) continue;
+      joint.child = static_cast<std::uint32_t>(child - instances.begin());
+      joint.child_link = static_cast<std::size_t>(link - links.begin());
+    }
+  }
+}
+
+bool DetachableJoints::holds(std::uint32_t joint) const {
+  const std::uint32_t connection = joints_[joint].connection;
+  return connection != nothing && world_.is_connected(connection);
+}
+
+void DetachableJoints::command(std::uint32_t number, double attached) {
+  Joint& joint = joints_[number];
+  if (joint.connection != nothing && !world_.is_connected(joint.connection)) {
+    joint.connection = nothing;
+    joint.is_spent = 1;
+  }
+  if (attached <= holding) {
+    if (joint.connection != nothing) world_.disconnect(joint.connection);
+    joint.connection = nothing;
+    joint.is_spent = 0;
+    return;
+  }
+  const bool may_hold = joint.connection == nothing && joint.is_spent == 0 && joint.child != nothing;
+  if (!may_hold || !world_.is_active(joint.body) || !world_.is_active(joint.child)) return;
+  const Pose X_LP =
+      world_.link_pose(joint.body, joint.link).inverse() * world_.link_pose(joint.child, joint.child_link);
+  joint.connection = world_.connect(joint.body, joint.link, X_LP, joint.child, joint.child_link);
+}
+
+template <class Self, class Visit>
+void DetachableJoints::visit_state(Self& self, Visit&& visit) {
+  for (auto& joint : self.joints_) {
+    visit(joint.connection);
+    visit(joint.is_spent);
+  }
+}
+
+void DetachableJoints::hash(StateHash& hash) const {
+  visit_state(*this, [&](std::uint32_t value) { hash.add(std::uint64_t{value}); });
+}
+
+void DetachableJoints::save(SnapshotWriter& writer) const {
+  visit_state(*this, [&](const auto& value) { writer.add(value); });
+}
+
+void DetachableJoints::restore(SnapshotReader& reader) {
+  visit_state(*this, [&](auto& value) { reader.read(value); });
+}
+
+}  // namespace cohort::gripping

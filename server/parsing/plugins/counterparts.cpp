@@ -1,0 +1,348 @@
+#include "server/parsing/plugins/counterparts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "server/core/infinity.hpp"
+#include "server/core/text.hpp"
+
+// What the parameters mean, and their defaults, is documented at the classes of the namespace gz::sim::systems of
+// https://gazebosim.org/api/sim, and for classic ones in the headers of
+// https://github.com/ros-simulation/gazebo_ros_pkgs/tree/ros2/gazebo_plugins/include/gazebo_plugins.
+namespace cohort::parsing {
+
+namespace {
+
+// Where neither a plugin nor the limits of a joint say: docs/gazebo.md.
+constexpr double usual_effort = 1000.0;           // [N m] or [N], as the greatest command of Gazebo's own controllers
+constexpr double usual_velocity = 100.0;          // [rad/s] or [m/s]
+constexpr double usual_position_velocity = 10.0;  // of what goes to a position
+
+double mass_of(const Model& model) {
+  double mass = 0.0;
+  for (const Link& link : model.links) mass += link.inertial.mass;
+  return mass;
+}
+
+using JointParameters = std::vector<std::pair<const Joint*, sdf::ElementPtr>>;
+
+// The least that <limit> says of one of them, or else `fallback`.
+double least_limit(const JointParameters& joints, double JointAxis::*limit, double fallback) {
+  double least = infinity;
+  for (const auto& [joint, parameter] : joints) least = std::min(least, joint->axis.*limit);
+  return std::isfinite(least) ? least : fallback;
+}
+
+constexpr ParameterNames left_names = {"left_joint", "leftJoint"};
+constexpr ParameterNames right_names = {"right_joint", "rightJoint"};
+
+// What a drive on wheels has in common: its wheels, their motors, the greatest velocities.
+void take_wheels(ModelPlugin& plugin, ModelPlugin::Values& values) {
+  JointParameters wheels = plugin.joints(left_names);
+  const JointParameters right = plugin.joints(right_names);
+  wheels.insert(wheels.end(), right.begin(), right.end());
+  for (const ParameterNames& names : {left_names, right_names})
+    if (!plugin.first(names))
+      plugin.report().problem(plugin.element(), "missing: the joint of a wheel", *names.begin());
+
+  const double separation = plugin.number_or(1.0, {"wheel_separation", "wheelSeparation"});
+  const auto diameter = plugin.number({"wheel_diameter", "wheelDiameter"});
+  const double radius = plugin.number_or(diameter.value_or(0.4) / 2.0, {"wheel_radius"});
+  // Enough for each wheel to lift the whole vehicle: Gazebo's wheels have any torque.
+  const double strong = std::max(mass_of(plugin.model()) * 9.8 * radius, 1e-6);
+  const double torque = plugin.number_or(least_limit(wheels, &JointAxis::max_effort, strong),
+                                         {"max_wheel_torque", "wheelTorque", "torque"});
+  const double spin = least_limit(wheels, &JointAxis::max_velocity, usual_velocity);
+  const double linear = plugin.number_or(spin * radius, {"max_linear_velocity", "max_velocity"});
+  const double angular = plugin.number_or(2.0 * spin * radius / separation, {"max_angular_velocity", "max_velocity"});
+  // Backwards it goes as fast; limits that say so are read.
+  const auto is_opposite = [&](const char* name, double greatest) {
+    const sdf::ElementPtr least = plugin.element()->FindElement(name);
+    return least && parse_real(text_of_parameter(least)) == -greatest;
+  };
+  if (is_opposite("min_velocity", linear)) plugin.all({"min_velocity"});
+  if (is_opposite("min_linear_velocity", linear)) plugin.all({"min_linear_velocity"});
+  if (is_opposite("min_angular_velocity", angular)) plugin.all({"min_angular_velocity"});
+
+  values.take("left_joint", left_names)
+      .take("right_joint", right_names)
+      .set("wheel_separation", separation)
+      .set("wheel_radius", radius)
+      .set("max_torque", torque)
+      .set("max_linear", linear)
+      .set("max_angular", angular);
+}
+
+}  // namespace
+
+void diff_drive(ModelPlugin& plugin) {
+  ModelPlugin::Values values = plugin.as<DifferentialDrive>();
+  take_wheels(plugin, values);
+  values.finish("cmd_vel");
+}
+
+void ackermann_steering(ModelPlugin& plugin) {
+  ModelPlugin::Values values = plugin.as<AckermannDrive>();
+  take_wheels(plugin, values);
+  const double limit = plugin.number_or(0.5, {"steering_limit"});
+  JointParameters steering = plugin.joints({"left_steering_joint"});
+  const JointParameters right = plugin.joints({"right_steering_joint"});
+  steering.insert(steering.end(), right.begin(), right.end());
+  values.take("left_steering_joint", {"left_steering_joint"})
+      .take("right_steering_joint", {"right_steering_joint"})
+      .take("wheel_base", {"wheel_base"}, "1")
+      .take("kingpin_width", {"kingpin_width"}, "0.8")
+      // Gazebo's limit is that of the sine: asin(wheel base / radius of the turn).
+      .set("steering_limit", std::atan(std::sin(std::min(limit, 0.5 * std::numbers::pi))))
+      .set("max_steering_velocity", least_limit(steering, &JointAxis::max_velocity, usual_position_velocity))
+      .set("max_steering_torque", least_limit(steering, &JointAxis::max_effort, usual_effort))
+      .finish("cmd_vel");
+}
+
+namespace {
+
+// Of a motor that a controller of one joint is.
+void finish_motor(ModelPlugin::Values values, const Joint& joint, const sdf::ElementPtr& parameter, double velocity,
+                  double effort) {
+  values.set("joint", text_of_parameter(parameter), parameter)
+      .set("max_velocity", least_limit({{&joint, parameter}}, &JointAxis::max_velocity, velocity))
+      .set("max_effort", least_limit({{&joint, parameter}}, &JointAxis::max_effort, effort))
+      .finish(text_of_parameter(parameter));
+}
+
+constexpr ParameterNames joint_names = {"joint_name", "jointName"};
+
+void need_joint(ModelPlugin& plugin) {
+  if (!plugin.first(joint_names))
+    plugin.report().problem(plugin.element(), "missing: the joint that it moves", *joint_names.begin());
+}
+
+}  // namespace
+
+void joint_controller(ModelPlugin& plugin) {
+  need_joint(plugin);
+  const double effort = plugin.text_or("false", {"use_force_commands"}) == "true"
+                            ? plugin.number_or(usual_effort, {"cmd_max"})
+                            : usual_effort;
+  for (const auto& [joint, parameter] : plugin.joints(joint_names))
+    finish_motor(plugin.as<VelocityMotor>(), *joint, parameter, usual_velocity, effort);
+}
+
+void joint_position_controller(ModelPlugin& plugin) {
+  need_joint(plugin);
+  // The greatest output of its controller is a velocity or an effort.
+  const bool gives_velocity = plugin.text_or("false", {"use_velocity_commands"}) == "true";
+  const auto greatest = plugin.number({"cmd_max"});
+  const double velocity = gives_velocity ? greatest.value_or(usual_position_velocity) : usual_position_velocity;
+  const double effort = gives_velocity ? usual_effort : greatest.value_or(usual_effort);
+  for (const auto& [joint, parameter] : plugin.joints(joint_names))
+    finish_motor(plugin.as<PositionMotor>(), *joint, parameter, velocity, effort);
+}
+
+void joint_state_publisher(ModelPlugin& plugin) {
+  const auto encode = [&](const std::string& name, const sdf::ElementPtr& where) {
+    plugin.as<JointEncoder>().set("joint", name, where).finish(name);
+  };
+  if (plugin.first(joint_names)) {
+    for (const auto& [joint, parameter] : plugin.joints(joint_names)) encode(text_of_parameter(parameter), parameter);
+    return;
+  }
+  for (const Joint& joint : plugin.model().joints)
+    if (plugin.has_joint(joint) && joint.type != JointType::fixed && joint.type != JointType::ball)
+      encode(plugin.without_scope(joint.name), nullptr);
+}
+
+namespace {
+
+// The body that carries a propeller, whose joint is `joint`, and where the child of the joint is in it.
+struct Carrier {
+  std::string link;
+  Pose X_LC;
+};
+std::optional<Carrier> carrier_of(ModelPlugin& plugin, const Joint& joint, const sdf::ElementPtr& parameter) {
+  if (joint.parent == Joint::world) {
+    plugin.report().problem(parameter, "expected the joint of a propeller on a link, not on the world");
+    return std::nullopt;
+  }
+  const Link& parent = plugin.model().links[joint.parent];
+  return Carrier{plugin.without_scope(parent.name), parent.X_ML.inverse() * plugin.model().links[joint.child].X_ML};
+}
+
+}  // namespace
+
+void multicopter_motor_model(ModelPlugin& plugin) {
+  need_joint(plugin);
+  plugin.all({"linkName"});  // it is that of the joint
+  if (const sdf::ElementPtr type = plugin.first({"motorType"}); type && text_of_parameter(type) != "velocity")
+    plugin.report().warning(type, "is not read: the command of a motor is a velocity");
+  for (const auto& [joint, parameter] : plugin.joints(joint_names))
+    if (const auto carrier = carrier_of(plugin, *joint, parameter))
+      plugin.as<Rotor>()
+          .set("link", carrier->link, parameter)
+          .set("pose", carrier->X_LC)
+          .take("direction", {"turningDirection"}, "cw")
+          .take("max_velocity", {"maxRotVelocity"}, "838")
+          .take("motor_constant", {"motorConstant"}, "8.54858e-06")
+          .take("moment_constant", {"momentConstant"}, "0.016")
+          .take("drag_coefficient", {"rotorDragCoefficient"}, "1e-4")
+          .take("rolling_moment_coefficient", {"rollingMomentCoefficient"}, "1e-6")
+          .take("time_constant_up", {"timeConstantUp"}, "0.0125")
+          .take("time_constant_down", {"timeConstantDown"}, "0.025")
+          .finish(text_of_parameter(parameter));
+}
+
+void thruster(ModelPlugin& plugin) {
+  need_joint(plugin);
+  const double density = plugin.number_or(1000.0, {"fluid_density"});
+  const double diameter = plugin.number_or(0.02, {"propeller_diameter"});
+  const double coefficient = plugin.number_or(1.0, {"thrust_coefficient"});
+  const double greatest = plugin.number_or(1000.0, {"max_thrust_cmd"});
+  const double least = plugin.number_or(-1000.0, {"min_thrust_cmd"}, ExtensionValue::real);
+  const double motor_constant = density * coefficient * std::pow(diameter, 4);
+  for (const auto& [joint, parameter] : plugin.joints(joint_names)) {
+    const auto carrier = carrier_of(plugin, *joint, parameter);
+    if (!carrier) continue;
+    const Pose X_LJ = carrier->X_LC * joint->X_LJ;
+    const Eigen::Quaterniond to_axis =
+        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), X_LJ.orientation * joint->axis.direction);
+    plugin.as<Rotor>()
+        .set("link", carrier->link, parameter)
+        .set("pose", Pose{X_LJ.position, to_axis})
+        .set("max_velocity", std::sqrt(greatest / motor_constant))
+        .set("min_velocity", -std::sqrt(std::max(-least, 0.0) / motor_constant))
+        .set("motor_constant", motor_constant)
+        .set("density", density)
+        .finish(text_of_parameter(parameter));
+  }
+}
+
+namespace {
+
+// The link that a plugin acts on; nothing, and reported, if it says none.
+std::optional<std::string> link_of(ModelPlugin& plugin) {
+  const sdf::ElementPtr parameter = plugin.first({"link_name"});
+  if (!parameter) {
+    plugin.report().problem(plugin.element(), "missing: the link that it acts on", "link_name");
+    return std::nullopt;
+  }
+  const std::string name = text_of_parameter(parameter);
+  std::vector<std::string> names;
+  for (const Link& link : plugin.model().links) {
+    if (plugin.has_link(link, name)) return name;
+    names.push_back(link.name);
+  }
+  plugin.report().problem(parameter, "the model has no link '" + name + "'" + suggestion(name, names));
+  return std::nullopt;
+}
+
+}  // namespace
+
+void lift_drag(ModelPlugin& plugin) {
+  const std::optional<std::string> link = link_of(plugin);
+  const Eigen::Vector3d forward = plugin.vector({"forward"}).value_or(Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d upward = plugin.vector({"upward"}).value_or(Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d aside = upward.cross(forward);
+  constexpr double parallel = 1e-6;
+  if (!(aside.norm() > parallel * upward.norm() * forward.norm())) {
+    plugin.report().problem(plugin.element(), "expected <forward> and <upward> in different directions, not zero");
+    return;
+  }
+  Eigen::Matrix3d axes;
+  axes.col(0) = forward.normalized();
+  axes.col(1) = aside.normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  const Pose X_LF{plugin.vector({"cp"}).value_or(Eigen::Vector3d::Zero()), Eigen::Quaterniond(axes)};
+  ModelPlugin::Values values = plugin.as<Fin>();
+  values.set("pose", X_LF)
+      .take("area", {"area"}, "1")
+      .take("alpha0", {"a0"}, "0")
+      .take("cla", {"cla"}, "1")
+      .take("cda", {"cda"}, "0.01")
+      .take("cla_stall", {"cla_stall"}, "0")
+      .take("cda_stall", {"cda_stall"}, "1")
+      // Beyond a quarter turn the flow comes from behind.
+      .set("alpha_stall", std::min(plugin.number_or(0.5 * std::numbers::pi, {"alpha_stall"}), 0.5 * std::numbers::pi));
+  if (link) values.finish("lift_drag", *link);
+}
+
+// Gazebo has damping as derivatives of the force: less than 0 where it damps.
+void hydrodynamics(ModelPlugin& plugin) {
+  const std::optional<std::string> link = link_of(plugin);
+  const auto damping = [&](const std::initializer_list<ParameterNames>& axes) {
+    std::string text;
+    for (const ParameterNames& names : axes) {
+      const double value = plugin.number_or(0.0, names, ExtensionValue::real);
+      if (value > 0.0) plugin.report().problem(plugin.first(names), "expected at most 0: more would push it on");
+      text += shortest_text(std::abs(value)) + " ";
+    }
+    return text;
+  };
+  ModelPlugin::Values values = plugin.as<Drag>();
+  values.set("damping", damping({{"xU"}, {"yV"}, {"zW"}}))
+      .set("quadratic_damping", damping({{"xUU", "xUabsU"}, {"yVV", "yVabsV"}, {"zWW", "zWabsW"}}))
+      .set("angular_damping", damping({{"kP"}, {"mQ"}, {"nR"}}))
+      .set("quadratic_angular_damping", damping({{"kPP", "kPabsP"}, {"mQQ", "mQabsQ"}, {"nRR", "nRabsR"}}));
+  plugin.all({"water_density", "waterDensity"});  // it says nothing of damping
+  if (link) values.finish("hydrodynamics", *link);
+}
+
+void detachable_joint(ModelPlugin& plugin) {
+  plugin.all({"detach_topic", "attach_topic", "output_topic"});
+  plugin.as<DetachableJoint>()
+      .take("link", {"parent_link"})
+      .take("child", {"child_model"})
+      .take("child_link", {"child_link"})
+      .take("may_be_missing", {"suppress_child_warning"}, "false")
+      .finish(plugin.text_or("detachable_joint", {"child_model"}));
+}
+
+void linear_battery(ModelPlugin& plugin) {
+  constexpr double seconds_of_hour = 3600.0;
+  const auto voltage = plugin.number({"voltage"});
+  const auto open_circuit = plugin.number({"open_circuit_voltage_constant_coef"});
+  const auto capacity = plugin.number({"capacity"});  // [A h]
+  if (!voltage && !open_circuit) plugin.report().problem(plugin.element(), "missing: a voltage > 0", "voltage");
+  if (!capacity) plugin.report().problem(plugin.element(), "missing: a capacity > 0 in A h", "capacity");
+  const sdf::ElementPtr charge = plugin.first({"initial_charge"});
+  const double charged = plugin.number_or(capacity.value_or(1.0), {"initial_charge"}, ExtensionValue::non_negative);
+  const std::string name = plugin.text_or("battery", {"battery_name"});
+  if (!capacity || (!voltage && !open_circuit)) return;
+  plugin.as<Battery>()
+      .set("capacity", *capacity * seconds_of_hour * voltage.value_or(open_circuit.value_or(0.0)))
+      .set("charge", charged / *capacity, charge)
+      .take("idle_power", {"power_load"}, "0")
+      .finish(name);
+}
+
+// Water up to where another layer begins; of what is thinner than this, air.
+void buoyancy(Plugin& plugin, World& world) {
+  constexpr double lightest_water = 100.0;  // [kg/m^3]
+  constexpr double above_all = 1e6;         // [m]
+  double density = plugin.number_or(1000.0, {"uniform_fluid_density"});
+  double level = above_all;
+  if (const sdf::ElementPtr layers = plugin.first({"graded_buoyancy"})) {
+    Plugin graded(layers, plugin.report());
+    density = graded.number_or(1000.0, {"default_density"});
+    const std::vector<sdf::ElementPtr> changes = graded.all({"density_change"});
+    if (!changes.empty()) {
+      Plugin change(changes.front(), plugin.report());
+      level = change.number_or(0.0, {"above_depth"}, ExtensionValue::real);
+      world.air.density = change.number_or(world.air.density, {"density"}, ExtensionValue::non_negative);
+      change.warn_of_unread();
+    }
+    if (changes.size() > 1) plugin.report().warning(changes[1], "is not read: there are water and air, no more layers");
+    graded.warn_of_unread();
+  }
+  if (density < lightest_water)
+    world.air.density = density;
+  else
+    world.water = Water{level, density, Eigen::Vector3d::Zero()};
+}
+
+void wind_effects(Plugin& plugin, World& world) {
+  if (const auto factor = plugin.number({"force_approximation_scaling_factor"}, ExtensionValue::non_negative))
+    world.air.wind_force = *factor;
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,313 @@
+// Links whose surfaces run: conveyors carry, tracks drive, and friction alone says how much.
+
+#include <cmath>
+
+#include "tests/support/physics.hpp"
+
+namespace cohort::test {
+namespace {
+
+using description::Box;
+using description::Surface;
+using Eigen::Vector3d;
+
+class Belts : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Every, Belts,
+                         ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel), direct,
+                                           by_bullet(direct), hybrid, by_bullet(hybrid)),
+                         name_of);
+
+Surface with_friction(double friction) {
+  Surface surface;
+  surface.friction = friction;
+  return surface;
+}
+
+// 6 m along x, the top at the origin, tied to the world.
+description::Model conveyor(double friction) {
+  description::Model model =
+      loose("conveyor", Box{{6.0, 1.0, 0.1}}, solid_box(20.0, {6.0, 1.0, 0.1}), with_friction(friction));
+  model.links[0].collisions[0].X_LC.position.z() = -0.05;
+  model.joints.push_back(
+      joint_of("tie", description::JointType::fixed, description::Joint::world, 0, Vector3d::UnitZ()));
+  model.devices.push_back(description::Belt{"belt", 0, Vector3d::UnitY(), 10.0});
+  return model;
+}
+
+description::Model crate() { return loose("crate", Box{{0.2, 0.2, 0.1}}, solid_box(2.0, {0.2, 0.2, 0.1})); }
+
+// At rest on the top of what stands at X_WB, `x` along it.
+Pose on(const Pose& X_WB, double x, double half_height) { return X_WB * Pose{{x, 0, half_height}}; }
+
+// Two tracks of 0.6 m, 0.4 m apart.
+description::Model tracked_vehicle(double friction) {
+  description::Model model = loose("vehicle", Box{{0.6, 0.24, 0.1}}, solid_box(10.0, {0.6, 0.24, 0.1}));
+  model.links[0].collisions[0].X_LC.position.z() = 0.05;
+  for (const double y : {0.2, -0.2}) {
+    description::Link track{y > 0.0 ? "left" : "right", {{0, y, 0}}, solid_box(2.0, {0.6, 0.1, 0.1}), {}};
+    track.collisions.push_back({"middle", {}, Box{{0.5, 0.1, 0.1}}, with_friction(friction)});
+    for (const double x : {0.25, -0.25})
+      track.collisions.push_back({"end", turned(x, 0, 0, Vector3d::UnitX(), 0.5 * std::numbers::pi),
+                                  description::Cylinder{0.05, 0.1}, with_friction(friction)});
+    model.links.push_back(track);
+    model.joints.push_back(
+        joint_of(track.name, description::JointType::fixed, 0, model.links.size() - 1, Vector3d::UnitZ()));
+  }
+  description::TrackedDrive drive;
+  drive.name = "drive";
+  drive.left_links = {1};
+  drive.right_links = {2};
+  drive.track_separation = 0.4;
+  model.devices.push_back(drive);
+  return model;
+}
+void run_tracks(SmallWorld& small, std::uint32_t body, double left, double right) {
+  small.world().set_belt_velocity_target(body, 1, left);
+  small.world().set_belt_velocity_target(body, 2, right);
+}
+
+TEST_P(Belts, BringWhatTheyCarryToTheirSpeedWithNoMoreThanFrictionGives) {
+  constexpr double friction = 0.3, speed = 0.9;
+  for (const double yaw : {0.0, 0.6, -2.0}) {
+    for (const double sense : {1.0, -1.0}) {
+      SmallWorld small(GetParam().world());
+      const Pose X_WB = turned(0, 0, 1, Vector3d::UnitZ(), yaw);
+      const auto belt = small.add(conveyor(friction), X_WB);
+      const auto box = small.add(crate(), on(X_WB, 0, 0.05));
+      const Vector3d along = X_WB.orientation * Vector3d(sense, 0, 0);
+      small.run(0.1);
+      EXPECT_LT(small.velocity(box).head<2>().norm(), 1e-6) << "it stands";
+      small.world().set_belt_velocity_target(belt, 0, sense * speed);
+      for (const double time : {0.1, 0.2}) {
+        small.run(0.1);
+        EXPECT_NEAR(along.dot(small.velocity(box)), friction * g * time, 0.01 * friction * g * time) << yaw;
+      }
+      small.run(0.5);
+      EXPECT_NEAR(along.dot(small.velocity(box)), speed, 1e-3 * speed);
+      small.run(0.5);
+      const Vector3d off = small.velocity(box) - speed * along;
+      EXPECT_LT(off.norm(), 1e-3 * speed) << off.transpose();
+      const Vector3d way = small.position(box) - on(X_WB, 0, 0.05).position;
+      EXPECT_LT((way - along.dot(way) * along).norm(), 1e-3) << "straight along the belt";
+    }
+  }
+}
+
+TEST_P(Belts, CarryUpASlopeAndDownWhatFrictionHolds) {
+  constexpr double friction = 0.6, slope = 0.35, speed = 0.5;
+  for (const double sense : {1.0, -1.0}) {
+    SmallWorld small(GetParam().world());
+    const Pose X_WB = turned(0, 0, 2, Vector3d::UnitY(), -slope);  // x goes up
+    const auto belt = small.add(conveyor(friction), X_WB);
+    const auto box = small.add(crate(), on(X_WB, 0, 0.05));
+    small.world().set_belt_velocity_target(belt, 0, sense * speed);
+    const Vector3d along = X_WB.orientation * Vector3d(sense, 0, 0);
+    small.run(0.1);
+    const double acceleration = g * (friction * std::cos(slope) - sense * std::sin(slope));
+    EXPECT_NEAR(along.dot(small.velocity(box)), std::min(speed, 0.1 * acceleration), 0.02 * 0.1 * acceleration);
+    small.run(0.9);
+    EXPECT_LT((small.velocity(box) - speed * along).norm(), 2e-3 * speed);
+  }
+}
+
+// Steeper than friction holds: it slides down, however fast the belt runs.
+TEST_P(Belts, DoNotCarryWhatIsTooSteep) {
+  constexpr double friction = 0.2, slope = 0.35;
+  SmallWorld small(GetParam().world());
+  const Pose X_WB = turned(0, 0, 2, Vector3d::UnitY(), -slope);
+  const auto belt = small.add(conveyor(friction), X_WB);
+  const auto box = small.add(crate(), on(X_WB, 1, 0.05));
+  small.world().set_belt_velocity_target(belt, 0, 5.0);
+  small.run(0.5);
+  const double acceleration = g * (std::sin(slope) - friction * std::cos(slope));
+  EXPECT_NEAR(-(X_WB.orientation.conjugate() * small.velocity(box)).x(), 0.5 * acceleration, 0.02 * acceleration);
+}
+
+// What a surface of several coefficients says of its directions stays so.
+TEST_P(Belts, CarryWithTheFrictionThatIsAlongThem) {
+  constexpr double along = 0.2, across = 0.7;
+  SmallWorld small(GetParam().world());
+  description::Model model = conveyor(along);
+  Surface& surface = model.links[0].collisions[0].surface;
+  surface.friction_direction = Vector3d::UnitX();
+  surface.second_friction = across;
+  const auto belt = small.add(model, at(0, 0, 1));
+  const auto box = small.add(crate(), at(0, 0, 1.05));
+  small.world().set_belt_velocity_target(belt, 0, 2.0);
+  small.run(0.2);
+  EXPECT_NEAR(small.velocity(box).x(), along * g * 0.2, 0.01 * along * g);
+}
+
+TEST_P(Belts, OfAnyAxisRunAboutIt) {
+  SmallWorld small(GetParam().world());
+  description::Model model = conveyor(1.0);
+  std::get<description::Belt>(model.devices[0]).axis_L = {-3.0, 0, 0};  // y of the world on top
+  const auto belt = small.add(model, at(0, 0, 1));
+  const auto box = small.add(crate(), at(0, -0.3, 1.05));
+  small.world().set_belt_velocity_target(belt, 0, 0.4);
+  small.run(0.5);
+  EXPECT_LT((small.velocity(box) - Vector3d(0, 0.4, 0)).norm(), 1e-3) << small.velocity(box).transpose();
+}
+
+TEST_P(Belts, CarryRobotsWhoseTracksMeasureWhatTheyRollOnThem) {
+  SmallWorld small(GetParam().world());
+  const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
+  const auto robot = small.add(GetParam().robot(), at(-1, 0, 1));
+  small.world().set_belt_velocity_target(belt, 0, 0.15);
+  small.run(1.0);
+  EXPECT_NEAR(small.velocity(robot).x(), 0.15, 2e-3) << "it stands on the belt";
+  EXPECT_NEAR(small.world().track(robot, 0, physics::Side::left).velocity, 0.0, 2e-3);
+  small.drive(robot, -0.15, -0.15);
+  small.run(1.0);
+  EXPECT_NEAR(small.velocity(robot).x(), 0.0, 2e-3) << "it walks against it";
+  EXPECT_NEAR(small.world().track(robot, 0, physics::Side::left).velocity, -0.15, 2e-3);
+}
+
+TEST_P(Belts, DriveAVehicleStraightAtTheirSpeed) {
+  SmallWorld small(GetParam().world());
+  const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 0.05));
+  for (const double speed : {0.6, -0.4}) {
+    run_tracks(small, vehicle, speed, speed);
+    small.run(1.0);
+    const Vector3d before = small.position(vehicle);
+    small.run(1.0);
+    EXPECT_NEAR(small.position(vehicle).x() - before.x(), speed, 0.01 * std::abs(speed));
+    EXPECT_NEAR(small.position(vehicle).y(), 0.0, 2e-3);
+    EXPECT_NEAR(small.position(vehicle).z(), 0.05, 1e-3);
+  }
+}
+
+class LongBelts : public EveryPhysics {};
+INSTANTIATE_TEST_SUITE_P(Iterative, LongBelts,
+                         ::testing::Values(articulated, by_bullet(articulated), treel, by_bullet(treel)), name_of);
+
+// Each point slips across as far as it is from the middle: for 12 of 16 points 0.25 m, which is more than half the
+// gauge. Balance of their moments: 0.57 rad/s, where wheels on an axle would turn it with 1.5 rad/s. Of the direct
+// solver each direction has its friction for itself, and where tracks are long none is left to turn it.
+TEST_P(LongBelts, TurnAVehicleOnTheSpotToTheSideOfTheSlowerTrack) {
+  for (const double sense : {1.0, -1.0}) {
+    SmallWorld small(GetParam().world());
+    const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 0.05));
+    run_tracks(small, vehicle, -0.3 * sense, 0.3 * sense);
+    small.run(4.0);
+    EXPECT_NEAR(sense * small.world().link_twist(vehicle, 0).angular_W.z(), 0.57, 0.03);
+    EXPECT_LT(small.position(vehicle).head<2>().norm(), 0.01) << "it does not wander";
+  }
+}
+
+// Tracks that are short and far apart, where friction of any shape lets them turn it.
+TEST_P(Belts, TurnAWideVehicleWithEverySolver) {
+  for (const double sense : {1.0, -1.0}) {
+    SmallWorld small(GetParam().world());
+    description::Model wide = tracked_vehicle(1.0);
+    for (const std::size_t track : {1u, 2u}) wide.links[track].X_ML.position.y() *= 3.0;
+    const auto vehicle = small.add(wide, at(0, 0, 0.05));
+    run_tracks(small, vehicle, -0.3 * sense, 0.3 * sense);
+    small.run(2.0);
+    const double rate = sense * small.world().link_twist(vehicle, 0).angular_W.z();
+    EXPECT_GT(rate, 0.7 * 0.3 / 0.6);
+    EXPECT_LT(rate, 0.3 / 0.6 + 1e-6) << "no faster than tracks that roll";
+  }
+}
+
+TEST_P(Belts, ClimbASlopeUpToTheFrictionAngle) {
+  constexpr double friction = 0.5;
+  for (const double slope : {0.8 * std::atan(friction), 1.2 * std::atan(friction)}) {
+    SmallWorld small(GetParam().world());
+    const Pose X_WG = turned(0, 0, 3, Vector3d::UnitY(), -slope);
+    small.add(static_shape("slope", Box{{8, 2, 0.2}}), X_WG * Pose{{0, 0, -0.1}});
+    const auto vehicle = small.add(tracked_vehicle(friction), on(X_WG, 0, 0.05));
+    run_tracks(small, vehicle, 0.3, 0.3);
+    small.run(1.0);
+    const double up = (X_WG.orientation.conjugate() * small.velocity(vehicle)).x();
+    if (slope < std::atan(friction))
+      EXPECT_NEAR(up, 0.3, 0.01 * 0.3);
+    else
+      EXPECT_NEAR(up, -g * (std::sin(slope) - friction * std::cos(slope)), 0.05);
+  }
+}
+
+TEST_P(Belts, OnBeltsAddUp) {
+  SmallWorld small(GetParam().world());
+  const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
+  const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 1.05));
+  small.world().set_belt_velocity_target(belt, 0, -0.4);
+  run_tracks(small, vehicle, 0.4, 0.4);
+  small.run(1.0);
+  EXPECT_LT(small.velocity(vehicle).norm(), 4e-3) << "it runs and stays where it is";
+  run_tracks(small, vehicle, 0.7, 0.7);
+  small.run(1.0);
+  EXPECT_NEAR(small.velocity(vehicle).x(), 0.3, 0.003);
+}
+
+// Crates on conveyors that a vehicle crosses.
+struct Hall {
+  Hall(const Physics& physics, unsigned threads) : small(physics.world(), threads) {
+    for (int i = 0; i < 6; ++i) {
+      belts.push_back(small.add(conveyor(0.5), turned(0, 1.1 * i, 0.3, Vector3d::UnitZ(), i % 2 == 0 ? 0.0 : 0.03)));
+      for (int k = 0; k < 4; ++k) small.add(crate(), at(-2.0 + k, 1.1 * i, 0.4 + 0.05 * k));
+    }
+    vehicle = small.add(tracked_vehicle(0.8), turned(1.5, 0, 0.4, Vector3d::UnitZ(), 1.2));
+  }
+  void command() {
+    for (std::size_t i = 0; i < belts.size(); ++i)
+      small.world().set_belt_velocity_target(belts[i], 0, i % 2 == 0 ? 0.5 : -0.7);
+    run_tracks(small, vehicle, 0.5, 0.4);
+  }
+  SmallWorld small;
+  std::vector<std::uint32_t> belts;
+  std::uint32_t vehicle = 0;
+};
+
+TEST_P(Belts, AreTheSameOnAnyThreadsAndAfterRestore) {
+  Hall one(GetParam(), 1), many(GetParam(), 3), restored(GetParam(), 2);
+  for (Hall* hall : {&one, &many}) {
+    hall->command();
+    hall->small.run(0.5);
+  }
+  ASSERT_EQ(hash_of(one.small.world()), hash_of(many.small.world()));
+  restore_from(one.small.world(), restored.small.world());
+  ASSERT_EQ(hash_of(one.small.world()), hash_of(restored.small.world()));
+  for (Hall* hall : {&one, &many, &restored}) hall->small.run(1.0);  // nobody says again how fast
+  EXPECT_EQ(hash_of(one.small.world()), hash_of(many.small.world()));
+  EXPECT_EQ(hash_of(one.small.world()), hash_of(restored.small.world()));
+}
+
+TEST_P(Belts, AreToldApartByTheirSpeedAlone) {
+  SmallWorld small(GetParam().world());
+  const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
+  const std::uint64_t before = hash_of(small.world());
+  small.world().set_belt_velocity_target(belt, 0, 0.0);
+  EXPECT_EQ(hash_of(small.world()), before) << "the same again is no change";
+  small.world().set_belt_velocity_target(belt, 0, 0.1);
+  EXPECT_NE(hash_of(small.world()), before);
+}
+
+TEST_P(Belts, WakeWhatSleepsOnThem) {
+  SmallWorld small(GetParam().world());
+  const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
+  const auto box = small.add(crate(), at(0, 0, 1.05));
+  small.run(2.0);
+  const std::uint64_t asleep = hash_of(small.world());
+  small.world().set_belt_velocity_target(belt, 0, 0.0);
+  small.run(0.1);
+  EXPECT_EQ(hash_of(small.world()), asleep) << "the same again wakes nobody";
+  small.world().set_belt_velocity_target(belt, 0, 0.3);
+  small.run(0.5);
+  EXPECT_NEAR(small.velocity(box).x(), 0.3, 1e-3);
+}
+
+TEST(PlanarBelts, AreRefused) {
+  SmallWorld small(planar.world());
+  small.add(tracked_vehicle(1.0), at(0, 0, 0.05));
+  try {
+    small.world();
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("the belts of 'drive' cannot be planar"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace cohort::test

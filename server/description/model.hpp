@@ -79,6 +79,7 @@ struct Link {
   std::vector<Visual> visuals{};            ///< those whose shape can be read
   bool feels_wind = false;                  ///< SDF's enable_wind
   bool feels_gravity = true;                ///< SDF's gravity
+  bool is_kinematic = false;                ///< of the root alone: nothing but commands changes how it moves
 };
 
 /// A circle that grippers hold on to, in the xy plane of R: the T-shaped ring around the turret of an s-bot.
@@ -96,10 +97,12 @@ struct JointAxis {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();     ///< unit vector in J
   double lower = -std::numeric_limits<double>::infinity();  ///< [rad] or [m]
   double upper = std::numeric_limits<double>::infinity();
-  double damping = 0.0;           ///< [N m s/rad] or [N s/m]
-  double friction = 0.0;          ///< Coulomb friction of the joint [N m] or [N]
-  double spring_stiffness = 0.0;  ///< [N m/rad] or [N/m]
-  double spring_reference = 0.0;  ///< where the spring is at rest [rad] or [m]
+  double limit_stiffness = std::numeric_limits<double>::infinity();  ///< of both limits [N m/rad] or [N/m]
+  double limit_damping = 0.0;                                        ///< of limits that are not rigid, as `damping`
+  double damping = 0.0;                                              ///< [N m s/rad] or [N s/m]
+  double friction = 0.0;                                             ///< Coulomb friction of the joint [N m] or [N]
+  double spring_stiffness = 0.0;                                     ///< [N m/rad] or [N/m]
+  double spring_reference = 0.0;                                     ///< where the spring is at rest [rad] or [m]
   // Of a motor on it, whatever the motor itself may do:
   double max_effort = std::numeric_limits<double>::infinity();    ///< [N m] or [N]
   double max_velocity = std::numeric_limits<double>::infinity();  ///< [rad/s] or [m/s]

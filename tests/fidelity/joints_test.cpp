@@ -233,6 +233,28 @@ TEST(Joints, ADoublePendulumKeepsItsEnergy) {
   }
 }
 
+// It comes to rest where the spring bears its weight, on either side of the joint, whatever the damper does.
+TEST(Joints, ASoftLimitGivesWayByItsStiffness) {
+  constexpr double weight = 2.0 * g, stiffness = 500.0;
+  for (const double damping : {5.0, 50.0}) {
+    for (const double sense : {1.0, -1.0}) {
+      SmallWorld small(empty_world());
+      description::Model model;
+      model.name = "buffer";
+      model.links.push_back({"load", {}, solid_box(2.0, {0.1, 0.1, 0.1}), {}});
+      model.joints.push_back(joint_of("rail", JointType::prismatic, Joint::world, 0, sense * Vector3d::UnitZ()));
+      description::JointAxis& axis = model.joints[0].axis;
+      axis.lower = -0.1;
+      axis.upper = 0.1;
+      axis.limit_stiffness = stiffness;
+      axis.limit_damping = damping;
+      const auto body = small.add(model, at(0, 0, 1));
+      small.run(30.0);
+      EXPECT_NEAR(small.position(body).z(), 1.0 - 0.1 - weight / stiffness, 1e-6);
+    }
+  }
+}
+
 // A cart with four wheels as real links, which touch the ground.
 description::Model four_wheels() {
   description::Model model;

@@ -114,7 +114,10 @@ TEST_F(Hands, AreToldWhenTheServerQuitsAndTheViewStays) {
   ASSERT_TRUE(script.wait_for_output("driving")) << script.output();
   EXPECT_EQ(run_to_end(ctl("shutdown")).exit_code, 0);
   EXPECT_EQ(script.wait_for_exit(), 0) << script.output();
-  EXPECT_NE(script.output().find("ended: the run is over"), std::string::npos) << script.output();
+  // Whichever comes first: that the robot's run has ended, or that nobody is left to ask.
+  const auto is_told = [&](const char* text) { return script.output().find(text) != std::string::npos; };
+  EXPECT_TRUE(is_told("ended: the run is over") || is_told("ended: there is no server that can be controlled"))
+      << script.output();
   EXPECT_TRUE(view.process().running());
   EXPECT_TRUE(run.wait_for_exit().has_value());
 }

@@ -129,7 +129,12 @@ export async function runScenario(scenarios) {
     page.on("pageerror", (error) => errors.push(error.message));
     await page.goto(address);
     await until(page, () => window.cohort?.viewer.poses?.frame);
-    await scenarios[scenario](page, file);
+    try {
+      await scenarios[scenario](page, file);
+    } catch (error) {
+      error.stack += `\nThe page then says: ${await page.evaluate(() => document.body.innerText)}`;
+      throw error;
+    }
     assert.deepEqual(errors, []);
   } finally {
     await browser.close();

@@ -60,6 +60,24 @@ void read_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report, JointA
     report.problem(sdf_axis.Element()->FindElement("limit"), "the lower limit exceeds the upper limit");
 }
 
+// SDF's default is as good as rigid, and rigid here.
+void read_give_of_limits(const sdf::JointAxis& sdf_axis, const SdfReport& report, JointAxis& axis) {
+  constexpr double rigid = 1e8;
+  const sdf::ElementPtr dissipation = find(sdf_axis.Element(), {"limit", "dissipation"});
+  const bool is_soft = sdf_axis.Stiffness() < rigid;
+  if (is_soft && !(sdf_axis.Stiffness() > 0.0))
+    report.problem(find(sdf_axis.Element(), {"limit", "stiffness"}), "expected a stiffness > 0");
+  if (sdf_axis.Dissipation() < 0.0 || std::isinf(sdf_axis.Dissipation()))
+    report.problem(dissipation, "expected a dissipation >= 0");
+  if (!is_soft) {
+    if (is_written(dissipation) && dissipation->GetExplicitlySetInFile() && sdf_axis.Dissipation() != 1.0)
+      report.warning(dissipation, "<dissipation> is ignored; without a <stiffness> below 1e8 limits are rigid");
+    return;
+  }
+  axis.limit_stiffness = sdf_axis.Stiffness();
+  axis.limit_damping = sdf_axis.Dissipation();
+}
+
 // Negative, they do not count; nor where they are 0, as exporters write of what they do not know.
 void read_motor_limits(const sdf::JointAxis& sdf_axis, JointAxis& axis) {
   const auto read = [](double limit, double& most) {
@@ -106,6 +124,7 @@ std::optional<JointAxis> read_axis(const sdf::Joint& sdf_joint, unsigned place, 
   read_dynamics(*sdf_axis, report, axis);
   read_motor_limits(*sdf_axis, axis);
   if (sdf_joint.Type() != sdf::JointType::CONTINUOUS) read_limits(*sdf_axis, report, axis);
+  read_give_of_limits(*sdf_axis, report, axis);
   return axis;
 }
 
@@ -127,6 +146,7 @@ void read_ball(const sdf::Joint& sdf_joint, const SdfReport& report, Joint& join
   JointAxis read;
   read_dynamics(*sdf_axis, report, read);
   read_limits(*sdf_axis, report, read);
+  read_give_of_limits(*sdf_axis, report, read);
   joint.axis.damping = read.damping;
   joint.axis.friction = read.friction;
   if (read.spring_stiffness > 0.0)

@@ -239,6 +239,7 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
   if (reading.is_static) return link;
   const sdf::ElementPtr gravity = find(sdf_link.Element(), {"gravity"});
   link.feels_gravity = !is_written(gravity) || gravity->Get<bool>();
+  link.is_kinematic = sdf_link.Element()->Get<bool>("kinematic", false).first;
   const auto computed = read_inertial_from_density(sdf_link, link, reading.report);
   link.inertial = computed ? *computed : read_written_inertial(sdf_link, reading.report);
   return link;

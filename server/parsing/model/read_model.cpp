@@ -89,6 +89,19 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
   return true;
 }
 
+// What hangs on a joint moves with what holds it, and the world holds a link still.
+void take_kinematic_links(Model& model, const SdfReport& report, const sdf::ElementPtr& element) {
+  const auto is_child = [&](std::size_t link) {
+    return std::ranges::any_of(model.joints, [&](const Joint& joint) { return joint.child == link; });
+  };
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    if (!model.links[link].is_kinematic || !is_child(link)) continue;
+    model.links[link].is_kinematic = false;
+    report.warning(element, "<kinematic> of the link '" + model.links[link].name +
+                                "' is ignored: a joint holds it; only a root that is free can be kinematic");
+  }
+}
+
 // What <enable_wind> of a model or a link says; otherwise it is as what it stands in.
 bool feels_wind(const sdf::ElementPtr& element, bool outer) {
   const sdf::ElementPtr written = element->FindElement("enable_wind");
@@ -203,6 +216,7 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   set_loops_apart(model);
   if (!order_links(sdf_model, model, reading.report)) return model;
   warn_of_loops(sdf_model, model, reading.report);
+  take_kinematic_links(model, reading.report, element);
   model.couplings = read_couplings(sdf_model, model, "", reading);
   std::vector<Counterpart> of_plugins;
   std::set<std::string> names;

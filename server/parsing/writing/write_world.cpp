@@ -148,6 +148,7 @@ class WorldWriter {
     add_pose(element, link.X_ML);
     if (link.feels_wind) add_value(element, "enable_wind", true);
     if (!link.feels_gravity) add_value(element, "gravity", false);
+    if (link.is_kinematic) add_value(element, "kinematic", true);
     if (!is_static) {
       XmlNode& inertial = add(element, "inertial");
       add_pose(inertial, link.inertial.X_LI);
@@ -251,6 +252,10 @@ class WorldWriter {
       add_value(limit, "upper", std::isfinite(axis.upper) ? axis.upper : no_limit);
       if (std::isfinite(axis.max_effort)) add_value(limit, "effort", axis.max_effort);
       if (std::isfinite(axis.max_velocity)) add_value(limit, "velocity", axis.max_velocity);
+      if (std::isfinite(axis.limit_stiffness)) {
+        add_value(limit, "stiffness", axis.limit_stiffness);
+        add_value(limit, "dissipation", axis.limit_damping);
+      }
     }
     XmlNode& dynamics = add(element, "dynamics");
     add_value(dynamics, "damping", axis.damping);

@@ -80,6 +80,10 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
   ++revision;
   const description::Model& model = body.mechanism().model();
   const std::vector<description::Link>& links = model.links;
+  if (body.mechanism().has_kinematic_root()) {
+    const Segment& root = body.mechanism().segments()[0];
+    member.weightless.push_back({0, 0, root.mass, root.centre_S});
+  }
   std::size_t shape = 0;
   for (std::size_t link = 0; link < links.size(); ++link) {
     const Mechanism::LinkPlace& place = body.mechanism().link(link);
@@ -240,6 +244,7 @@ void Assembly::add_connection_rows(Connection& connection, Problem& problem) {
 
 void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
   if (anchors.moves(pair.b) && anchors.of(pair.b).body < 0) return;
+  if (is_immovable(pair.a) && (!anchors.moves(pair.b) || is_immovable(pair.b))) return;
   const geometry::Solid& a = scene.solid(pair.a);
   const geometry::Solid& b = scene.solid(pair.b);
   const SurfacePair both = surfaces.of(a.surface, b.surface);
@@ -258,6 +263,11 @@ void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
   physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, running, step);
 }
 
+bool Assembly::is_immovable(std::uint32_t solid) const {
+  const Anchor anchor = anchors.of(solid);
+  return anchor.segment == 0 && members[anchors.member(solid)].multibody->mechanism().has_kinematic_root();
+}
+
 RunningSurface Assembly::surface_of(std::uint32_t solid) const {
   if (!anchors.moves(solid)) return {};
   return members[anchors.member(solid)].multibody->surface_of(scene.solid(solid).link);
@@ -270,7 +280,8 @@ bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
 
 bool Assembly::is_in_flight(std::uint32_t index) {
   const Multibody& multibody = *members[index].multibody;
-  if (!multibody.mechanism().has_free_root() || multibody.mechanism().is_free_body()) return false;
+  const Mechanism& mechanism = multibody.mechanism();
+  if (!mechanism.has_free_root() || mechanism.is_free_body() || mechanism.has_kinematic_root()) return false;
   bool is_held = multibody.loops().reach_the_world();
   for (const TrackRows& treel : multibody.treels()) treel.for_each_ground([&](std::uint32_t) { is_held = true; });
   connections.for_each_of(index, [&](const Connection&) { is_held = true; });
@@ -282,7 +293,7 @@ bool Assembly::is_in_flight(std::uint32_t index) {
 // what it would touch. It waits before what stands in its way, and touches it in the next step.
 void Assembly::keep_from_passing_through(Member& member) const {
   Multibody& multibody = *member.multibody;
-  if (!multibody.mechanism().has_free_root()) return;
+  if (!multibody.mechanism().has_free_root() || multibody.mechanism().has_kinematic_root()) return;
   if (!(step * multibody.greatest_speed(member.reach) > member.furthest_unseen)) return;
   Eigen::Vector3d back_W = Eigen::Vector3d::Zero();
   for (const Part& part : member.parts) {

@@ -165,6 +165,8 @@ struct Assembly {
                  const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape);
   /// Of a solid: how its surface runs.
   RunningSurface surface_of(std::uint32_t solid) const;
+  /// Whether it is of a root that nothing pushes.
+  bool is_immovable(std::uint32_t solid) const;
   void keep_from_passing_through(Member& member) const;
   bool may_touch(std::uint32_t solid, std::uint32_t other) const;
   ForceRecord* record_of(std::uint32_t member) const {

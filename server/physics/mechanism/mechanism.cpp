@@ -66,6 +66,14 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   }
   turn_to_principal_axes();
   find_light_segments();
+  if (has_kinematic_root()) make_root_immovable();
+}
+
+// A sphere, so that nothing turns it either. Impulses of a robot's step change its velocity by less than doubles tell.
+void Mechanism::make_root_immovable() {
+  constexpr double immovable = 1e15;  // [kg], [kg m^2]
+  segments_[0].mass = immovable;
+  segments_[0].inertia_S = immovable * Eigen::Matrix3d::Identity();
 }
 
 void Mechanism::turn_to_principal_axes() {

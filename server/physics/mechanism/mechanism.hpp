@@ -81,6 +81,8 @@ class Mechanism {
   /// A single rigid body, free to move.
   bool is_free_body() const { return segments_.size() == 1 && segments_[0].motion == Motion::free; }
   bool has_free_root() const { return segments_[0].motion == Motion::free; }
+  /// The root is free, and keeps its velocity whatever pushes it: to the solver it is as heavy as 1e15 kg.
+  bool has_kinematic_root() const { return has_free_root() && model_->links[0].is_kinematic; }
   /// Wheels are simulated: what drives is their joints' motors.
   bool has_wheels() const { return has_wheels_; }
 
@@ -103,6 +105,7 @@ class Mechanism {
                   const description::JointAxis* axis);
   void turn_to_principal_axes();
   void find_light_segments();
+  void make_root_immovable();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
 
   const description::Model* model_;

@@ -95,13 +95,20 @@ void JointRows::add_rows(Problem& problem, int index, const Multibody& body, dou
     const double fastest = std::max(std::abs(velocity), std::abs(problem.equations(index).velocity()[limit.dof]));
     const double by_motor = has_motor(limit.dof) ? motor(limit.dof).most_change : 0.0;
     const double reach = (2.0 * fastest + by_motor) * step + 1e-3;
+    // A spring with a damper, as in Connection::add_yielding_rows; infinite where the limit is rigid.
+    const double resistance = step * dof.axis.limit_stiffness + dof.axis.limit_damping;
+    const bool is_rigid = std::isinf(resistance);
     // The velocity that just closes the gap, or that takes back a share of an overshoot.
-    const auto target = [&](double gap) { return (gap > 0.0 ? gap : correction_share * gap) / step; };
+    const auto target = [&](double gap) {
+      if (gap > 0.0) return gap / step;
+      return is_rigid ? correction_share * gap / step : dof.axis.limit_stiffness * gap / resistance;
+    };
     const auto is_near = [&](double gap) { return gap < reach; };
     if (is_near(position - dof.axis.lower)) {
       Row& row = problem.add_dof_row(index, limit.dof, &limit.lower_impulse);
       row.target = -target(position - dof.axis.lower);
       row.set_limits(0.0, unlimited);
+      if (!is_rigid) row.soften(1.0 / (step * resistance));
     } else {
       limit.lower_impulse = 0.0;
     }
@@ -109,6 +116,7 @@ void JointRows::add_rows(Problem& problem, int index, const Multibody& body, dou
       Row& row = problem.add_dof_row(index, limit.dof, &limit.upper_impulse);
       row.target = target(dof.axis.upper - position);
       row.set_limits(-unlimited, 0.0);
+      if (!is_rigid) row.soften(1.0 / (step * resistance));
     } else {
       limit.upper_impulse = 0.0;
     }

@@ -285,7 +285,8 @@ void Multibody::move_joints(double step) {
 }
 
 void Multibody::integrate(const double* velocities, double step) {
-  std::copy_n(velocities, mechanism_->dof_count(), state_.velocities());
+  const int kept = mechanism_->has_kinematic_root() ? mechanism_->segments()[0].dofs : 0;
+  std::copy_n(velocities + kept, mechanism_->dof_count() - kept, state_.velocities() + kept);
   last_step_ = step;
   move_joints(step);
   if (mechanism_->has_free_root()) {

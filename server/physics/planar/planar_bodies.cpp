@@ -32,8 +32,8 @@ std::uint32_t PlanarBodies::add(const PlanarModel& model, const Pose& X_WM) {
   places_.emplace_back();
   velocities_.emplace_back();
   const Vector3d up_M = X_WM.orientation.conjugate() * Vector3d::UnitZ();
-  inertias_.push_back(model.is_fixed() ? PlanarInertia{}
-                                       : PlanarInertia{1.0 / model.mass(), 1.0 / up_M.dot(model.inertia() * up_M)});
+  inertias_.push_back(model.is_immovable() ? PlanarInertia{}
+                                           : PlanarInertia{1.0 / model.mass(), 1.0 / up_M.dot(model.inertia() * up_M)});
 
   X_BS_.resize(X_BS_.size() + mechanism.segments().size());
   coordinates_.insert(coordinates_.end(), mechanism.zero_coordinates().begin(), mechanism.zero_coordinates().end());

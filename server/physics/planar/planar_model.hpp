@@ -28,6 +28,8 @@ class PlanarModel {
   std::size_t link_count() const { return mechanism_.model().links.size(); }
   /// Tied to the world.
   bool is_fixed() const { return !mechanism_.has_free_root(); }
+  /// Nothing that touches it changes how it moves.
+  bool is_immovable() const { return is_fixed() || mechanism_.has_kinematic_root(); }
   const std::vector<Motor>& motors() const { return motors_; }
   int motor_of_joint(std::size_t joint) const { return motor_of_joint_[joint]; }
   int motor_of_segment(int segment) const { return motor_of_segment_[static_cast<std::size_t>(segment)]; }

@@ -93,7 +93,7 @@ void PlanarWorld::check_ground(const description::Model& described, const Pose& 
 }
 
 bool PlanarWorld::needs_ground(const PlanarModel& model) const {
-  return !model.is_fixed() && description_.gravity.z() * model.mass() != 0.0;
+  return !model.is_immovable() && description_.gravity.z() * model.mass() != 0.0;
 }
 
 std::uint32_t PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
@@ -141,7 +141,7 @@ void PlanarWorld::add_moving(std::uint32_t body) {
   const PlanarModel& model = *models_[bodies_[body].model];
   const std::uint32_t index = planar_.add(model, bodies_[body].X_WM);
   bodies_[body].member = index;
-  collision_.add_member(model.is_fixed());
+  collision_.add_member(model.is_immovable());
   grounds_.emplace_back();
   Member& member = members_.emplace_back();
   member.body = body;

@@ -48,6 +48,25 @@ TEST_F(Joints, AUniversalJointHasTwoAxesWithLimitsAndDynamicsOfTheirOwn) {
   EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
 }
 
+TEST_F(Joints, LimitsAreRigidUnlessTheirStiffnessIsBelowThatOfSdf) {
+  const auto with = [](const std::string& give) {
+    return model(links("ab") + joint("j", "a", "b",
+                                     "<xyz>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper>" + give + "</limit>",
+                                     "revolute"));
+  };
+  for (const char* rigid :
+       {"", "<stiffness>1e8</stiffness><dissipation>1</dissipation>", "<stiffness>1e9</stiffness>"}) {
+    const World world = read(with(rigid));
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+    EXPECT_EQ(world.models[0].joints[0].axis.limit_stiffness, infinity) << rigid;
+  }
+  const JointAxis axis = read(with("<stiffness>200</stiffness><dissipation>3</dissipation>")).models[0].joints[0].axis;
+  EXPECT_EQ(axis.limit_stiffness, 200.0);
+  EXPECT_EQ(axis.limit_damping, 3.0);
+  EXPECT_NE(texts_of(read(with("<dissipation>3</dissipation>")).warnings).find("<dissipation> is ignored"),
+            std::string::npos);
+}
+
 TEST_F(Joints, ABallHasDampingAndFrictionAndNoAxis) {
   const World world =
       read(model(links("abc") +
@@ -224,9 +243,16 @@ const std::string in_drive = "world/model[m]/cohort:treel_drive[d]";
 std::string with_dynamics(const std::string& dynamics) {
   return model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz><dynamics>\n" + dynamics + "</dynamics>"));
 }
+std::string with_limit(const std::string& limit) {
+  return model(links("ab") + joint("j", "a", "b", "<xyz>0 0 1</xyz><limit>\n" + limit + "</limit>"));
+}
 INSTANTIATE_TEST_SUITE_P(
     Joints, FlawOfAJoint,
     testing::Values(
+        Flaw{with_limit("<stiffness>-1</stiffness>"), 3, in_joint + "/axis/limit/stiffness",
+             "expected a stiffness > 0"},
+        Flaw{with_limit("<stiffness>9</stiffness><dissipation>-3</dissipation>"), 3,
+             in_joint + "/axis/limit/dissipation", "expected a dissipation >= 0"},
         Flaw{with_dynamics("<damping>-1</damping>"), 3, in_joint + "/axis/dynamics/damping", "expected a damping >= 0"},
         Flaw{with_dynamics("<friction>-1</friction>"), 3, in_joint + "/axis/dynamics/friction",
              "expected a friction >= 0"},

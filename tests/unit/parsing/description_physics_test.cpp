@@ -138,6 +138,24 @@ TEST_F(Surfaces, AreOfLinksThatMayNotFeelGravity) {
   }
 }
 
+TEST_F(Surfaces, AreOfLinksThatMayBeKinematicIfTheyAreFree) {
+  const auto two_links = [](const std::string& of_a, const std::string& of_b, const std::string& parent) {
+    const std::string inertial =
+        "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>";
+    return "<model name=\"m\">\n<link name=\"a\">" + of_a + inertial + "<link name=\"b\">" + of_b + inertial +
+           "<joint name=\"j\" type=\"revolute\"><parent>" + parent +
+           "</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model>";
+  };
+  const World world = read(two_links("<kinematic>true</kinematic>", "<kinematic>false</kinematic>", "a"));
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  EXPECT_TRUE(world.models[0].links[0].is_kinematic);
+  EXPECT_FALSE(world.models[0].links[1].is_kinematic);
+  const World held = read(two_links("", "<kinematic>true</kinematic>", "a"));
+  EXPECT_FALSE(held.models[0].links[1].is_kinematic);
+  EXPECT_NE(texts_of(held.warnings).find("<kinematic> of the link 'b' is ignored: a joint holds it"), std::string::npos)
+      << texts_of(held.warnings);
+}
+
 TEST_F(Surfaces, AreOfMaterialsInTheOrderInWhichTheyAreNamed) {
   const World world = read(made_of("rubber", "a") + made_of("wood", "b") + made_of("rubber", "c") +
                            static_model_sdf(collision(ball), "d") +

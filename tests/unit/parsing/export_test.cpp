@@ -124,7 +124,8 @@ TEST_F(ExportedWorlds, WithOddNumbersComeBackBitForBit) {
            parent + "</parent><child>" + child + "</child>" + axes + "</joint>";
   };
   const std::string axis =
-      "<xyz>1 2 3</xyz><limit><lower>-0.7</lower><upper>1.3</upper></limit><dynamics><damping>0.013</damping>"
+      "<xyz>1 2 3</xyz><limit><lower>-0.7</lower><upper>1.3</upper><stiffness>310</stiffness><dissipation>0.7"
+      "</dissipation></limit><dynamics><damping>0.013</damping>"
       "<friction>0.0017</friction><spring_stiffness>0.31</spring_stiffness><spring_reference>0.2</spring_reference>"
       "</dynamics>";
   const std::string model =

@@ -7,6 +7,7 @@ import { rayLength } from "./overlays";
 const plotSeconds = 20;
 const palette = ["#1f8fff", "#e5484d", "#30a46c", "#d9a11f", "#8e4ec6", "#0f9ba8"];
 const dialRadius = 54;
+const drawInterval = 100; // [ms]; nobody reads faster, and without a graphics processor a plot takes longer than the scene
 
 // A little more than the values; around one that never changes, 1 to each side.
 function rangeAround(low: number | null, high: number | null): uPlot.Range.MinMax {
@@ -23,6 +24,8 @@ interface Plot {
 /** What the selected entity is, where it is, what it senses and does. */
 export class Inspector {
   private model: SceneModel | undefined;
+  private robot: SceneRobot | undefined; // as it was last
+  private next: number | undefined; // drawing
   private names: string[] = [];
   private readonly plots = new Map<string, Plot>();
   private lastTime = -Infinity;
@@ -43,6 +46,7 @@ export class Inspector {
 
   select(entity: SceneEntity | undefined, model: SceneModel | undefined): void {
     this.model = model;
+    this.robot = undefined;
     this.panel.hidden = entity === undefined;
     for (const name of [...this.plots.keys()]) this.unplot(name);
     this.dial.replaceChildren();
@@ -105,9 +109,16 @@ export class Inspector {
         times.shift();
         values.shift();
       }
-      each.plot.setData(each.data as uPlot.AlignedData);
     }
-    this.drawDial(this.model, robot);
+    this.robot = robot;
+    this.next ??= window.setTimeout(() => this.draw(), drawInterval);
+  }
+
+  private draw(): void {
+    this.next = undefined;
+    if (!this.model || !this.robot) return;
+    for (const { plot, data } of this.plots.values()) plot.setData(data as uPlot.AlignedData);
+    this.drawDial(this.model, this.robot);
   }
 
   private unplot(name: string): void {

@@ -200,26 +200,30 @@ TEST_P(FirstWeek, FingersHoldABox) {
 
 // Twice as high as wide: its centre is above the rim where the slope is atan(1/2), 26.57 degrees.
 TEST_P(FirstWeek, ACylinderTipsWhereItsCentreLeavesItsRim) {
-  const auto falls = [&](double degrees, double yaw) {
+  const auto falls = [&](double degrees, double yaw, bool on_a_box) {
     const double slope = degrees * M_PI / 180.0;
     SmallWorld small(awake(GetParam()));
     small.description.models.clear();
     small.description.instances.clear();
     const Vector3d normal(std::sin(slope), 0, std::cos(slope));
-    small.add(static_shape("slope", description::Plane{normal}, {1.0, 0.0}), at(0, 0, 0));
+    const Eigen::Quaterniond along(Eigen::AngleAxisd(slope, Vector3d::UnitY()));
+    if (on_a_box)
+      small.add(static_shape("slope", description::Box{{1.0, 1.0, 0.1}}, {1.0, 0.0}), {-0.05 * normal, along});
+    else
+      small.add(static_shape("slope", description::Plane{normal}, {1.0, 0.0}), at(0, 0, 0));
     description::Model standing = loose("cylinder", description::Cylinder{0.05, 0.2},
                                         description::solid_cylinder(1.0, 0.05, 0.2, 0.0), {1.0, 0.0});
-    const Eigen::Quaterniond upright(Eigen::AngleAxisd(slope, Vector3d::UnitY()) *
-                                     Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
+    const Eigen::Quaterniond upright(along * Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
     const auto body = small.add(standing, {0.1 * normal, upright});
     small.run(5.0);
     return small.up(body).dot(normal) < 0.9;
   };
-  for (const double yaw : {0.0, 0.2, 22.0 * M_PI / 180.0, M_PI / 4, 1.0}) {
-    SCOPED_TRACE("yaw " + std::to_string(yaw));
-    EXPECT_FALSE(falls(26.57 - 0.5, yaw));
-    EXPECT_TRUE(falls(26.57 + 0.5, yaw));
-  }
+  for (const bool on_a_box : {false, true})
+    for (const double yaw : {0.0, 0.2, 22.0 * M_PI / 180.0, M_PI / 4, 1.0}) {
+      SCOPED_TRACE((on_a_box ? "box, yaw " : "plane, yaw ") + std::to_string(yaw));
+      EXPECT_FALSE(falls(26.57 - 0.5, yaw, on_a_box));
+      EXPECT_TRUE(falls(26.57 + 0.5, yaw, on_a_box));
+    }
 }
 
 // Tracks on what their material hardly grips, whatever their own coefficient says.

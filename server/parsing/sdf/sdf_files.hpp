@@ -135,8 +135,9 @@ class SdfFiles {
   /// Nothing if there is nothing to be put into its place.
   std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
   static void replace_in_model(const XmlNode& include, const Found& found, bool merges, std::vector<XmlNode>& children);
-  void replace_in_world(const XmlNode& include, const Found& found, const Named& named, std::vector<XmlNode>& children,
-                        SdfFile& file);
+  /// False as `fits`.
+  bool replace_in_world(const XmlNode& include, const std::string& path, const Found& found, const Named& named,
+                        std::vector<XmlNode>& children, SdfFile& file);
   bool fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file);
 
   LibsdformatScope libsdformat_;

@@ -137,6 +137,8 @@ XmlNode as_included(const XmlNode& model, const XmlNode& include) {
     set_attribute(changed, "placement_frame", frame->text);
   if (const XmlNode* const pose = include.child("pose")) set_child(changed, *pose);
   if (const XmlNode* const is_static = include.child("static")) set_child(changed, *is_static);
+  for (const XmlNode& part : include.children)
+    if (part.name == "plugin") changed.children.push_back(part);
   return changed;
 }
 
@@ -290,7 +292,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
       problems_.push_back({file.shown, child.line, "world/include[" + found->name + "]",
                            "another model has the name '" + found->name + "'"});
     } else if (is_world) {
-      replace_in_world(child, *found, named, children, file);
+      if (!replace_in_world(child, child_path, *found, named, children, file)) return false;
     } else if (!fits(child, child_path, found->file, file)) {
       return false;
     } else {
@@ -350,8 +352,12 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
   return Found{included, *model, name != nullptr ? name->text : name_of(*model)};
 }
 
-void SdfFiles::replace_in_world(const XmlNode& include, const Found& found, const Named& named,
+bool SdfFiles::replace_in_world(const XmlNode& include, const std::string& path, const Found& found, const Named& named,
                                 std::vector<XmlNode>& children, SdfFile& file) {
+  if (include.child("plugin") != nullptr) {  // it shares its model with no other
+    children.push_back(as_included(found.model, include));
+    return fits(include, path, found.file, file);
+  }
   const XmlNode model = as_included({"model", include.line, include.file, found.model.attributes, "", {}}, include);
   const XmlNode* const own_pose = found.model.child("pose");
   const XmlNode* const pose = include.child("pose") != nullptr ? include.child("pose") : own_pose;
@@ -363,14 +369,15 @@ void SdfFiles::replace_in_world(const XmlNode& include, const Found& found, cons
   const std::string* const placement = model.attribute("placement_frame");
   if (named.scopes.contains(found.name) || (placement != nullptr && !placement->empty())) {
     children.push_back(as_included(frames_of(found.model), include));
-    return;
+    return true;
   }
   if (!named.frames.contains(found.name)) file.includes.back().X_WM = pose_in_world(pose);
-  if (file.includes.back().X_WM) return;
+  if (file.includes.back().X_WM) return true;
   // A frame costs libsdformat a hundredth of what a model does.
   XmlNode frame{"frame", include.line, include.file, {{"name", found.name}}, "", {}};
   if (pose != nullptr) frame.children.push_back(*pose);
   children.push_back(std::move(frame));
+  return true;
 }
 
 }  // namespace cohort::parsing

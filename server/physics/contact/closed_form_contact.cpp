@@ -232,6 +232,32 @@ bool anything_on_plane(const geometry::Shape& shape, const Pose& X_W, const Half
   return known;
 }
 
+// The face of a box that all of a cylinder is above: there the box is as good as endless.
+std::optional<HalfSpace> face_under(const Cylinder& cylinder, const Pose& X_WC, const Box& box, const Pose& X_WB) {
+  const Pose X_BC = X_WB.inverse() * X_WC;
+  const geometry::Bounds around = geometry::bounds_of(cylinder, X_BC);
+  const Vector3d half = 0.5 * box.size;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::abs(X_BC.position[axis]) <= half[axis]) continue;
+    const auto is_within = [&](int other) {
+      return other == axis || (around.lower[other] >= -half[other] && around.upper[other] <= half[other]);
+    };
+    if (!is_within(0) || !is_within(1) || !is_within(2)) continue;
+    Vector3d normal = Vector3d::Zero();
+    normal[axis] = X_BC.position[axis] > 0.0 ? 1.0 : -1.0;
+    return HalfSpace({normal}, {X_WB * Vector3d(half[axis] * normal), X_WB.orientation});
+  }
+  return std::nullopt;
+}
+
+bool cylinder_on_box(const Cylinder& cylinder, const Pose& X_WC, const Box& box, const Pose& X_WB, double margin,
+                     ContactPoints& found) {
+  const std::optional<HalfSpace> face = face_under(cylinder, X_WC, box, X_WB);
+  if (!face) return find_side_contact(cylinder, X_WC, box, X_WB, margin, found);
+  on_plane(cylinder, X_WC, *face, margin, found);
+  return true;
+}
+
 }  // namespace
 
 bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const geometry::Shape& b, const Pose& X_WB,
@@ -250,11 +276,10 @@ bool find_closed_form_contact(const geometry::Shape& a, const Pose& X_WA, const 
     return find_side_contact(*cylinder_a, X_WA, *cylinder_b, X_WB, margin, found);
   const auto* box_a = std::get_if<Box>(&a);
   const auto* box_b = std::get_if<Box>(&b);
-  if (cylinder_a != nullptr && box_b != nullptr)
-    return find_side_contact(*cylinder_a, X_WA, *box_b, X_WB, margin, found);
+  if (cylinder_a != nullptr && box_b != nullptr) return cylinder_on_box(*cylinder_a, X_WA, *box_b, X_WB, margin, found);
   if (box_a != nullptr && cylinder_b != nullptr) {
     // NOLINTNEXTLINE(readability-suspicious-call-argument): the two change places, and the normals are turned round.
-    const bool known = find_side_contact(*cylinder_b, X_WB, *box_a, X_WA, margin, found);
+    const bool known = cylinder_on_box(*cylinder_b, X_WB, *box_a, X_WA, margin, found);
     for (ContactPoint& point : found) point.normal_W = -point.normal_W;
     return known;
   }

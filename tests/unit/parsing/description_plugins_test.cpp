@@ -48,6 +48,27 @@ class Plugins : public Description {
   }
 };
 
+// In worlds, in models, and in models of which nothing but their parts stays.
+TEST_F(Plugins, OfAnIncludeBelongToTheModelThatItBrings) {
+  const std::string axis = "<xyz>0 1 0</xyz>";
+  write_model("cart", links("abc") + joint("l", "a", "b", axis) + joint("r", "a", "c", axis));
+  const auto include = [](const std::string& name, const std::string& parts, const std::string& merge = "") {
+    return "<include" + merge + "><uri>model://cart</uri><name>" + name + "</name>\n" + parts + "</include>";
+  };
+  const std::string drive = plugin("gz-sim-diff-drive-system", wheels);
+  const World world =
+      read(include("driven", drive) + include("bare", "") + "<model name=\"outer\">" + include("inner", drive) +
+           "</model><model name=\"merged\">" + include("inner", drive, " merge=\"true\"") + "</model>" +
+           include("odd", plugin("odd", "", "odd")));
+  std::map<std::string, std::size_t> devices;
+  for (const Instance& instance : world.instances) devices[instance.name] = world.models[instance.model].devices.size();
+  EXPECT_EQ(devices,
+            (std::map<std::string, std::size_t>{{"driven", 1}, {"bare", 0}, {"outer", 1}, {"merged", 1}, {"odd", 0}}));
+  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+  expect_problem(world.warnings, folder_ / "world.sdf",
+                 {"", 7, "world/model[odd]/plugin[odd]", "has no counterpart here"});
+}
+
 TEST_F(Plugins, AreKnownByTheirFilesOfEveryGenerationAndByTheirClasses) {
   for (const char* file :
        {"gz-sim-diff-drive-system", "libgz-sim-diff-drive-system.so", "gz-sim8-diff-drive-system",

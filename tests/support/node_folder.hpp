@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tests/support/file_lock.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
@@ -40,13 +41,20 @@ class NodeFolder {
 
  private:
   void install(const std::string& script) const {
-    for (const std::string& name : {std::string("package.json"), std::string("package-lock.json"), script})
-      std::filesystem::copy_file(source_ / name, folder_ / name, std::filesystem::copy_options::overwrite_existing);
+    for (const std::string& name : {std::string("package.json"), std::string("package-lock.json"), script}) put(name);
     const std::string wanted = read_file(folder_ / "package-lock.json");
     if (read_file(folder_ / "installed") == wanted) return;
     const Ended ended = run_to_end({npm_, "ci", "--no-audit", "--no-fund", "--prefix", folder_.string()});
     ASSERT_EQ(ended.exit_code, 0) << ended.out << ended.err;
     write_file(folder_ / "installed", wanted);
+  }
+
+  // As a whole or not at all: another test's script may be reading it.
+  void put(const std::string& name) const {
+    const std::string content = read_file(source_ / name);
+    if (read_file(folder_ / name) == content) return;
+    write_file(folder_ / (name + ".new"), content);
+    std::filesystem::rename(folder_ / (name + ".new"), folder_ / name);
   }
 
   std::string node_;

@@ -132,7 +132,8 @@ export async function runScenario(scenarios) {
     try {
       await scenarios[scenario](page, file);
     } catch (error) {
-      error.stack += `\nThe page then says: ${await page.evaluate(() => document.body.innerText)}`;
+      const text = await page.evaluate(() => document.body.innerText).catch(() => "nothing: it is gone");
+      error.stack += `\nThe page then says: ${text}`;
       throw error;
     }
     assert.deepEqual(errors, []);

@@ -252,8 +252,9 @@ std::optional<HalfSpace> face_under(const Cylinder& cylinder, const Pose& X_WC, 
 
 bool cylinder_on_box(const Cylinder& cylinder, const Pose& X_WC, const Box& box, const Pose& X_WB, double margin,
                      ContactPoints& found) {
+  if (find_side_contact(cylinder, X_WC, box, X_WB, margin, found)) return true;
   const std::optional<HalfSpace> face = face_under(cylinder, X_WC, box, X_WB);
-  if (!face) return find_side_contact(cylinder, X_WC, box, X_WB, margin, found);
+  if (!face) return false;
   on_plane(cylinder, X_WC, *face, margin, found);
   return true;
 }

@@ -217,11 +217,9 @@ void Assembly::look_around(const Member& member, double furthest, std::vector<st
   }
 }
 
-void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) const {
+void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) {
   Equations& equations = bodies[anchors.index_of_member[member]];
-  bool is_touched = false;
-  for_each_pair(member, [&](const SolidPair&) { is_touched = true; });
-  equations.set_up(*members[member].multibody, gravity, step, is_touched);
+  equations.set_up(*members[member].multibody, gravity, step, bodies.count() > 1 || is_held(member));
   members[member].multibody->apply_efforts(equations, step);
   pushes.for_each_of(member, [&](const Pushes::Push& push) {
     equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
@@ -279,14 +277,18 @@ bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
 }
 
 bool Assembly::is_in_flight(std::uint32_t index) {
-  const Multibody& multibody = *members[index].multibody;
-  const Mechanism& mechanism = multibody.mechanism();
+  const Mechanism& mechanism = members[index].multibody->mechanism();
   if (!mechanism.has_free_root() || mechanism.is_free_body() || mechanism.has_kinematic_root()) return false;
+  return !is_held(index);
+}
+
+bool Assembly::is_held(std::uint32_t index) {
+  const Multibody& multibody = *members[index].multibody;
   bool is_held = multibody.loops().reach_the_world();
   for (const TrackRows& treel : multibody.treels()) treel.for_each_ground([&](std::uint32_t) { is_held = true; });
   connections.for_each_of(index, [&](const Connection&) { is_held = true; });
   for_each_pair(index, [&](const SolidPair&) { is_held = true; });
-  return !is_held;
+  return is_held;
 }
 
 // A body that another one has just hit may be much faster than at the beginning of the step, from which it was foreseen

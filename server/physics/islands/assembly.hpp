@@ -147,7 +147,7 @@ struct Assembly {
   }
 
   // Rows, of what is in the problem. What a row couples must be set up.
-  void set_up(std::uint32_t member, IslandBodies& bodies) const;
+  void set_up(std::uint32_t member, IslandBodies& bodies);
   void add_own_rows(std::uint32_t member, Problem& problem);
   void add_connection_rows(Connection& connection, Problem& problem);
   void add_contact_rows(SolidPair& pair, Problem& problem) const;
@@ -156,6 +156,8 @@ struct Assembly {
   bool check(std::uint32_t member, const IslandBodies& bodies);
   /// Whether nothing but itself, gravity and pushes acts on the member.
   bool is_in_flight(std::uint32_t index);
+  /// Whether what is alone in its island touches something or hangs on it, other than by a joint of its tree.
+  bool is_held(std::uint32_t index);
   /// Moves the body by the velocities found. `problem`: the one that has its own rows.
   void integrate(std::uint32_t index, const Problem& problem);
 

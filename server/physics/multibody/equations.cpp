@@ -12,7 +12,7 @@ constexpr int free_root_dofs = 6;
 
 }  // namespace
 
-void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_touched) {
+void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_held) {
   body_ = &body;
   mechanism_ = &body.mechanism();
   size_ = mechanism_->dof_count();
@@ -22,7 +22,7 @@ void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, do
   find_joint_axes(body, axes_);
   find_efforts(step);
   body.bullet() != nullptr ? solve_by_bullet(gravity, step) : solve_by_mass_matrix(gravity, step);
-  is_symmetric_ = !has_stiff_gyroscopic_torques(body, step, is_touched);
+  is_symmetric_ = !has_stiff_gyroscopic_torques(body, step, is_held);
   if (!is_symmetric_) take_bias_of_the_middle(step);
   for (int i = 0; i < size_; ++i) velocity_[at(i)] += body.velocities()[i];
 }

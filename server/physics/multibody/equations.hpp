@@ -19,9 +19,9 @@ namespace cohort::physics {
 /// One object serves many bodies one after the other; it keeps its memory.
 class Equations {
  public:
-  /// For the present state of `body`, under `gravity` [m/s^2], over `step` [s]. `is_touched`: whether by something
-  /// else.
-  void set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_touched);
+  /// For the present state of `body`, under `gravity` [m/s^2], over `step` [s]. `is_held`: whether
+  /// something else touches or holds it.
+  void set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_held);
 
   const Multibody& body() const { return *body_; }
   const Mechanism& mechanism() const { return *mechanism_; }

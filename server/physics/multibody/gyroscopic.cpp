@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 // Torques that turn something at this rate [rad/s], taken as they are at the beginning of steps, change its energy by
 // the rate's square times the step in each second. Less than this is slow [1/s].
 constexpr double slow = 0.2;
-// The same of a ball joint of what nothing touches, and so nothing hides it.
+// The same of a ball joint of what nothing else touches or holds: nothing hides it there.
 constexpr double slow_ball = 0.002;
 
 bool is_fast(double rate, double step, double limit = slow) { return step * rate * rate > limit; }
@@ -30,9 +30,9 @@ bool is_round(const std::vector<Segment>& segments, std::size_t s) {
 
 // A ball joint's velocities turn with its segment, and seem to be turned by that; of what is round only as far as what
 // carries it turns.
-bool has_fast_ball(const Multibody& body, double step, bool is_touched) {
+bool has_fast_ball(const Multibody& body, double step, bool is_held) {
   const std::vector<Segment>& segments = body.mechanism().segments();
-  const double limit = is_touched ? slow : slow_ball;
+  const double limit = is_held ? slow : slow_ball;
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const Segment& segment = segments[s];
     if (segment.motion != Motion::ball) continue;
@@ -60,12 +60,12 @@ double bound_of_turning(const Multibody& body) {
 }  // namespace
 
 // Of each joint what spins beyond it, against its own segment and across its axis, by what the segment resists with.
-bool has_stiff_gyroscopic_torques(const Multibody& body, double step, bool is_touched) {
+bool has_stiff_gyroscopic_torques(const Multibody& body, double step, bool is_held) {
   // How a body on its own turns is left to how it moves on: Multibody::integrate. What closes a loop wants all rows
   // solved at once, and for that symmetric equations.
   const bool has_loops = !body.mechanism().model().loop_joints.empty();
   if (body.mechanism().is_free_body() || has_loops) return false;
-  if (has_fast_ball(body, step, is_touched)) return true;
+  if (has_fast_ball(body, step, is_held)) return true;
   if (!is_fast(bound_of_turning(body), step)) return false;
   const std::vector<Segment>& segments = body.mechanism().segments();
   struct Turning {

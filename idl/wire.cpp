@@ -82,6 +82,16 @@ std::uint32_t Writer<Message>::matched() const {
   return status.current_count;
 }
 
+// Whether what a sample has grown to is used again for the next one: frames and answers come too often to allocate for
+// each, and all else too rarely to keep what somebody once sent.
+template <class Sample>
+bool is_kept(const Sample& sample) {
+  constexpr std::uint32_t most_kept = 1 << 17;  // of elements: a megabyte of values
+  if constexpr (requires { sample.robots._maximum + sample.values._maximum; })
+    return sample.robots._maximum <= most_kept && sample.values._maximum <= most_kept;
+  return false;
+}
+
 template <class Message>
 struct Reader<Message>::State {
   using Sample = typename Codec<Message>::Sample;
@@ -111,8 +121,13 @@ struct Reader<Message>::State {
         const auto index = static_cast<std::size_t>(i);
         // An invalid sample only tells of a writer's end, which on_liveliness tells better.
         if (!state.infos[index].valid_data) continue;
-        state.callbacks.message(Codec<Message>::decode(*static_cast<const Sample*>(state.samples[index])),
+        Sample& sample = *static_cast<Sample*>(state.samples[index]);
+        state.callbacks.message(Codec<Message>::decode(sample),
                                 state.sender_of(handle, state.infos[index].publication_handle));
+        if (!is_kept(sample)) {
+          dds_sample_free(&sample, Codec<Message>::topic.type, DDS_FREE_CONTENTS);
+          sample = Sample{};
+        }
       }
     } while (taken == static_cast<dds_return_t>(state.samples.size()));
   }

@@ -17,7 +17,8 @@ constexpr int patience = 8;
 }  // namespace
 
 void FrameQueue::begin(const wire::Admit& admit) {
-  lease_ = Lease(admit.run, admit.epoch);
+  epoch_ = admit.epoch;
+  run_ = admit.run;
   client_ = admit.client;
   next_tick_ = admit.tick;
   longest_delay_ = 0;
@@ -34,21 +35,19 @@ void FrameQueue::begin(const wire::Admit& admit) {
   oldest_answer_ = 0;
   repeats_.clear();
   std::erase_if(waiting_, [&](const Frame& frame) {
-    const Lease lease(frame.head.run, frame.head.epoch);
-    return lease < *lease_ || (lease == *lease_ && frame.head.tick < next_tick_);
+    const wire::Observation& head = frame.head;
+    return head.epoch < epoch_ || (head.epoch == epoch_ && head.tick < next_tick_);
   });
 }
 
 void FrameQueue::arrive(const wire::Observation& frame) {
-  const Lease lease(frame.run, frame.epoch);
-  if (lease_ && lease < *lease_) return;
-  if (lease_ && lease == *lease_ && frame.tick < next_tick_) {
-    const bool asked =
-        std::ranges::any_of(repeats_, [&](const Repeat& repeat) { return repeat.tick == frame.tick; });
+  if (epoch_ && frame.epoch < epoch_) return;
+  if (epoch_ && frame.epoch == epoch_ && frame.tick < next_tick_) {
+    const bool asked = std::ranges::any_of(repeats_, [&](const Repeat& repeat) { return repeat.tick == frame.tick; });
     if (!asked && find_answer(frame.tick) != nullptr) repeats_.push_back({frame.tick, frame.resent});
     return;
   }
-  const auto key = [](const wire::Observation& head) { return std::tuple(head.run, head.epoch, head.tick); };
+  const auto key = [](const wire::Observation& head) { return std::pair(head.epoch, head.tick); };
   const auto place = std::lower_bound(waiting_.begin(), waiting_.end(), key(frame),
                                       [&](const Frame& other, auto wanted) { return key(other.head) < wanted; });
   if (place != waiting_.end() && key(place->head) == key(frame)) {
@@ -72,10 +71,10 @@ void FrameQueue::arrive(const wire::Observation& frame) {
 }
 
 const wire::Observation* FrameQueue::next() {
-  if (!lease_ || waiting_.empty()) return nullptr;
+  if (!epoch_ || waiting_.empty()) return nullptr;
   if (newest_only_) drop_older();
   Frame& first = waiting_.front();
-  if (Lease(first.head.run, first.head.epoch) != *lease_ || !in_order(first)) return nullptr;
+  if (first.head.epoch != epoch_ || !in_order(first)) return nullptr;
   next_tick_ = first.head.tick + 1;
   under_way_ = std::move(first);
   waiting_.erase(waiting_.begin());
@@ -84,8 +83,8 @@ const wire::Observation* FrameQueue::next() {
 
 // Of the frames of this lease all but the last.
 void FrameQueue::drop_older() {
-  const auto end = std::find_if(waiting_.begin(), waiting_.end(),
-                                [&](const Frame& frame) { return Lease(frame.head.run, frame.head.epoch) != *lease_; });
+  const auto end =
+      std::find_if(waiting_.begin(), waiting_.end(), [&](const Frame& frame) { return frame.head.epoch != epoch_; });
   if (end - waiting_.begin() < 2) return;
   std::move(waiting_.begin(), end - 1, std::back_inserter(spare_));
   waiting_.erase(waiting_.begin(), end - 1);
@@ -133,7 +132,7 @@ bool FrameQueue::in_order(const Frame& frame) const {
   if (frame.came_again >= patience) return true;
   std::uint64_t newest = frame.head.tick;
   for (const Frame& other : waiting_) {
-    if (Lease(other.head.run, other.head.epoch) == *lease_) newest = std::max(newest, other.head.tick);
+    if (other.head.epoch == epoch_) newest = std::max(newest, other.head.tick);
   }
   const std::uint64_t oldest_wanted = newest - std::min(newest, longest_delay_);
   return next_due(std::max(next_tick_, oldest_wanted)) >= frame.head.tick;
@@ -149,8 +148,7 @@ std::uint64_t FrameQueue::next_due(std::uint64_t tick) const {
 }
 
 wire::Command FrameQueue::command_of(const Answer& answer) const {
-  const auto [run, epoch] = *lease_;
-  return {client_, run, epoch, answer.tick, answer.robots, answer.values, answer.resent};
+  return {client_, run_, *epoch_, answer.tick, answer.robots, answer.values, answer.resent};
 }
 
 }  // namespace cohort

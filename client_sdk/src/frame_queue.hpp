@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "idl/messages.hpp"
@@ -50,15 +49,14 @@ class FrameQueue {
     std::uint64_t phase;
     bool operator==(const Schedule&) const = default;
   };
-  using Lease = std::tuple<std::uint32_t, std::uint64_t>;  // run, epoch
-
   void drop_older();
   bool in_order(const Frame& frame) const;
   std::uint64_t next_due(std::uint64_t tick) const;
   const Answer* find_answer(std::uint64_t tick) const;
   wire::Command command_of(const Answer& answer) const;
 
-  std::optional<Lease> lease_;
+  std::optional<std::uint64_t> epoch_;  // of the lease: higher with each, whatever the run and the server
+  std::uint32_t run_ = 0;
   std::uint64_t client_ = 0;
   std::uint64_t next_tick_ = 0;  // all before it are answered or under way
   std::uint64_t longest_delay_ = 0;

@@ -43,7 +43,8 @@ class SnapshotWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads what a SnapshotWriter wrote, in the same order. Throws SnapshotError at the end of the bytes.
+/// Reads what a SnapshotWriter wrote, in the same order. Throws SnapshotError at the end of the bytes. A snapshot may
+/// come from anywhere: whoever reads numbers from it sees to it that they can be.
 class SnapshotReader {
  public:
   explicit SnapshotReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -62,6 +63,13 @@ class SnapshotReader {
     if (bytes_.size() / sizeof *numbers < count) throw SnapshotError("the snapshot ends too early");
     std::memcpy(numbers, bytes_.data(), count * sizeof *numbers);
     bytes_ = bytes_.subspan(count * sizeof *numbers);
+  }
+  /// A flag is 0 or 1.
+  void read(bool& flag) {
+    std::uint8_t number = 0;
+    read(number);
+    if (number > 1) throw SnapshotError("the snapshot has a flag that is neither 0 nor 1");
+    flag = number == 1;
   }
   /// A count of things that take at least `bytes_each`.
   std::size_t read_count(std::size_t bytes_each) {

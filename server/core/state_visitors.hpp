@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <type_traits>
 #include <vector>
 
@@ -37,16 +38,26 @@ struct StateSaver {
     writer.add(choice);
   }
 };
-/// Reads it back.
+/// Reads it back. Throws SnapshotError for a number that such a state cannot have.
 struct StateRestorer {
+  enum class Numbers {
+    finite,
+    limits,  ///< maybe infinite
+    broken,  ///< of a body that was taken out of the world because they were no numbers
+  };
   SnapshotReader& reader;
+  Numbers numbers = Numbers::finite;
   template <class Number>
   void operator()(Number& number) const {
     reader.read(number);
+    if constexpr (std::is_floating_point_v<Number>) {
+      const bool fits = numbers == Numbers::finite ? std::isfinite(number) : !std::isnan(number);
+      if (!fits && numbers != Numbers::broken) throw SnapshotError("the snapshot has a number that cannot be");
+    }
   }
   template <class Choice>
   void unusual(Choice& choice, Choice) const {
-    reader.read(choice);
+    (*this)(choice);
   }
 };
 
@@ -54,6 +65,21 @@ template <class PoseType, class Visit>
 void visit_pose(PoseType& pose, Visit&& visit) {
   for (int i = 0; i < 3; ++i) visit(pose.position[i]);
   for (int i = 0; i < 4; ++i) visit(pose.orientation.coeffs()[i]);
+}
+
+/// Where something may be: throws SnapshotError for what no world holds.
+inline void expect_placed(const Pose& pose) {
+  constexpr double furthest = 1e7;  // [m]; bodies that move are kept much nearer
+  constexpr double roundings = 1e-6;
+  const double norm = pose.orientation.norm();
+  if (!(pose.position.cwiseAbs().maxCoeff() <= furthest) || !(std::abs(norm - 1.0) <= roundings))
+    throw SnapshotError("the snapshot has something at a place that cannot be");
+}
+
+/// Throws SnapshotError, too, for what no world holds.
+inline void restore_pose(SnapshotReader& reader, Pose& pose) {
+  visit_pose(pose, StateRestorer{reader});
+  expect_placed(pose);
 }
 
 /// The bodies beyond the `described` ones, which a world was given in mid-run: of which model, and where.
@@ -78,7 +104,7 @@ void restore_added_bodies(SnapshotReader& reader, std::size_t described, std::si
     const std::size_t model = reader.read_count(least_bytes);
     if (model >= models) throw SnapshotError("the snapshot has a model that is not there");
     Pose X_WM;
-    visit_pose(X_WM, StateRestorer{reader});
+    restore_pose(reader, X_WM);
     create(model, X_WM);
   }
 }

@@ -67,6 +67,9 @@ void DetachableJoints::save(SnapshotWriter& writer) const {
 
 void DetachableJoints::restore(SnapshotReader& reader) {
   visit_state(*this, [&](auto& value) { reader.read(value); });
+  for (const Joint& joint : joints_)
+    if (joint.connection != nothing && joint.connection >= world_.connections_made())
+      throw SnapshotError("the snapshot has a joint that holds by a connection that never was");
 }
 
 }  // namespace cohort::gripping

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "server/core/state_visitors.hpp"
+
 namespace cohort::gripping {
 namespace {
 
@@ -186,7 +188,13 @@ void Grippers::save(SnapshotWriter& writer) const {
 }
 
 void Grippers::restore(SnapshotReader& reader) {
-  visit_state(*this, [&](auto& value) { reader.read(value); });
+  visit_state(*this, StateRestorer{reader});
+  for (const Gripper& gripper : grippers_) {
+    if (gripper.opening < 0.0 || gripper.opening > 1.0 || gripper.is_spent > 1)
+      throw SnapshotError("the snapshot has a gripper that is opened as none can be");
+    if (gripper.connection != nothing && gripper.connection >= world_.connections_made())
+      throw SnapshotError("the snapshot has a gripper that holds by a connection that never was");
+  }
 }
 
 }  // namespace cohort::gripping

@@ -93,8 +93,9 @@ void Barrier::answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<co
   if (acting_frame(robots_[robot]) == frame_tick) settle(robots_[robot]);
 }
 
-void Barrier::refuse(std::uint32_t robot, std::uint64_t frame_tick) {
+void Barrier::refuse(std::uint32_t robot, std::uint64_t frame_tick, Time now) {
   Robot& r = robots_[robot];
+  if (!is_free(r) || !r.silent) refused_.push_back({robot, frame_tick, r.policy.on_late, now - opened_at_, true});
   if (is_free(r))
     r.silent = true;
   else
@@ -158,7 +159,8 @@ std::vector<Barrier::Miss> Barrier::expire(Time now) {
       answer_of(robot, frame).state = Answer::State::missed;
     settle(robot);
     robot.detached = robot.policy.on_late == OnLate::detach;
-    misses.push_back({id, frame, robot.policy.on_late, now - (is_free(robot) ? robot.heard_at : opened_at_)});
+    const Time since = is_free(robot) ? robot.heard_at : opened_at_;
+    misses.push_back({id, frame, robot.policy.on_late, now - since, false});
   }
   return misses;
 }
@@ -197,20 +199,15 @@ void Barrier::save(SnapshotWriter& writer) const {
 }
 
 void Barrier::restore(SnapshotReader& reader) {
-  const auto read_flag = [&] {
-    std::uint8_t flag = 0;
-    reader.read(flag);
-    if (flag > 1) throw SnapshotError("the snapshot has a flag that is neither 0 nor 1");
-    return flag == 1;
-  };
   reader.read(tick_);
   reader.expect_count(robots_.size(), "robots at its barrier");
   awaited_count_ = 0;
   for (Robot& robot : robots_) {
     for (bool Robot::*const flag : {&Robot::present, &Robot::driven, &Robot::detached, &Robot::silent})
-      robot.*flag = read_flag();
+      reader.read(robot.*flag);
     robot.awaited = false;
-    const bool has_answered = read_flag();
+    bool has_answered = false;
+    reader.read(has_answered);
     std::uint64_t answered = 0;
     reader.read(answered);
     robot.answered = has_answered ? std::optional(answered) : std::nullopt;
@@ -218,7 +215,7 @@ void Barrier::restore(SnapshotReader& reader) {
     for (Answer& answer : robot.answers) {
       reader.read(answer.state);
       if (answer.state > Answer::State::refused) throw SnapshotError("the snapshot has an answer of no known state");
-      answer.asked = read_flag();
+      reader.read(answer.asked);
       reader.expect_count(answer.values.size(), "values in an answer");
       reader.read_all(answer.values.data(), answer.values.size());
     }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "server/core/snapshot.hpp"
@@ -51,7 +52,7 @@ class Barrier {
   /// Takes an answer that `judge` accepts. `now` counts for those that are free.
   void answer(std::uint32_t robot, std::uint64_t frame_tick, std::span<const double> values, Time now = Time{0});
   /// An answer that cannot act: a miss at once. Under `wait` nothing else can come of it, so the run has to stop.
-  void refuse(std::uint32_t robot, std::uint64_t frame_tick);
+  void refuse(std::uint32_t robot, std::uint64_t frame_tick, Time now = Time{0});
 
   bool complete() const { return awaited_count_ == 0; }
   bool is_awaited(std::uint32_t robot) const { return robots_[robot].awaited; }
@@ -69,6 +70,7 @@ class Barrier {
     std::uint64_t frame_tick;
     description::OnLate consequence;
     Time waited;
+    bool refused = false;  ///< an answer came in time, and cannot act
   };
   /// When `expire` has something to do next while the tick is not complete; never if nobody who is awaited has a
   /// deadline.
@@ -76,6 +78,8 @@ class Barrier {
   /// Gives up on those whose deadline has passed. Each is a miss, and no longer awaited. One that is free misses once
   /// for each silence.
   std::vector<Miss> expire(Time now);
+  /// The misses of answers that were refused since this was last called; of a free robot, one for each silence.
+  std::vector<Miss> take_refused() { return std::exchange(refused_, {}); }
 
   struct Outcome {
     enum class Kind {
@@ -88,6 +92,15 @@ class Barrier {
   };
   /// What the tick gives the robot. Once the tick is complete.
   Outcome outcome(std::uint32_t robot) const;
+
+  /// Calls `visit(robot, values)` for the answers that have come, acted or will act.
+  template <class Visit>
+  void for_each_answer(Visit&& visit) const {
+    for (std::uint32_t id = 0; id < robots_.size(); ++id)
+      for (const Answer& answer : robots_[id].answers)
+        if (answer.state == Answer::State::given || (robots_[id].answered && &answer == robots_[id].answers.data()))
+          visit(id, std::span<const double>(answer.values));
+  }
 
   /// At a boundary: answers that have come and do not act yet, and who is asked no more. Not times.
   void save(SnapshotWriter& writer) const;
@@ -135,6 +148,7 @@ class Barrier {
   }
 
   std::vector<Robot> robots_;
+  std::vector<Miss> refused_;  // and not taken yet
   std::uint64_t tick_ = 0;
   Time opened_at_{0};
   std::size_t awaited_count_ = 0;

@@ -120,7 +120,7 @@ Exchange::Taken Exchange::take(std::span<const std::uint32_t> held, std::uint64_
           taken.is_fault = true;
           const description::OnLate on_late = simulation_.policy(robot).on_late;
           taken.ends_run |= on_late == description::OnLate::wait || on_late == description::OnLate::stop;
-          barrier_.refuse(robot, frame_tick);
+          barrier_.refuse(robot, frame_tick, now);
         } else {
           barrier_.answer(robot, frame_tick, values.first(size), now);
           ++taken.accepted;
@@ -151,6 +151,10 @@ void Exchange::restore(SnapshotReader& reader) {
   if (barrier_.tick() > simulation_.tick() || barrier_.tick() + 1 < simulation_.tick())
     throw SnapshotError("the snapshot's world stands at tick " + std::to_string(simulation_.tick()) +
                         ", and its barrier at " + std::to_string(barrier_.tick()));
+  barrier_.for_each_answer([&](std::uint32_t robot, std::span<const double> values) {
+    if (const auto fault = simulation_.check_command(robot, values))
+      throw SnapshotError("the snapshot has an answer that cannot act: " + fault->text);
+  });
   for (std::vector<double>& observations : history_) {
     reader.expect_count(observations.size(), "observed values under way");
     reader.read_all(observations.data(), observations.size());

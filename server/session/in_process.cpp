@@ -24,7 +24,8 @@ Exchange::Taken ask(Exchange& exchange, Exchange::Frame& frame, const descriptio
   observation.time_ns = (experiment.world.step * static_cast<std::int64_t>(tick)).count();
   observation.robots = frame.robots;
   observation.values = frame.values;
-  return exchange.take(robots, tick, frame.robots, host.answer(observation));
+  const std::span<const double> answer = host.answer(observation);
+  return exchange.take(robots, tick, frame.robots, answer, RunMonitor::Clock::now().time_since_epoch());
 }
 
 // What a snapshot has of frames without an answer: others were asked, and had not answered when it was taken.
@@ -75,6 +76,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
             ask(exchange, frame, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team]);
         if (!taken.is_fault) continue;
         monitor.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
+        for (const lockstep::Barrier::Miss& miss : exchange.barrier().take_refused()) monitor.add_miss(miss);
         if (taken.ends_run) return monitor.finish(RunResult::End::failed, taken.rejection->text);
       }
       monitor.add_barrier(RunMonitor::Clock::now() - begin);

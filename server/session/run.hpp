@@ -84,6 +84,7 @@ struct RunListener {
   /// The commands of a tick are with the simulation, which is about to step: those of these robots have changed.
   std::function<void(std::span<const std::uint32_t>)> commands{};
   std::function<void(const ControlEvent&)> control{};
+  std::function<void()> stopped{};  ///< the last step is done, or there will be none
 };
 
 struct RunResult {

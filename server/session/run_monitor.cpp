@@ -1,6 +1,7 @@
 #include "server/session/run_monitor.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace cohort::session {
 
@@ -27,8 +28,9 @@ void RunMonitor::start() {
 }
 
 void RunMonitor::stop() {
-  if (started_ && !stopped_) result_.wall_time = Clock::now() - start_;
-  stopped_ = true;
+  if (std::exchange(stopped_, true)) return;
+  if (started_) result_.wall_time = Clock::now() - start_;
+  if (listener_.stopped) listener_.stopped();
 }
 
 void RunMonitor::stepped() {
@@ -47,8 +49,9 @@ void RunMonitor::at_boundary() {
 std::optional<RunMonitor::Clock::time_point> RunMonitor::due_time() const {
   if (options_.speed <= 0.0) return std::nullopt;
   const std::chrono::nanoseconds simulated = simulation_.time() - pace_start_time_;
-  const std::chrono::duration<double, std::nano> wall(static_cast<double>(simulated.count()) / options_.speed);
-  return pace_start_ + std::chrono::duration_cast<Clock::duration>(wall);
+  constexpr double never = 1e18;  // [ns], 30 years: at a speed of next to nothing
+  const double wall = std::min(static_cast<double>(simulated.count()) / options_.speed, never);
+  return pace_start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::nano>(wall));
 }
 
 void RunMonitor::set_speed(double speed) {
@@ -91,7 +94,8 @@ void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
   const Miss noted{simulation_.tick(), miss.frame_tick, miss.robot, miss.consequence, miss.waited};
   if (result_.misses.size() < most_misses) result_.misses.push_back(noted);
   if (listener_.miss) listener_.miss(noted);
-  add_event("missed", simulation_.robot_name(miss.robot) + " did not answer in time");
+  add_event("missed", simulation_.robot_name(miss.robot) +
+                          (miss.refused ? " gave an answer that cannot act" : " did not answer in time"));
 }
 
 RunResult RunMonitor::finish(RunResult::End end, std::string error) {

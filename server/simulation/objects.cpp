@@ -122,7 +122,7 @@ void Objects::restore(SnapshotReader& reader) {
     history.resize(reader.read_count(sizeof(PastPose)));
     for (PastPose& past : history) {
       reader.read(past.tick);
-      visit_pose(past.X_WL, [&](double& number) { reader.read(number); });
+      restore_pose(reader, past.X_WL);
     }
   }
 }

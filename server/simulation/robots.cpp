@@ -223,6 +223,8 @@ void Robots::restore(SnapshotReader& reader) {
   for (Robot& robot : robots_) {
     reader.expect_count(robot.command.size(), "commanded values of a robot");
     reader.read_all(robot.command.data(), robot.command.size());
+    const auto fault = check_command(static_cast<std::uint32_t>(&robot - robots_.data()), robot.command);
+    if (fault) throw SnapshotError("the snapshot has a command that cannot act: " + fault->text);
     for (SensorOfRobot& each : robot.sensors) {
       each.sensor->restore(reader);
       each.signal_chain.restore(reader);

@@ -243,7 +243,13 @@ void Schedule::restore(SnapshotReader& reader, std::uint64_t tick) {
   pushes_.assign(reader.read_count(sizeof(std::uint64_t)), {});
   removed_.assign(reader.read_count(sizeof(std::uint32_t)), 0);
   visit_outside(*this, [&](auto& number) { reader.read(number); });
+  for (const Stage stage : stages_)
+    if (stage > Stage::gone) throw SnapshotError("the snapshot has an object that neither came nor went");
+  for (const std::uint32_t object : removed_)
+    if (object >= objects_.size()) throw SnapshotError("the snapshot has removed something that is not there");
   for (const Push& push : pushes_) {
+    if (!push.force.force_W.allFinite() || !push.force.torque_W.allFinite())
+      throw SnapshotError("the snapshot has a push that is not finite");
     if (push.object >= objects_.size()) throw SnapshotError("the snapshot has a push on something that is not there");
     const description::Model& model = experiment_.world.models[world_.model_of(push.object)];
     if (model.is_static || push.force.link >= model.links.size())

@@ -1,6 +1,7 @@
 #include "server/simulation/simulation.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "server/core/hash.hpp"
@@ -214,6 +215,8 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   reader.expect_count(experiment_.seed, "as its seed");
   reader.expect_count(static_cast<std::size_t>(experiment_.world.step.count()), "ns as its step");
   reader.read(tick_);
+  if (tick_ > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / experiment_.world.step.count()))
+    throw SnapshotError("the snapshot is of a tick beyond all time");
   spawned_models_.restore(reader);
   for (std::size_t model = 0; model < experiment_.world.models.size(); ++model) grippers_.note_model(model);
   world_->restore(reader);

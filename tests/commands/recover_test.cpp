@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "server/recording/mcap/writing/disk_file.hpp"
-#include "tests/support/process.hpp"
+#include "tests/commands/small_experiment.hpp"
 #include "tests/support/recordings.hpp"
 
 // `cohort recover` as its users see it.
@@ -69,6 +71,22 @@ TEST(RecoverCommand, RefusesWhatItCannotReadOrWrite) {
   recording::DiskFile being_recorded(file);
   being_recorded.write(test::small_recording(3));
   expect_refused({file}, "another process is recording to it");
+}
+
+// What is recorded is in the file, though nobody closes it.
+TEST(AStuckTick, IsEndedAfterAWhileWithAMessage) {
+  const ScratchFolder folder;
+  const std::string file = folder / "run.mcap";
+  const SmallExperiment experiment(test_controller("misbehaving"));
+  Process run(experiment.run({"--controllers", "inprocess", "--record", file}), {{"COHORT_TEST_FAULT", "loop"}});
+  ASSERT_TRUE(run.wait_for_output("stuck")) << run.output();
+  EXPECT_TRUE(eventually([&] { return McapReader(file).statistics().message_count > 20; }));
+  run.signal(SIGTERM);
+  EXPECT_EQ(run.wait_for_exit(), 1) << run.output();
+  EXPECT_NE(run.output().find("tick 20 has not ended 10 s after this process was asked to end"), std::string::npos)
+      << run.output();
+  EXPECT_EQ(recover({file}).exit_code, 0);
+  EXPECT_TRUE(McapReader(file).is_complete());
 }
 
 }  // namespace

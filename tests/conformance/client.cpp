@@ -8,7 +8,6 @@
 #include <exception>
 #include <random>
 #include <set>
-#include <tuple>
 #include <utility>
 
 namespace cohort::conformance {
@@ -98,8 +97,7 @@ void Client::take_admits() {
       end_ = End::refused;
       return;
     }
-    const auto age = [](const message::Admit& a) { return std::tuple(a.run(), a.epoch()); };
-    if (!admitted_ || age(*admit) > age(*admitted_)) offered_ = std::move(admit);
+    if (!admitted_ || admit->epoch() > admitted_->epoch()) offered_ = std::move(admit);
   }
 }
 

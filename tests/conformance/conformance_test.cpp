@@ -145,6 +145,18 @@ TEST_F(Conformance, AClientLeavesWhenItsServerDies) {
   EXPECT_NE(client->output().find("the server is gone"), std::string::npos) << client->output();
 }
 
+// Before the client takes the first one for dead. Of the second one it knows nothing but what the page says.
+TEST_F(Conformance, AClientGoesOnWithAServerThatIsStartedInTheOthersPlace) {
+  const auto first = serve(demo_experiment());
+  const auto client = start_foreign("all");
+  ASSERT_TRUE(client->wait_for_output("answered 100 frames")) << client->output();
+  first->signal(SIGKILL);
+  first->wait_for_exit();
+  const auto second = serve(demo_experiment(), {"--duration", "5"});
+  expect_end(*second, reference_hash(5));
+  expect_finished(*client);
+}
+
 // Larger than a datagram: they go in fragments, both ways.
 TEST_F(Conformance, FramesAndAnswersOfAThousandRobotsGiveTheSameBits) {
   write_file(folder / "world.yaml",

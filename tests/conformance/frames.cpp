@@ -1,7 +1,6 @@
 #include "tests/conformance/frames.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 namespace cohort::conformance {
 namespace {
@@ -12,18 +11,15 @@ constexpr int most_repeats_without_the_earlier_one = 8;
 
 }  // namespace
 
-Frames::Frames(const message::Admit& admit)
-    : run_(admit.run()), epoch_(admit.epoch()), next_tick_(admit.tick()), robots_(admit.robots()) {
+Frames::Frames(const message::Admit& admit) : epoch_(admit.epoch()), next_tick_(admit.tick()), robots_(admit.robots()) {
   for (const message::AdmittedRobot& robot : robots_) {
     longest_delay_ = std::max<std::uint64_t>(longest_delay_, robot.delay());
   }
 }
 
 Frames::Kind Frames::kind_of(const message::Observation& frame) const {
-  const std::tuple own(run_, epoch_);
-  const std::tuple its(frame.run(), frame.epoch());
-  if (its == own) return Kind::of_the_lease;
-  return its < own ? Kind::of_an_earlier_one : Kind::of_a_later_one;
+  if (frame.epoch() == epoch_) return Kind::of_the_lease;
+  return frame.epoch() < epoch_ ? Kind::of_an_earlier_one : Kind::of_a_later_one;
 }
 
 const message::Command* Frames::arrive(message::Observation frame) {

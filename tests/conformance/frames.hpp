@@ -36,7 +36,6 @@ class Frames {
   bool is_due(std::uint64_t tick) const;
   bool misses_an_earlier_one(std::uint64_t tick) const;
 
-  std::uint32_t run_;
   std::uint64_t epoch_;
   std::uint64_t next_tick_;  // ticks before it are answered or skipped
   std::uint64_t highest_ = 0;

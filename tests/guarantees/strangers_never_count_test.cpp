@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "idl/wire.hpp"
-#include "tests/support/process.hpp"
+#include "tests/support/field_of_robots.hpp"
 #include "tests/support/sbot_layout.hpp"
 
 namespace cohort::test {
@@ -38,7 +38,13 @@ class HandWrittenClient {
         observations_(
             participant_,
             {[this, answer](const wire::Observation& frame, const wire::Sender&) { answer(commands_, frame); }, {}},
-            wire::partition_of(own_id)) {
+            wire::partition_of(own_id)),
+        reports_(participant_,
+                 {[this](const wire::Report& report, const wire::Sender&) {
+                    if (report.reason == "detached") is_detached_ = true;
+                  },
+                  {}},
+                 wire::partition_of(own_id)) {
     wire::Join join;
     join.client = own_id;
     join.controller = "hand-written";
@@ -46,12 +52,16 @@ class HandWrittenClient {
     join.robots = {robots};
     join_.write(join);
   }
+  /// It was told so.
+  bool is_detached() const { return is_detached_; }
 
  private:
+  std::atomic<bool> is_detached_ = false;
   wire::Participant participant_;
   wire::Writer<wire::Command> commands_;
   wire::Writer<wire::Join> join_;
   wire::Reader<wire::Observation> observations_;
+  wire::Reader<wire::Report> reports_;
 };
 
 TEST(StrangersNeverCount, MalformedStaleForeignAndNanCommandsOfAStrangerLeaveTheRunItsBits) {
@@ -165,6 +175,46 @@ INSTANTIATE_TEST_SUITE_P(All, FaultyHolder,
                                            std::pair{"not_finite", std::numeric_limits<double>::infinity()},
                                            std::pair{"out_of_range", 0.3}),
                          [](const auto& fault) { return fault.param.first + std::to_string(fault.index); });
+
+class FaultyHolderOf : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FaultyHolderOf, ARobotThatIsHeldOrZeroedMissesWithEachAnswer) {
+  const FieldOfRobots field(1, 0.05, ", deadline: 60, on_late: " + std::string(GetParam()));
+  const ReservedDomain domain;
+  Process server(field.serve(domain));
+  const std::vector<double> values(sbot_command_size, std::nan(""));
+  HandWrittenClient client(domain.number(), "all", [&](auto& commands, const wire::Observation& frame) {
+    commands.write({own_id, frame.run, frame.epoch, frame.tick, frame.robots, values});
+  });
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  const auto summary = field.summary();
+  EXPECT_EQ(summary["late"], 5) << summary.dump(1);
+  ASSERT_EQ(summary["misses"].size(), 5u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(summary["misses"][i]["tick"], i) << "the tick that it is of";
+  EXPECT_EQ(rejections(summary)["not_finite"], 5u);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FaultyHolderOf, ::testing::Values("hold", "zero"));
+
+// Its other robot is free at once for somebody else, at the tick that waits for it.
+TEST(FaultyHolderUnderDetach, LosesItsLeaseAsOneThatIsLate) {
+  const FieldOfRobots field(2, 1.0, ", deadline: 60, on_late: detach");
+  const ReservedDomain domain;
+  Process server(field.serve(domain));
+  HandWrittenClient client(domain.number(), "all", [&](auto& commands, const wire::Observation& frame) {
+    std::vector<double> values(frame.robots.size() * sbot_command_size, 0.0);
+    values[0] = std::nan("");
+    commands.write({own_id, frame.run, frame.epoch, frame.tick, frame.robots, values});
+  });
+  EXPECT_TRUE(eventually([&] { return client.is_detached(); })) << server.output();
+  Process controllers(FieldOfRobots::host(domain, "1"));
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(controllers.wait_for_exit(), 0) << controllers.output();
+  const auto summary = field.summary();
+  ASSERT_EQ(summary["misses"].size(), 1u) << summary.dump(1);
+  EXPECT_EQ(summary["misses"][0]["robot"], "swarm/sbot_0");
+  EXPECT_EQ(summary["misses"][0]["on_late"], "detach");
+}
 
 }  // namespace
 }  // namespace cohort::test

@@ -15,41 +15,9 @@
 namespace cohort::test {
 namespace {
 
-using std::chrono::steady_clock;
-
-class Connection {
- public:
-  Connection() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    const timeval limit{std::chrono::seconds(test::patience).count(), 0};
-    setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  ~Connection() { close(socket_); }
-
-  bool connect(const std::string& port) const {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(port)));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    return ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  }
-  bool send(const std::string& text) const {
-    return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
-  }
-  std::string receive() const {
-    std::array<char, 65536> part{};
-    const ssize_t size = recv(socket_, part.data(), part.size(), 0);
-    return {part.data(), static_cast<std::size_t>(size > 0 ? size : 0)};
-  }
-
- private:
-  int socket_;
-};
-
 // A port that is published for a container accepts before anybody listens in it, and then closes without a word.
 std::string asked_once(const std::string& port, const std::string& request) {
-  const Connection connection;
+  const TcpConnection connection;
   if (!connection.connect(port) || !connection.send(request)) return {};
   std::string answer;
   for (std::string part = connection.receive(); !part.empty(); part = connection.receive()) {
@@ -60,6 +28,31 @@ std::string asked_once(const std::string& port, const std::string& request) {
 }
 
 }  // namespace
+
+TcpConnection::TcpConnection() : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  const timeval limit{std::chrono::seconds(patience).count(), 0};
+  setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+}
+
+TcpConnection::~TcpConnection() { close(socket_); }
+
+bool TcpConnection::connect(const std::string& port) const {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(std::stoi(port)));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
+bool TcpConnection::send(const std::string& text) const {
+  return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+}
+
+std::string TcpConnection::receive() const {
+  std::array<char, 65536> part{};
+  const ssize_t size = recv(socket_, part.data(), part.size(), 0);
+  return {part.data(), static_cast<std::size_t>(size > 0 ? size : 0)};
+}
 
 std::string http_get(const std::string& port, const std::string& target, const std::string& headers) {
   const std::string connection = headers.find("Connection:") == std::string::npos ? "Connection: close\r\n" : "";

@@ -4,6 +4,24 @@
 
 namespace cohort::test {
 
+/// To a port of the loopback.
+class TcpConnection {
+ public:
+  TcpConnection();
+  TcpConnection(const TcpConnection&) = delete;
+  TcpConnection& operator=(const TcpConnection&) = delete;
+  ~TcpConnection();
+
+  bool connect(const std::string& port) const;
+  /// All of it; false if it cannot.
+  bool send(const std::string& text) const;
+  /// What has come, once something has; empty at the end.
+  std::string receive() const;
+
+ private:
+  int socket_;
+};
+
 /// What a server at this port of the loopback answers to GET of `target`, status line and headers included, to the end
 /// of the connection or, of a connection that becomes another (101), of the headers. Waits until somebody listens;
 /// empty if nobody does. `headers`: more of them, each with its "\r\n".

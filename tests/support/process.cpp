@@ -104,6 +104,14 @@ bool is_alive(pid_t pid) {
          stat[name_end + 2] != 'X';
 }
 
+std::size_t resident_bytes(pid_t pid) {
+  std::istringstream status(read_file("/proc/" + std::to_string(pid) + "/status"));
+  std::size_t kilobytes = 0;
+  for (std::string word; status >> word;)
+    if (word == "VmRSS:") status >> kilobytes;
+  return 1024 * kilobytes;
+}
+
 bool wait_until_gone(pid_t pid) {
   return eventually([&] { return !is_alive(pid); });
 }

@@ -55,6 +55,8 @@ bool is_installed(const std::string& program);
 
 /// Whether the process runs. One that has ended does not, even if nobody has waited for it yet.
 bool is_alive(pid_t pid);
+/// What the process has in memory.
+std::size_t resident_bytes(pid_t pid);
 /// Waits until it has ended; false if patience ran out.
 bool wait_until_gone(pid_t pid);
 

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "server/recording/replay.hpp"
+#include "tests/support/http.hpp"
 #include "tests/view/viewing.hpp"
 
 namespace cohort::view {
@@ -164,6 +167,26 @@ TEST_F(ByItsProtocol, WhoReadsNothingCostsNoMemory) {
   record_demo(scratch / "run.mcap", "4");
   View view({scratch / "run.mcap"});
   run_script("client.mjs", {"reads_nothing", view.address(), std::to_string(view.process().pid())});
+}
+
+// They ask again and again, so that none of them is idle for long.
+TEST_F(ByItsProtocol, WhoOpensManyConnectionsKeepsNobodyOut) {
+  const ScratchFolder scratch;
+  record_demo(scratch / "run.mcap", "1");
+  const View view({scratch / "run.mcap"});
+  std::vector<TcpConnection> connections(200);
+  const std::string request = "GET /nothing HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+  for (const TcpConnection& connection : connections)
+    if (connection.connect(view.port())) connection.send(request);
+  std::atomic<bool> is_over = false;
+  std::thread asks([&] {
+    for (; !is_over; std::this_thread::sleep_for(100ms))
+      for (const TcpConnection& connection : connections) connection.send(request);
+  });
+  expect_page(view.port());
+  run_script("client.mjs", {"reads", view.address()});
+  is_over = true;
+  asks.join();
 }
 
 TEST_F(ByItsProtocol, StrangersAreRefused) {

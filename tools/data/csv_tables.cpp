@@ -1,10 +1,10 @@
 #include "tools/data/csv_tables.hpp"
 
-#include <cerrno>
 #include <charconv>
-#include <fstream>
 #include <stdexcept>
 #include <system_error>
+
+#include "server/core/atomic_file.hpp"
 
 namespace cohort::data {
 namespace {
@@ -27,14 +27,9 @@ void append(std::string& line, const std::string& text) {
   line += '"';
 }
 
-[[noreturn]] void fail(const std::filesystem::path& file) {
-  throw std::runtime_error(file.string() + " cannot be written: " + std::generic_category().message(errno));
-}
-
 class CsvTable final : public TableWriter {
  public:
-  CsvTable(std::filesystem::path file, const std::vector<Column>& columns)
-      : file_(std::move(file)), stream_(file_, std::ios::binary | std::ios::trunc) {
+  CsvTable(const std::filesystem::path& file, const std::vector<Column>& columns) : file_("the table", file) {
     for (const Column& column : columns) {
       if (!line_.empty()) line_ += ',';
       append(line_, column.name);
@@ -51,19 +46,23 @@ class CsvTable final : public TableWriter {
   }
 
   void finish() override {
-    if (stream_.close(), !stream_) fail(file_);
+    write();
+    file_.commit();
   }
 
  private:
   void end_line() {
     line_ += '\n';
-    if (!(stream_ << line_)) fail(file_);
+    constexpr std::size_t written_at_once = 1 << 16;
+    if (line_.size() >= written_at_once) write();
+  }
+  void write() {
+    file_.write(line_);
     line_.clear();
   }
 
-  std::filesystem::path file_;
-  std::ofstream stream_;
-  std::string line_;
+  AtomicFile file_;
+  std::string line_;  // lines that are not written yet
 };
 
 class CsvTables final : public TableSink {
@@ -76,6 +75,7 @@ class CsvTables final : public TableSink {
   std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) override {
     return std::make_unique<CsvTable>(folder_ / (name + ".csv"), columns);
   }
+  void finish() override {}  // each of its files is whole by itself
 
  private:
   std::filesystem::path folder_;

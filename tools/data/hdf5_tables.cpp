@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
+
+#include "server/core/atomic_file.hpp"
 
 namespace cohort::data {
 namespace {
@@ -146,17 +149,25 @@ class Hdf5Tables final : public TableSink {
  public:
   explicit Hdf5Tables(const std::filesystem::path& path)
       : path_(path),
-        file_((H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr),  // errors are ours to tell
-               H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)),
+        beside_("the tables", path),
+        file_(std::in_place,
+              (H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr),  // errors are ours to tell
+               H5Fcreate(beside_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)),
               H5Fclose, path) {}
 
   std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) override {
-    return std::make_unique<Hdf5Table>(path_, file_.id(), name, columns);
+    return std::make_unique<Hdf5Table>(path_, file_->id(), name, columns);
+  }
+  void finish() override {
+    check(H5Fflush(file_->id(), H5F_SCOPE_GLOBAL), path_);
+    file_.reset();
+    beside_.commit();
   }
 
  private:
   std::filesystem::path path_;
-  Handle file_;
+  AtomicFile beside_;
+  std::optional<Handle> file_;
 };
 
 }  // namespace

@@ -43,6 +43,9 @@ class TableSink {
 
   /// Begins a table. The writer must be gone before this is. Throws std::runtime_error.
   virtual std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) = 0;
+  /// All tables are written, and their writers gone. Without it what was there before is there still. Throws
+  /// std::runtime_error.
+  virtual void finish() = 0;
 };
 
 }  // namespace cohort::data

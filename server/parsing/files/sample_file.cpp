@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "server/core/atomic_file.hpp"
 #include "server/core/text.hpp"
 #include "server/description/input_error.hpp"
 
@@ -193,9 +194,9 @@ std::string samples_as_text(const Samples& samples) {
 }
 
 void write_samples(const Samples& samples, const std::filesystem::path& file) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << samples_as_text(samples) << std::flush;
-  if (!stream) throw std::runtime_error("'" + file.string() + "' cannot be written");
+  AtomicFile out("the samples", file);
+  out.write(samples_as_text(samples));
+  out.commit();
 }
 
 }  // namespace cohort::parsing

@@ -1,5 +1,6 @@
 #include "server/physics/contact/bullet_contact.hpp"
 
+#include "server/core/state_visitors.hpp"
 #include "server/physics/contact/bullet.hpp"
 
 namespace cohort::physics {
@@ -165,7 +166,7 @@ void BulletContact::restore(const Pose& X_WA, const Pose& X_WB, SnapshotReader& 
   manifold->setNumContacts(count);
   for (int i = 0; i < count; ++i) {
     btManifoldPoint point;
-    visit_point(point, [&](auto& number) { reader.read(number); });
+    visit_point(point, StateRestorer{reader});
     manifold->getContactPoint(i) = point;
   }
 }

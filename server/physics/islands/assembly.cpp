@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "server/core/infinity.hpp"
+#include "server/core/state_visitors.hpp"
 #include "server/physics/world/corrections.hpp"
 
 namespace cohort::physics {
@@ -274,6 +275,13 @@ RunningSurface Assembly::surface_of(std::uint32_t solid) const {
 bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
   const Equations& equations = bodies[anchors.index_of_member[member]];
   return members[member].is_finite = is_sensible(equations.velocity(), equations.size());
+}
+
+void Assembly::expect_sound(const Member& member) const {
+  const Mechanism& mechanism = member.multibody->mechanism();
+  if (!member.is_finite || !member.is_inside || !is_sensible(member.multibody->velocities(), mechanism.dof_count()))
+    throw SnapshotError("the snapshot has a body that moves as none can");
+  for (const Pose& X_WS : member.multibody->segment_poses()) expect_placed(X_WS);
 }
 
 bool Assembly::is_in_flight(std::uint32_t index) {

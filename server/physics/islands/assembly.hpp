@@ -154,6 +154,8 @@ struct Assembly {
 
   /// Whether its velocities are such that the step may go on; the member is told.
   bool check(std::uint32_t member, const IslandBodies& bodies);
+  /// Of one that a snapshot has: throws SnapshotError if no body that is in the world can be so.
+  void expect_sound(const Member& member) const;
   /// Whether nothing but itself, gravity and pushes acts on the member.
   bool is_in_flight(std::uint32_t index);
   /// Whether what is alone in its island touches something or hangs on it, other than by a joint of its tree.

@@ -59,6 +59,7 @@ class MultibodyWorld final : public World {
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;
   void disconnect(std::uint32_t number) override;
+  std::uint32_t connections_made() const override { return assembly_.connections.made(); }
   bool is_connected(std::uint32_t connection) const override { return assembly_.connections.holds(connection); }
   void set_connection_give(std::uint32_t number, const ConnectionGive& give) override;
   Wrench connection_wrench(std::uint32_t number) const override;

@@ -45,6 +45,7 @@ void MultibodyWorld::save(SnapshotWriter& writer) const {
 }
 
 void MultibodyWorld::restore(SnapshotReader& reader) {
+  using Numbers = StateRestorer::Numbers;
   const StateRestorer restore{reader};
   restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
                        [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
@@ -60,15 +61,25 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
     restore(member.still_steps);
     restore(is_asleep);
     restore(member.next_asleep);
-    Multibody::visit_state(*member.multibody, restore);
-    if (member.fluid) FluidBody::visit_state(*member.fluid, restore);
+    const StateRestorer restore_body{reader, is_active ? Numbers::finite : Numbers::broken};
+    Multibody::visit_state(*member.multibody, restore_body);
+    if (member.fluid) FluidBody::visit_state(*member.fluid, restore_body);
     member.multibody->update_poses();
-    assembly_.place_solids_of(member);
-    if (!is_active) assembly_.take_out(index);
+    if (is_active) {
+      assembly_.expect_sound(member);
+      assembly_.place_solids_of(member);
+    } else {
+      assembly_.take_out(index);
+    }
     assembly_.set_asleep(index, is_asleep);
   }
   assembly_.scene.update();
-  assembly_.connections.restore(reader, assembly_.members.size());
+  assembly_.connections.restore(reader, [this](const Connection::End& end) {
+    if (end.body >= bodies_.size() || bodies_[end.body].member != end.member) return false;
+    const description::Model& model = description_.models[bodies_[end.body].model];
+    if (end.link >= model.links.size()) return false;
+    return end.member == Anchors::nobody || end.segment == multibody(end.body).mechanism().link(end.link).segment;
+  });
   assembly_.collision.restore(reader);
   sleep_.check_groups();
   find_awake();

@@ -84,7 +84,7 @@ void Connections::save(SnapshotWriter& writer) const {
   }
 }
 
-void Connections::restore(SnapshotReader& reader, std::size_t members) {
+void Connections::restore(SnapshotReader& reader, const std::function<bool(const Connection::End&)>& is_there) {
   const StateRestorer restore{reader};
   connections_.clear();
   of_member_.clear();
@@ -99,14 +99,16 @@ void Connections::restore(SnapshotReader& reader, std::size_t members) {
     restore(number);
     visit_end(a, restore);
     visit_end(b, restore);
-    restore(limits.force);
-    restore(limits.torque);
-    if (a.member >= members || (b.member >= members && b.member != Anchors::nobody))
+    reader.read(limits.force);
+    reader.read(limits.torque);
+    for (const Connection::End& end : {a, b}) expect_placed(end.X_SP);
+    if (a.member == Anchors::nobody || !is_there(a) || !is_there(b) || !(limits.force >= 0.0) ||
+        !(limits.torque >= 0.0))
       throw SnapshotError("the snapshot has a connection of a body that is not there");
     if (number >= next_ || (!connections_.empty() && number <= connections_.back().number))
       throw SnapshotError("the snapshot has connections that are out of order");
     add(number, a, b, limits);
-    Connection::visit_state(connections_.back().connection, restore);
+    Connection::visit_state(connections_.back().connection, StateRestorer{reader, StateRestorer::Numbers::limits});
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,8 @@ class Connections {
 
   /// nullptr if it was released.
   const Connection* find(std::uint32_t connection) const { return const_cast<Connections&>(*this).find(connection); }
+  /// How many there ever were.
+  std::uint32_t made() const { return next_; }
   bool holds(std::uint32_t connection) const {
     const Connection* const found = find(connection);
     return found != nullptr && found->holds();
@@ -52,8 +55,8 @@ class Connections {
 
   void hash(StateHash& hash) const;
   void save(SnapshotWriter& writer) const;
-  /// In the place of what there is. Throws SnapshotError if a connection is not of one of the `members`.
-  void restore(SnapshotReader& reader, std::size_t members);
+  /// In the place of what there is. Throws SnapshotError if a connection has an end that is not there.
+  void restore(SnapshotReader& reader, const std::function<bool(const Connection::End&)>& is_there);
 
  private:
   struct Numbered {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "server/core/state_visitors.hpp"
 #include "server/physics/contact/same_point.hpp"
 
 namespace cohort::physics {
@@ -182,8 +183,7 @@ void PlanarCollision::restore(SnapshotReader& reader) {
           pair.b >= outlines_.size() || pair.contact.count < 0 || pair.contact.count > PlanarPoints::most)
         throw SnapshotError("the snapshot has a contact of a solid that is not there");
       pair.member_b = member_of_solid_[pair.b];
-      for (PlanarPoint& point : pair.contact)
-        PlanarPoint::visit_state(point, [&](double& number) { reader.read(number); });
+      for (PlanarPoint& point : pair.contact) PlanarPoint::visit_state(point, StateRestorer{reader});
     }
   }
 }

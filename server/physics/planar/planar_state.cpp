@@ -40,7 +40,16 @@ void PlanarWorld::save(SnapshotWriter& writer) const {
   collision_.save(writer);
 }
 
+void PlanarWorld::expect_sound(std::uint32_t member) const {
+  const Member& its = members_[member];
+  if (!its.is_finite || !its.is_inside || !planar_.is_sensible(member))
+    throw SnapshotError("the snapshot has a body that moves as none can");
+  for (std::uint32_t i = 0; i < its.part_count; ++i)
+    expect_placed(planar_.segment_pose(member, parts_[its.first_part + i].segment));
+}
+
 void PlanarWorld::restore(SnapshotReader& reader) {
+  using Numbers = StateRestorer::Numbers;
   const StateRestorer restore{reader};
   restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
                        [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
@@ -54,15 +63,25 @@ void PlanarWorld::restore(SnapshotReader& reader) {
     bool has_ground = true;
     restore(has_ground);
     if (has_ground && !members_[member].has_ground) put_on_ground(member);
-    PlanarBodies::visit_state(planar_, member, restore);
-    PlanarGround::visit_state(grounds_[member], restore);
+    const StateRestorer restore_body{reader, is_active ? Numbers::finite : Numbers::broken};
+    PlanarBodies::visit_state(planar_, member, restore_body);
+    PlanarGround::visit_state(grounds_[member], restore_body);
     planar_.update_poses(member);
     find_parts_in_body(members_[member], member);
-    place_solids(member);
-    if (!is_active) take_out(member);
+    if (is_active) {
+      expect_sound(member);
+      place_solids(member);
+    } else {
+      take_out(member);
+    }
   }
   scene_.update();
-  connections_.restore(reader, members_.size());
+  connections_.restore(reader, [this](const Connection::End& end) {
+    if (end.body >= bodies_.size() || bodies_[end.body].member != end.member) return false;
+    const description::Model& model = description_.models[bodies_[end.body].model];
+    if (end.link >= model.links.size()) return false;
+    return end.member == Anchors::nobody || end.segment == planar_.model(end.member).mechanism().link(end.link).segment;
+  });
   collision_.restore(reader);
   report_contacts();
 }

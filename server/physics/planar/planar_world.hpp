@@ -106,6 +106,7 @@ class PlanarWorld final : public World {
   void hash_contacts(StateHash& hash) const override;
   void save(SnapshotWriter& writer) const override;
   void restore(SnapshotReader& reader) override;
+  std::uint32_t connections_made() const override { return connections_.made(); }
 
  private:
   struct Member {  // a body that moves
@@ -155,6 +156,7 @@ class PlanarWorld final : public World {
   void add_rows_of(std::uint32_t member, PlanarSolver& solver);
   void move(std::uint32_t index);
   void find_parts_in_body(const Member& member, std::uint32_t index);
+  void expect_sound(std::uint32_t member) const;
   void place_solids(std::uint32_t index);
   Pose pose_of(const Connection::End& end) const;
   void report_contacts();

@@ -140,6 +140,8 @@ class World {
   virtual std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                                 std::size_t link_b, const ConnectionLimits& limits = {}) = 0;
   virtual void disconnect(std::uint32_t connection) = 0;
+  /// How many there ever were.
+  virtual std::uint32_t connections_made() const = 0;
   virtual bool is_connected(std::uint32_t connection) const = 0;
   /// From the next step on; between steps.
   virtual void set_connection_give(std::uint32_t connection, const ConnectionGive& give) = 0;

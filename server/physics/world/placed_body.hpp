@@ -43,7 +43,7 @@ void restore_changes(SnapshotReader& reader, Engine& engine) {
     restore(is_placed_again);
     if (is_placed_again) {
       Pose X_WM;
-      visit_pose(X_WM, restore);
+      restore_pose(reader, X_WM);
       engine.place_body(body, X_WM);
     }
     bool is_out = false;

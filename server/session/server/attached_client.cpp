@@ -35,7 +35,7 @@ void AttachedClient::refuse(ServedRun& run, const std::string& reason) {
   answer.status = wire::AdmitStatus::refused;
   answer.reason = reason;
   answer.run = run.number;
-  admit.write(answer);
+  send(admit, answer, &run);
   claims = false;
   run.monitor.add_event("refused", label + ": " + reason);
 }
@@ -52,7 +52,7 @@ void AttachedClient::fill_frame(ServedRun& run, std::uint64_t tick, bool resent)
   epoch = lease->epoch;
 }
 
-void AttachedClient::write_frame(const ServedRun& run, std::uint64_t tick, bool resent) {
+void AttachedClient::write_frame(ServedRun& run, std::uint64_t tick, bool resent) {
   wire::Observation message;
   message.client = id();
   message.run = run.number;
@@ -67,7 +67,7 @@ void AttachedClient::write_frame(const ServedRun& run, std::uint64_t tick, bool 
     resend.start(tick, now);
     answer_times.sent(tick, now);
   }
-  observation.write(message);  // lost if DDS cannot take it: sent again then
+  send(observation, message, &run);  // again, if it is lost
 }
 
 wire::ControllerStatus AttachedClient::status(ServedRun& run) {

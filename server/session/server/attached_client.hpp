@@ -24,7 +24,6 @@ struct AttachedClient {
 
   wire::Join join;
   std::uint64_t place;
-  std::uint64_t writer = 0;                       // of its last Join
   const std::optional<wire::Identity>& identity;  // of whoever it is, not of whom it says to be
   std::string label;                              // for people: controller, process and host
   wire::Writer<wire::Admit> admit;
@@ -49,10 +48,20 @@ struct AttachedClient {
   std::uint64_t id() const { return join.client; }
   /// Another run begins: nothing is claimed of it yet.
   void begin_run();
+  /// What DDS cannot take is lost: trouble with one client is never trouble of the run, which only has an event of it.
+  /// `run`: null between runs.
+  template <class Message>
+  void send(wire::Writer<Message>& writer, const Message& message, ServedRun* run) {
+    try {
+      writer.write(message);
+    } catch (const wire::WireError& error) {
+      if (run != nullptr) run->monitor.add_event("unsent", label + ": " + error.what());
+    }
+  }
   void refuse(ServedRun& run, const std::string& reason);
   /// Its frame of this tick, if it has robots that are due. Under the lock.
   void fill_frame(ServedRun& run, std::uint64_t tick, bool resent);
-  void write_frame(const ServedRun& run, std::uint64_t tick, bool resent);
+  void write_frame(ServedRun& run, std::uint64_t tick, bool resent);
   /// Of one that drives robots, for whoever controls the run. Under the lock.
   wire::ControllerStatus status(ServedRun& run);
 

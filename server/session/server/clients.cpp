@@ -10,9 +10,8 @@
 namespace cohort::session {
 namespace {
 
-// What a client may ask for and how many there may be, so that no stranger fills the memory or costs a tick's time.
+// What a client may ask for, so that no stranger costs a tick's time.
 constexpr std::size_t most_selectors = 4096;
-constexpr std::size_t most_clients = 8192;
 
 }  // namespace
 
@@ -44,7 +43,7 @@ std::set<std::uint64_t> Clients::dismiss(const RunResult& last, std::uint32_t ru
   std::set<std::uint64_t> hearing;
   for (auto& [id, client] : clients_) {
     if (!client.drove) continue;
-    client.report.write({id, run, kind, last.ticks, reason, last.error});
+    client.send(client.report, wire::Report{id, run, kind, last.ticks, reason, last.error}, nullptr);
     if (client.alive) hearing.insert(id);
   }
   return hearing;
@@ -56,41 +55,41 @@ void Clients::join(const Inbox::Arrival& arrival) {
   const bool is_news = !client->is_known || client->join.robots != arrival.join.robots;
   client->is_known = true;
   client->join = arrival.join;
-  client->writer = arrival.sender.writer;
   set_alive(*client, true);
   // Clients join once a second, which only says that they live.
   if (is_news) claim(*client);
 }
 
-// The client of this Join, with its writers. Null if somebody else has that id.
+// The client of this Join, with its writers. Null if it may not be attached, or cannot.
 AttachedClient* Clients::attach(const Inbox::Arrival& arrival) {
   const std::uint64_t id = arrival.join.client;
+  std::string refusal;
   {
     const std::lock_guard lock(mutex_);
-    const auto [known, is_new] = participant_of_client_.emplace(id, arrival.sender.participant);
-    if (!is_new && known->second != arrival.sender.participant) {
-      run_->monitor.add_event("rejected", "foreign: a Join comes in the name of " + label_of(id));
-      return nullptr;
-    }
-    if (is_new && clients_.size() >= most_clients) {
-      participant_of_client_.erase(known);
-      run_->monitor.add_event("rejected", "flood: there are " + std::to_string(most_clients) + " clients already");
-      return nullptr;
+    refusal = names_.enter(id, arrival.sender, arrival.participant->identity());
+  }
+  if (refusal.empty()) {
+    if (const auto known = clients_.find(id); known != clients_.end()) return &known->second;
+    try {
+      return &clients_.try_emplace(id, arrival, ++arrivals_).first->second;
+    } catch (const wire::WireError& error) {
+      refusal = std::string("flood: a client cannot be attached: ") + error.what();
+      forget(id);
     }
   }
-  client_of_writer_[arrival.sender.writer] = id;
-  const auto [client, is_new] = clients_.try_emplace(id, arrival, arrivals_);
-  if (is_new) ++arrivals_;
-  return &client->second;
+  run_->monitor.add_event("rejected", refusal);
+  return nullptr;
 }
 
 void Clients::note_liveliness(const Inbox::Liveliness& change) {
-  const auto id = client_of(change.sender);
-  if (!id) return;
-  AttachedClient& client = clients_.at(*id);
+  std::optional<std::uint64_t> id;
+  {
+    const std::lock_guard lock(mutex_);
+    id = client_of(change.sender);
+  }
   // Of the writer of its last Join: one that was lost and found again has another, and the end of the former comes
   // late.
-  if (client.writer == change.sender.writer) set_alive(client, change.alive);
+  if (id) set_alive(clients_.at(*id), change.alive);
 }
 
 void Clients::note_process_end(std::uint32_t process) {
@@ -105,6 +104,7 @@ void Clients::set_alive(AttachedClient& client, bool alive) {
   client.alive = alive;
   {
     const std::lock_guard lock(mutex_);
+    names_.set_gone(client.id(), !alive);
     if (const lockstep::Leases::Lease* lease = run_->leases.lease(client.id())) {
       if (lease->alive == alive) return;
       run_->leases.set_alive(client.id(), alive);
@@ -127,9 +127,13 @@ void Clients::set_alive(AttachedClient& client, bool alive) {
 
 void Clients::forget(std::uint64_t client) {
   clients_.erase(client);
-  std::erase_if(client_of_writer_, [&](const auto& writer) { return writer.second == client; });
   const std::lock_guard lock(mutex_);
-  participant_of_client_.erase(client);
+  names_.forget(client);
+}
+
+void Clients::tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text) {
+  client.send(client.report, wire::Report{client.id(), run_->number, kind, run_->simulation.tick(), reason, text},
+              run_);
 }
 
 void Clients::note_rejections(const Inbox::Rejected& rejected) {
@@ -142,8 +146,7 @@ void Clients::note_rejections(const Inbox::Rejected& rejected) {
     client.rejected += rejections.count;
     if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
     if (client.reported_rejections.insert(reason).second)
-      client.report.write(
-          {id, run_->number, wire::ReportKind::rejected, run_->simulation.tick(), reason, rejections.text});
+      tell(client, wire::ReportKind::rejected, reason, rejections.text);
   }
 }
 
@@ -209,8 +212,7 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
   AttachedClient& client = clients_.at(granted.client);
   for (const std::uint64_t loser : granted.superseded) {
     const std::string text = client.label + " has taken its robots over";
-    clients_.at(loser).report.write(
-        {loser, run_->number, wire::ReportKind::superseded, run_->simulation.tick(), "superseded", text});
+    tell(clients_.at(loser), wire::ReportKind::superseded, "superseded", text);
     run_->monitor.add_event("superseded", label_of(loser) + ": " + text);
   }
 
@@ -233,7 +235,7 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
     if (!granted.again) run_->monitor.add_event("joined", client.label + " drives " + run_->robots_text(lease.robots));
   }
   client.claims = false;
-  client.admit.write(answer);
+  client.send(client.admit, answer, run_);
   for (const std::uint64_t tick : frames) send_frame(client, tick, false);
   client.times_resent = 0;
 }
@@ -292,8 +294,8 @@ RunMonitor::Clock::time_point Clients::next_resend(RunMonitor::Clock::time_point
 }
 
 void Clients::tell_detached(std::uint64_t client) {
-  clients_.at(client).report.write({client, run_->number, wire::ReportKind::superseded, run_->simulation.tick(),
-                                    "detached", "it missed a deadline, and its policy is to detach it"});
+  tell(clients_.at(client), wire::ReportKind::superseded, "detached",
+       "it missed a deadline or gave an answer that cannot act, and its policy is to detach it");
 }
 
 std::vector<wire::ControllerStatus> Clients::status() {
@@ -306,16 +308,6 @@ std::vector<wire::ControllerStatus> Clients::status() {
 std::string Clients::label_of(std::uint64_t client) const {
   const auto found = clients_.find(client);
   return found == clients_.end() ? "an unknown client" : found->second.label;
-}
-
-std::optional<std::uint64_t> Clients::client_of(const wire::Sender& sender) const {
-  const auto found = client_of_writer_.find(sender.writer);
-  return found == client_of_writer_.end() ? std::nullopt : std::optional(found->second);
-}
-
-bool Clients::is_in_own_name(std::uint64_t client, const wire::Sender& sender) const {
-  const auto joined = participant_of_client_.find(client);
-  return joined != participant_of_client_.end() && joined->second == sender.participant;
 }
 
 }  // namespace cohort::session

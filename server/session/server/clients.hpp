@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/session/server/attached_client.hpp"
+#include "server/session/server/client_names.hpp"
 
 namespace cohort::session {
 
@@ -49,16 +50,21 @@ class Clients {
   /// Of those who drive. Under the lock.
   std::vector<wire::ControllerStatus> status();
   std::string label_of(std::uint64_t client) const;
-  /// The client whose Join came from this writer, if there is one.
-  std::optional<std::uint64_t> client_of(const wire::Sender& sender) const;
+  /// Whose last Join came from this writer, if anybody's.
+  std::optional<std::uint64_t> client_of(const wire::Sender& sender) const {
+    return names_.client_of_writer(sender.writer);
+  }
   /// Whether DDS says that this comes from the process that joined under that id, so that nobody can speak in another's
   /// name. Any thread, under the lock.
-  bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const;
+  bool is_in_own_name(std::uint64_t client, const wire::Sender& sender) const {
+    return names_.is_in_own_name(client, sender);
+  }
 
  private:
   AttachedClient* attach(const Inbox::Arrival& arrival);
   void set_alive(AttachedClient& client, bool alive);
   void forget(std::uint64_t client);
+  void tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text);
   void claim(AttachedClient& client);
   std::string why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const;
   void admit(const lockstep::Leases::Granted& granted);
@@ -68,9 +74,8 @@ class Clients {
   std::mutex& mutex_;
   ServedRun* run_ = nullptr;  // null between runs
   std::uint64_t arrivals_ = 0;
-  std::map<std::uint64_t, AttachedClient> clients_;               // by id
-  std::map<std::uint64_t, std::uint64_t> client_of_writer_;       // of Join
-  std::map<std::uint64_t, std::uint64_t> participant_of_client_;  // who joined under an id; under the lock
+  std::map<std::uint64_t, AttachedClient> clients_;  // by id
+  ClientNames names_;                                // under the lock
 };
 
 }  // namespace cohort::session

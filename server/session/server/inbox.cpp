@@ -1,12 +1,29 @@
 #include "server/session/server/inbox.hpp"
 
 namespace cohort::session {
+namespace {
+
+std::size_t size_of(const wire::Join& join) {
+  std::size_t bytes = sizeof join + join.controller.size() + join.host.size();
+  for (const std::string& selector : join.robots) bytes += sizeof selector + selector.size();
+  return bytes;
+}
+
+std::size_t size_of(const wire::Report& report) { return sizeof report + report.reason.size() + report.text.size(); }
+
+}  // namespace
 
 bool Inbox::add_arrival(const wire::Join& join, const wire::Sender& sender, wire::Participant* participant) {
-  if (contents_.arrivals.size() >= most_arrivals) {
+  const std::size_t bytes = size_of(join);
+  if (bytes > largest_join) {
+    reject(sender.participant, "malformed", "a Join is larger than 128 KiB");
+    return false;
+  }
+  if (contents_.arrivals.size() >= most_arrivals || arrival_bytes_ + bytes > most_arrival_bytes) {
     reject(sender.participant, "flood", "more Joins than can be read");
     return false;
   }
+  arrival_bytes_ += bytes;
   contents_.arrivals.push_back({join, sender, participant});
   return has_news_ = true;
 }
@@ -17,10 +34,16 @@ bool Inbox::add_liveliness(const wire::Sender& sender, bool alive) {
 }
 
 bool Inbox::add_report(const wire::Report& report, const wire::Sender& sender) {
-  if (contents_.reports.size() >= most_reports) {
+  const std::size_t bytes = size_of(report);
+  if (bytes > largest_report) {
+    reject(sender.participant, "malformed", "a Report is larger than 64 KiB");
+    return false;
+  }
+  if (contents_.reports.size() >= most_reports || report_bytes_ + bytes > most_report_bytes) {
     reject(sender.participant, "flood", "more Reports than can be read");
     return false;
   }
+  report_bytes_ += bytes;
   contents_.reports.push_back(report);
   return has_news_ = true;
 }
@@ -71,7 +94,7 @@ void Inbox::reject(std::uint64_t who, const char* reason, std::string_view text)
 
 Inbox::Contents Inbox::take() {
   requests_of_.clear();
-  request_bytes_ = 0;
+  arrival_bytes_ = report_bytes_ = request_bytes_ = 0;
   has_news_ = false;
   return std::exchange(contents_, {});
 }

@@ -19,7 +19,11 @@ namespace cohort::session {
 class Inbox {
  public:
   static constexpr std::size_t most_arrivals = 4096;
+  static constexpr std::size_t most_arrival_bytes = std::size_t{16} << 20;
+  static constexpr std::size_t largest_join = std::size_t{128} << 10;
   static constexpr std::size_t most_reports = 4096;
+  static constexpr std::size_t most_report_bytes = std::size_t{16} << 20;
+  static constexpr std::size_t largest_report = std::size_t{64} << 10;
   static constexpr std::size_t most_foreign_versions = 100;
   // Of requests between two looks at them; each participant may have wire::requests_under_way.
   static constexpr std::size_t most_requests = 1024;
@@ -77,6 +81,8 @@ class Inbox {
  private:
   Contents contents_;
   std::map<std::uint64_t, std::size_t> requests_of_;  // by participant
+  std::size_t arrival_bytes_ = 0;
+  std::size_t report_bytes_ = 0;
   std::size_t request_bytes_ = 0;
   bool has_news_ = false;
 };

@@ -12,12 +12,20 @@ namespace {
 constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by a signal, which wakes nobody
 constexpr std::chrono::seconds farewell{2};
 const std::string view_partition = "view";
+std::uint64_t microseconds_since_1970() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+}
+
 std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::to_string(tick); }
 
 }  // namespace
 
 Server::Server(std::span<wire::Participant> participants)
-    : world_state_(participants.front(), view_partition), scenes_(participants.front(), view_partition) {
+    : next_epoch_(microseconds_since_1970()),
+      first_description_(static_cast<std::uint32_t>(next_epoch_ / 1'000'000)),
+      world_state_(participants.front(), view_partition),
+      scenes_(participants.front(), view_partition) {
   for (wire::Participant& participant : participants) endpoints_.emplace_back(participant, callbacks(participant));
 }
 
@@ -235,8 +243,8 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
   run_->monitor.at_boundary();
   publish_world_state();
   publish_scene(SceneBroadcast::When::due);
-  if (!handle_misses(opened_at)) return false;
-  std::span<const std::uint32_t> changed;
+  if (!give_up_on_late(opened_at)) return false;
+  std::vector<lockstep::Barrier::Miss> refused;
   for (;;) {
     {
       std::unique_lock lock(mutex_);
@@ -244,7 +252,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
       if (!run_->error.empty() || stop) return false;
       if (run_->exchange.barrier().complete()) {
         run_->monitor.add_barrier(Clock::now() - opened_at);
-        changed = run_->exchange.apply();
+        refused = run_->exchange.barrier().take_refused();
         break;
       }
     }
@@ -252,9 +260,15 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     handle_inbox();
     if (!control_.perform(Control::Moment::midst)) return false;
     clients_.decide_claims();
-    if (!handle_misses(now)) return false;
+    if (!give_up_on_late(now)) return false;
     clients_.resend_frames(now);
     report_progress(false);
+  }
+  if (!note_misses(refused)) return false;
+  std::span<const std::uint32_t> changed;
+  {
+    const std::lock_guard lock(mutex_);
+    changed = run_->exchange.apply();
   }
   run_->monitor.commanded(changed);
   report_progress(false);
@@ -297,12 +311,22 @@ void Server::handle_inbox() {
   for (const ReceivedRequest& received : inbox.requests) control_.take(received);
 }
 
-bool Server::handle_misses(Clock::time_point now) {
+bool Server::give_up_on_late(Clock::time_point now) {
+  std::vector<lockstep::Barrier::Miss> late;
+  {
+    const std::lock_guard lock(mutex_);
+    late = run_->exchange.barrier().expire(now.time_since_epoch());
+  }
+  return note_misses(late);
+}
+
+bool Server::note_misses(std::span<const lockstep::Barrier::Miss> misses) {
   using std::chrono::milliseconds;
+  if (misses.empty()) return true;
   std::set<std::uint64_t> detached;
   {
     const std::lock_guard lock(mutex_);
-    for (const lockstep::Barrier::Miss& miss : run_->exchange.barrier().expire(now.time_since_epoch())) {
+    for (const lockstep::Barrier::Miss& miss : misses) {
       run_->monitor.add_miss(miss);
       const auto holder = run_->leases.holder(miss.robot);
       if (holder) clients_.note_miss(*holder);
@@ -339,7 +363,7 @@ void Server::publish_descriptions() {
     const auto known = std::ranges::find_if(descriptions_, [&](const wire::RobotDescription& other) {
       return other.model == kind.model && other.observation == kind.observation && other.command == kind.command;
     });
-    kind.description = static_cast<std::uint32_t>(known - descriptions_.begin());
+    kind.description = first_description_ + static_cast<std::uint32_t>(known - descriptions_.begin());
     run_->descriptions.push_back(kind.description);
     if (known != descriptions_.end()) continue;
     for (Endpoints& endpoints : endpoints_) endpoints.descriptions.write(kind);

@@ -67,7 +67,8 @@ class Server {
   bool stand_at_boundary(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
   void handle_inbox();
-  bool handle_misses(Clock::time_point now);
+  bool give_up_on_late(Clock::time_point now);
+  bool note_misses(std::span<const lockstep::Barrier::Miss> misses);
   Clock::time_point next_wake() const;
   void report_progress(bool now_anyway);
   void publish_descriptions();
@@ -79,7 +80,10 @@ class Server {
   void fill_status(wire::SimulationStatus& status);
 
   std::uint32_t run_number_ = 0;
-  std::uint64_t next_epoch_ = 1;
+  // Of when this server began, so that no lease and no description is taken for another server's in its place. The
+  // epoch is in microseconds since 1970, the description in seconds.
+  std::uint64_t next_epoch_;
+  std::uint32_t first_description_;
   std::unique_ptr<ServedRun> run_;  // set under the lock; null between runs
 
   std::mutex mutex_;

@@ -97,12 +97,20 @@ TEST_F(FrameQueueTest, AsManyAnswersAreKeptAsFramesCanBeUnderWay) {
   EXPECT_EQ(repeat(), 7u);
 }
 
-TEST_F(FrameQueueTest, FramesOfAnEarlierRunOrEpochAreDropped) {
+TEST_F(FrameQueueTest, FramesOfAnEarlierEpochAreDropped) {
   queue.begin(lease(1, 5, 0, {{.robot = 3}}));
-  arrive(0, 9, 0);
   arrive(0, 4, 1);
+  arrive(0, 4, 2);
   EXPECT_EQ(answer_all(), Ticks{});
   arrive(0, 5, 1);
+  EXPECT_EQ(answer_all(), Ticks{0});
+}
+
+// Whose runs begin at 1 again.
+TEST_F(FrameQueueTest, OfAServerThatIsStartedInAnothersPlaceTheFramesAreNewer) {
+  queue.begin(lease(7, 5, 0, {{.robot = 3}}));
+  arrive(0, 9, 1);
+  queue.begin(lease(1, 9, 0, {{.robot = 3}}));
   EXPECT_EQ(answer_all(), Ticks{0});
 }
 
@@ -111,8 +119,8 @@ TEST_F(FrameQueueTest, ANewLeaseForgetsTheAnswersAndKeepsTheFramesSentUnderIt) {
   arrive(0);
   answer_all();
   arrive(1);
-  arrive(0, 1, 1);
-  queue.begin(lease(1, 1, 0, {{.robot = 3}}));
+  arrive(0, 2, 1);
+  queue.begin(lease(1, 2, 0, {{.robot = 3}}));
   EXPECT_EQ(answer_all(), Ticks{0});
   arrive(0, 1, 0);
   EXPECT_EQ(repeat(), std::nullopt);

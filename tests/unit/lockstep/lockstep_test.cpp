@@ -239,6 +239,24 @@ TEST(Barrier, CountsAnAnswerThatCannotActAsAMissAtOnce) {
   EXPECT_TRUE(barrier.complete());
   EXPECT_EQ(barrier.outcome(0).kind, Kind::neutral);
   EXPECT_EQ(barrier.judge(0, 0), Verdict::repeated);
+  const auto misses = barrier.take_refused();
+  ASSERT_EQ(misses.size(), 1u);
+  EXPECT_TRUE(misses[0].refused);
+  EXPECT_EQ(misses[0].consequence, OnLate::zero);
+  EXPECT_TRUE(barrier.take_refused().empty()) << "each is told once";
+}
+
+TEST(Barrier, AFreeRobotWhoseAnswersCannotActMissesOncePerSilence) {
+  description::Policy free = policy(1, 0, 0, OnLate::hold, 1s);
+  free.mode = description::Mode::free;
+  Barrier barrier = barrier_of({free});
+  barrier.open(0, 0ns);
+  for (int i = 0; i < 100; ++i) barrier.refuse(0, 0);
+  EXPECT_EQ(barrier.take_refused().size(), 1u);
+  answer(barrier, 0, 0, 1.0);
+  barrier.open(1, 0ns);
+  barrier.refuse(0, 1);
+  EXPECT_EQ(barrier.take_refused().size(), 1u);
 }
 
 Leases::Decisions decide(Leases& leases, Time now = 10s) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <limits>
 
 #include "server/recording/mcap/format/mcap_records.hpp"
@@ -174,7 +175,6 @@ TEST(Recover, InPlaceAWholeFileIsLeftAsItIsAndADamagedOneMended) {
   const McapReader reader(file.path());
   EXPECT_TRUE(reader.is_complete()) << reader.damage();
   EXPECT_EQ(messages_of(reader), said_from(0, 20));
-  EXPECT_FALSE(std::filesystem::exists(file.path().string() + ".recovered"));
 
   const ByteView nothing = ByteView(bytes).first(40);
   write_bytes(file.path(), nothing);
@@ -286,6 +286,38 @@ TEST(DamagedFile, ThatSaysItIsEnormousIsRefusedBeforeMemoryIsTaken) {
     ADD_FAILURE() << "lz4 is not read";
   } catch (const McapError& error) {
     EXPECT_NE(error.problem().find("lz4, which Cohort does not read"), std::string::npos);
+  }
+}
+
+// Thirty megabytes would be as many gigabytes. What stands in the file is read all the same.
+TEST(DamagedFile, WhoseIndexNamesOneAttachmentManyTimesHasItOnce) {
+  Bytes bytes = small_recording(20);
+  const std::uint64_t index = offset_of(bytes, Opcode::attachment_index);
+  const std::uint64_t attachment = offset_of(bytes, Opcode::attachment);
+  const std::filesystem::path name = "bytes";
+  const Place place{&name, 0, {}};
+  const auto record_end = [&](std::uint64_t offset) {
+    return offset + record_head_size + read_record_head(ByteView(bytes).subspan(offset), place).size;
+  };
+  Footer footer = read_footer(ByteView(bytes).subspan(offset_of(bytes, Opcode::footer) + record_head_size), place);
+  footer.summary_offset_start = 0;
+  const auto with = [&](int copies, std::uint64_t offset) {
+    Bytes more(bytes.begin() + static_cast<std::ptrdiff_t>(index),
+               bytes.begin() + static_cast<std::ptrdiff_t>(record_end(index)));
+    std::memcpy(more.data() + record_head_size, &offset, sizeof offset);
+    Bytes changed(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(record_end(index)));
+    for (int i = 0; i < copies; ++i) changed.insert(changed.end(), more.begin(), more.end());
+    append_end(changed, footer, ByteView(changed).subspan(footer.summary_start));
+    return changed;
+  };
+  const TemporaryFile whole(with(0, attachment));
+  EXPECT_TRUE(McapReader(whole.path()).is_complete()) << "so much is right";
+  for (const std::uint64_t offset : {attachment, attachment + 1, std::uint64_t{0}, ~std::uint64_t{0} - 5}) {
+    const TemporaryFile file(with(1000, offset));
+    EXPECT_THROW(read_summary(FileBytes(file.path())), McapError) << offset;
+    const McapReader reader(file.path());
+    EXPECT_EQ(reader.attachments().size(), 1U) << offset;
+    EXPECT_EQ(messages_of(reader).size(), 20U) << offset;
   }
 }
 

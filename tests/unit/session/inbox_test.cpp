@@ -34,6 +34,35 @@ TEST(Inbox, KeepsTheOrderAndIsEmptyOnceTaken) {
   EXPECT_TRUE(inbox.take().requests.empty());
 }
 
+TEST(Inbox, BoundsJoinsAndReportsInBytes) {
+  Inbox inbox;
+  wire::Join join;
+  join.robots = {std::string(Inbox::largest_join, 'x')};
+  EXPECT_FALSE(inbox.add_arrival(join, sender_of(1), nullptr)) << "with the rest of it, it is larger";
+  join.robots = {std::string(Inbox::largest_join / 2, 'x')};
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < Inbox::most_arrivals; ++i)
+    if (inbox.add_arrival(join, sender_of(2), nullptr)) ++taken;
+  EXPECT_GT(taken, 2 * Inbox::most_arrival_bytes / Inbox::largest_join - 10) << "the rest of each counts too";
+  EXPECT_LE(taken, 2 * Inbox::most_arrival_bytes / Inbox::largest_join);
+
+  wire::Report report;
+  report.text.assign(Inbox::largest_report, 'x');
+  EXPECT_FALSE(inbox.add_report(report, sender_of(1)));
+  report.text.resize(Inbox::largest_report / 2);
+  taken = 0;
+  for (std::size_t i = 0; i < Inbox::most_reports; ++i)
+    if (inbox.add_report(report, sender_of(2))) ++taken;
+  EXPECT_GT(taken, 2 * Inbox::most_report_bytes / Inbox::largest_report - 10) << "the rest of each counts too";
+  EXPECT_LE(taken, 2 * Inbox::most_report_bytes / Inbox::largest_report);
+
+  const Inbox::Contents contents = inbox.take();
+  EXPECT_EQ(contents.rejected.at({1, "malformed"}).count, 2u);
+  EXPECT_GT(contents.rejected.at({2, "flood"}).count, 1u);
+  EXPECT_TRUE(inbox.add_arrival(join, sender_of(2), nullptr)) << "there is room again";
+  EXPECT_TRUE(inbox.add_report(report, sender_of(2)));
+}
+
 TEST(Inbox, TakesAsManyRequestsOfOneParticipantAsItMayHaveUnderWay) {
   Inbox inbox;
   for (std::uint64_t number = 1; number <= wire::requests_under_way; ++number) EXPECT_TRUE(add_request(inbox, number));

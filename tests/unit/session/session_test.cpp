@@ -6,6 +6,7 @@
 #include "server/session/in_process.hpp"
 #include "server/session/roster.hpp"
 #include "server/session/run_events.hpp"
+#include "server/session/run_monitor.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::session {
@@ -119,6 +120,19 @@ TEST(Exchange, AFaultyAnswerUnderZeroGivesNeutralValuesAndTheRunGoesOn) {
   exchange.apply();
   simulation.step();
   EXPECT_LT(std::abs(simulation.observation(0)[left_position]), 1e-4) << "at 0.2 m/s it would be 2 mm";
+}
+
+TEST(RunMonitor, IsDueAtAnySpeedHoweverSmall) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  RunMonitor monitor(experiment, simulation, {.speed = 1e-300}, {});
+  monitor.start();
+  EXPECT_LE(*monitor.due_time(), RunMonitor::Clock::now());
+  simulation.step();
+  EXPECT_GT(*monitor.due_time(), RunMonitor::Clock::now() + std::chrono::hours(1000));
+  monitor.set_speed(1e300);
+  simulation.step();
+  EXPECT_LE(*monitor.due_time(), RunMonitor::Clock::now());
 }
 
 TEST(Roster, SeedsOfControllersDependOnTheExperimentsSeedAndTheRobotsNameOnly) {

@@ -5,9 +5,10 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
 #include <stdexcept>
 #include <system_error>
+
+#include "server/core/atomic_file.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -33,10 +34,9 @@ void check_writable(std::string_view what, const std::filesystem::path& file) {
 }
 
 void write_file(std::string_view what, const std::filesystem::path& file, std::string_view contents) {
-  std::ofstream out(file, std::ios::binary);
-  out << contents;
-  out.close();
-  if (!out) refuse(what, file, errno);
+  AtomicFile out(what, file);
+  out.write(contents);
+  out.commit();
 }
 
 }  // namespace cohort::tool

@@ -11,7 +11,7 @@ namespace cohort::tool {
 /// no trace. `what` names the contents in the message.
 void check_writable(std::string_view what, const std::filesystem::path& file);
 
-/// Replaces what is in `file`. Throws std::runtime_error that says why it cannot.
+/// Replaces `file` as a whole (AtomicFile). Throws std::runtime_error that says why it cannot.
 void write_file(std::string_view what, const std::filesystem::path& file, std::string_view contents);
 
 }  // namespace cohort::tool

@@ -43,6 +43,7 @@ int export_data(const ExportDataCommand& command, Log& log) {
   if (!command.hdf5.empty()) check_writable("the tables", command.hdf5);
   const auto sink = command.csv.empty() ? data::hdf5_tables(command.hdf5) : data::csv_tables(command.csv);
   const std::uint64_t rows = data::write_tables(recording, selection, *sink);
+  sink->finish();
   log.notice(
       fmt::format("wrote {} to {}", counted(rows, "row"), (command.csv.empty() ? command.hdf5 : command.csv).string()),
       {{"rows", rows}});

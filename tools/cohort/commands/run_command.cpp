@@ -180,7 +180,7 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
       .from = runs.from,
       .keep_interval = keep_interval_of(command, *world.experiment)};
   using enum recording::Beginning;
-  OneRun one(command, numbered(command.outputs, number, count), log);
+  OneRun one(command, numbered(command.outputs, number, count), log, stop);
   one.begin(*world.experiment, *world.simulation, runs.from ? restored : first);
   for (;;) {
     std::optional<World> next;

@@ -15,12 +15,13 @@ namespace cohort::tool {
 
 using session::RunResult;
 
-OneRun::OneRun(const RunCommand& command, Outputs outputs, Log& log)
-    : command_(command), outputs_(std::move(outputs)), log_(log) {}
+OneRun::OneRun(const RunCommand& command, Outputs outputs, Log& log, const std::atomic<bool>& stop)
+    : command_(command), outputs_(std::move(outputs)), log_(log), stop_(stop) {}
 
 void OneRun::begin(const description::Experiment& experiment, const Simulation& simulation,
                    recording::Beginning beginning) {
   experiment_ = &experiment;
+  simulation_ = &simulation;
   const bool own_controllers = command_.controllers != Controllers::external && !has_keyboard(experiment);
   terminal_.emplace(log_, Terminal::Options{.quiet = command_.quiet, .own_controllers = own_controllers});
   if (!outputs_.plot.empty()) trace_.emplace(experiment.world, simulation, outputs_.viewpoint);
@@ -31,14 +32,17 @@ void OneRun::begin(const description::Experiment& experiment, const Simulation& 
 }
 
 session::RunListener OneRun::listener() {
+  watchdog_.emplace(stop_, log_);
   session::RunListener listener = {
       .progress = [&](const session::Progress& progress) { terminal_->progress(progress); },
       .news = [&](const session::RunEvent& event) { terminal_->event(event); },
       .boundary =
           [&] {
+            if (watchdog_) watchdog_->reached(simulation_->tick());
             if (trace_) trace_->boundary();
             if (table_) table_->boundary();
           },
+      .stopped = [&] { watchdog_.reset(); },
   };
   session::add_recorders(listener, recorders_);
   return listener;

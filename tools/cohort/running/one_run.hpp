@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "tools/cohort/cli/printed_table.hpp"
 #include "tools/cohort/cli/terminal.hpp"
 #include "tools/cohort/running/run_options.hpp"
+#include "tools/cohort/running/watchdog.hpp"
 #include "tools/drawing/plot_view.hpp"
 #include "tools/drawing/run_trace.hpp"
 
@@ -16,8 +18,8 @@ namespace cohort::tool {
 /// One experiment's run, with all that people see of it.
 class OneRun {
  public:
-  /// `command` and `log` must outlive this.
-  OneRun(const RunCommand& command, Outputs outputs, Log& log);
+  /// `command`, `log` and `stop`, whether the process was asked to end, must outlive this.
+  OneRun(const RunCommand& command, Outputs outputs, Log& log, const std::atomic<bool>& stop);
 
   /// Before it runs, and again if another world takes the place of the one before: then only the recording goes on.
   /// Both must live until the next call, or until this is gone.
@@ -36,7 +38,10 @@ class OneRun {
   const RunCommand& command_;
   Outputs outputs_;
   Log& log_;
+  const std::atomic<bool>& stop_;
   const description::Experiment* experiment_ = nullptr;
+  const Simulation* simulation_ = nullptr;
+  std::optional<Watchdog> watchdog_;  // while it runs
   std::optional<Terminal> terminal_;
   std::optional<TraceRecorder> trace_;
   std::optional<PrintedTable> table_;

@@ -1,12 +1,16 @@
 #include "tools/view/web/web_server.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <fstream>
 #include <iterator>
+#include <list>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -24,7 +28,9 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using beast::error_code;
 
-constexpr std::size_t most_connections = 64;
+constexpr std::size_t most_pages = 64;    // connections that ask for files
+constexpr std::size_t most_viewers = 64;  // WebSockets: of those who may
+constexpr std::chrono::milliseconds before_accepting_again{100};
 constexpr std::size_t largest_message = std::size_t{1} << 20;  // from a client [bytes]
 constexpr std::uint32_t largest_header = 8192;
 constexpr std::chrono::seconds request_time{10};
@@ -58,6 +64,7 @@ class WebServer::State {
 
   void listen();
   void accept();
+  void give_way();
   // Several calls before the thread comes to it are one.
   void published() {
     if (is_pumping.exchange(true)) return;
@@ -73,11 +80,12 @@ class WebServer::State {
   const std::string session = random_token();
   std::atomic<bool> is_pumping{false};
   std::set<WebSocket*> clients;
+  std::list<Page*> pages;      // in the order of their last request
   std::uint64_t visitors = 0;  // that there have been
-  std::size_t connections = 0;
   Source* source = nullptr;
   asio::io_context context{1};  // with it go the connections, which need all that is above
   tcp::acceptor acceptor;
+  asio::steady_timer pause{context};  // of accepting
 };
 
 // One that has become a WebSocket. Alive while something is under way on it.
@@ -89,11 +97,9 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
         session_(state.topics, state.options.name, state.session,
                  {[this](const protocol::ServiceCall& call, const ViewRequest& request) { ask(call, request); },
                   [this] { state_.watch(); }}) {
-    ++state_.connections;
     state_.clients.insert(this);
   }
   ~WebSocket() {
-    --state_.connections;
     state_.clients.erase(this);
     if (!session_.watched().empty()) state_.watch();
     if (state_.source != nullptr) state_.source->leave(visitor_);
@@ -183,12 +189,22 @@ class WebServer::State::WebSocket : public std::enable_shared_from_this<WebSocke
 // One that asks for files of the page, until it wants to be a WebSocket.
 class WebServer::State::Page : public std::enable_shared_from_this<Page> {
  public:
-  Page(State& state, tcp::socket socket) : state_(state), stream_(std::move(socket)) { ++state_.connections; }
-  ~Page() { --state_.connections; }
+  Page(State& state, tcp::socket socket) : state_(state), stream_(std::move(socket)) {
+    error_code unknown;
+    address_ = stream_.socket().remote_endpoint(unknown).address();
+    place_ = state_.pages.insert(state_.pages.end(), this);
+  }
+  ~Page() { state_.pages.erase(place_); }
   Page(const Page&) = delete;
   Page& operator=(const Page&) = delete;
 
+  const asio::ip::address& address() const { return address_; }
+  void close() {
+    error_code unknown;
+    stream_.socket().close(unknown);
+  }
   void read() {
+    state_.pages.splice(state_.pages.end(), state_.pages, place_);
     parser_.emplace();
     parser_->header_limit(largest_header);
     parser_->body_limit(std::uint64_t{0});
@@ -203,6 +219,8 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
     const Visitor visitor = visitor_of(request);
     if (websocket::is_upgrade(request)) {
       if (const auto why = refusal(state_.admission, visitor)) return send(request, http::status::forbidden, *why);
+      if (state_.clients.size() >= most_viewers)
+        return send(request, http::status::service_unavailable, "so many look on already that there is no room");
       stream_.expires_never();
       std::make_shared<WebSocket>(state_, stream_.release_socket())->accept(request);
       return;
@@ -233,6 +251,8 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
   }
 
   State& state_;
+  asio::ip::address address_;
+  std::list<Page*>::iterator place_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
@@ -259,9 +279,26 @@ void WebServer::State::listen() {
 void WebServer::State::accept() {
   acceptor.async_accept([this](error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error && connections < most_connections) std::make_shared<Page>(*this, std::move(socket))->read();
+    if (error) {  // no more files may be open: that does not end at once
+      if (!pages.empty()) give_way();
+      pause.expires_after(before_accepting_again);
+      return pause.async_wait([this](error_code ended) {
+        if (!ended) accept();
+      });
+    }
+    if (pages.size() >= most_pages) give_way();
+    std::make_shared<Page>(*this, std::move(socket))->read();
     accept();
   });
+}
+
+// Whoever comes gets in. Of the addresses that hold most connections, the one that was used longest ago is closed, so
+// that who opens many only closes its own. WebSockets stay.
+void WebServer::State::give_way() {
+  std::map<asio::ip::address, std::size_t> held;
+  for (const Page* const page : pages) ++held[page->address()];
+  const std::size_t most = std::ranges::max_element(held, {}, [](const auto& each) { return each.second; })->second;
+  (*std::ranges::find_if(pages, [&](const Page* page) { return held[page->address()] == most; }))->close();
 }
 
 void WebServer::State::pump() {

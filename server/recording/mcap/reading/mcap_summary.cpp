@@ -75,6 +75,24 @@ void add(Contents& contents, const RecordHead& head, ByteView content, const Fil
   }
 }
 
+// What the indices name stands in the file before the summary, each for itself: else a small file could hold as much as
+// it says that it does.
+void check_entries(const Contents& contents, const FileBytes& file, std::uint64_t summary_start) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  // offset and length
+  for (const Block& block : contents.blocks) entries.emplace_back(block.offset, block.length);
+  for (const AttachmentIndex& index : contents.attachments) entries.emplace_back(index.offset, index.length);
+  for (const MetadataIndex& index : contents.metadata) entries.emplace_back(index.offset, index.length);
+  std::ranges::sort(entries);
+  std::uint64_t free = mcap_magic.size();
+  for (const auto& [offset, length] : entries) {
+    if (offset < free || offset > summary_start || length > summary_start - offset)
+      file.at(summary_start)
+          .fail("an index says that " + std::to_string(length) + " bytes begin at byte " + std::to_string(offset) +
+                ", which are another's too, or not before the summary");
+    free = offset + length;
+  }
+}
+
 }  // namespace
 
 void check_magic(const FileBytes& file) {
@@ -110,6 +128,7 @@ std::optional<Contents> read_summary(const FileBytes& file) {
     offset = record(offset, [&](const RecordHead& head, ByteView content, const Place& place) {
       add(contents, head, content, file, place);
     });
+  check_entries(contents, file, end.footer.summary_start);
   std::ranges::stable_sort(contents.blocks, {}, &Block::offset);
   return contents;
 }

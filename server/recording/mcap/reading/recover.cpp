@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <stdexcept>
 #include <system_error>
 
+#include "server/core/atomic_file.hpp"
 #include "server/recording/mcap/writing/disk_file.hpp"
 #include "server/recording/mcap/writing/mcap_writer.hpp"
 
@@ -87,31 +90,27 @@ std::string library_of_recovered(const Header& header) {
   return header.library.empty() ? recovered : recovered + " from a file of " + header.library;
 }
 
-// Writes the file beside `target`, and puts it there.
 Statistics write(const FileBytes& source, Scan& scan, const std::filesystem::path& target, const ReadLimits& limits) {
-  std::filesystem::path beside = target;
-  beside += ".recovered";
-  Statistics kept;
-  try {
-    DiskFile file(beside);
-    // Chunks are as they were.
-    constexpr std::size_t endless = std::numeric_limits<std::size_t>::max();
-    McapWriter writer([&](ByteView bytes) { file.write(bytes); },
-                      {.profile = scan.contents.header.profile,
-                       .library = library_of_recovered(scan.contents.header),
-                       .chunk_size = endless});
-    Copy(source, scan, limits, writer).all();
-    file.sync();
-    kept = writer.statistics();
-    std::error_code error;
-    std::filesystem::rename(beside, target, error);
-    if (error) throw FileError("the recording " + target.string() + " cannot be replaced: " + error.message());
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw;
-  }
-  return kept;
+  const auto telling = [](const auto& act) {
+    try {
+      act();
+    } catch (const std::runtime_error& error) {
+      throw FileError(error.what());
+    }
+  };
+  std::optional<AtomicFile> file;
+  telling([&] { file.emplace("the recording", target); });
+  // Chunks are as they were.
+  constexpr std::size_t endless = std::numeric_limits<std::size_t>::max();
+  const auto write_bytes = [&](ByteView bytes) {
+    telling([&] { file->write({reinterpret_cast<const char*>(bytes.data()), bytes.size()}); });
+  };
+  McapWriter writer(write_bytes, {.profile = scan.contents.header.profile,
+                                  .library = library_of_recovered(scan.contents.header),
+                                  .chunk_size = endless});
+  Copy(source, scan, limits, writer).all();
+  telling([&] { file->commit(); });
+  return writer.statistics();
 }
 
 }  // namespace

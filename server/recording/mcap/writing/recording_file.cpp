@@ -104,7 +104,7 @@ bool RecordingFile::write_message(ChannelId channel, std::uint32_t sequence, Tim
     ++dropped_[channel];
     return false;
   }
-  if (options_.most_essential_queued != 0 && queued_ + data.size() > options_.most_essential_queued) {
+  if (queued_ + data.size() > options_.most_essential_queued) {
     error_ =
         std::to_string(queued_ >> 20U) + " MiB wait to be written, and more may not. What was recorded before is whole";
     is_closing_ = true;

@@ -14,15 +14,15 @@
 namespace cohort::recording {
 
 enum class Importance {
-  essential,  ///< never dropped, however much memory waits for the disk: commands, events
+  essential,  ///< never dropped while the recording goes on: commands, events
   display,    ///< dropped while more than `RecordingOptions::most_queued` bytes wait for the disk
 };
 
 struct RecordingOptions {
   McapWriterOptions mcap{};
   std::size_t most_queued = std::size_t{64} << 20U;  ///< bytes
-  /// Bytes of all that waits: the recording ends with an error when they are more. 0: there is no limit.
-  std::size_t most_essential_queued = 0;
+  /// Bytes of all that waits for a disk that has stalled: the recording ends with an error when they are more.
+  std::size_t most_essential_queued = std::size_t{1} << 30U;
   /// How long a message waits at the most before its chunk is ended and written, in wall time.
   std::chrono::nanoseconds flush_interval = std::chrono::milliseconds(750);
 };

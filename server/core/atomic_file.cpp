@@ -1,0 +1,93 @@
+#include "server/core/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace cohort {
+namespace {
+
+// Of a new file; there is no way to read the mask without setting it for a moment, which other threads would see.
+mode_t usual_mode() {
+  static const mode_t mode = [] {
+    const mode_t mask = umask(022);
+    umask(mask);
+    return static_cast<mode_t>(0666 & ~mask);
+  }();
+  return mode;
+}
+
+// /dev/stdout and the like, which may be a file.
+bool is_of_this_process(const std::filesystem::path& file) {
+  const std::string folder = std::filesystem::absolute(file).lexically_normal().parent_path().string();
+  return folder == "/dev" || folder == "/dev/fd" || folder.starts_with("/proc/");
+}
+
+// 0, or why it failed.
+int sync_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return 0;  // one that may be written to and not read
+  const int error = fsync(descriptor) == 0 ? 0 : errno;
+  close(descriptor);
+  return error == EINVAL ? 0 : error;  // some file systems know no such thing
+}
+
+}  // namespace
+
+void AtomicFile::fail(int error) const {
+  throw std::runtime_error(what_ + " cannot be written to " + target_.string() + ": " +
+                           std::generic_category().message(error));
+}
+
+AtomicFile::AtomicFile(std::string_view what, std::filesystem::path target)
+    : what_(what), target_(std::move(target)), path_(target_) {
+  struct stat status {};
+  const bool is_there = stat(target_.c_str(), &status) == 0;
+  if (is_there && S_ISDIR(status.st_mode)) fail(EISDIR);
+  if (is_there && (!S_ISREG(status.st_mode) || is_of_this_process(target_))) {
+    descriptor_ = open(target_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
+    if (descriptor_ < 0) fail(errno);
+    return;
+  }
+  if (is_there && access(target_.c_str(), W_OK) != 0) fail(errno);
+  std::string name = (target_.parent_path() / ("." + target_.filename().string() + ".XXXXXX")).string();
+  descriptor_ = mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor_ < 0) fail(errno);
+  path_ = name;
+  fchmod(descriptor_, is_there ? status.st_mode & 07777U : usual_mode());
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+  if (path_ != target_) unlink(path_.c_str());
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(descriptor_, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(errno);
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+  }
+}
+
+void AtomicFile::commit() {
+  if (path_ == target_) {
+    if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+    return;
+  }
+  if (fsync(descriptor_) != 0) fail(errno);
+  if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+  if (rename(path_.c_str(), target_.c_str()) != 0) fail(errno);
+  path_ = target_;
+  if (const int error = sync_folder_of(target_); error != 0) fail(error);
+}
+
+}  // namespace cohort

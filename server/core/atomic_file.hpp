@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace cohort {
+
+/// A file that takes the place of what has its name as a whole or not at all, whatever happens meanwhile: it is written
+/// beside it and put there once all of it is on the disk. A symbolic link of that name is replaced, not followed. What
+/// is no file (a pipe, a terminal) is written to as it is. What fails throws std::runtime_error: what is written, to
+/// which file, and why not.
+class AtomicFile {
+ public:
+  /// `what`: the contents, for messages, such as `the summary`.
+  AtomicFile(std::string_view what, std::filesystem::path target);
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  /// Without `commit` nothing has happened.
+  ~AtomicFile();
+
+  /// What is written until `commit`, for libraries that write files themselves.
+  const std::filesystem::path& path() const { return path_; }
+  void write(std::string_view bytes);
+  /// Returns when the file has its name, and keeps it if the power fails.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error) const;
+
+  std::string what_;
+  std::filesystem::path target_;
+  std::filesystem::path path_;  // `target_` if that is no file
+  int descriptor_ = -1;
+};
+
+}  // namespace cohort

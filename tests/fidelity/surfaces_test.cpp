@@ -41,6 +41,24 @@ TEST_P(Surfaces, CollideOnlyWithThoseOfTheirBitmask) {
   EXPECT_LT(small.position(by_nothing).z(), -1.0);
 }
 
+// A body without any freedom: the world holds its only link.
+TEST_P(Surfaces, WhatTheWorldHoldsBearsWhatLiesOnItAndStandsInOthers) {
+  SmallWorld small(GetParam().world());
+  description::Model held = loose("held", Box{{1, 1, 1}}, solid_box(1.0, {1, 1, 1}));
+  description::Joint joint;
+  joint.name = "bolt";
+  joint.parent = description::Joint::world;
+  held.joints.push_back(joint);
+  small.add(static_shape("block", Box{{1, 1, 1}}), at(0, 0, 0));
+  const auto lower = small.add(held, at(0, 0, 1.0));
+  const auto upper = small.add(held, at(0.5, 0, 1.9));
+  const auto load = small.add(loose("load", Box{{0.2, 0.2, 0.2}}, solid_box(1.0, {0.2, 0.2, 0.2})), at(-0.3, 0, 1.6));
+  small.run(1.0);
+  EXPECT_EQ(small.position(lower), Vector3d(0, 0, 1.0));
+  EXPECT_EQ(small.position(upper), Vector3d(0.5, 0, 1.9));
+  EXPECT_NEAR(small.position(load).z(), 1.6, 2e-3);
+}
+
 // 100 m/s: a ball that is followed on its way.
 TEST_P(Surfaces, WhatIsFastPassesThroughWhatItDoesNotCollideWith) {
   SmallWorld small(GetParam().world());

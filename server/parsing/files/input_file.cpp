@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -18,6 +19,32 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* is_a_folder = "this is a folder; name a file in it";
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+// Ours, an empty one, and those of other programs.
+std::string folders_of_environment() {
+  std::string path = variable("COHORT_MODEL_PATH");
+  for (std::size_t at = path.find("::"); at != std::string::npos; at = path.find("::")) path.erase(at, 1);
+  while (path.ends_with(':')) path.pop_back();
+  std::string others;
+  const auto add = [&](const std::string& folders, const std::string& inside) {
+    std::istringstream stream(folders);
+    for (std::string folder; std::getline(stream, folder, ':');)
+      if (!folder.empty()) others += ":" + folder + inside;
+  };
+  for (const char* const name :
+       {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH", "ROS_PACKAGE_PATH"})
+    add(variable(name), "");
+  add(variable("AMENT_PREFIX_PATH"), "/share");
+  const std::string home = variable("HOME");
+  for (const char* const cache : {"/.gz/fuel", "/.ignition/fuel"})
+    if (std::error_code none; !home.empty() && fs::is_directory(home + cache, none)) add(home + cache, "");
+  return others.empty() ? path : path + ":" + others;
+}
 
 }  // namespace
 
@@ -38,7 +65,7 @@ std::optional<std::string> why_unreadable(const fs::path& file) {
 InputFiles::InputFiles() {
   std::error_code removed_meanwhile;
   working_folder_ = fs::current_path(removed_meanwhile);
-  if (const char* const path = std::getenv("COHORT_MODEL_PATH")) model_path_ = path;
+  model_path_ = folders_of_environment();
 }
 
 InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)

@@ -37,8 +37,13 @@ class InputFiles {
   bool is_file(const std::filesystem::path& file) const;
   bool is_folder(const std::filesystem::path& folder);
 
+  /// Whether what is read stands on the disk, where its user has named it.
+  bool is_disk() const { return !source_; }
+
   /// Without "." and "..".
   std::filesystem::path absolute(const std::filesystem::path& path) const;
+  /// Folders of models, separated by colons: those of COHORT_MODEL_PATH, an empty one, and those where Gazebo and ROS
+  /// look and keep what they have fetched.
   const std::string& model_path() const { return model_path_; }
 
   /// What reading has taken so far; `experiment` and `last_model_folders` are for those to fill in who know them.

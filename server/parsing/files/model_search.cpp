@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "server/core/text.hpp"
 #include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/files/xml_outline.hpp"
 
@@ -20,8 +21,8 @@ constexpr std::string_view package_scheme = "package://";
 constexpr std::string_view file_scheme = "file://";
 constexpr int parent_levels = 4;
 
-// The file that a model.config names: of several, the one of the newest version that libsdformat reads; of those that
-// say no version, the first.
+// The file that a model.config names: of several, the one of the newest version that libsdformat reads, or else of the
+// oldest that is newer; of those that say no version, the first.
 std::string best_file(const XmlNode& model) {
   const std::pair<int, int> own = version_of(sdf::SDF::Version());
   std::pair<int, int> best{-1, 0};
@@ -30,11 +31,19 @@ std::string best_file(const XmlNode& model) {
     if (sdf.name != "sdf" || sdf.text.empty()) continue;
     const std::string* const written = sdf.attribute("version");
     const std::pair<int, int> version = version_of(written != nullptr ? *written : "");
-    if (version > own || version <= best) continue;
+    const bool is_newer = version > own;
+    if (version > newest_version || (is_newer ? best.first >= 0 && best <= version : best <= own && version <= best))
+      continue;
     best = version;
     file = sdf.text;
   }
   return file;
+}
+
+std::string in_small_letters(std::string text) {
+  for (char& each : text)
+    if (each >= 'A' && each <= 'Z') each = static_cast<char>(each - 'A' + 'a');
+  return text;
 }
 
 }  // namespace
@@ -42,8 +51,11 @@ std::string best_file(const XmlNode& model) {
 ModelSearch::ModelSearch(InputFiles& input, const fs::path& world_file, const std::vector<fs::path>& last_folders)
     : input_(input), world_folder_(input.absolute(world_file).parent_path()) {
   std::istringstream stream(input.model_path());
-  for (std::string folder; std::getline(stream, folder, ':');)
-    if (!folder.empty()) folders_.push_back(input.absolute(folder));
+  bool is_ours = true;
+  for (std::string folder; std::getline(stream, folder, ':');) {
+    is_ours = is_ours && !folder.empty();
+    if (!folder.empty()) (is_ours ? folders_ : others_).push_back(input.absolute(folder));
+  }
   fs::path folder = world_folder_;
   for (int level = 0; level <= parent_levels; ++level) {
     folders_.push_back(folder / "robots");
@@ -74,12 +86,20 @@ fs::path ModelSearch::sdf_file_of(const fs::path& folder) const {
   return folder / file;
 }
 
-fs::path ModelSearch::find_folder(const std::string& name) const {
+std::optional<fs::path> ModelSearch::look_for(const std::string& name, const fs::path& folder) const {
+  if (name.empty()) return std::nullopt;
+  for (const auto* const folders : {&folders_, &others_})
+    for (const fs::path& each : *folders)
+      if (input_.is_folder(each / name)) return each / name;
+  return find_above(name, folder);
+}
+
+fs::path ModelSearch::find_folder(const std::string& name, const fs::path& folder) const {
+  if (auto found = look_for(name, folder)) return *found;
   std::string searched;
-  for (const fs::path& folder : folders_) {
-    if (!name.empty() && input_.is_folder(folder / name)) return folder / name;
-    if (input_.is_folder(folder)) searched += (searched.empty() ? "" : ", ") + folder.string();
-  }
+  for (const auto* const folders : {&folders_, &others_})
+    for (const fs::path& each : *folders)
+      if (input_.is_folder(each)) searched += (searched.empty() ? "" : ", ") + each.string();
   if (searched.empty())
     throw std::runtime_error("there is no model '" + name +
                              "': no folder 'robots' or 'objects' is beside the world file or up to " +
@@ -87,18 +107,90 @@ fs::path ModelSearch::find_folder(const std::string& name) const {
   throw std::runtime_error("there is no model '" + name + "' in " + searched + "; COHORT_MODEL_PATH may name more");
 }
 
+// A file of a package or of a collection of models names it, or its neighbours.
+std::optional<fs::path> ModelSearch::find_above(const std::string& name, fs::path folder) const {
+  if (name.empty()) return std::nullopt;
+  for (; folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (folder.filename() == name || is_package(folder, name)) return folder;
+    for (const fs::path& place : {folder / name, folder / "models" / name})
+      for (const char* const sign : {"model.config", "package.xml"})
+        if (input_.is_folder(place) && input_.is_file(place / sign)) {
+          input_.read(place / sign);  // so that it is among what is kept
+          return place;
+        }
+  }
+  return std::nullopt;
+}
+
+// A path without its package, as PyBullet takes it.
+std::optional<fs::path> ModelSearch::find_file_above(const std::string& path, fs::path folder) const {
+  for (; folder != folder.parent_path(); folder = folder.parent_path())
+    if (input_.is_file(folder / path)) return folder / path;
+  return std::nullopt;
+}
+
+bool ModelSearch::is_package(const fs::path& folder, const std::string& name) const {
+  const fs::path package = folder / "package.xml";
+  if (!input_.is_file(package)) return false;
+  const XmlOutline outline = outline_xml(input_.read(package));
+  const XmlNode* const written = outline.root.child("name");
+  return written != nullptr && written->text == name;
+}
+
+// `https://fuel.gazebosim.org/1.0/OWNER/models/NAME/VERSION/files/PATH` is SERVER/OWNER/models/NAME/VERSION/PATH in the
+// cache, in small letters; without a version, or with `tip`, it is the newest.
+fs::path ModelSearch::find_fetched(const std::string& uri) const {
+  std::string address = uri.substr(uri.find("://") + 3);
+  for (std::size_t at = address.find("%20"); at != std::string::npos; at = address.find("%20", at))
+    address.replace(at, 3, " ");
+  std::vector<std::string> parts;
+  std::istringstream stream(address);
+  for (std::string part; std::getline(stream, part, '/');)
+    if (!part.empty() && part != "1.0" && part != "files") parts.push_back(part);
+  constexpr std::size_t least_parts = 4;
+  const bool is_model = parts.size() >= least_parts && parts[2] == "models";
+  for (const fs::path& cache : others_) {
+    if (!is_model) break;
+    const fs::path model = cache / parts[0] / in_small_letters(parts[1]) / parts[2] / in_small_letters(parts[3]);
+    if (!input_.is_folder(model)) continue;
+    auto rest = parts.begin() + least_parts;
+    const auto is_number = [](const std::string& part) { return parse_whole(part).has_value(); };
+    const bool says_version = rest != parts.end() && (is_number(*rest) || *rest == "tip");
+    fs::path found = model / (says_version && is_number(*rest) ? *rest : newest_version(model));
+    if (says_version) ++rest;
+    for (; rest != parts.end(); ++rest) found /= *rest;
+    return found;
+  }
+  throw std::runtime_error(
+      "'" + uri + "' cannot be fetched: expected model://NAME or a path" +
+      (is_model ? "; what `gz fuel download -u \"" + uri + "\"` has put into ~/.gz/fuel is found there" : ""));
+}
+
+std::string ModelSearch::newest_version(const fs::path& model) const {
+  constexpr int most_versions = 999;
+  for (int version = most_versions; version > 0; --version)
+    if (input_.is_folder(model / std::to_string(version))) return std::to_string(version);
+  return "1";
+}
+
 fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder) const {
   fs::path path;
   if (uri.starts_with(model_scheme) || uri.starts_with(package_scheme)) {
     const std::string inside = uri.substr(uri.find("://") + 3);
     const std::size_t slash = std::min(inside.find('/'), inside.size());
-    path = find_folder(inside.substr(0, slash)) / fs::path(inside.substr(slash)).relative_path();
+    const auto beside = look_for(inside.substr(0, slash), folder) ? std::nullopt : find_file_above(inside, folder);
+    path = beside ? *beside
+                  : find_folder(inside.substr(0, slash), folder) / fs::path(inside.substr(slash)).relative_path();
   } else if (uri.starts_with(file_scheme)) {
     path = uri.substr(file_scheme.size());
   } else if (uri.find("://") != std::string::npos) {
-    throw std::runtime_error("'" + uri + "' cannot be fetched: expected model://NAME or a path");
+    path = find_fetched(uri);
   } else {
     path = folder / uri;
+    const std::size_t slash = std::min(uri.find('/'), uri.size());
+    if (uri.find_first_not_of('.') < slash && !input_.is_file(path) && !input_.is_folder(path))
+      if (const auto found = look_for(uri.substr(0, slash), folder))
+        path = *found / fs::path(uri.substr(slash)).relative_path();
   }
   path = path.lexically_normal();
   return path.has_filename() ? path : path.parent_path();  // it ended in a slash

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,10 @@ struct FoundModel {
 
 /// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these
 /// that has one (`package://` means the same): the folders of the environment variable COHORT_MODEL_PATH (separated by
-/// colons), `robots` and `objects` in the folder of the world file and in its parents, four levels up, and the
-/// `last_folders`. Any other URI is a path, to a model's folder or to an SDF file.
+/// colons), `robots` and `objects` in the folder of the world file and in its parents, four levels up, the
+/// `last_folders`, the folders of Gazebo and ROS, and those above the file that names it, of which one may be NAME
+/// itself. Any other URI is a path, to a model's folder or to an SDF file, or a name; an address of Gazebo Fuel is what
+/// Gazebo has fetched from there.
 class ModelSearch {
  public:
   /// `input` must outlive this.
@@ -32,7 +35,14 @@ class ModelSearch {
 
  private:
   std::filesystem::path path_of(const std::string& uri, const std::filesystem::path& folder) const;
-  std::filesystem::path find_folder(const std::string& name) const;
+  /// `folder` is that of the file that names it.
+  std::filesystem::path find_folder(const std::string& name, const std::filesystem::path& folder) const;
+  std::optional<std::filesystem::path> look_for(const std::string& name, const std::filesystem::path& folder) const;
+  std::optional<std::filesystem::path> find_above(const std::string& name, std::filesystem::path folder) const;
+  std::optional<std::filesystem::path> find_file_above(const std::string& path, std::filesystem::path folder) const;
+  bool is_package(const std::filesystem::path& folder, const std::string& name) const;
+  std::filesystem::path find_fetched(const std::string& uri) const;
+  std::string newest_version(const std::filesystem::path& model) const;
 
   /// The SDF file of a model's folder.
   std::filesystem::path sdf_file_of(const std::filesystem::path& folder) const;
@@ -40,6 +50,7 @@ class ModelSearch {
   InputFiles& input_;
   std::filesystem::path world_folder_;
   std::vector<std::filesystem::path> folders_;
+  std::vector<std::filesystem::path> others_;  // of Gazebo and ROS
 };
 
 }  // namespace cohort::parsing

@@ -164,7 +164,18 @@ bool is_xml_name(std::string_view name) {
   });
 }
 
-XmlOutline outline_xml(std::string_view text) { return OutlineBuilder(text).build(); }
+// Blank lines before the declaration are common, and no XML: then the declaration, which says nothing here, is blank
+// too.
+XmlOutline outline_xml(std::string_view text) {
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == 0 || start == std::string_view::npos || !text.substr(start).starts_with("<?xml "))
+    return OutlineBuilder(text).build();
+  std::string without(text);
+  const std::size_t end = std::min(without.find("?>", start), without.size() - 2) + 2;
+  for (std::size_t i = start; i < end; ++i)
+    if (without[i] != '\n') without[i] = ' ';
+  return OutlineBuilder(without).build();
+}
 
 XmlText xml_text_of(const XmlNode& node) {
   XmlText written{"", {nullptr}};

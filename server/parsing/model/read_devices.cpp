@@ -292,7 +292,7 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const s
   std::vector<Found> found;
   for (const DeviceScope& scope : scopes)
     for (const auto& [element, extension] : extensions_in(scope.model_element, report))
-      found.push_back({element, extension, scope.prefix});
+      if (!scope.elsewhere.contains(element)) found.push_back({element, extension, scope.prefix});
   // An encoder may stand before the drive that it measures.
   std::map<std::string, std::size_t> drives;
   for (std::size_t i = 0; i < found.size(); ++i)

@@ -17,6 +17,16 @@
 namespace cohort::parsing {
 namespace {
 
+// The nearest principal moments that a body of this mass can have, in ascending order. What has next to none is a
+// grain.
+Eigen::Vector3d nearest_moments(const Eigen::Vector3d& moments, double mass) {
+  constexpr double radius_of_grain = 1e-3;  // [m]
+  Eigen::Vector3d nearest = moments.cwiseMax(mass * radius_of_grain * radius_of_grain);
+  const double excess = nearest[2] - nearest[0] - nearest[1];
+  if (excess > 0.0) nearest += excess / 3.0 * Eigen::Vector3d(1.0, 1.0, -1.0);
+  return nearest;
+}
+
 // Here and below, NaN passes: check_numbers has reported it.
 Inertial read_written_inertial(const sdf::Link& link, const SdfReport& report) {
   const sdf::ElementPtr element = link.Element();
@@ -40,14 +50,20 @@ Inertial read_written_inertial(const sdf::Link& link, const SdfReport& report) {
     if (!inertial.inertia.hasNaN()) report.problem(inertia, "expected finite moments of inertia");
     return inertial;
   }
-  const Eigen::Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertial.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertial.inertia);
+  const Eigen::Vector3d& moments = solver.eigenvalues();
   // Solids made of mass somewhere obey the triangle inequality, thin ones with equality.
   constexpr double rounding = 1e-6;
+  const char* flaw = nullptr;
   if (!(moments[0] > 0.0))
-    report.problem(inertia, "the matrix is not positive definite");
+    flaw = "the matrix is not positive definite";
   else if (moments[2] > (moments[0] + moments[1]) * (1.0 + rounding))
-    report.problem(inertia, "no body is like this: one principal moment exceeds the sum of the other two");
+    flaw = "no body is like this: one principal moment exceeds the sum of the other two";
+  if (flaw != nullptr && report.flaw(inertia, flaw, "the nearest that a body can have stands in for it")) {
+    const Eigen::Matrix3d& axes = solver.eigenvectors();
+    const Eigen::Matrix3d nearest = axes * nearest_moments(moments, inertial.mass).asDiagonal() * axes.transpose();
+    inertial.inertia = 0.5 * (nearest + nearest.transpose());
+  }
   return inertial;
 }
 
@@ -89,8 +105,18 @@ double read_coefficient(const sdf::ElementPtr& element, double by_default, doubl
                         const SdfReport& report) {
   if (!element) return by_default;
   const auto value = element->Get<double>();
-  if (value < 0.0 || value > greatest) report.problem(element, expected);
-  return value;
+  if (!(value < 0.0) && !(value > greatest)) return value;
+  const double nearest = value < 0.0 ? 0.0 : greatest;
+  return report.flaw(element, expected, "the nearest stands in for it") ? nearest : value;
+}
+
+// Of friction. ODE takes a negative one for any friction that it takes.
+double read_friction_coefficient(const sdf::ElementPtr& element, const SdfReport& report) {
+  constexpr double as_if_glued = 1e3;
+  const char* const expected = "expected a coefficient >= 0";
+  if (element && element->Get<double>() < 0.0 && report.flaw(element, expected, "it holds whatever pulls"))
+    return as_if_glued;
+  return read_coefficient(element, 1.0, std::numeric_limits<double>::max(), expected, report);
 }
 
 std::uint32_t read_material(const sdf::ElementPtr& collision, const ModelReading& reading) {
@@ -123,12 +149,8 @@ std::uint16_t read_bitmask(const sdf::ElementPtr& element, std::uint16_t by_defa
 void read_friction(const sdf::ElementPtr& friction, const SdfReport& report, Surface& surface) {
   const bool is_bullet = !find(friction, {"ode"}) && find(friction, {"bullet"});
   const sdf::ElementPtr element = find(friction, {is_bullet ? "bullet" : "ode"});
-  const auto coefficient = [&](const char* name) {
-    return read_coefficient(find(element, {name}), 1.0, std::numeric_limits<double>::max(),
-                            "expected a coefficient >= 0", report);
-  };
-  surface.friction = coefficient(is_bullet ? "friction" : "mu");
-  surface.second_friction = coefficient(is_bullet ? "friction2" : "mu2");
+  surface.friction = read_friction_coefficient(find(element, {is_bullet ? "friction" : "mu"}), report);
+  surface.second_friction = read_friction_coefficient(find(element, {is_bullet ? "friction2" : "mu2"}), report);
   const sdf::ElementPtr direction = find(element, {"fdir1"});
   if (!is_written(direction)) return;
   const auto unit = written_unit_vector(direction);
@@ -140,8 +162,9 @@ void read_softness(const sdf::ElementPtr& contact, const SdfReport& report, Surf
   const sdf::ElementPtr element = find(contact, {find(contact, {"ode"}) ? "ode" : "bullet"});
   const sdf::ElementPtr stiffness = find(element, {"kp"});
   if (is_written(stiffness)) surface.stiffness = stiffness->Get<double>();
-  if (!(surface.stiffness > 0.0) && !std::isnan(surface.stiffness))
-    report.problem(stiffness, "expected a stiffness > 0 N/m");
+  if (!(surface.stiffness > 0.0) && !std::isnan(surface.stiffness) &&
+      report.flaw(stiffness, "expected a stiffness > 0 N/m", "the contact is rigid"))
+    surface.stiffness = Surface{}.stiffness;
   surface.damping = read_coefficient(find(element, {"kd"}), surface.damping, std::numeric_limits<double>::max(),
                                      "expected a damping >= 0 N s/m", report);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "server/parsing/model/free_bodies.hpp"
 #include "server/parsing/model/not_supported.hpp"
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
@@ -11,15 +12,35 @@
 namespace cohort::parsing {
 namespace {
 
+// The same joint with its ends exchanged: as far as before about an axis the other way round.
+Joint turned_round(const Joint& joint, const Model& model) {
+  Joint turned = joint;
+  turned.parent = joint.child;
+  turned.child = joint.parent;
+  turned.X_LJ = model.links[joint.parent].X_ML.inverse() * model.links[joint.child].X_ML * joint.X_LJ;
+  turned.axis.direction = -joint.axis.direction;
+  return turned;
+}
+
 // Joints in the order of the document make a tree as long as each connects a link that has no parent yet to one that
-// does not hang on it. The others close loops.
+// does not hang on it. The others close loops, but for those that tie a root to what hangs on another one.
 void set_loops_apart(Model& model) {
   const std::size_t none = model.links.size();
   std::vector<std::size_t> parent(model.links.size(), none);  // of the world, the link itself
+  const auto root_of = [&](std::size_t link) {
+    while (link != Joint::world && parent[link] != none && parent[link] != link) link = parent[link];
+    return link;
+  };
   std::vector<Joint> tree;
   for (Joint& joint : model.joints) {
-    std::size_t root = joint.parent;
-    while (root != Joint::world && parent[root] != none && parent[root] != root) root = parent[root];
+    const std::size_t root = root_of(joint.parent);
+    const bool ties_root = root == joint.parent && root != Joint::world && parent[root] == none &&
+                           root_of(joint.child) != root && joint.type != JointType::universal;
+    if (parent[joint.child] != none && ties_root) {
+      tree.push_back(turned_round(joint, model));
+      parent[joint.parent] = joint.child;
+      continue;
+    }
     const bool closes_loop = parent[joint.child] != none || root == joint.child;
     if (!closes_loop) parent[joint.child] = joint.parent == Joint::world ? joint.child : joint.parent;
     (closes_loop ? model.loop_joints : tree).push_back(std::move(joint));
@@ -61,7 +82,8 @@ bool order_links(const sdf::Model& sdf_model, Model& model, const SdfReport& rep
     std::string names;
     for (const std::size_t root : roots) names += (names.empty() ? "'" : ", '") + model.links[root].name + "'";
     report.problem(sdf_model.Element(),
-                   "the links " + names + " have no joint to a parent link; a model that moves has one such root");
+                   "the links " + names +
+                       " have no joint to a parent link, and loops of joints connect them; expected one such root");
     return false;
   }
   for (const std::size_t root : roots) put(root);
@@ -116,6 +138,7 @@ class ModelFlattener {
   /// The links come first, since joints of an outer model may name links of an inner one.
   void add_links(const sdf::Model& sdf_model, const std::string& scope, const Pose& X_MN, bool outer_feels_wind);
   void add_joints(const sdf::Model& sdf_model, const std::string& scope);
+  void hold_links(const std::string& scope);
 
   const std::vector<DeviceScope>& scopes() const { return scopes_; }
   const std::vector<SensorPlace>& sensors() const { return sensors_; }
@@ -170,9 +193,6 @@ void ModelFlattener::add_links(const sdf::Model& sdf_model, const std::string& s
   for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
     const sdf::Model& inner = *sdf_model.ModelByIndex(i);
     warn_of_unsupported(inner.Element(), reading_.report);
-    if (inner.Static() && !reading_.is_static)
-      reading_.report.problem(inner.Element(),
-                              "a static model inside of one that moves is not supported; a fixed joint can hold it");
     add_links(inner, scope + inner.Name() + "::", X_MN * resolved_pose(inner, reading_), model_feels_wind);
   }
 }
@@ -181,13 +201,65 @@ void ModelFlattener::add_joints(const sdf::Model& sdf_model, const std::string& 
   for (std::uint64_t i = 0; i < sdf_model.JointCount(); ++i)
     joint_count_ += sdf_model.JointByIndex(i)->Type() == sdf::JointType::GEARBOX ? 0 : 1;
   for (Joint& joint : read_joints(sdf_model, model_.links, scope, reading_)) model_.joints.push_back(std::move(joint));
-  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i)
-    add_joints(*sdf_model.ModelByIndex(i), scope + sdf_model.ModelByIndex(i)->Name() + "::");
+  for (std::uint64_t i = 0; i < sdf_model.ModelCount(); ++i) {
+    const sdf::Model& inner = *sdf_model.ModelByIndex(i);
+    add_joints(inner, scope + inner.Name() + "::");
+    if (inner.Static()) hold_links(scope + inner.Name() + "::");
+  }
+}
+
+// A static model inside of one that moves: the world holds each link of it.
+void ModelFlattener::hold_links(const std::string& scope) {
+  for (std::size_t link = 0; link < model_.links.size(); ++link) {
+    const std::string& name = model_.links[link].name;
+    const bool is_held = std::ranges::any_of(model_.joints, [&](const Joint& joint) { return joint.child == link; });
+    if (!name.starts_with(scope) || is_held) continue;
+    Joint held;
+    held.name = name + "_to_world";
+    held.parent = Joint::world;
+    held.child = link;
+    model_.joints.push_back(held);
+    ++joint_count_;
+  }
 }
 
 }  // namespace
 
-Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
+namespace {
+
+void warn_of_what_static_has(const ModelFlattener& parts, const SdfReport& report) {
+  for (const DeviceScope& scope : parts.scopes()) {
+    const bool has_sensor =
+        std::ranges::any_of(parts.sensors(), [&](const SensorPlace& sensor) { return sensor.prefix == scope.prefix; });
+    if (!extensions_in(scope.model_element, report).empty() || has_sensor)
+      report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
+    warn_of_static_belts(scope.model_element, report);
+  }
+}
+
+// A name of an object; that of a link in a model inside of its own has colons.
+std::string without_colons(std::string name) {
+  for (std::size_t at = name.find("::"); at != std::string::npos; at = name.find("::", at)) name.replace(at, 2, ".");
+  return name;
+}
+
+// The devices of one body, its links and joints read.
+void add_devices(const std::vector<DeviceScope>& scopes, const std::vector<SensorPlace>& sensors,
+                 const ModelReading& reading, Model& body) {
+  std::vector<Counterpart> of_plugins;
+  std::set<std::string> names;
+  for (const DeviceScope& scope : scopes)
+    for (Counterpart& each :
+         read_model_plugins(scope.model_element, scope.prefix, scope.elsewhere, body, names, reading.report))
+      of_plugins.push_back(std::move(each));
+  add_link_parts(of_plugins, body, reading.report);
+  body.devices = read_devices(scopes, of_plugins, body, reading.report, reading.shape_files);
+  for (Device& sensor : read_sdf_sensors(sensors, body, reading)) body.devices.push_back(std::move(sensor));
+}
+
+}  // namespace
+
+std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   const sdf::ElementPtr element = sdf_model.Element();
   Model model;
   model.name = sdf_model.Name();
@@ -199,34 +271,27 @@ Model read_model(const sdf::Model& sdf_model, const ModelReading& reading) {
   ModelFlattener parts(model, reading);
   parts.add_links(sdf_model, "", {}, false);
   if (model.links.empty() && model.is_static) reading.report.problem(element, "expected at least one <link>");
-
   if (model.is_static) {
-    for (const DeviceScope& scope : parts.scopes()) {
-      const bool has_sensor = std::ranges::any_of(
-          parts.sensors(), [&](const SensorPlace& sensor) { return sensor.prefix == scope.prefix; });
-      if (!extensions_in(scope.model_element, reading.report).empty() || has_sensor)
-        reading.report.warning(scope.model_element, "is static: its devices are ignored, and it is not a robot");
-      warn_of_static_belts(scope.model_element, reading.report);
-    }
-    return model;
+    warn_of_what_static_has(parts, reading.report);
+    return {std::move(model)};
   }
   parts.add_joints(sdf_model, "");
   // Devices name links and joints: with some of those missing, each device would be reported for it.
-  if (!reading.frames_resolve || model.joints.size() != parts.joint_count()) return model;
+  if (!reading.frames_resolve || model.joints.size() != parts.joint_count()) return {std::move(model)};
   set_loops_apart(model);
-  if (!order_links(sdf_model, model, reading.report)) return model;
-  warn_of_loops(sdf_model, model, reading.report);
-  take_kinematic_links(model, reading.report, element);
   model.couplings = read_couplings(sdf_model, model, "", reading);
-  std::vector<Counterpart> of_plugins;
-  std::set<std::string> names;
-  for (const DeviceScope& scope : parts.scopes())
-    for (Counterpart& each : read_model_plugins(scope.model_element, scope.prefix, model, names, reading.report))
-      of_plugins.push_back(std::move(each));
-  add_link_parts(of_plugins, model, reading.report);
-  model.devices = read_devices(parts.scopes(), of_plugins, model, reading.report, reading.shape_files);
-  for (Device& sensor : read_sdf_sensors(parts.sensors(), model, reading)) model.devices.push_back(std::move(sensor));
-  return model;
+  const FreeBodies bodies(model);
+  std::vector<Model> read;
+  for (std::size_t number = 0; number < std::max<std::size_t>(bodies.count(), 1); ++number) {
+    Model& body = read.emplace_back(bodies.body(number, model));
+    if (!order_links(sdf_model, body, reading.report)) continue;
+    if (number > 0) body.name += "/" + without_colons(body.links.front().name);
+    warn_of_loops(sdf_model, body, reading.report);
+    take_kinematic_links(body, reading.report, element);
+    add_devices(bodies.scopes_of(number, model, parts.scopes()), bodies.sensors_of(number, model, parts.sensors()),
+                reading, body);
+  }
+  return read;
 }
 
 }  // namespace cohort::parsing

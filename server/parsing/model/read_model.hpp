@@ -8,6 +8,7 @@
 #include <sdf/Model.hh>
 #include <sdf/SemanticPose.hh>
 #include <sdf/Sensor.hh>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,9 @@ struct ModelReading {
   std::vector<std::string>& materials;  ///< of the world; a new name is added
 };
 
-/// A model, checked; what is wrong goes to the report, and the model is then not to be used.
-Model read_model(const sdf::Model& sdf_model, const ModelReading& reading);
+/// A model, checked; what is wrong goes to the report, and the model is then not to be used. Of links that no joint
+/// connects, each is the root of a body of its own: the models after the first, which are called after their roots.
+std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& reading);
 
 /// Nothing if there is no such shape; the report then has it.
 std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReading& reading);
@@ -64,7 +66,8 @@ std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& m
 /// Where `cohort:` devices stand: a model, or one inside of it.
 struct DeviceScope {
   sdf::ElementPtr model_element;
-  std::string prefix;  ///< of all names in it, such as `arm::`
+  std::string prefix;                     ///< of all names in it, such as `arm::`
+  std::set<sdf::ElementPtr> elsewhere{};  ///< children that belong to another body
 };
 
 /// The devices of a model whose links and joints are read: those of `cohort:` elements, then those of plugins.

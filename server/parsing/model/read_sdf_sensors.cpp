@@ -26,6 +26,7 @@ class SensorElement {
   const sdf::ElementPtr element() const { return sensor_.Element(); }
   const SdfReport& report() const { return reading_.report; }
   const std::string& name() const { return name_; }
+  void rename(std::string name) { name_ = std::move(name); }
   /// Index of the link or joint.
   std::size_t owner() const { return owner_; }
   const Link& link() const { return model_.links[owner_]; }
@@ -348,10 +349,20 @@ std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, con
   for (const auto& [place, owner] : found) {
     SensorElement sensor(*place, model, owner, reading);
     // A slash separates the parts of the names of channels.
-    if (sensor.name().find('/') != std::string::npos)
-      reading.report.problem(sensor.element(), "expected a name without '/' in it");
-    if (!names.insert(sensor.name()).second)
-      reading.report.problem(sensor.element(), "another device of the model has the name '" + sensor.name() + "'");
+    std::string plain = sensor.name();
+    std::ranges::replace(plain, '/', '_');
+    if (plain != sensor.name() &&
+        reading.report.flaw(sensor.element(), "expected a name without '/' in it", "it is called '" + plain + "'"))
+      sensor.rename(plain);
+    if (!names.insert(sensor.name()).second) {
+      std::string other = place->owner + "_" + sensor.name();
+      while (names.contains(other)) other += "_";
+      if (reading.report.flaw(sensor.element(), "another device of the model has the name '" + sensor.name() + "'",
+                              "it is called '" + other + "'")) {
+        sensor.rename(other);
+        names.insert(other);
+      }
+    }
     std::optional<Device> device = kind_of(sensor.element())->read(sensor);
     if (!device) continue;
     *readout_of(*device) = sensor.readout();

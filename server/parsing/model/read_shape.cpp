@@ -129,8 +129,9 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   if (const sdf::Mesh* const mesh = geometry.MeshShape()) return read_mesh_shape(*mesh, reading);
   if (const sdf::Heightmap* const map = geometry.HeightmapShape()) return read_heightmap(*map, reading);
   const sdf::ElementPtr kind = element->GetFirstElement();
-  report.problem(element, (kind ? "<" + kind->GetName() + "> is not supported; expected " : "expected ") +
-                              std::string(geometries));
+  report.flaw(element,
+              (kind ? "<" + kind->GetName() + "> is not supported; expected " : "expected ") + std::string(geometries),
+              "the collision is left out");
   return std::nullopt;
 }
 

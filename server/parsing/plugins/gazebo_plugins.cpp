@@ -154,11 +154,12 @@ void warn_of_static_belts(const sdf::ElementPtr& model_element, const SdfReport&
 }
 
 std::vector<Counterpart> read_model_plugins(const sdf::ElementPtr& model_element, const std::string& prefix,
-                                            const Model& model, std::set<std::string>& names, const SdfReport& report) {
+                                            const std::set<sdf::ElementPtr>& elsewhere, const Model& model,
+                                            std::set<std::string>& names, const SdfReport& report) {
   const std::set<std::string> driven = words_of_actuators(model_element);
   std::vector<Counterpart> counterparts;
   for_plugins(model_element, [&](const sdf::ElementPtr& element, const PluginKind& kind) {
-    if (kind.in_model == nullptr) return;
+    if (kind.in_model == nullptr || elsewhere.contains(element)) return;
     ModelPlugin plugin(element, prefix, model, names, report);
     kind.in_model(plugin);
     plugin.warn_of_unread();

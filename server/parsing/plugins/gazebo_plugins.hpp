@@ -1,6 +1,7 @@
 #pragma once
 
 #include <sdf/Element.hh>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -31,9 +32,11 @@ void warn_of_unknown_plugin(const sdf::ElementPtr& plugin, const SdfReport& repo
 void warn_of_static_belts(const sdf::ElementPtr& model_element, const SdfReport& report);
 
 /// What the plugins of a model, or of one inside of it, are here, whose links and joints are read. What a `cohort:`
-/// device of `model_element` drives, a plugin does not. `names`: those that plugins of the whole model have given away.
+/// device of `model_element` drives, a plugin does not. Plugins that are in `elsewhere` belong to another body.
+/// `names`: those that plugins of the whole model have given away.
 std::vector<Counterpart> read_model_plugins(const sdf::ElementPtr& model_element, const std::string& prefix,
-                                            const Model& model, std::set<std::string>& names, const SdfReport& report);
+                                            const std::set<sdf::ElementPtr>& elsewhere, const Model& model,
+                                            std::set<std::string>& names, const SdfReport& report);
 
 /// Does to the air and the water what the plugins of the world say.
 void read_world_plugins(const sdf::ElementPtr& world_element, World& world, const SdfReport& report);

@@ -9,54 +9,10 @@
 
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/urdf_file.hpp"
+#include "server/parsing/sdf/urdf_forms.hpp"
 
 namespace cohort::parsing {
 namespace {
-
-struct Attribute {
-  std::string_view name;
-  std::size_t numbers = 0;  ///< 0: a text
-  bool required = false;
-  bool positive = false;
-};
-
-struct Form {
-  std::string_view parent;
-  std::string_view name;
-  std::vector<Attribute> attributes{};
-};
-
-// What the reader of URDF knows of links and joints (http://wiki.ros.org/urdf/XML), but for what is only seen.
-const std::vector<Form>& forms() {
-  static const std::vector<Form> all = {
-      {"link", "inertial"},
-      {"inertial", "origin", {{"xyz", 3}, {"rpy", 3}}},
-      {"inertial", "mass", {{"value", 1, true}}},
-      {"inertial",
-       "inertia",
-       {{"ixx", 1, true}, {"ixy", 1, true}, {"ixz", 1, true}, {"iyy", 1, true}, {"iyz", 1, true}, {"izz", 1, true}}},
-      {"link", "visual", {{"name"}}},
-      {"link", "collision", {{"name"}}},
-      {"collision", "origin", {{"xyz", 3}, {"rpy", 3}}},
-      {"collision", "geometry"},
-      {"geometry", "box", {{"size", 3, true, true}}},
-      {"geometry", "sphere", {{"radius", 1, true, true}}},
-      {"geometry", "cylinder", {{"radius", 1, true, true}, {"length", 1, true, true}}},
-      {"geometry", "mesh", {{"filename", 0, true}, {"scale", 3}}},
-      {"joint", "origin", {{"xyz", 3}, {"rpy", 3}}},
-      {"joint", "parent", {{"link", 0, true}}},
-      {"joint", "child", {{"link", 0, true}}},
-      {"joint", "axis", {{"xyz", 3}}},
-      {"joint", "limit", {{"lower", 1}, {"upper", 1}, {"effort", 1, true}, {"velocity", 1, true}}},
-      {"joint", "dynamics", {{"damping", 1}, {"friction", 1}}},
-      {"joint", "mimic", {{"joint", 0, true}, {"multiplier", 1}, {"offset", 1}}},
-      {"joint", "calibration", {{"rising", 1}, {"falling", 1}, {"reference_position", 1}}},
-      {"joint",
-       "safety_controller",
-       {{"soft_lower_limit", 1}, {"soft_upper_limit", 1}, {"k_position", 1}, {"k_velocity", 1}}},
-  };
-  return all;
-}
 
 // Of <gazebo>: what libsdformat's converter takes for a number.
 constexpr std::string_view gazebo_numbers[] = {"dampingFactor",
@@ -96,7 +52,7 @@ class Checker {
   }
   void check_top(const XmlNode& node);
   void check_form(const XmlNode& node, const std::string& path);
-  void check_attributes(const XmlNode& node, const Form& form, const std::string& path);
+  void check_attributes(const XmlNode& node, const UrdfForm& form, const std::string& path);
   void check_gazebo(const XmlNode& gazebo);
   void check_link(const XmlNode& link, const std::string& path);
   void check_joint(const XmlNode& joint, const std::string& path);
@@ -123,8 +79,6 @@ std::string end_of(const XmlNode& joint, const char* end) {
 }
 
 void Checker::check(const XmlNode& robot) {
-  if (robot.attribute("name") == nullptr || robot.attribute("name")->empty())
-    problem(robot, "robot", "missing: the attribute 'name'");
   for (const XmlNode& child : robot.children) check_top(child);
   if (links_.empty()) problem(robot, step(robot), "expected at least one <link>");
   for (const auto& [name, joint] : joints_) {
@@ -163,18 +117,10 @@ void Checker::check_form(const XmlNode& node, const std::string& path) {
   for (const XmlNode& child : node.children) {
     if (child.name == "visual") continue;
     const std::string child_path = path + "/" + step(child);
-    std::vector<std::string> known;
-    const Form* found = nullptr;
-    for (const Form& form : forms()) {
-      if (form.parent != node.name) continue;
-      known.emplace_back(form.name);
-      if (form.name == child.name) found = &form;
-    }
-    if (found == nullptr) {
-      if (child.name.find(':') == std::string::npos && child.name != "verbose")
-        problem(child, child_path, "unknown element" + suggestion(child.name, known));
-      continue;
-    }
+    const UrdfForm* found = nullptr;
+    for (const UrdfForm& form : urdf_forms())
+      if (form.parent == node.name && form.name == child.name) found = &form;
+    if (found == nullptr) continue;
     if (child.name != "collision" && node.child(child.name) != &child)
       problem(child, child_path, "<" + child.name + "> is given twice");
     check_attributes(child, *found, child_path);
@@ -182,35 +128,12 @@ void Checker::check_form(const XmlNode& node, const std::string& path) {
   }
 }
 
-std::optional<std::string> what_is_wrong(const std::string& value, const Attribute& attribute) {
-  const std::string name(attribute.name);
-  if (attribute.numbers == 0)
-    return value.empty() ? std::optional("expected a value for '" + name + "'") : std::nullopt;
-  const std::vector<std::string_view> parts = words(value);
-  const bool is_right = std::all_of(parts.begin(), parts.end(), [&](std::string_view part) {
-    const std::optional<double> number = parse_real(part);
-    return number && std::isfinite(*number) && (!attribute.positive || *number > 0.0);
-  });
-  if (parts.size() == attribute.numbers && is_right) return std::nullopt;
-  return "expected " +
-         (attribute.numbers == 1 ? std::string("a number") : std::to_string(attribute.numbers) + " numbers") +
-         (attribute.positive ? " > 0" : "") + " for '" + name + "', not '" + value + "'";
-}
-
-void Checker::check_attributes(const XmlNode& node, const Form& form, const std::string& path) {
-  std::vector<std::string> known;
-  for (const Attribute& attribute : form.attributes) known.emplace_back(attribute.name);
-  std::set<std::string> misspelt;
-  for (const auto& [name, value] : node.attributes)
-    if (std::find(known.begin(), known.end(), name) == known.end() && name.find(':') == std::string::npos) {
-      problem(node, path, "unknown attribute '" + name + "'" + suggestion(name, known));
-      if (const auto meant = nearest(name, known)) misspelt.insert(*meant);
-    }
-  for (const Attribute& attribute : form.attributes) {
+void Checker::check_attributes(const XmlNode& node, const UrdfForm& form, const std::string& path) {
+  for (const UrdfAttribute& attribute : form.attributes) {
     const std::string name(attribute.name);
     const std::string* const value = node.attribute(name);
     if (value == nullptr) {
-      if (attribute.required && !misspelt.contains(name)) problem(node, path, "missing: the attribute '" + name + "'");
+      if (attribute.required) problem(node, path, "missing: the attribute '" + name + "'");
       continue;
     }
     if (const std::optional<std::string> wrong = what_is_wrong(*value, attribute)) problem(node, path, *wrong);
@@ -222,7 +145,7 @@ void Checker::check_gazebo(const XmlNode& gazebo) {
     if (std::find(std::begin(gazebo_numbers), std::end(gazebo_numbers), child.name) == std::end(gazebo_numbers))
       continue;
     const std::string* const attribute = child.attribute("value");
-    const Attribute number = {child.name, 1};
+    const UrdfAttribute number = {child.name, 1};
     if (const auto wrong = what_is_wrong(attribute != nullptr ? *attribute : child.text, number))
       problem(child, "robot/gazebo/" + child.name, *wrong);
   }
@@ -251,8 +174,6 @@ void Checker::check_joint(const XmlNode& joint, const std::string& path) {
   } else if (std::find(std::begin(joint_types), std::end(joint_types), *type) == std::end(joint_types)) {
     problem(joint, path,
             "the joint type '" + *type + "' is not supported; expected revolute, continuous, prismatic or fixed");
-  } else if ((*type == "revolute" || *type == "prismatic") && joint.child("limit") == nullptr) {
-    problem(joint, path, "missing: <limit>, which a " + *type + " joint needs");
   }
   for (const char* const end : {"parent", "child"})
     if (joint.child(end) == nullptr) problem(joint, path, "missing: <" + std::string(end) + " link=\"NAME\"/>");

@@ -33,7 +33,7 @@ FileKind kind_of_file(const std::filesystem::path& file) {
 }
 
 FileKind kind_of_file(InputFiles& input, const std::filesystem::path& file) {
-  for (const char* const extension : {".sdf", ".world", ".urdf"})
+  for (const char* const extension : {".sdf", ".world", ".urdf", ".xacro"})
     if (file.extension() == extension) return FileKind::sdf;
   if (!is_yaml(file) || input.why_unreadable(file)) return FileKind::experiment;
   const std::string& text = input.read(file);

@@ -13,6 +13,10 @@ namespace cohort::parsing {
 /// `tree` is what SdfFile::nodes are of.
 std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file, const XmlNode& tree);
 
+/// Takes out of `errors` what SDFormat does not know, in a file that was not written for us. Of unknown attributes,
+/// which libsdformat drops, `warnings` has each once; unknown elements it keeps.
+void take_unknown_names(sdf::Errors& errors, const SdfFile& file, std::vector<Problem>& warnings);
+
 /// Of all values in `tree` that libsdformat cannot read, the first of which it stops at. Puts the default into the
 /// place of each, so that what else is wrong can be found.
 std::vector<Problem> replace_bad_values(XmlNode& tree, const SdfFile& file);

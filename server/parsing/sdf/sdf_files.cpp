@@ -11,11 +11,16 @@
 
 #include "server/core/text.hpp"
 #include "server/parsing/files/sdf_version.hpp"
+#include "server/parsing/files/xacro.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
+#include "server/parsing/sdf/newer_sdf.hpp"
 #include "server/parsing/sdf/sdf_errors.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
+#include "server/parsing/sdf/unknown_names.hpp"
 #include "server/parsing/sdf/urdf_file.hpp"
+#include "server/parsing/sdf/what_is_seen.hpp"
+#include "server/parsing/sdf/xml_edit.hpp"
 #include "server/parsing/sdf/yaml_sdf.hpp"
 
 namespace cohort::parsing {
@@ -110,7 +115,8 @@ void put_includes_back(XmlNode& node, const std::vector<XmlNode>& taken) {
 // What libsdformat has made of a text, with the lines of the nodes that it was written from.
 XmlNode tree_of(const sdf::ElementPtr& element, const XmlNode& parent, const std::vector<const XmlNode*>& nodes) {
   const auto line = static_cast<std::size_t>(element->LineNumber().value_or(0));
-  const XmlNode& source = line > 0 && line < nodes.size() ? *nodes[line] : parent;
+  const XmlNode* const unknown = parent.child(element->GetName());  // libsdformat copies it without its line
+  const XmlNode& source = line > 0 && line < nodes.size() ? *nodes[line] : unknown != nullptr ? *unknown : parent;
   XmlNode node{element->GetName(), source.line, source.file, {}, "", {}};
   for (const sdf::ParamPtr& attribute : element->GetAttributes())
     if (attribute->GetSet()) node.attributes.emplace_back(attribute->GetKey(), attribute->GetAsString());
@@ -123,6 +129,16 @@ XmlNode tree_of(const sdf::ElementPtr& element, const XmlNode& parent, const std
 const XmlNode* nth_child(const XmlNode& node, std::string_view name, std::size_t n) {
   for (const XmlNode& child : node.children)
     if (child.name == name && n-- == 0) return &child;
+  return nullptr;
+}
+
+// The first element that the program `xacro` expands; nullptr if there is none.
+const XmlNode* find_macro(const XmlNode& node, bool may_have_expressions) {
+  const auto has_expression = [](const auto& attribute) { return attribute.second.find("${") != std::string::npos; };
+  if (node.name.starts_with("xacro:") || (may_have_expressions && std::ranges::any_of(node.attributes, has_expression)))
+    return &node;
+  for (const XmlNode& child : node.children)
+    if (const XmlNode* const found = find_macro(child, may_have_expressions)) return found;
   return nullptr;
 }
 
@@ -176,6 +192,7 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
     if (auto source = read_source(*text, opened))
       if (auto tree = converted(*std::move(source), opened)) {
         opened.tree = *std::move(tree);
+        if (opened.is_foreign) make_readable(opened);
         opened.size = size_of(opened.tree);
         warn_of_repeated(opened.tree, ElementSchema::root(), "");
         name_terrains(opened.tree);
@@ -183,6 +200,22 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
       }
   opening_.pop_back();
   return opened;
+}
+
+void SdfFiles::make_readable(SdfFile& file) {
+  pass_over_unknown(file.tree, warnings_);
+  keep_what_is_shown(file.tree);
+  const auto is_include = [](const XmlNode& child) { return child.name == "include"; };
+  if (std::ranges::none_of(file.tree.children, is_include) || file.tree.child("world") != nullptr ||
+      file.tree.child("model") != nullptr)
+    return;
+  // Of a file with nothing but includes they are those of a world.
+  XmlNode world = element_at(file.tree, "world");
+  set_attribute(world, "name", file.shown.stem().string());
+  for (XmlNode& child : file.tree.children)
+    if (is_include(child)) world.children.push_back(std::move(child));
+  std::erase_if(file.tree.children, is_include);
+  file.tree.children.push_back(std::move(world));
 }
 
 const std::string* SdfFiles::read_text(const SdfFile& file) {
@@ -194,13 +227,13 @@ const std::string* SdfFiles::read_text(const SdfFile& file) {
   }
 }
 
-std::optional<XmlNode> SdfFiles::read_source(const std::string& text, const SdfFile& file) {
+std::optional<XmlNode> SdfFiles::read_source(const std::string& text, SdfFile& file) {
   std::optional<XmlNode> source = is_yaml(file.path) ? read_yaml(text, file) : read_xml(text, file);
   if (source) set_file(*source, &file);
   return source;
 }
 
-std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, const SdfFile& file) {
+std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, SdfFile& file) {
   const auto fail = [&](int line, std::string message) {
     problems_.push_back({file.shown, line, "", std::move(message)});
     return std::nullopt;
@@ -208,15 +241,30 @@ std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, const SdfFile
   XmlOutline outline = outline_xml(text);
   if (outline.error) return fail(outline.error->line, outline.error->message);
   const XmlNode& root = outline.root;
-  if (root.name == "robot") return sdf_of_urdf(root, file.shown, libsdformat_.config(), problems_, warnings_);
+  const XmlNode* const macro =
+      root.name == "robot" && input_.is_disk() ? find_macro(root, root.attribute("xmlns:xacro") != nullptr) : nullptr;
+  if (macro != nullptr) {
+    const int line = macro->line;
+    try {
+      input_.add(file.path, expand_xacro(file.path));
+    } catch (const std::runtime_error& error) {
+      return fail(line, error.what());
+    }
+    outline = outline_xml(input_.read(file.path));
+    if (outline.error) return fail(line, "what xacro makes of it is not XML: " + outline.error->message);
+  }
+  file.is_foreign = root.name == "robot" || root.attribute("xmlns:" + std::string(extension_prefix)) == nullptr;
+  if (root.name == "robot")
+    return sdf_of_urdf(std::move(outline.root), file.shown, libsdformat_.config(), problems_, warnings_);
 
   const std::string* const version = root.attribute("version");
   if (root.name != "sdf" || version == nullptr)
     return fail(root.line,
                 "expected <sdf version=\"" + sdf::SDF::Version() + "\"> as the root element, not <" + root.name + ">");
   // libsdformat would read a newer file as if it were of its own version.
-  if (version_of(*version) > version_of(sdf::SDF::Version()) || version_of(*version) == std::pair{0, 0})
-    return fail(root.line, "SDF version '" + *version + "' cannot be read, only versions up to " + sdf::SDF::Version());
+  if (version_of(*version) > newest_version || version_of(*version) == std::pair{0, 0})
+    return fail(root.line, "SDF version '" + *version + "' cannot be read, only versions up to 1.12");
+  if (version_of(*version) > version_of(sdf::SDF::Version())) make_older(outline.root, file.shown, warnings_);
   return std::move(outline.root);
 }
 
@@ -244,6 +292,7 @@ std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
   std::vector<Problem> found;
   try {
     is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
+    if (file.is_foreign) take_unknown_names(errors, file, warnings_);
     found = problems_of(errors, file, tree);
   } catch (const std::exception& error) {
     found.push_back({file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()});
@@ -343,6 +392,11 @@ Location SdfFiles::locate(const sdf::ElementPtr& element) const {
   for (sdf::ElementPtr step = element; step && step->GetName() != "sdf"; step = step->GetParent())
     location.element = step_of(step) + (location.element.empty() ? "" : "/") + location.element;
   return location;
+}
+
+bool SdfFiles::is_foreign(const sdf::ElementPtr& element) const {
+  const XmlNode* const node = node_of(element);
+  return node != nullptr && node->file->is_foreign;
 }
 
 const XmlNode* SdfFiles::node_of(const sdf::ElementPtr& element) const {

@@ -48,9 +48,10 @@ struct SdfFile {
   std::vector<const XmlNode*> nodes;  ///< of `tree`, by the line that libsdformat knows them by
   std::vector<Include> includes;      ///< directly in <world>, in document order
   sdf::Root root;
-  bool loaded = false;   ///< `root` has the elements of the file
-  bool sound = false;    ///< libsdformat has nothing to say against them, so that frames resolve
-  bool complete = true;  ///< every include was found
+  bool is_foreign = false;  ///< not written for Cohort: it does not declare our prefix, or is URDF
+  bool loaded = false;      ///< `root` has the elements of the file
+  bool sound = false;       ///< libsdformat has nothing to say against them, so that frames resolve
+  bool complete = true;     ///< every include was found
 
   /// nullptr if there is none.
   const XmlNode* node_at(int line) const {
@@ -105,15 +106,19 @@ class SdfFiles {
   std::filesystem::path find_file(const sdf::ElementPtr& element) const;
 
   Location locate(const sdf::ElementPtr& element) const;
+  /// Whether it stands in a file that was not written for Cohort.
+  bool is_foreign(const sdf::ElementPtr& element) const;
   InputFiles& input() const { return input_; }
 
  private:
   SdfFile& open(const std::filesystem::path& path, const std::filesystem::path& shown);
+  /// A file that was not written for Cohort, without what would only stop it.
+  void make_readable(SdfFile& file);
   /// Null, and reported, if it cannot be read.
   const std::string* read_text(const SdfFile& file);
   /// The <sdf> element of a file, in whatever format it is written; nothing after a problem.
-  std::optional<XmlNode> read_source(const std::string& text, const SdfFile& file);
-  std::optional<XmlNode> read_xml(const std::string& text, const SdfFile& file);
+  std::optional<XmlNode> read_source(const std::string& text, SdfFile& file);
+  std::optional<XmlNode> read_xml(const std::string& text, SdfFile& file);
   std::optional<XmlNode> read_yaml(const std::string& text, const SdfFile& file);
   /// An older version of SDF as the newest, with its includes as they are.
   std::optional<XmlNode> converted(XmlNode tree, SdfFile& file);

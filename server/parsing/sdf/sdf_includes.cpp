@@ -13,6 +13,7 @@
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
+#include "server/parsing/sdf/xml_edit.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -54,7 +55,8 @@ std::optional<std::pair<const XmlNode*, std::string>> flaw_of_include(const XmlN
     if (name != "merge" && name.find(':') == std::string::npos)
       return std::pair{&include, "unknown attribute '" + name + "'" + suggestion(name, {"merge"})};
   for (const XmlNode& part : include.children) {
-    if (part.name == "experimental:params") return std::pair{&part, "parameters of an include are not supported"};
+    if (part.name == "experimental:params" && !include.file->is_foreign)
+      return std::pair{&part, "parameters of an include are not supported"};
     if (part.name.find(':') != std::string::npos) continue;
     if (const std::optional<std::string> flaw = flaw_of_part(part, include)) return std::pair{&part, *flaw};
   }
@@ -69,15 +71,6 @@ bool is_merged(const XmlNode& include) {
 }
 
 bool is_true(const XmlNode* flag) { return flag != nullptr && (flag->text == "true" || flag->text == "1"); }
-
-void set_attribute(XmlNode& node, const std::string& name, const std::string& value) {
-  for (auto& attribute : node.attributes)
-    if (attribute.first == name) {
-      attribute.second = value;
-      return;
-    }
-  node.attributes.emplace_back(name, value);
-}
 
 void set_child(XmlNode& node, const XmlNode& child) {
   for (XmlNode& each : node.children)
@@ -171,12 +164,6 @@ std::set<std::string> names_in(const XmlNode& world) {
   for (const XmlNode& child : world.children)
     if (child.name == "model" || child.name == "frame") names.insert(name_of(child));
   return names;
-}
-
-XmlNode* child_of(XmlNode& parent, std::string_view name) {
-  const auto found = std::find_if(parent.children.begin(), parent.children.end(),
-                                  [&](const XmlNode& each) { return each.name == name; });
-  return found == parent.children.end() ? nullptr : &*found;
 }
 
 // Whatever refers to the merged model's own frame refers to `proxy` from now on.
@@ -328,6 +315,9 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
     return std::nullopt;
   };
   if (const auto flaw = flaw_of_include(include)) return problem(*flaw->first, flaw->second);
+  if (const XmlNode* const parameters = include.child("experimental:params"))
+    warnings_.push_back({file.shown, parameters->line, path + "/experimental:params",
+                         "parameters of an include are not supported and are ignored"});
   const XmlNode* const uri = include.child("uri");
   if (uri == nullptr) return problem(include, "expected <uri>model://NAME</uri>");
   FoundModel found;

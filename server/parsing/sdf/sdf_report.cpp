@@ -28,4 +28,13 @@ void SdfReport::warning_once(const sdf::ElementPtr& element, const std::string& 
   if (!is_said) warning(element, message);
 }
 
+bool SdfReport::flaw(const sdf::ElementPtr& element, const std::string& message, const std::string& remedy) const {
+  if (!files_.is_foreign(element)) {
+    problem(element, message);
+    return false;
+  }
+  warning(element, message + "; " + remedy);
+  return true;
+}
+
 }  // namespace cohort::parsing

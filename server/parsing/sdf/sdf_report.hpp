@@ -21,6 +21,9 @@ class SdfReport {
   void warning(const sdf::ElementPtr& element, std::string message) const;
   /// Only the first time that it is said of a file.
   void warning_once(const sdf::ElementPtr& element, const std::string& message) const;
+  /// What is wrong in a file of ours, and only told of one that was not written for Cohort, where `remedy` says what is
+  /// done instead. True if it is to be remedied.
+  bool flaw(const sdf::ElementPtr& element, const std::string& message, const std::string& remedy) const;
   /// Where it is, without a message.
   Problem place_of(const sdf::ElementPtr& element) const;
   void problem(Problem problem) const { problems_.push_back(std::move(problem)); }

@@ -122,6 +122,14 @@ bool ElementSchema::has_attribute(const std::string& name) const {
   return std::find(known.begin(), known.end(), name) != known.end();
 }
 
+bool ElementSchema::knows_child(const std::string& name) const {
+  return !element_ || element_->GetCopyChildren() || element_->HasElementDescription(name);
+}
+
+bool ElementSchema::knows_attribute(const std::string& name) const {
+  return !element_ || element_->GetAttribute(name) != nullptr;
+}
+
 bool ElementSchema::is_single() const {
   // What SDF says of these where they are included is lost in libsdformat: any number.
   if (name_ == "sensor" || name_ == "projector") return false;

@@ -29,6 +29,9 @@ class ElementSchema {
   bool takes_anything() const;
   bool has_child(const std::string& name) const;
   bool has_attribute(const std::string& name) const;
+  /// The same of what SDF itself says, in less time; of anything else it is true.
+  bool knows_child(const std::string& name) const;
+  bool knows_attribute(const std::string& name) const;
   /// SDF has it at most once in its parent.
   bool is_single() const;
   bool has_value() const;

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/parsing/sdf/mend_urdf.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
 
@@ -112,7 +113,8 @@ bool is_kept(const XmlNode& robot, const std::string& link, const std::set<std::
 
 XmlNode* find_joint(XmlNode& node, const std::string& name) {
   for (XmlNode& child : node.children) {
-    if (child.name == "joint" && *child.attribute("name") == name) return &child;
+    const std::string* const own = child.name == "joint" ? child.attribute("name") : nullptr;  // of a plugin: none
+    if (own != nullptr && *own == name) return &child;
     if (XmlNode* const found = find_joint(child, name)) return found;
   }
   return nullptr;
@@ -133,20 +135,23 @@ void collect_names(const XmlNode& node, std::set<std::string>& names) {
 
 }  // namespace
 
-std::optional<XmlNode> sdf_of_urdf(const XmlNode& robot, const std::filesystem::path& file,
-                                   const sdf::ParserConfig& config, std::vector<Problem>& problems,
-                                   std::vector<Problem>& warnings) {
+std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& file, const sdf::ParserConfig& config,
+                                   std::vector<Problem>& problems, std::vector<Problem>& warnings) {
   const std::size_t before = problems.size();
+  const UrdfRest rest = mend_urdf(robot, file, warnings);
   check_urdf(robot, file, problems, warnings);
   if (problems.size() > before) return std::nullopt;
 
   const ConsoleCapture console;
+  sdf::ParserConfig tolerant = config;  // what SDF does not know is told of the SDF that comes of it
+  tolerant.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
+  tolerant.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
   sdf::Errors errors;
   const sdf::SDFPtr sdf = empty_sdf();
   bool is_read = false;
   std::string why;
   try {
-    is_read = sdf::readString(xml_text_of(robot).text, config, sdf, errors);
+    is_read = sdf::readString(xml_text_of(robot).text, tolerant, sdf, errors);
   } catch (const std::exception& error) {  // of what <gazebo> holds, for example
     why = error.what();
   }
@@ -163,6 +168,8 @@ std::optional<XmlNode> sdf_of_urdf(const XmlNode& robot, const std::filesystem::
     if (const XmlNode* const mimic = joint.name == "joint" ? joint.child("mimic") : nullptr)
       if (XmlNode* const converted = find_joint(tree, *joint.attribute("name")))
         converted->children.push_back(extension_of(*mimic));
+  for (XmlNode& model : tree.children)
+    if (model.name == "model") add_rest(rest, model);
   std::set<std::string> names;
   collect_names(tree, names);
   for (const XmlNode& link : robot.children)

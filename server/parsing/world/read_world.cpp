@@ -74,8 +74,10 @@ class WorldReader {
   /// The place in World::models of the model in a file: one for all that include it.
   std::size_t shared_model(const SdfFile& file, bool is_static);
   void add_later(const LaterObject& object);
-  /// False if the name is taken.
-  bool add_instance(std::string name, std::size_t model, const Pose& X_WM);
+  /// Adds the bodies of a model, and returns the place of the first of them in World::models.
+  std::size_t add_models(std::vector<Model> bodies);
+  /// With all bodies of the model. False if a name is taken.
+  bool add_instance(const std::string& name, std::size_t model, const Pose& X_WM);
 
   std::uint64_t seed_;
   World world_;
@@ -84,6 +86,7 @@ class WorldReader {
   ShapeFiles shape_files_;
   SdfReport report_;
   std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
+  std::map<std::size_t, std::size_t> bodies_;  // of a model that has several: how many, by the place of the first
   std::set<std::string> names_;
   Occupancy occupancy_;  // with the first `in_site_` instances
   std::size_t in_site_ = 0;
@@ -209,8 +212,8 @@ void WorldReader::read_lights(const sdf::World& sdf_world, const SdfFile& file) 
 
 void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
   const ModelReading how = reading(sdf_model.Static(), file);
-  world_.models.push_back(read_model(sdf_model, how));
-  add_instance(sdf_model.Name(), world_.models.size() - 1, resolved_pose(sdf_model, how));
+  const std::size_t model = add_models(read_model(sdf_model, how));
+  add_instance(sdf_model.Name(), model, resolved_pose(sdf_model, how));
 }
 
 void WorldReader::add_included_model(const Include& include, const Pose& X_WM) {
@@ -221,9 +224,16 @@ std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
   const auto [entry, is_new] = shared_.emplace(std::pair{&file, is_static}, world_.models.size());
   if (is_new) {
     check_numbers(file.root.Element(), report_);
-    world_.models.push_back(read_model(*file.root.Model(), reading(is_static, file)));
+    add_models(read_model(*file.root.Model(), reading(is_static, file)));
   }
   return entry->second;
+}
+
+std::size_t WorldReader::add_models(std::vector<Model> bodies) {
+  const std::size_t first = world_.models.size();
+  if (bodies.size() > 1) bodies_.emplace(first, bodies.size());
+  for (Model& body : bodies) world_.models.push_back(std::move(body));
+  return first;
 }
 
 void WorldReader::read_extensions(const sdf::World& sdf_world) {
@@ -319,8 +329,11 @@ void WorldReader::add_later(const LaterObject& object) {
   };
   const SdfFile* const file = find_model(object.uri, problem);
   if (file == nullptr) return;
+  const std::size_t before = world_.instances.size();
   if (!add_instance(object.name, shared_model(*file, file->root.Model()->Static()), object.X_WM))
     return problem("another object has the name '" + object.name + "'");
+  if (world_.instances.size() > before + 1)
+    return problem("the model has several roots, which are bodies of their own; an event can bring one");
   world_.instances.back().is_present = false;
 }
 
@@ -355,9 +368,14 @@ void WorldReader::expand(const Population& population) {
   }
 }
 
-bool WorldReader::add_instance(std::string name, std::size_t model, const Pose& X_WM) {
-  if (!names_.insert(name).second) return false;
-  world_.instances.push_back({std::move(name), model, X_WM});
+bool WorldReader::add_instance(const std::string& name, std::size_t model, const Pose& X_WM) {
+  const auto several = bodies_.find(model);
+  const std::size_t count = several == bodies_.end() ? 1 : several->second;
+  for (std::size_t body = model; body < model + count; ++body) {
+    const std::string own = name + world_.models[body].name.substr(world_.models[model].name.size());
+    if (!names_.insert(own).second) return false;
+    world_.instances.push_back({own, body, X_WM});
+  }
   return true;
 }
 
@@ -389,6 +407,8 @@ std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptF
   constexpr std::uint64_t no_seed = 0;  // nothing is drawn
   World alone = WorldReader(input, file, no_seed, {kept->last_model_folders.begin(), kept->last_model_folders.end()})
                     .read_model_file(world.materials);
+  if (alone.models.size() > 1)
+    throw InputError({{file, 0, "", "the model has several roots, which are bodies of their own; expected one"}});
   world.materials = std::move(alone.materials);
   world.warnings.insert(world.warnings.end(), alone.warnings.begin(), alone.warnings.end());
   world.models.push_back(std::move(alone.models.front()));

@@ -430,9 +430,6 @@ INSTANTIATE_TEST_SUITE_P(
              "expected a step > 0"},
         Flaw{"<physics type=\"ode\">\n<max_step_size>1.5e-9</max_step_size></physics>", 3,
              "world/physics/max_step_size", "whole number of nanoseconds"},
-        Flaw{"<model name=\"m\">\n" + links("ab") + "</model>", 2, "world/model[m]", "the links 'a', 'b'"},
-        Flaw{"<model name=\"m\">" + links("abc") + joint("i", "a", "c") + "\n" + joint("j", "b", "c") + "</model>", 2,
-             "world/model[m]", "the links 'a', 'b'"},
         Flaw{"<model name=\"m\">" + links("ab") + "\n" + joint("j", "a", "b", "<xyz>0 0 1</xyz>", "revolut") +
                  "</model>",
              3, "world/model[m]/joint[j]", "'revolut' is not supported"},

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "server/parsing/files/xml_outline.hpp"
+
+namespace cohort::parsing {
+
+/// What a URDF says and its converter to SDF has no word for. It is put into the SDF afterwards.
+struct UrdfRest {
+  std::map<std::string, XmlNode> surfaces;                 ///< as SDF has them, of all collisions of a link
+  std::set<std::pair<std::string, std::size_t>> capsules;  ///< a link, and which of its collisions is one
+  std::set<std::string> let_go;                            ///< joints that hold nothing: `floating`
+  std::string held;                                        ///< the link that the world holds; empty if there is none
+};
+
+/// Puts the rest into the model that was made of the URDF.
+void add_rest(const UrdfRest& rest, XmlNode& model);
+
+}  // namespace cohort::parsing

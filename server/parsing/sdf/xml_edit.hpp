@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/parsing/files/xml_outline.hpp"
+
+/// Changing a tree of XML that was read.
+namespace cohort::parsing {
+
+/// nullptr if there is none.
+inline XmlNode* child_of(XmlNode& parent, std::string_view name) { return const_cast<XmlNode*>(parent.child(name)); }
+
+/// Empty if there is none.
+inline std::string value_of(const XmlNode& node, std::string_view attribute) {
+  const std::string* const value = node.attribute(attribute);
+  return value != nullptr ? *value : "";
+}
+
+inline void set_attribute(XmlNode& node, std::string_view name, const std::string& value) {
+  for (auto& attribute : node.attributes)
+    if (attribute.first == name) {
+      attribute.second = value;
+      return;
+    }
+  node.attributes.emplace_back(name, value);
+}
+
+/// An element that stands where another one does.
+inline XmlNode element_at(const XmlNode& where, std::string name, std::string text = "") {
+  return {std::move(name), where.line, where.file, {}, std::move(text), {}};
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,247 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "server/parsing/world/read_world.hpp"
+#include "tests/support/written_worlds.hpp"
+
+// Files that were not written for Cohort: what moves is honoured or named, the rest never stops them.
+namespace cohort::description {
+namespace {
+
+class ForeignFiles : public Description {
+ protected:
+  /// The content of <world> starts on line 2; nothing in it is ours.
+  World read_foreign(const std::string& content, const std::string& version = "1.9") const {
+    return parsing::read_world(
+        write("world.sdf", "<sdf version=\"" + version + "\"><world name=\"w\">\n" + content + "\n</world></sdf>\n"),
+        1);
+  }
+  World read_urdf(const std::string& content) const {
+    return parsing::read_world_or_model(write("r.urdf", "<robot name=\"r\">\n" + content + "\n</robot>\n"), 1);
+  }
+};
+
+std::string weighing(const std::string& name, const std::string& more = "") {
+  return "<link name=\"" + name +
+         "\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>"
+         "</inertial>" +
+         more + "</link>";
+}
+std::string joined(const std::string& name, const std::string& type, const std::string& parent,
+                   const std::string& child, const std::string& more = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+         "\"/><origin xyz=\"0 0 1\"/><axis xyz=\"0 1 0\"/>" + more + "</joint>";
+}
+
+void expect_warning(const World& world, const std::string& part) {
+  EXPECT_NE(texts_of(world.warnings).find(part), std::string::npos) << "expected " << part << "\ngot\n"
+                                                                    << texts_of(world.warnings);
+}
+
+TEST_F(ForeignFiles, WhatSdfDoesNotKnowIsToldOnceForEachNameWithItsFirstPlace) {
+  const World world =
+      read_foreign("<model name=\"m\" odd=\"1\"><static>1</static>\n" +
+                   collision("<sphere><radius>1</radius></sphere>\n<new_word>1</new_word>") + "<new_word/></model>");
+  EXPECT_EQ(world.warnings.size(), 2u) << texts_of(world.warnings);
+  expect_warning(world, "world.sdf:2: world/model[m]: unknown attribute 'odd', which is ignored");
+  expect_warning(world,
+                 "world.sdf:4: world/model[m]/link[l]/collision[c]/geometry/new_word: unknown element <new_word>");
+  expect_warning(world, "2 times");
+}
+
+TEST_F(ForeignFiles, WhatAnOldVersionDoesNotKnowIsToldWithItsLineToo) {
+  const World world = read_foreign(
+      "<model name=\"m\"><static>1</static>\n<link name=\"l\" visualise=\"1\">\n<velocity_dekay/></link></model>",
+      "1.5");
+  expect_warning(world, "world.sdf:3: world/model[m]/link[l]: unknown attribute 'visualise'");
+  expect_warning(world, "world.sdf:4: world/model[m]/link[l]/velocity_dekay: unknown element <velocity_dekay>");
+  expect_warning(world, "did you mean 'velocity_decay'?");
+}
+
+TEST_F(ForeignFiles, AFileThatDeclaresOurPrefixIsHeldToTheLetter) {
+  expect_only_flaw({"<model name=\"m\"><static>1</static><link name=\"l\"/><new_word/></model>", 2,
+                    "world/model[m]/new_word", "unknown element"},
+                   write_world("<model name=\"m\"><static>1</static><link name=\"l\"/><new_word/></model>"));
+}
+
+TEST_F(ForeignFiles, InertiaThatNoBodyHasBecomesTheNearestThatOneCanHave) {
+  const std::string heavy =
+      "<model name=\"m\"><link name=\"l\"><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>5</izz>"
+      "</inertia></inertial></link></model>";
+  const World world = read_foreign(heavy);
+  EXPECT_LT((world.models[0].links[0].inertial.inertia.diagonal() - Eigen::Vector3d(2, 2, 4)).norm(), 1e-12)
+      << world.models[0].links[0].inertial.inertia;
+  expect_warning(world, "the nearest that a body can have");
+  EXPECT_EQ(problems_of([&] { read(heavy); }).size(), 1u);
+}
+
+TEST_F(ForeignFiles, EachFreeRootOfAModelIsABodyOfItsOwn) {
+  const World world = read("<model name=\"m\"><pose>1 0 0 0 0 0</pose>" + links("abc") + joint("j", "a", "c") +
+                           "<model name=\"n\"><pose>0 0 2 0 0 0</pose>" + links("de") + joint("k", "d", "e") +
+                           "<cohort:joint_encoder name=\"i\"><cohort:joint>k</cohort:joint></cohort:joint_encoder>"
+                           "</model></model>");
+  ASSERT_EQ(world.instances.size(), 3u);
+  EXPECT_EQ(world.instances[0].name, "m");
+  EXPECT_EQ(world.instances[1].name, "m/b");
+  EXPECT_EQ(world.instances[2].name, "m/n.d");
+  EXPECT_EQ(world.models[0].links.size(), 2u);
+  EXPECT_EQ(world.models[0].joints.size(), 1u);
+  EXPECT_TRUE(world.models[0].devices.empty());
+  EXPECT_EQ(world.models[2].links[0].X_ML.position, Eigen::Vector3d(0, 0, 2));
+  EXPECT_EQ(world.models[2].devices.size(), 1u);
+  EXPECT_EQ(world.robots, (std::vector<std::size_t>{2}));
+}
+
+TEST_F(ForeignFiles, AJointFromARootToWhatHangsOnAnotherOneIsTurnedRound) {
+  const World world =
+      read("<model name=\"m\">" + links("abc") + joint("j", "a", "c") + joint("k", "b", "c") + "</model>");
+  ASSERT_EQ(world.instances.size(), 1u);
+  const Model& model = world.models[0];
+  ASSERT_EQ(model.joints.size(), 2u);
+  EXPECT_EQ(model.links[model.joints[1].child].name, "b");
+  EXPECT_EQ(model.links[model.joints[1].parent].name, "c");
+  EXPECT_EQ(model.joints[1].axis.direction, Eigen::Vector3d(0, 0, -1));
+}
+
+TEST_F(ForeignFiles, BulletsContactIsTheSurfaceOfALink) {
+  const World world = read_urdf(weighing(
+      "a",
+      "<contact><lateral_friction value=\"0.3\"/><rolling_friction value=\"0.01\"/><spinning_friction value=\"0.02\"/>"
+      "<restitution value=\"0.5\"/><stiffness value=\"30000\"/><damping value=\"1000\"/><inertia_scaling value=\"3\"/>"
+      "</contact><collision><geometry><sphere radius=\"1\"/></geometry></collision>"));
+  const Surface& surface = world.models[0].links[0].collisions[0].surface;
+  EXPECT_EQ(surface.friction, 0.3);
+  EXPECT_EQ(surface.rolling_resistance, 0.01);
+  EXPECT_NEAR(surface.spinning_resistance, 0.02, 1e-12);
+  EXPECT_EQ(surface.restitution, 0.5);
+  EXPECT_EQ(surface.stiffness, 30000.0);
+  EXPECT_EQ(surface.damping, 1000.0);
+  expect_warning(world, "inertia_scaling");
+}
+
+TEST_F(ForeignFiles, ACapsuleOfAUrdfIsOne) {
+  const World world =
+      read_urdf(weighing("a",
+                         "<collision><geometry><sphere radius=\"1\"/></geometry></collision>"
+                         "<collision><geometry><capsule radius=\"0.1\" length=\"2\"/></geometry></collision>"));
+  const auto& collisions = world.models[0].links[0].collisions;
+  ASSERT_EQ(collisions.size(), 2u);
+  const auto* const capsule = std::get_if<Capsule>(&collisions[1].shape);
+  ASSERT_NE(capsule, nullptr);
+  EXPECT_EQ(capsule->length, 2.0);
+}
+
+TEST_F(ForeignFiles, ARootOfAUrdfWithoutMassIsHeldByTheWorld) {
+  const World world = read_urdf("<link name=\"base\"/>" + weighing("a") + joined("j", "continuous", "base", "a"));
+  const Model& model = world.models[0];
+  ASSERT_EQ(model.links.size(), 2u);
+  EXPECT_STREQ(model.why_fixed(), "is tied to the world by a joint");
+  expect_warning(world, "robot/link[base]: has no mass and is the root: the world holds it");
+}
+
+TEST_F(ForeignFiles, ARootWithoutMassThatIsFixedToALinkIsPartOfIt) {
+  const World world = read_urdf("<link name=\"footprint\"/>" + weighing("a") + joined("j", "fixed", "footprint", "a"));
+  EXPECT_EQ(world.models[0].links.size(), 1u);
+  EXPECT_EQ(world.models[0].why_fixed(), nullptr);
+  EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+}
+
+TEST_F(ForeignFiles, JointsOfAUrdfWithoutLimitsHaveNone) {
+  const World world = read_urdf(weighing("a") + weighing("b") + weighing("c") + joined("j", "revolute", "a", "b") +
+                                joined("k", "prismatic", "b", "c") + "\n");
+  for (const Joint& joint : world.models[0].joints) EXPECT_FALSE(std::isfinite(joint.axis.upper)) << joint.name;
+  EXPECT_EQ(world.models[0].joints[1].type, JointType::prismatic);
+}
+
+TEST_F(ForeignFiles, AFloatingJointLetsGo) {
+  const World world = read_urdf(weighing("a") + weighing("b") + joined("j", "floating", "a", "b"));
+  ASSERT_EQ(world.instances.size(), 2u);
+  EXPECT_LT((world.models[1].links[0].X_ML.position - Eigen::Vector3d(0, 0, 1)).norm(), 1e-12);
+  const World alone = read_urdf("<link name=\"world\"/>" + weighing("b") + joined("j", "floating", "world", "b"));
+  ASSERT_EQ(alone.instances.size(), 1u);
+  EXPECT_EQ(alone.models[0].why_fixed(), nullptr);
+}
+
+TEST_F(ForeignFiles, WhatIsOnlySeenNeverStopsAUrdf) {
+  EXPECT_NO_THROW(
+      read_urdf("<material name=\"m\"><color rgba=\"1 0 0 1\"/></material><material name=\"m\"><color rgba=\"1 0 "
+                "0\"/></material>" +
+                weighing("a",
+                         "<visual/><visual><geometry><mesh filename=\"none.obj\" scale=\"1 1 1 1\"/></geometry>"
+                         "<material name=\"nowhere\"/></visual>")));
+}
+
+TEST_F(ForeignFiles, APackageIsAFolderWithAPackageXmlAboveTheFile) {
+  write("arms/my_arm/package.xml", "<package><name>arm_description</name></package>");
+  write("arms/my_arm/meshes/tip.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  for (const char* const name : {"arm_description", "my_arm"}) {
+    const auto file = write("arms/my_arm/urdf/arm.urdf",
+                            "<robot name=\"r\">" +
+                                weighing("a", "<collision><geometry><mesh filename=\"package://" + std::string(name) +
+                                                  "/meshes/tip.obj\"/></geometry></collision>") +
+                                "</robot>");
+    EXPECT_EQ(parsing::read_world_or_model(file, 1).models[0].links[0].collisions.size(), 1u);
+  }
+}
+
+TEST_F(ForeignFiles, AXacroFileIsWhatXacroMakesOfIt) {
+  const auto program =
+      write("env/bin/xacro", "#!/bin/sh\necho '<robot name=\"made\">'\ngrep '<link' \"$1\"\necho '</robot>'\n");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  setenv("VIRTUAL_ENV", (folder_ / "env").c_str(), 1);
+  const auto file = write("r.urdf.xacro", "<robot name=\"r\">\n<xacro:property name=\"m\" value=\"1\"/>\n" +
+                                              weighing("a") + "\n</robot>\n");
+  EXPECT_EQ(parsing::read_world_or_model(file, 1).models[0].name, "made");
+  test::write_file(program, "#!/bin/sh\nexit 2\n");
+  const auto problems = problems_of([&] { parsing::read_world_or_model(file, 1); });
+  unsetenv("VIRTUAL_ENV");
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].message.find("says why"), std::string::npos) << problems[0].text();
+}
+
+TEST_F(ForeignFiles, ABareNameIsAModel) {
+  write_model("x500", links("l"));
+  EXPECT_EQ(read_foreign("<include><uri>x500</uri></include>").instances[0].name, "x500");
+}
+
+TEST_F(ForeignFiles, AnAddressOfFuelIsSaidWithTheCommandThatFetchesIt) {
+  const std::string uri = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Depot";
+  const auto problems = problems_of([&] { read_foreign("<include><uri>" + uri + "</uri></include>"); });
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].message.find("gz fuel download -u"), std::string::npos) << problems[0].text();
+}
+
+TEST_F(ForeignFiles, InertiaByDensityAndMimicJointsOfNewerVersionsAreRead) {
+  const World world = read_foreign(
+      "<model name=\"m\"><link name=\"l\"><inertial auto=\"true\"><density>500</density></inertial>" +
+          std::string("<collision name=\"c\"><geometry><box><size>1 1 1</size></box></geometry></collision>") +
+          "<collision name=\"d\"><density>100</density><geometry><box><size>1 1 1</size></box></geometry></collision>"
+          "</link>" +
+          links("ab") + joint("i", "l", "a") +
+          joint("j", "l", "b",
+                "<xyz>0 0 1</xyz><mimic joint=\"i\"><multiplier>2</multiplier><offset>1</offset><reference>3"
+                "</reference></mimic>") +
+          "</model>",
+      "1.11");
+  const Model& model = world.models[0];
+  EXPECT_NEAR(model.links[0].inertial.mass, 600.0, 1e-9);
+  ASSERT_EQ(model.couplings.size(), 1u);
+  EXPECT_EQ(model.couplings[0].multiplier, 2.0);
+  EXPECT_EQ(model.couplings[0].offset, -5.0);
+}
+
+TEST_F(ForeignFiles, AFixedJointInAWorldHoldsTwoModels) {
+  const World world = read_foreign(
+      "<model name=\"m\">" + links("a") + "</model><model name=\"n\"><pose>0 0 3 0 0 0</pose>" + links("b") +
+          "</model><joint name=\"j\" type=\"fixed\"><parent>m::a</parent><child>n::b</child></joint>",
+      "1.10");
+  ASSERT_EQ(world.breakable_joints.size(), 1u);
+  EXPECT_EQ(world.breakable_joints[0].name, "j");
+}
+
+}  // namespace
+}  // namespace cohort::description

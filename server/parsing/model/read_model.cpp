@@ -223,10 +223,6 @@ void ModelFlattener::hold_links(const std::string& scope) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 void warn_of_what_static_has(const ModelFlattener& parts, const SdfReport& report) {
   for (const DeviceScope& scope : parts.scopes()) {
     const bool has_sensor =

@@ -234,8 +234,8 @@ TEST_P(Actions, ObjectsAreSpawnedFromTheTextOfAModelInAnyFormat) {
 TEST_P(Actions, ATextThatIsNoModelIsRefusedWithLineAndReason) {
   Simulation simulation(experiment_, 1);
   const auto reason = [&](const std::string& text) { return why_not(simulation, SpawnObject{"x", text, at(0, 0, 1)}); };
-  EXPECT_NE(reason("<sdf version='1.9'>\n<model name='m'>\n<lnk name='l'/></model></sdf>").find("line 3: "),
-            std::string::npos);
+  const std::string ours = "<sdf version='1.9' xmlns:cohort='https://cohort-sim.org/sdf/1'>";
+  EXPECT_NE(reason(ours + "\n<model name='m'>\n<lnk name='l'/></model></sdf>").find("line 3: "), std::string::npos);
   EXPECT_NE(reason("<sdf version='1.9'><world name='w'/></sdf>").find("expected one <model>"), std::string::npos);
   EXPECT_NE(reason("<a").find("the text of the model"), std::string::npos);
   EXPECT_NE(reason("a: [").find("the text of the model"), std::string::npos);

@@ -23,9 +23,11 @@ void command(cohort::Simulation& simulation) {
   for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
     values.clear();
     const double phase = 0.013 * static_cast<double>(simulation.tick()) + robot;
-    for (const cohort::Channel& channel : simulation.kinds()[simulation.kind_of(robot)].command)
+    for (const cohort::Channel& channel : simulation.kinds()[simulation.kind_of(robot)].command) {
+      const double middle = 0.5 * (channel.lower + channel.upper), reach = 0.25 * (channel.upper - channel.lower);
       for (std::uint32_t i = 0; i < channel.size; ++i)
-        values.push_back(0.5 * channel.upper * std::sin(phase + static_cast<double>(values.size())));
+        values.push_back(middle + reach * std::sin(phase + static_cast<double>(values.size())));
+    }
     simulation.set_command(robot, values);
   }
 }

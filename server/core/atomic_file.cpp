@@ -29,6 +29,18 @@ bool is_of_this_process(const std::filesystem::path& file) {
   return folder == "/dev" || folder == "/dev/fd" || folder.starts_with("/proc/");
 }
 
+bool may_be_replaced(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  return access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
+// A file that a container was given, say.
+bool is_mounted(const std::filesystem::path& file) {
+  struct statx facts {};
+  const bool is_known = statx(AT_FDCWD, file.c_str(), AT_SYMLINK_NOFOLLOW, 0, &facts) == 0;
+  return is_known && (facts.stx_attributes & facts.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT) != 0;
+}
+
 // 0, or why it failed.
 int sync_folder_of(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
@@ -51,12 +63,14 @@ AtomicFile::AtomicFile(std::string_view what, std::filesystem::path target)
   struct stat status {};
   const bool is_there = stat(target_.c_str(), &status) == 0;
   if (is_there && S_ISDIR(status.st_mode)) fail(EISDIR);
-  if (is_there && (!S_ISREG(status.st_mode) || is_of_this_process(target_))) {
+  const bool is_file = is_there && S_ISREG(status.st_mode) && !is_of_this_process(target_);
+  if (is_file && access(target_.c_str(), W_OK) != 0) fail(errno);
+  // In place: what is no file, and one in a folder of somebody else's, or mounted by itself.
+  if (is_there && (!is_file || !may_be_replaced(target_) || is_mounted(target_))) {
     descriptor_ = open(target_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (descriptor_ < 0) fail(errno);
     return;
   }
-  if (is_there && access(target_.c_str(), W_OK) != 0) fail(errno);
   std::string name = (target_.parent_path() / ("." + target_.filename().string() + ".XXXXXX")).string();
   descriptor_ = mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) fail(errno);

@@ -8,8 +8,8 @@ namespace cohort {
 
 /// A file that takes the place of what has its name as a whole or not at all, whatever happens meanwhile: it is written
 /// beside it and put there once all of it is on the disk. A symbolic link of that name is replaced, not followed. What
-/// is no file (a pipe, a terminal) is written to as it is. What fails throws std::runtime_error: what is written, to
-/// which file, and why not.
+/// is no file (a pipe, a terminal), or stands where nothing can take its place, is written to as it is. What fails
+/// throws std::runtime_error: what is written, to which file, and why not.
 class AtomicFile {
  public:
   /// `what`: the contents, for messages, such as `the summary`.

@@ -49,6 +49,7 @@ class FrameQueue {
     std::uint64_t phase;
     bool operator==(const Schedule&) const = default;
   };
+
   void drop_older();
   bool in_order(const Frame& frame) const;
   std::uint64_t next_due(std::uint64_t tick) const;

@@ -29,9 +29,8 @@ bool is_of_this_process(const std::filesystem::path& file) {
   return folder == "/dev" || folder == "/dev/fd" || folder.starts_with("/proc/");
 }
 
-bool may_be_replaced(const std::filesystem::path& file) {
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  return access(folder.c_str(), W_OK | X_OK) == 0;
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
 }
 
 // A file that a container was given, say.
@@ -43,8 +42,7 @@ bool is_mounted(const std::filesystem::path& file) {
 
 // 0, or why it failed.
 int sync_folder_of(const std::filesystem::path& file) {
-  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int descriptor = open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return 0;  // one that may be written to and not read
   const int error = fsync(descriptor) == 0 ? 0 : errno;
   close(descriptor);
@@ -66,7 +64,7 @@ AtomicFile::AtomicFile(std::string_view what, std::filesystem::path target)
   const bool is_file = is_there && S_ISREG(status.st_mode) && !is_of_this_process(target_);
   if (is_file && access(target_.c_str(), W_OK) != 0) fail(errno);
   // In place: what is no file, and one in a folder of somebody else's, or mounted by itself.
-  if (is_there && (!is_file || !may_be_replaced(target_) || is_mounted(target_))) {
+  if (is_there && (!is_file || access(folder_of(target_).c_str(), W_OK | X_OK) != 0 || is_mounted(target_))) {
     descriptor_ = open(target_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
     if (descriptor_ < 0) fail(errno);
     return;

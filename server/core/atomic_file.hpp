@@ -30,7 +30,7 @@ class AtomicFile {
 
   std::string what_;
   std::filesystem::path target_;
-  std::filesystem::path path_;  // `target_` if that is no file
+  std::filesystem::path path_;  // `target_` if that is written in place
   int descriptor_ = -1;
 };
 

@@ -94,8 +94,7 @@ std::optional<fs::path> ModelSearch::look_for(const std::string& name, const fs:
   return find_above(name, folder);
 }
 
-fs::path ModelSearch::find_folder(const std::string& name, const fs::path& folder) const {
-  if (auto found = look_for(name, folder)) return *found;
+void ModelSearch::fail_to_find(const std::string& name) const {
   std::string searched;
   for (const auto* const folders : {&folders_, &others_})
     for (const fs::path& each : *folders)
@@ -178,9 +177,12 @@ fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder) co
   if (uri.starts_with(model_scheme) || uri.starts_with(package_scheme)) {
     const std::string inside = uri.substr(uri.find("://") + 3);
     const std::size_t slash = std::min(inside.find('/'), inside.size());
-    const auto beside = look_for(inside.substr(0, slash), folder) ? std::nullopt : find_file_above(inside, folder);
-    path = beside ? *beside
-                  : find_folder(inside.substr(0, slash), folder) / fs::path(inside.substr(slash)).relative_path();
+    if (const auto found = look_for(inside.substr(0, slash), folder))
+      path = *found / fs::path(inside.substr(slash)).relative_path();
+    else if (const auto beside = find_file_above(inside, folder))
+      path = *beside;
+    else
+      fail_to_find(inside.substr(0, slash));
   } else if (uri.starts_with(file_scheme)) {
     path = uri.substr(file_scheme.size());
   } else if (uri.find("://") != std::string::npos) {

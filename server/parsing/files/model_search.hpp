@@ -35,8 +35,8 @@ class ModelSearch {
 
  private:
   std::filesystem::path path_of(const std::string& uri, const std::filesystem::path& folder) const;
+  [[noreturn]] void fail_to_find(const std::string& name) const;
   /// `folder` is that of the file that names it.
-  std::filesystem::path find_folder(const std::string& name, const std::filesystem::path& folder) const;
   std::optional<std::filesystem::path> look_for(const std::string& name, const std::filesystem::path& folder) const;
   std::optional<std::filesystem::path> find_above(const std::string& name, std::filesystem::path folder) const;
   std::optional<std::filesystem::path> find_file_above(const std::string& path, std::filesystem::path folder) const;

@@ -75,10 +75,9 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
   }
   assembly_.scene.update();
   assembly_.connections.restore(reader, [this](const Connection::End& end) {
-    if (end.body >= bodies_.size() || bodies_[end.body].member != end.member) return false;
-    const description::Model& model = description_.models[bodies_[end.body].model];
-    if (end.link >= model.links.size()) return false;
-    return end.member == Anchors::nobody || end.segment == multibody(end.body).mechanism().link(end.link).segment;
+    return is_there(end, bodies_, description_.models, [this](std::uint32_t body, std::size_t link) {
+      return multibody(body).mechanism().link(link).segment;
+    });
   });
   assembly_.collision.restore(reader);
   sleep_.check_groups();

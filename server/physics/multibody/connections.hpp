@@ -73,4 +73,13 @@ class Connections {
   std::vector<std::uint32_t> broken_;
 };
 
+/// Whether there is such an end: a link of one of the `bodies`, on its segment `segment_of(body, link)` if it moves.
+template <class Body, class Models, class SegmentOf>
+bool is_there(const Connection::End& end, const std::vector<Body>& bodies, const Models& models,
+              SegmentOf&& segment_of) {
+  if (end.body >= bodies.size() || bodies[end.body].member != end.member) return false;
+  if (end.link >= models[bodies[end.body].model].links.size()) return false;
+  return end.member == Anchors::nobody || end.segment == segment_of(end.body, end.link);
+}
+
 }  // namespace cohort::physics

@@ -77,10 +77,9 @@ void PlanarWorld::restore(SnapshotReader& reader) {
   }
   scene_.update();
   connections_.restore(reader, [this](const Connection::End& end) {
-    if (end.body >= bodies_.size() || bodies_[end.body].member != end.member) return false;
-    const description::Model& model = description_.models[bodies_[end.body].model];
-    if (end.link >= model.links.size()) return false;
-    return end.member == Anchors::nobody || end.segment == planar_.model(end.member).mechanism().link(end.link).segment;
+    return is_there(end, bodies_, description_.models, [this](std::uint32_t body, std::size_t link) {
+      return planar_.model(bodies_[body].member).mechanism().link(link).segment;
+    });
   });
   collision_.restore(reader);
   report_contacts();

@@ -10,11 +10,11 @@
 namespace cohort::session {
 
 /// Under which id each client has joined, and from where, so that nobody speaks in another's name and no stranger takes
-/// all the room. What an id says of itself counts for nothing: participants and doors are known from DDS. Pure logic.
-/// Not thread-safe: under the server's lock.
+/// all the room. What a client says of itself counts for nothing: its participant and its identity are DDS's. Pure
+/// logic. Not thread-safe: under the server's lock.
 class ClientNames {
  public:
-  // Each has some ten entities of DDS here, which bears about four times as many.
+  // Each has three writers here, with their topics; DDS makes none any more before there are 10,000 clients.
   static constexpr std::size_t most_clients = 2048;
   static constexpr std::size_t most_of_one_identity = 1024;
 

@@ -28,6 +28,13 @@ std::vector<MotorLimits> wheel_motors(const Drive& drive) {
 
 }  // namespace
 
+Device::Device() = default;
+Device::Device(const Device& other) = default;
+Device::Device(Device&& other) noexcept = default;
+Device& Device::operator=(const Device& other) = default;
+Device& Device::operator=(Device&& other) noexcept = default;
+Device::~Device() = default;
+
 Readout* readout_of(Device& device) { return std::visit(FindReadout<Readout>{}, device); }
 const Readout* readout_of(const Device& device) { return std::visit(FindReadout<const Readout>{}, device); }
 

@@ -351,12 +351,24 @@ struct UserAction {
 };
 
 /// The register: a new kind is one more here. In the order in which manuals have them, SDF's own ones last.
-using Device = std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, DifferentialDrive, AckermannDrive,
-                            Belt, TrackedDrive, Rotor, LedRing, Loudspeaker, JointEncoder, TreelEncoder, ProximityRing,
-                            GroundSensors, LightSensors, Microphones, Accelerometer, Inclinometer, RangeAndBearing,
-                            OmnidirectionalCamera, PanoramicCamera, ClimateSensor, Battery, Gripper, DetachableJoint,
-                            TorqueSensor, TractionSensor, UserAction, Imu, ForceTorqueSensor, Lidar, ContactSensor,
-                            Altimeter, Magnetometer, LogicalCamera, AirPressureSensor>;
+using DeviceKinds =
+    std::variant<TreelDrive, VelocityMotor, PositionMotor, EffortMotor, DifferentialDrive, AckermannDrive, Belt,
+                 TrackedDrive, Rotor, LedRing, Loudspeaker, JointEncoder, TreelEncoder, ProximityRing, GroundSensors,
+                 LightSensors, Microphones, Accelerometer, Inclinometer, RangeAndBearing, OmnidirectionalCamera,
+                 PanoramicCamera, ClimateSensor, Battery, Gripper, DetachableJoint, TorqueSensor, TractionSensor,
+                 UserAction, Imu, ForceTorqueSensor, Lidar, ContactSensor, Altimeter, Magnetometer, LogicalCamera,
+                 AirPressureSensor>;
+
+/// One of these. Copying and moving are in one source: each that had them to itself would compile for seconds.
+struct Device : DeviceKinds {
+  using DeviceKinds::DeviceKinds;
+  Device();
+  Device(const Device& other);
+  Device(Device&& other) noexcept;
+  Device& operator=(const Device& other);
+  Device& operator=(Device&& other) noexcept;
+  ~Device();
+};
 
 /// How the readings of a device come out; null if it senses nothing.
 Readout* readout_of(Device& device);

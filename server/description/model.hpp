@@ -136,6 +136,14 @@ struct Coupling {
 /// Devices in document order, which is the order of their channels. A static model has
 /// neither joints nor devices, and its links stay at X_ML.
 struct Model {
+  // In one source, as those of Device are.
+  Model();
+  Model(const Model& other);
+  Model(Model&& other) noexcept;
+  Model& operator=(const Model& other);
+  Model& operator=(Model&& other) noexcept;
+  ~Model();
+
   std::string name;
   bool is_static = false;
   bool may_sleep = true;      ///< steps may pass over an instance that has been still for a while

@@ -277,8 +277,19 @@ INSTANTIATE_TEST_SUITE_P(
         Typed{{"bench", "--robots", "0"}, "--robots: expected a whole number from 1 to 100000, not '0'"},
         Typed{{"bench", "--json", "/nowhere/at/all"}, "the results cannot be written to /nowhere/at/all: "}));
 
+TEST(Errors, AViewThatWasNotBuiltIsSaidToBeMissing) {
+  const ScratchFolder folder;
+  const std::string alone = folder / "cohort";
+  fs::copy_file(cohort_program(), alone);
+  const Ended view = run_to_end({alone, "view", "run.mcap", "--port", "0"});
+  EXPECT_EQ(view.exit_code, 2);
+  EXPECT_NE(view.err.find("'cohort view' is in a program of its own, " + alone + "-whole, which is not there"),
+            std::string::npos)
+      << view.err;
+}
+
 TEST(Help, IsThereForEveryCommandWithAnExample) {
-  for (const char* command : {"", "run", "serve", "host", "check", "bench"}) {
+  for (const char* command : {"", "run", "serve", "host", "check", "view", "bench"}) {
     std::vector<std::string> arguments = {cohort_program(), command, "--help"};
     if (*command == '\0') arguments.erase(arguments.begin() + 1);
     const Ended help = run_to_end(arguments);

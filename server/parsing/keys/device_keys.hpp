@@ -320,7 +320,7 @@ void for_kinds_in(std::type_identity<std::variant<Kinds...>>, const Visit& visit
   };
   (visit_kind(std::type_identity<Kinds>{}), ...);
 }
-inline constexpr std::type_identity<Device> devices;
+inline constexpr std::type_identity<DeviceKinds> devices;
 inline constexpr std::type_identity<decltype(Emitter::what)> emitters;
 
 }  // namespace cohort::parsing::keys

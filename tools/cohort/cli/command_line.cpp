@@ -165,6 +165,11 @@ void CommandLine::fallthrough() { app_->fallthrough(); }
 void CommandLine::callback(std::function<void()> parsed) { app_->callback(std::move(parsed)); }
 void CommandLine::hide() { app_->group(""); }
 
+void CommandLine::take_all() {
+  app_->set_help_flag();
+  app_->prefix_command();
+}
+
 bool CommandLine::parse(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);

@@ -79,6 +79,8 @@ class CommandLine {
   void callback(std::function<void()> parsed);
   /// In no help.
   void hide();
+  /// Whatever follows is for another program to understand, `--help` too.
+  void take_all();
 
   /// False if help or the version was asked for, which is then printed. Throws UsageError with the nearest known name,
   /// and which help to ask for.

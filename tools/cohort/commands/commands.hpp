@@ -9,7 +9,8 @@
 #include "tools/cohort/cli/log.hpp"
 #include "tools/cohort/cli/log_flags.hpp"
 
-/// The commands of `cohort`, one file each.
+/// The commands of `cohort`, one file each. What no run needs and takes long to build is in a program of its own beside
+/// it, `cohort-whole`, which has all commands: what follows as `in_whole` is found there, and `cohort` starts it.
 namespace cohort::tool {
 
 /// A command: its part of the command line, and what it does once that is parsed.
@@ -18,6 +19,18 @@ struct Subcommand {
   /// Returns the process's exit code. What it throws is a mistake of the user, and ends the process with exit_usage.
   std::function<int(Log& log, const std::atomic<bool>& stop)> run;
 };
+
+/// A command of `cohort-whole`.
+struct InWhole {
+  const char* name;
+  const char* text;  ///< for help
+};
+namespace in_whole {
+inline constexpr InWhole view = {"view", "Show a recording or a running server in a browser"};
+inline constexpr InWhole completion = {"completion", "Print a script that completes command lines in a shell"};
+inline constexpr InWhole man_page = {"man-page", "Print the manual page, which tells what all of --help tell"};
+inline constexpr InWhole bench = {"bench", "Measure Cohort and other physics engines on the same scenes"};
+}  // namespace in_whole
 
 /// Each adds its command to `app`. Those that take the flags of messages have options that follow them in help.
 Subcommand add_run(CommandLine app, LogFlags& flags);
@@ -41,11 +54,5 @@ Subcommand add_help(CommandLine app);
 Subcommand add_completion(CommandLine app);
 Subcommand add_man_page(CommandLine app);
 Subcommand add_bench(CommandLine app);
-
-/// Adds all of them to `app`, in the order of help. `flags` must outlive it.
-std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags);
-
-/// Runs the one that was asked for, and logs what it throws. The exit code.
-int run_chosen(const std::vector<Subcommand>& commands, Log& log, const std::atomic<bool>& stop);
 
 }  // namespace cohort::tool

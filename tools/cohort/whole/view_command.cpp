@@ -120,7 +120,7 @@ int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& s
 
 Subcommand add_view(CommandLine app) {
   const auto command = std::make_shared<ViewCommand>();
-  CommandLine line = app.add_subcommand("view", "Show a recording or a running server in a browser");
+  CommandLine line = app.add_subcommand(in_whole::view.name, in_whole::view.text);
   const Option recording =
       line.add_option("RECORDING", command->recording, "Recording (MCAP) to show, instead of a server").type_name("");
   add_server_option(line, command->connection.server);

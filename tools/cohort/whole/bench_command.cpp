@@ -215,7 +215,7 @@ void add_client_options(CommandLine line, bench::BenchClient& client) {
 Subcommand add_bench(CommandLine app) {
   using What = BenchCommand::What;
   const auto command = std::make_shared<BenchCommand>();
-  CommandLine line = app.add_subcommand("bench", "Measure Cohort and other physics engines on the same scenes");
+  CommandLine line = app.add_subcommand(in_whole::bench.name, in_whole::bench.text);
   add_scenes_options(line, *command);
   const auto add = [&](const char* name, const char* text, What what) {
     CommandLine sub = line.add_subcommand(name, text);

@@ -202,7 +202,7 @@ const std::map<std::string, std::string (*)(const CommandTree&)> scripts = {
 
 Subcommand add_completion(CommandLine app) {
   const auto shell = std::make_shared<std::string>();
-  CommandLine line = app.add_subcommand("completion", "Print a script that completes command lines in a shell");
+  CommandLine line = app.add_subcommand(in_whole::completion.name, in_whole::completion.text);
   line.add_option("SHELL", *shell, "Which one")
       .required()
       .check(one_of({"bash", "zsh", "fish"}))

@@ -98,7 +98,7 @@ std::string man_page(const CommandTree& tree) {
 }  // namespace
 
 Subcommand add_man_page(CommandLine app) {
-  CommandLine line = app.add_subcommand("man-page", "Print the manual page, which tells what all of --help tell");
+  CommandLine line = app.add_subcommand(in_whole::man_page.name, in_whole::man_page.text);
   line.footer("Example: cohort man-page | man -l -");
   return {line, [app](Log&, const std::atomic<bool>&) {
             std::cout << man_page(command_tree(app));

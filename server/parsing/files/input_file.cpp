@@ -66,6 +66,11 @@ InputFiles::InputFiles() {
   std::error_code removed_meanwhile;
   working_folder_ = fs::current_path(removed_meanwhile);
   model_path_ = folders_of_environment();
+  for (const std::string& folders : {model_path_, variable("COHORT_ALLOW_FILES")}) {
+    std::istringstream stream(folders);
+    for (std::string folder; std::getline(stream, folder, ':');)
+      if (!folder.empty()) trusted_.add(absolute(folder));
+  }
 }
 
 InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)
@@ -73,6 +78,9 @@ InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)
       working_folder_(source_->working_folder),
       model_path_(source_->model_path),
       folders_(source_->folders.begin(), source_->folders.end()) {}
+
+void InputFiles::trust(const fs::path& file) { trusted_.add_around(absolute(file)); }
+void InputFiles::trust_folder(const fs::path& folder) { trusted_.add(absolute(folder)); }
 
 void InputFiles::add(const fs::path& file, std::string bytes) { files_[key_of(file)] = std::move(bytes); }
 
@@ -92,7 +100,12 @@ const std::string* InputFiles::find(const std::string& key) const {
 std::optional<std::string> InputFiles::why_unreadable(const fs::path& file) const {
   const std::string key = key_of(file);
   if (find(key) != nullptr) return std::nullopt;
-  if (!source_) return parsing::why_unreadable(key);
+  if (!source_) {
+    if (auto reason = parsing::why_unreadable(key)) return reason;
+    if (trusted_.contains(key)) return std::nullopt;
+    return "the file is in none of the folders that this may read; --allow-files " +
+           fs::path(key).parent_path().string() + " lets it";
+  }
   return folders_.contains(key) ? is_a_folder : "it is none of the files that the experiment was read from";
 }
 

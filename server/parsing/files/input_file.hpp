@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/description/kept_files.hpp"
+#include "server/parsing/files/trusted_folders.hpp"
 #include "server/parsing/parsing.hpp"
 
 namespace cohort::parsing {
@@ -17,7 +18,9 @@ namespace cohort::parsing {
 std::optional<std::string> why_unreadable(const std::filesystem::path& file);
 
 /// The one way to the files of a world: from the disk, keeping what it has read, or from what was kept, without looking
-/// at the disk at all. Each file is read once, so that all readers see the same content. One thread uses it.
+/// at the disk at all. Each file is read once, so that all readers see the same content. From the disk only what is in
+/// trusted folders is read: those of `model_path()`, those of the environment variable COHORT_ALLOW_FILES, and what
+/// `trust` adds. One thread uses it.
 class InputFiles {
  public:
   /// From the disk.
@@ -26,6 +29,11 @@ class InputFiles {
   explicit InputFiles(std::shared_ptr<const KeptFiles> kept);
   InputFiles(const InputFiles&) = delete;
   InputFiles& operator=(const InputFiles&) = delete;
+
+  /// A person has named this file: it may be read, and what belongs to it (TrustedFolders::add_around).
+  void trust(const std::filesystem::path& file);
+  /// With all that is below it.
+  void trust_folder(const std::filesystem::path& folder);
 
   /// Answers for `file` with `bytes` from now on.
   void add(const std::filesystem::path& file, std::string bytes);
@@ -56,6 +64,7 @@ class InputFiles {
   std::shared_ptr<const KeptFiles> source_;  // null: the disk
   std::filesystem::path working_folder_;
   std::string model_path_;
+  TrustedFolders trusted_;
   std::map<std::string, std::string> files_;  // by absolute path
   std::set<std::string> folders_;
 };

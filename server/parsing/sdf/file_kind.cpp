@@ -29,6 +29,7 @@ bool is_yaml(const std::filesystem::path& file) { return file.extension() == ".y
 
 FileKind kind_of_file(const std::filesystem::path& file) {
   InputFiles disk;
+  disk.trust(file);
   return kind_of_file(disk, file);
 }
 

@@ -9,6 +9,7 @@
 #include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
 
 namespace cohort::tool {
@@ -59,6 +60,7 @@ Subcommand add_check(CommandLine app) {
   const auto file = std::make_shared<std::filesystem::path>();
   CommandLine line = app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
   line.add_option("FILE", *file, "Experiment (.yaml) or world (.sdf)").required().type_name("");
+  add_allow_files_option(line);
   line.footer("Example: cohort check worlds/arenas/obstacles.sdf");
   return {line, [file](Log& log, const std::atomic<bool>&) { return check(*file, log); }};
 }

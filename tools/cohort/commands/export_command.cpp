@@ -8,6 +8,7 @@
 #include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -48,6 +49,7 @@ Subcommand add_export(CommandLine app) {
   line.add_option("--seed", command->seed, "Seed of the populations, instead of the experiment's")
       .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       .type_name("N");
+  add_allow_files_option(line);
   line.footer("Example: cohort export worlds/arenas/obstacles.sdf -o placed.sdf");
   return {line, [command](Log& log, const std::atomic<bool>&) { return export_world(*command, log); }};
 }

@@ -7,6 +7,7 @@
 #include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -70,6 +71,7 @@ Subcommand add_samples(CommandLine app) {
       .check(whole_number(1, 10'000))
       .capture_default_str()
       .type_name("N");
+  add_allow_files_option(line);
   line.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
   return {line, [command](Log&, const std::atomic<bool>&) { return take_samples(*command); }};
 }

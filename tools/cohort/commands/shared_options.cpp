@@ -1,5 +1,7 @@
 #include "tools/cohort/commands/shared_options.hpp"
 
+#include <cstdlib>
+
 #include "client_sdk/src/domains.hpp"
 
 namespace cohort::tool {
@@ -32,6 +34,16 @@ void add_client_options(CommandLine line, ClientSide& client) {
   add_domain_option(line, client.connection.domains,
                     "DDS domain of the server, or a range: then one of it (default: 0)");
   add_secure_option(line, client.connection.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
+}
+
+void add_allow_files_option(CommandLine line) {
+  line.add_option_function<std::string>(
+          "--allow-files",
+          [](const std::string& folders) {
+            ::setenv("COHORT_ALLOW_FILES", folders.c_str(), 1);
+          },  // who reads looks there
+          "More folders that the world may read files of, with colons between them (default: $COHORT_ALLOW_FILES)")
+      .type_name("DIR[:DIR...]");
 }
 
 void add_robots_of_recording(CommandLine line, std::vector<std::string>& robots) {

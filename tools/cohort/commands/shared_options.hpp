@@ -32,6 +32,9 @@ void add_server_option(CommandLine line, std::string& server);
 void add_domain_option(CommandLine line, std::vector<std::uint32_t>& domains, const std::string& text);
 void add_secure_option(CommandLine line, std::filesystem::path& folder, const std::string& text);
 
+/// Folders that worlds may read beside their own.
+void add_allow_files_option(CommandLine line);
+
 /// Where robots of a server are driven from.
 struct ClientSide {
   std::vector<std::string> robots{};  ///< selectors

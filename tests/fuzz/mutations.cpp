@@ -20,12 +20,14 @@ using Random = std::mt19937_64;  // the same everywhere, as its distributions ar
 
 std::size_t below(std::size_t count, Random& random) { return count == 0 ? 0 : random() % count; }
 
-std::vector<std::string> read_corpus(const fs::path& folder, const std::string& format) {
+// The extensions have points between them: sdf, or yaml.yml.
+std::vector<std::string> read_corpus(const fs::path& folder, const std::string& extensions) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
-    const bool is_yaml = (format == "yaml" || format == "experiment") && (extension == ".yaml" || extension == ".yml");
-    if (entry.is_regular_file() && (extension == "." + format || is_yaml)) files.push_back(entry.path());
+    const std::string extension = entry.path().extension().string() + ".";
+    if (entry.is_regular_file() && extension.size() > 2 &&
+        ("." + extensions + ".").find(extension) != std::string::npos)
+      files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   std::vector<std::string> texts;
@@ -65,15 +67,15 @@ void run(const std::string& text) {
 
 }  // namespace
 
-/// Reads every file of the corpus that has the format, and mutations of them.
+/// Reads every file of the corpus that has one of the extensions, and mutations of them.
 int main(int argc, char** argv) {
   if (argc < 4) {
-    std::cerr << "usage: " << argv[0] << " FORMAT COUNT CORPUS [SEED]\n";
+    std::cerr << "usage: " << argv[0] << " EXTENSIONS COUNT CORPUS [SEED]\n";
     return 2;
   }
   const std::vector<std::string> corpus = read_corpus(argv[3], argv[1]);
   if (corpus.empty()) {
-    std::cerr << "no files of this format in " << argv[3] << "\n";
+    std::cerr << "no such files in " << argv[3] << "\n";
     return 2;
   }
   for (const std::string& text : corpus) run(text);

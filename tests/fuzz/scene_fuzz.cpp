@@ -1,0 +1,48 @@
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/viewing/check_scene.hpp"
+#include "server/viewing/scene_maker.hpp"
+#include "tests/fuzz/edits.hpp"
+
+namespace {
+
+using namespace cohort;
+
+constexpr std::size_t links_of_scene = 100;  // any number
+
+struct Encoded {
+  recording::Bytes scene, frame, signals, contacts, robot;
+};
+
+Encoded encoded() {
+  const auto experiment = parsing::read_experiment(COHORT_SOURCE_DIR "/worlds/experiments/retrieval.yaml");
+  Simulation simulation(experiment, 1);
+  simulation.step();
+  const viewing::SceneMaker maker(simulation, 1);
+  return {recording::encode(maker.scene(experiment.teams)), recording::encode(maker.frame(1, 2)),
+          recording::encode(maker.signals()), recording::encode(maker.contacts()), recording::encode(maker.robot(0))};
+}
+
+template <class Message, class Check>
+void decode_any(const recording::Bytes& bytes, std::span<const std::uint8_t> input, Check&& check) {
+  const recording::Bytes changed = fuzz::edited(bytes, input);
+  try {
+    check(recording::decode<Message>(changed));
+  } catch (const recording::CdrError&) {
+  }
+}
+
+}  // namespace
+
+/// Scenes that came over a network are sound, or refused with CdrError.
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer calls it so.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Encoded whole = encoded();
+  const std::span<const std::uint8_t> input(data, size);
+  decode_any<viewing::Scene>(whole.scene, input, [](const auto& scene) { viewing::check_scene(scene); });
+  decode_any<viewing::SceneFrame>(whole.frame, input,
+                                  [](const auto& frame) { viewing::check_frame(frame, links_of_scene); });
+  decode_any<viewing::SceneSignals>(whole.signals, input, [](const auto&) {});
+  decode_any<viewing::SceneContacts>(whole.contacts, input, [](const auto&) {});
+  decode_any<viewing::SceneRobot>(whole.robot, input, [](const auto&) {});
+  return 0;
+}

@@ -39,6 +39,16 @@ TEST_F(Recordings, AreReplayedWithoutTheirExperiment) {
   EXPECT_EQ(cohort({"replay", file, "--verify", "--from", "0.5", "--to", "1"}).out, "identical, 51 ticks\n");
 }
 
+TEST_F(Recordings, SayWhatTheyHold) {
+  const std::string file = record("run.mcap");
+  const Ended listed = cohort({"recordings", "list", file, file});
+  EXPECT_EQ(listed.exit_code, 0) << listed.err;
+  EXPECT_TRUE(listed.out.starts_with(file + "\n")) << listed.out;
+  for (const char* fact : {"\n  robots                 2\n", "\n  end                    finished\n", " bytes, inputs/",
+                           "/robots/sbot/model.sdf\n"})
+    EXPECT_NE(listed.out.find(fact), std::string::npos) << fact << listed.out;
+}
+
 TEST_F(Recordings, SayWhereTwoRunsPart) {
   const std::string file = record("run.mcap");
   const Ended same = cohort({"diff", file, record("again.mcap")});

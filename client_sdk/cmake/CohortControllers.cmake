@@ -15,12 +15,6 @@ function(cohort_add_controller name)
     target_link_options(${target} PRIVATE -fno-fast-math)
   endforeach()
 
-  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
-  if(NOT CXX IN_LIST languages)
-    target_link_libraries(${name} PRIVATE stdc++ m)
-    target_link_libraries(${name}_plugin PRIVATE stdc++ m)
-  endif()
-
   target_compile_definitions(${name}_plugin PRIVATE COHORT_BUILDS_PLUGIN)
   # Only cohort_plugin is seen from outside, and everything that the plugin has itself is its own: whatever the program
   # that loads it, or another plugin, has under the same name may come from another build.

@@ -11,6 +11,7 @@
 
 #include "client_sdk/src/c_handles.hpp"
 #include "client_sdk/src/client.hpp"
+#include "client_sdk/src/environment.hpp"
 
 namespace cohort {
 namespace {
@@ -128,6 +129,7 @@ CohortEnd end_of(ClientEnd end) {
 ClientOptions options_of(const CohortOptions* given) {
   ClientOptions options;
   options.name = "controller";
+  take_environment(options);
   if (given == nullptr) return options;
   options.domain = given->domain;
   if (given->server != nullptr) options.server = given->server;

@@ -1,11 +1,12 @@
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "client_sdk/src/client.hpp"
 #include "client_sdk/src/domains.hpp"
+#include "client_sdk/src/environment.hpp"
 #include "client_sdk/src/program.hpp"
 
 namespace cohort {
@@ -52,9 +53,11 @@ struct Arguments {
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
   ClientOptions& options = arguments.options;
-  if (const char* server = std::getenv("COHORT_SERVER"); server != nullptr) options.server = server;
-  if (const char* domain = std::getenv("COHORT_DOMAIN"); domain != nullptr) options.domain = parse_domain(domain);
-  if (const char* secure = std::getenv("COHORT_SECURE"); secure != nullptr) options.secure = secure;
+  try {
+    take_environment(options);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     const auto equals = argument.find('=');

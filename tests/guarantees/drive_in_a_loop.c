@@ -1,4 +1,5 @@
-/* The example in C from a loop of its own instead of from callbacks: drive_in_a_loop DOMAIN ROBOTS. */
+/* The example in C from a loop of its own instead of from callbacks: drive_in_a_loop DOMAIN ROBOTS, or
+ * without them all robots of the server that the environment names. */
 
 #include <stdio.h>
 
@@ -9,9 +10,12 @@ enum { most_robots = 64 };
 
 int main(int argc, char** argv) {
   static ObstacleAvoidance robots[most_robots];
-  if (argc != 3) return 2;
-  const CohortOptions options = {NULL, (uint32_t)strtoul(argv[1], NULL, 10), argv[2], "drive_in_a_loop", NULL};
-  CohortClient* client = cohort_connect(&options);
+  CohortOptions options = {NULL, 0, NULL, "drive_in_a_loop", NULL};
+  if (argc == 3) {
+    options.domain = (uint32_t)strtoul(argv[1], NULL, 10);
+    options.robots = argv[2];
+  }
+  CohortClient* client = cohort_connect(argc == 3 ? &options : NULL);
   if (client == NULL) return 2;
   CohortEvent event;
   while (cohort_next(client, &event) != cohort_event_end) {

@@ -87,6 +87,16 @@ TEST(SameHashAnyPlacement, AControllerInCGivesTheBitsOfItsTwinInCpp) {
   EXPECT_NE(server.output().find(expected), std::string::npos) << server.output();
 }
 
+TEST(SameHashAnyPlacement, ALoopInCWithoutOptionsDrivesAllRobotsOfTheServerThatTheEnvironmentNames) {
+  const ReservedDomain domain;
+  Process server({cohort_program(), "serve", demo_experiment(), "--duration", "1", "--domain", domain.text()});
+  Process loop({COHORT_BUILD_DIR "/bin/drive_in_a_loop"},
+               {{"COHORT_DOMAIN", domain.text()}, {"COHORT_SERVER", "127.0.0.1"}});
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(loop.wait_for_exit(), 0) << loop.output();
+  EXPECT_NE(server.output().find(reference_hash(1)), std::string::npos) << server.output();
+}
+
 // A wall goes, a robot comes, another one leaves, one is away for a second.
 TEST(SameHashAnyPlacement, EventsHappenAlikeWhereverControllersAreAndWithAnyNumberOfThreads) {
   const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/changes.yaml";

@@ -41,6 +41,7 @@ class Installation : public ::testing::Test {
     const Ended installed = run({COHORT_CMAKE, "--install", COHORT_BUILD_DIR, "--prefix", prefix});
     ASSERT_EQ(installed.exit_code, 0) << installed.output;
     fs::copy(COHORT_SOURCE_DIR "/tests/install/outside", outside, fs::copy_options::recursive);
+    fs::copy(COHORT_SOURCE_DIR "/client_sdk/examples", outside / "examples", fs::copy_options::recursive);
     for (const char* project : {"", "in_c"}) {
       const Ended configured = configure("build", this_version, project);
       ASSERT_EQ(configured.exit_code, 0) << configured.output;

@@ -208,11 +208,11 @@ int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
 typedef struct CohortClient CohortClient;
 
 typedef struct CohortOptions {
-  const char* server; /* IPv4 address or host name; 127.0.0.1 if NULL */
+  const char* server; /* IPv4 address or host name; $COHORT_SERVER or 127.0.0.1 if NULL */
   uint32_t domain;    /* the server's DDS domain */
   const char* robots; /* selectors with commas between, such as `0..3,explorers/sbot_7`; all if NULL */
   const char* name;   /* shown by the server; "controller" if NULL */
-  const char* secure; /* folder of an identity that `cohort security` has made; without security if NULL */
+  const char* secure; /* folder of an identity that `cohort security` has made; $COHORT_SECURE or none if NULL */
 } CohortOptions;
 
 typedef enum CohortEventKind {
@@ -240,7 +240,7 @@ typedef struct CohortEvent {
 } CohortEvent;
 
 /* Begins to attach to a server, and returns at once: a server that is not there yet is waited for in cohort_next. All
- * defaults if `options` is NULL; their texts are copied. NULL if it fails. What people should know goes to standard
+ * defaults if `options` is NULL, and the domain of $COHORT_DOMAIN; their texts are copied. NULL if it fails. What people should know goes to standard
  * error, after the name. */
 CohortClient* cohort_connect(const CohortOptions* options);
 

@@ -29,24 +29,9 @@ std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags) {
   std::vector<Subcommand> commands;
   for (const auto add : {add_run, add_serve, add_host}) commands.push_back(add(app, flags));
   for (const auto add : {
-           add_teleop,
-           add_ctl,
-           add_record,
-           add_view,
-           add_check,
-           add_export,
-           add_samples,
-           add_security,
-           add_doctor,
-           add_replay,
-           add_diff,
-           add_export_data,
-           add_plot,
-           add_recover,
-           add_help,
-           add_completion,
-           add_man_page,
-           add_bench,
+           add_teleop,  add_ctl,      add_record, add_view,       add_examples, add_check, add_export,
+           add_samples, add_security, add_doctor, add_recordings, add_replay,   add_diff,  add_export_data,
+           add_plot,    add_recover,  add_help,   add_completion, add_man_page, add_bench,
        }) {
     commands.push_back(add(app));
     add_log_flags(commands.back().line, flags);
@@ -77,7 +62,7 @@ int main(int argc, char** argv) {
   LogFlags flags;
   add_log_flags(line, flags);
   line.footer(
-      "Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10\n"
+      "Example: cohort run obstacle_avoidance --duration 10\n"
       "'cohort COMMAND --help' says more, 'cohort help' what may be written in files. Exit codes: 0 done, 1 the run "
       "failed, 2 a mistake in the command line, the\n"
       "files or the set-up, 130 interrupted.");

@@ -44,9 +44,11 @@ std::string unexpected(const CLI::App& app) {
     const std::string name = option->substr(0, option->find('='));
     return fmt::format("there is no option '{}'{}", name, suggestion(name, options_of(command_of(app))));
   }
-  if (extras.empty()) return fmt::format("expected a command; known: {}", fmt::join(commands_of(app), ", "));
-  if (&command_of(app) == &app)
-    return fmt::format("there is no command '{}'{}", extras.front(), suggestion(extras.front(), commands_of(app)));
+  const CLI::App& command = command_of(app);
+  const std::vector<std::string> commands = commands_of(command);
+  if (extras.empty()) return fmt::format("expected a command; known: {}", fmt::join(commands, ", "));
+  if (!commands.empty())
+    return fmt::format("there is no command '{}'{}", extras.front(), suggestion(extras.front(), commands));
   return fmt::format("unexpected '{}'", extras.front());
 }
 
@@ -66,7 +68,7 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   switch (static_cast<CLI::ExitCodes>(error.get_exit_code())) {
     case CLI::ExitCodes::ExtrasError: message = unexpected(app); break;
     case CLI::ExitCodes::RequiredError:
-      if (&command == &app) message = unexpected(app);
+      if (command.get_require_subcommand_min() > 0 && command.get_subcommands().empty()) message = unexpected(app);
       break;
     case CLI::ExitCodes::ArgumentMismatch: message = message.substr(0, message.find(':')) + " needs a value"; break;
     default: message += origin(command, message);

@@ -80,12 +80,15 @@ LogLevel Terminal::level_of(const session::RunEvent& event) {
   return LogLevel::warning;
 }
 
-void Terminal::summary(const session::RunResult& result, double cpu_seconds) {
+void Terminal::summary(const description::Experiment& experiment, const session::RunResult& result,
+                       double cpu_seconds) {
   log_.info(result.end == session::RunResult::End::finished ? "the run is finished" : "the run has ended early",
             {{"ticks", result.ticks}, {"state_hash", fmt::format("{:016x}", result.state_hash)}});
   log_.clear_progress();
   if (options_.quiet) return;
   const double wall = seconds(result.wall_time);
+  std::printf("experiment        %s, seed %lu (Cohort %s)\n", experiment.name.c_str(),
+              static_cast<unsigned long>(experiment.seed), COHORT_VERSION);
   std::printf("ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
               seconds(result.sim_time), counted(result.robots, "robot").c_str());
   if (!result.stop_reason.empty()) std::printf("stopped           by %s\n", result.stop_reason.c_str());

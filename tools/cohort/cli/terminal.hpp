@@ -20,7 +20,7 @@ class Terminal {
 
   void progress(const session::Progress& progress);
   void event(const session::RunEvent& event);
-  void summary(const session::RunResult& result, double cpu_seconds);
+  void summary(const description::Experiment& experiment, const session::RunResult& result, double cpu_seconds);
 
  private:
   LogLevel level_of(const session::RunEvent& event);

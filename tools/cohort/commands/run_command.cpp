@@ -23,6 +23,7 @@
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/cohort/running/one_run.hpp"
 #include "tools/cohort/running/run_recording.hpp"
+#include "tools/cohort/running/seeds.hpp"
 #include "tools/cohort/running/serving.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
 
@@ -141,16 +142,20 @@ World build_world(const RunCommand& command, std::shared_ptr<const description::
   return world;
 }
 
+using ExperimentPtr = std::shared_ptr<const description::Experiment>;
+
+// The same with another seed, and so perhaps with other places. Throws if it cannot be placed.
+ExperimentPtr with_seed(const ExperimentPtr& experiment, std::uint64_t seed) {
+  if (seed == experiment->seed) return experiment;
+  auto other = std::make_shared<description::Experiment>(
+      parsing::read_experiment(experiment->inputs, seed, experiment->duration));
+  other->recorded = experiment->recorded;
+  return other;
+}
+
 // What a run is to be followed by. Throws if there is anything wrong with it.
 World world_of(const session::NextRun& next, const RunCommand& command, const World& now, Log& log) {
-  std::shared_ptr<const description::Experiment> experiment = now.experiment;
-  if (next.seed != experiment->seed) {
-    auto other = std::make_shared<description::Experiment>(
-        parsing::read_experiment(experiment->inputs, next.seed, experiment->duration));
-    other->recorded = experiment->recorded;
-    experiment = std::move(other);
-  }
-  World world = build_world(command, std::move(experiment), next.snapshot, log);
+  World world = build_world(command, with_seed(now.experiment, next.seed), next.snapshot, log);
   if (next.snapshot) {
     session::Exchange tried(*world.simulation);
     session::restore(*next.snapshot, tried);
@@ -161,7 +166,7 @@ World world_of(const session::NextRun& next, const RunCommand& command, const Wo
 // All that runs have in common, and what they leave to the next one.
 struct Runs {
   const RunCommand& command;
-  std::vector<std::shared_ptr<const description::Experiment>> experiments{};
+  std::vector<ExperimentPtr> experiments{};
   std::vector<TeamController> controllers{};
   Snapshot from{};
   World first{};
@@ -207,15 +212,28 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
   }
 }
 
+std::size_t count_of_runs(const RunCommand& command) {
+  return command.files.size() * std::max<std::size_t>(1, command.seeds.size()) * command.repeat;
+}
+
+// The experiments one after the other, then with the next seed, and all of it again.
+ExperimentPtr experiment_of_run(const Runs& runs, std::size_t number) {
+  const ExperimentPtr& experiment = runs.experiments[(number - 1) % runs.experiments.size()];
+  const std::vector<std::uint64_t>& seeds = runs.command.seeds;
+  if (seeds.empty()) return experiment;
+  return with_seed(experiment, seeds[(number - 1) / runs.experiments.size() % seeds.size()]);
+}
+
 // One after the other, each as often as asked for, until one does not finish. The exit code.
 int run_each(Runs& runs, Log& log, const std::atomic<bool>& stop) {
-  const std::size_t count = runs.experiments.size() * runs.command.repeat;
+  const std::size_t count = count_of_runs(runs.command);
   int code = exit_ok;
   try {
     bool goes_on = true;
     for (std::size_t number = 1; number <= count && code == exit_ok && goes_on; ++number) {
-      const auto& experiment = runs.experiments[(number - 1) % runs.experiments.size()];
-      if (count > 1) log.notice(fmt::format("run {} of {}: {}", number, count, experiment->name));
+      const ExperimentPtr experiment = experiment_of_run(runs, number);
+      if (count > 1)
+        log.notice(fmt::format("run {} of {}: {}, seed {}", number, count, experiment->name, experiment->seed));
       World world = runs.first.simulation != nullptr ? std::exchange(runs.first, {})
                                                      : build_world(runs.command, experiment, runs.from, log);
       code = run_one(runs, number, count, std::move(world), log, stop, goes_on);
@@ -241,7 +259,9 @@ Snapshot snapshot_of(RunCommand& command) {
 int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
   Runs runs{command};
   runs.cpu_before = cpu_seconds();  // a shell that became this process may have had children
-  const std::size_t count = command.files.size() * command.repeat;
+  for (std::filesystem::path& file : command.files) file = experiment_called(file);
+  if (!command.seeds.empty()) command.seed = command.seeds.front();
+  const std::size_t count = count_of_runs(command);
   for (std::size_t number = 1; number <= count; ++number) check_writable(numbered(command.outputs, number, count));
   const bool in_process = command.controllers == Controllers::in_process;
   if (in_process) refuse_what_needs_a_server(command);
@@ -263,6 +283,14 @@ int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
   return run_each(runs, log, stop);
 }
 
+std::vector<std::uint64_t> seeds_or_usage_error(const std::string& text) {
+  try {
+    return parse_seeds(text);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(std::string("--seeds: ") + error.what());
+  }
+}
+
 void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
   line.add_option("--repeat", command.repeat,
                   "How often to run it, the world built anew each time, the controllers attached")
@@ -276,9 +304,15 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
   line.add_option("--duration", command.duration, "Simulated seconds, instead of the experiment's")
       .check(number_above_zero(most_seconds))
       .type_name("S");
-  line.add_option("--seed", command.seed, "Seed, instead of the experiment's")
-      .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      .type_name("N");
+  const Option seed = line.add_option("--seed", command.seed, "Seed, instead of the experiment's")
+                          .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+                          .type_name("N");
+  const Option seeds =
+      line.add_option_function<std::string>(
+              "--seeds", [&command](const std::string& text) { command.seeds = seeds_or_usage_error(text); },
+              "Run it once with each of these seeds, such as 1..30 or 4,8,15")
+          .excludes(seed)
+          .type_name("A..B[,...]");
   line.add_option_function<std::string>(
           "--speed",
           [&command](const std::string& speed) { command.speed = speed == "max" ? 0.0 : *parse_real(speed); },
@@ -300,7 +334,10 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
                   "Simulated seconds between snapshots in memory, for 'cohort ctl back' (default: none)")
       .check(number_above_zero(most_seconds))
       .type_name("S");
-  line.add_option("--from", command.from, "Go on from this snapshot of 'cohort ctl save'").type_name("FILE");
+  line.add_option("--from", command.from, "Go on from this snapshot of 'cohort ctl save'")
+      .excludes(seeds)
+      .type_name("FILE");
+  add_allow_files_option(line);
   add_domain_option(line, command.domains,
                     "DDS domains to serve (default: free ones, or 0 if others start controllers)");
   add_secure_option(line, command.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");
@@ -324,7 +361,9 @@ Subcommand add_run(CommandLine app, LogFlags& flags) {
                                                                 {"external", Controllers::external}};
   const auto command = std::make_shared<RunCommand>();
   CommandLine line = app.add_subcommand("run", "Run an experiment with its controllers");
-  line.add_option("FILE", command->files.emplace_back(), "Experiment (YAML)").required().type_name("");
+  line.add_option("FILE", command->files.emplace_back(), "Experiment (YAML), or the name of an example")
+      .required()
+      .type_name("");
   add_run_options(line, *command, flags);
   line.add_option_function<std::string>(
           "--controllers",
@@ -332,7 +371,7 @@ Subcommand add_run(CommandLine app, LogFlags& flags) {
           "process for each team (the default), per-robot, inprocess with the server, or external")
       .check(one_of({"process", "per-robot", "inprocess", "external"}))
       .type_name("process|per-robot|inprocess|external");
-  line.footer("Example: cohort run worlds/experiments/obstacle_avoidance.yaml --duration 10 --plot run.svg");
+  line.footer("Example: cohort run obstacle_avoidance --duration 10 --plot run.svg");
   return running(line, command, flags);
 }
 
@@ -340,13 +379,15 @@ Subcommand add_serve(CommandLine app, LogFlags& flags) {
   const auto command = std::make_shared<RunCommand>();
   command->controllers = Controllers::external;
   CommandLine line = app.add_subcommand("serve", "Run an experiment alone and wait for controllers to attach");
-  line.add_option("FILE", command->files, "Experiments (YAML), run one after the other").required().type_name("");
+  line.add_option("FILE", command->files, "Experiments (YAML) or names of examples, run one after the other")
+      .required()
+      .type_name("");
   add_run_options(line, *command, flags);
   line.add_option("--network", command->network, "Address of the interface to serve on")
       .envname("COHORT_NETWORK")
       .capture_default_str()
       .type_name("ADDRESS");
-  line.footer("Example: cohort serve worlds/experiments/obstacle_avoidance.yaml --domain 7 --network 10.0.0.5");
+  line.footer("Example: cohort serve obstacle_avoidance --domain 7 --network 10.0.0.5");
   return running(line, command, flags);
 }
 

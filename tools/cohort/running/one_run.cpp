@@ -50,7 +50,7 @@ session::RunListener OneRun::listener() {
 
 int OneRun::finish(const RunResult& result, double cpu_seconds) {
   using enum RunResult::End;
-  terminal_->summary(result, cpu_seconds);
+  terminal_->summary(*experiment_, result, cpu_seconds);
   bool is_complete = write_files(result, cpu_seconds);
   if (result.end == failed)
     log_.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});

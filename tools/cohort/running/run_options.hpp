@@ -32,6 +32,7 @@ struct RunCommand {
   unsigned threads = 0;                      ///< 0: one for each core
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
+  std::vector<std::uint64_t> seeds;  ///< all are run with each of these; empty: with `seed`
   Controllers controllers = Controllers::process;
   std::optional<double> speed;  ///< 0: as fast as it goes; none: that, or real time if people drive
   Outputs outputs;

@@ -32,6 +32,9 @@ void write_summary(const std::filesystem::path& file, const description::Experim
                       {"on_late", word_of(miss.consequence)},
                       {"waited_s", seconds(miss.waited)}});
   const nlohmann::ordered_json summary = {
+      {"experiment", experiment.name},
+      {"seed", experiment.seed},
+      {"version", COHORT_VERSION},
       {"ticks", result.ticks},
       {"sim_time_ns", result.sim_time.count()},
       {"wall_s", wall},

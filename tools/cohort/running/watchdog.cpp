@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds patience{10};
+constexpr std::chrono::seconds watchdog_patience{10};
 constexpr std::chrono::milliseconds between_looks{200};
 
 }  // namespace
@@ -36,11 +36,11 @@ void Watchdog::watch() {
     if (!stop_) continue;
     if (!since || tick_ != tick) since = Clock::now();
     tick = tick_;
-    if (Clock::now() - *since < patience) continue;
+    if (Clock::now() - *since < watchdog_patience) continue;
     log_.error(
         fmt::format("tick {} has not ended {} s after this process was asked to end: a controller in it loops, or "
                     "the world takes too long. The run ends here; 'cohort recover' closes its recording",
-                    tick, patience.count()),
+                    tick, watchdog_patience.count()),
         {{"tick", tick}});
     std::_Exit(exit_failed);
   }

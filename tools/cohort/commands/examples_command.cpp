@@ -1,0 +1,58 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include "server/core/text.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
+#include "tools/cohort/commands/commands.hpp"
+
+namespace cohort::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the comment at its beginning says first, in a line.
+std::string first_sentence(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string text;
+  for (std::string line; std::getline(stream, line) && line.starts_with('#');)
+    text += std::string(trimmed(line.substr(1))) + " ";
+  text.resize(std::min(text.find(". "), text.size()));
+  constexpr std::size_t width = 95;
+  if (text.size() <= width) return text;
+  return text.substr(0, text.rfind(' ', width)) + " …";
+}
+
+int list() {
+  for (const std::string& name : installed_experiments()) {
+    const fs::path file = installed_worlds_folder() / "experiments" / (name + ".yaml");
+    std::printf("%-24s %s\n", name.c_str(), first_sentence(file).c_str());
+  }
+  std::printf(
+      "\n'cohort run NAME' runs one; 'cohort examples --copy DIR' copies them, with their arenas and robots.\n");
+  return exit_ok;
+}
+
+int copy_to(const fs::path& folder) {
+  if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
+    throw std::invalid_argument("'" + folder.string() + "' is there already: name a new folder, or an empty one");
+  fs::create_directories(folder);
+  fs::copy(installed_worlds_folder(), folder, fs::copy_options::recursive);
+  std::printf("cohort run %s\n", (folder / "experiments/obstacle_avoidance.yaml").c_str());
+  return exit_ok;
+}
+
+}  // namespace
+
+Subcommand add_examples(CommandLine app) {
+  const auto folder = std::make_shared<fs::path>();
+  CommandLine line = app.add_subcommand("examples", "List the experiments that come with Cohort, or copy them");
+  line.add_option("--copy", *folder, "Copy them to this folder, with all that they need").type_name("DIR");
+  line.footer("Example: cohort examples --copy worlds");
+  return {line, [folder](Log&, const std::atomic<bool>&) { return folder->empty() ? list() : copy_to(*folder); }};
+}
+
+}  // namespace cohort::tool

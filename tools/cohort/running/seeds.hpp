@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace cohort::tool {
+
+inline constexpr std::size_t most_seeds = 100'000;
+
+/// `1..30`, `7`, or several of these with commas between them: in their order, each as often as it is written. Throws
+/// std::invalid_argument that says what was expected.
+std::vector<std::uint64_t> parse_seeds(const std::string& text);
+
+}  // namespace cohort::tool

@@ -52,6 +52,9 @@ const Topic Codec<SceneUpdate>::topic = {
 const Topic Codec<Report>::topic = {
     .name = "cohort/v1/report", .type = &cohort_v1_Report_desc, .transient_local = true, .depth = 16};
 
+const Topic Codec<ControllerState>::topic = {
+    .name = "cohort/v1/controller_state", .type = &cohort_v1_ControllerState_desc, .depth = 4};
+
 Codec<Join>::Outgoing::Outgoing(const Join& message) {
   for (const std::string& robot : message.robots) robots.push_back(loaned(robot));
   sample.client = message.client;
@@ -225,6 +228,23 @@ Report Codec<Report>::decode(const Sample& sample) {
   return {
       sample.client,         sample.run, static_cast<ReportKind>(sample.kind), sample.tick, to_string(sample.reason),
       to_string(sample.text)};
+}
+
+void Codec<ControllerState>::lend(const ControllerState& message, Sample& sample) {
+  sample.client = message.client;
+  sample.run = message.run;
+  sample.kind = static_cast<std::uint32_t>(message.kind);
+  sample.epoch = message.epoch;
+  sample.tick = message.tick;
+  sample.size = message.size;
+  sample.offset = message.offset;
+  loan(message.data, sample.data);
+}
+
+ControllerState Codec<ControllerState>::decode(const Sample& sample) {
+  return {sample.client, sample.run,          static_cast<StateKind>(sample.kind),
+          sample.epoch,  sample.tick,         sample.size,
+          sample.offset, to_span(sample.data)};
 }
 
 }  // namespace cohort::wire

@@ -122,6 +122,13 @@ struct Codec<Report> : PlainCodec<Report, cohort_v1_Report> {
 };
 
 template <>
+struct Codec<ControllerState> : PlainCodec<ControllerState, cohort_v1_ControllerState> {
+  static const Topic topic;
+  static void lend(const ControllerState& message, Sample& sample);
+  static ControllerState decode(const Sample& sample);
+};
+
+template <>
 struct Codec<Request> : PlainCodec<Request, cohort_v1_Request> {
   static const Topic topic;
   static void lend(const Request& message, Sample& sample);

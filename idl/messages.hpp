@@ -1,15 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-/// The messages of cohort.idl as C++ values. Observation, Command and WorldState are views: when read they are valid
-/// during the callback only; when written they must stay valid until `write` returns.
+/// The messages of cohort.idl as C++ values. Those with spans are views: when read they are valid during the callback
+/// only; when written they must stay valid until `write` returns.
 namespace cohort::wire {
 
-inline constexpr std::uint32_t minor_version = 0;
+inline constexpr std::uint32_t minor_version = 1;
+inline constexpr std::uint32_t first_minor_with_state = 1;  ///< the first that has ControllerState
 
 struct Channel {
   std::string name{};
@@ -56,7 +58,7 @@ struct AdmittedRobot {
 };
 
 enum class AdmitStatus : std::uint32_t { admitted = 0, refused = 1 };
-enum class StartReason : std::uint32_t { first = 0, takeover = 1, reset = 2, restored = 3 };
+enum class StartReason : std::uint32_t { first = 0, takeover = 1, reset = 2, restored = 3, restored_with_state = 4 };
 
 struct Admit {
   std::uint64_t client = 0;
@@ -133,6 +135,21 @@ struct Report {
   std::uint64_t tick = 0;
   std::string reason{};
   std::string text{};
+};
+
+enum class StateKind : std::uint32_t { wanted = 0, here = 1 };
+/// Of one ControllerState [bytes].
+inline constexpr std::size_t largest_state_part = std::size_t{256} << 10;
+
+struct ControllerState {
+  std::uint64_t client = 0;
+  std::uint32_t run = 0;
+  StateKind kind = StateKind::wanted;
+  std::uint64_t epoch = 0;
+  std::uint64_t tick = 0;
+  std::uint64_t size = 0;
+  std::uint64_t offset = 0;
+  std::span<const std::uint8_t> data{};
 };
 
 }  // namespace cohort::wire

@@ -212,6 +212,7 @@ template class Writer<WorldState>;
 template class Writer<SceneDescription>;
 template class Writer<SceneUpdate>;
 template class Writer<Report>;
+template class Writer<ControllerState>;
 template class Writer<Request>;
 template class Writer<Reply>;
 template class Reader<Join>;
@@ -223,6 +224,7 @@ template class Reader<WorldState>;
 template class Reader<SceneDescription>;
 template class Reader<SceneUpdate>;
 template class Reader<Report>;
+template class Reader<ControllerState>;
 template class Reader<Request>;
 template class Reader<Reply>;
 

@@ -142,6 +142,7 @@ extern template class Writer<WorldState>;
 extern template class Writer<SceneDescription>;
 extern template class Writer<SceneUpdate>;
 extern template class Writer<Report>;
+extern template class Writer<ControllerState>;
 extern template class Reader<Join>;
 extern template class Reader<Admit>;
 extern template class Reader<RobotDescription>;
@@ -151,5 +152,6 @@ extern template class Reader<WorldState>;
 extern template class Reader<SceneDescription>;
 extern template class Reader<SceneUpdate>;
 extern template class Reader<Report>;
+extern template class Reader<ControllerState>;
 
 }  // namespace cohort::wire

@@ -67,6 +67,8 @@ class Braitenberg final : public cohort::Controller {
     }
   }
 
+  void save(cohort::StateWriter&) const override {}  // it remembers nothing
+
  private:
   void add(const cohort::Start& start, const std::string& parameter) {
     const std::string command = command_of(start, parameter);

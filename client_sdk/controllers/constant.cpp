@@ -44,6 +44,8 @@ class Constant final : public cohort::Controller {
       for (std::size_t i = 0; i < setting.values.size(); ++i) command.set(setting.channel, setting.values[i], i);
   }
 
+  void save(cohort::StateWriter&) const override {}  // it remembers nothing
+
  private:
   struct Setting {
     cohort::CommandChannel channel;

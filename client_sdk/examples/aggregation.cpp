@@ -3,7 +3,7 @@
 // cockroaches and swarms of robots aggregate (Garnier et al., "Aggregation behaviour as a source of collective decision
 // in a group of cockroach-like robots", ECAL 2005).
 //
-// It remembers what it is doing; one that takes over in the middle of a run begins by walking.
+// It remembers what it is doing, which snapshots have; one that takes over in the middle of a run begins by walking.
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +43,13 @@ class Aggregation final : public cohort::Controller {
     robot_.shine(command, stays ? cohort::Sbot::Color::red : cohort::Sbot::Color::blue);
     if (stays) return;
     walk(observation, sound, command);
+  }
+
+  void save(cohort::StateWriter& state) const override { state.write(random_, state_, until_, turn_); }
+  void load(cohort::StateReader& state) override {
+    state.read(random_);
+    state.read_up_to(state_, State::leaving);
+    state.read(until_, turn_);
   }
 
  private:

@@ -44,6 +44,9 @@ class Assembly final : public cohort::Controller {
       move_alone(observation, light, command);
   }
 
+  void save(cohort::StateWriter& state) const override { state.write(avoiding_for_); }
+  void load(cohort::StateReader& state) override { state.read(avoiding_for_); }
+
  private:
   // The turret is held, so its motor turns the chassis.
   void move_as_one(const cohort::Observation& observation, const cohort::Sbot::Light& light,

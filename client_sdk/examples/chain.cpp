@@ -2,7 +2,8 @@
 // of the ground, or another s-bot before it, which it grips. Who is on its way calls; when nobody is heard any more,
 // all that are in the chain drive ahead together.
 //
-// It remembers what it is doing; one that takes over in the middle of a run begins by driving ahead.
+// It remembers what it is doing, which snapshots have; one that takes over in the middle of a run begins by driving
+// ahead.
 
 #include <cohort/sbot.hpp>
 
@@ -46,6 +47,12 @@ class Chain final : public cohort::Controller {
     } else if (state_ == State::crossing) {
       robot_.drive(command, crossing_speed, crossing_speed);
     }
+  }
+
+  void save(cohort::StateWriter& state) const override { state.write(state_, silent_since_); }
+  void load(cohort::StateReader& state) override {
+    state.read_up_to(state_, State::crossing);
+    state.read(silent_since_);
   }
 
  private:

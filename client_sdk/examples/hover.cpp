@@ -66,6 +66,8 @@ class Hover final : public cohort::Controller {
       command.set(rotors_[i], std::sqrt(std::max(thrusts[i], 0.0) / motor_constant));
   }
 
+  void save(cohort::StateWriter&) const override {}
+
  private:
   double target_ = 0.0;   // above where it starts [m]
   double heading_ = 0.0;  // [rad]

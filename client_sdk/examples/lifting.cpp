@@ -2,7 +2,8 @@
 // this controller drives ahead until it can grip the one before it. Who is on its way calls; when nobody is heard any
 // more, those that are told an angle raise their arm to it, hold, lower it, and let go.
 //
-// It remembers what it is doing; one that takes over in the middle of a run begins by driving ahead.
+// It remembers what it is doing, which snapshots have; one that takes over in the middle of a run begins by driving
+// ahead.
 
 #include <algorithm>
 #include <cohort/sbot.hpp>
@@ -45,6 +46,12 @@ class Lifting final : public cohort::Controller {
     } else if (state_ != State::done) {
       robot_.close_gripper(command);
     }
+  }
+
+  void save(cohort::StateWriter& state) const override { state.write(state_, calm_for_, held_for_, raised_); }
+  void load(cohort::StateReader& state) override {
+    state.read_up_to(state_, State::done);
+    state.read(calm_for_, held_for_, raised_);
   }
 
  private:

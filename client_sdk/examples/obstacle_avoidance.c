@@ -60,4 +60,10 @@ static int step(void* self, const CohortObservation* observation, CohortCommand*
   return 0;
 }
 
-COHORT_C_CONTROLLER(ObstacleAvoidance, create, start, step, free)
+/* It remembers nothing. */
+static int save(const void* self, CohortStateWriter* state) {
+  (void)self, (void)state;
+  return 0;
+}
+
+COHORT_C_CONTROLLER_WITH_MEMORY(ObstacleAvoidance, create, start, step, free, save, NULL)

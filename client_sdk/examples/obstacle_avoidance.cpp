@@ -52,6 +52,8 @@ class ObstacleAvoidance final : public cohort::Controller {
     command.set(turret_velocity_, -alignment_gain * observation[turret_position_]);
   }
 
+  void save(cohort::StateWriter&) const override {}  // it remembers nothing
+
  private:
   std::vector<cohort::ObservationChannel> proximity_;
   cohort::ObservationChannel turret_position_;

@@ -44,6 +44,8 @@ class Phototaxis final : public cohort::Controller {
                  full_speed * (1.0 - near.left - std::max(0.0, -contrast)));
   }
 
+  void save(cohort::StateWriter&) const override {}
+
  private:
   cohort::Sbot robot_;
 };

@@ -39,6 +39,9 @@ class Retrieval final : public cohort::Controller {
       approach(observation, sound, command);
   }
 
+  void save(cohort::StateWriter& state) const override { state.write(around_for_); }
+  void load(cohort::StateReader& state) override { state.read(around_for_); }
+
  private:
   void approach(const cohort::Observation& observation, const cohort::Sbot::Sound& sound, cohort::Command& command) {
     robot_.align_turret(observation, command);

@@ -10,7 +10,8 @@ namespace {
 // Drives a robot through the callbacks of a controller in C.
 class CallbackController final : public Controller {
  public:
-  explicit CallbackController(const CohortController& callbacks) : callbacks_(callbacks) {}
+  CallbackController(const CohortController& callbacks, const CohortMemory& memory)
+      : callbacks_(callbacks), memory_(memory) {}
   CallbackController(const CallbackController&) = delete;
   CallbackController& operator=(const CallbackController&) = delete;
   ~CallbackController() override {
@@ -36,6 +37,22 @@ class CallbackController final : public Controller {
     check(callbacks_.step(self_, &observation_handle, &command_handle));
   }
 
+  void save(StateWriter& state) const override {
+    if (memory_.save == nullptr) return state.leave_out();
+    last_error().clear();
+    CohortStateWriter handle{state};
+    check(memory_.save(self_, &handle));
+  }
+
+  void load(StateReader& state) override {
+    if (memory_.load == nullptr) return;
+    last_error().clear();
+    CohortStateReader handle{state};
+    const int result = memory_.load(self_, &handle);
+    if (handle.mistake) throw StateError(*handle.mistake);
+    check(result);
+  }
+
  private:
   static std::runtime_error failure(const std::string& otherwise) {
     return std::runtime_error(last_error().empty() ? otherwise + " and gave no reason" : last_error());
@@ -45,6 +62,7 @@ class CallbackController final : public Controller {
   }
 
   const CohortController callbacks_;
+  const CohortMemory memory_;
   void* self_ = nullptr;
 };
 
@@ -80,7 +98,12 @@ void cohort_set_at(CohortCommand* command, CohortCommandChannel channel, std::si
 }
 
 void* cohort_make_controller(const CohortController* controller) {
-  return static_cast<cohort::Controller*>(new cohort::CallbackController(*controller));
+  const CohortMemory none = {nullptr, nullptr};
+  return cohort_make_controller_with_memory(controller, &none);
+}
+
+void* cohort_make_controller_with_memory(const CohortController* controller, const CohortMemory* memory) {
+  return static_cast<cohort::Controller*>(new cohort::CallbackController(*controller, *memory));
 }
 
 void cohort_destroy_controller(void* made) { delete static_cast<cohort::Controller*>(made); }

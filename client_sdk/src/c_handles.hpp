@@ -27,6 +27,15 @@ struct CohortCommand {
   cohort::Command& command;
 };
 
+struct CohortStateWriter {
+  cohort::StateWriter& writer;
+};
+
+struct CohortStateReader {
+  cohort::StateReader& reader;
+  std::optional<std::string> mistake{};  ///< the first one
+};
+
 namespace cohort {
 
 /// This thread's, for `cohort_last_error`.

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "client_sdk/src/client_states.hpp"
 #include "client_sdk/src/frame_queue.hpp"
 #include "client_sdk/src/this_process.hpp"
 #include "idl/wire.hpp"
@@ -22,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto stop_is_polled_every = 100ms;
+constexpr auto state_is_asked_for_every = 20ms;
 constexpr auto patience_before_notice = 3s;
 constexpr auto joins_again_every = 1s;
 constexpr auto time_for_last_words = 500ms;
@@ -78,6 +80,7 @@ class Client {
   void drive_inline(Lock& lock);
   void heed(const wire::Report& report);
   void heed(Offer offer, Lock& lock);
+  void exchange_states(Lock& lock);
   void answer_frames(Lock& lock);
 
   bool is_described(const wire::Admit& admit) const;
@@ -121,6 +124,7 @@ class Client {
   wire::Reader<wire::Admit> admit_reader_;
   wire::Reader<wire::Report> report_reader_;
   wire::Reader<wire::Observation> frame_reader_;
+  ClientStates states_;  // with `driving_` held
 };
 
 Client::Client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop)
@@ -140,10 +144,12 @@ Client::Client(const ControllerKind& kind, const ClientOptions& options, const s
       report_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr},
                      wire::partition_of(id_)),
       frame_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr},
-                    wire::partition_of(id_), frames_kept_by_dds) {}
+                    wire::partition_of(id_), frames_kept_by_dds),
+      states_(participant_, id_, [this] { wake(Lock(mutex_)); }) {}
 
 ClientEnd Client::run() {
   const wire::Join join{.client = id_,
+                        .minor = states_.are_possible() ? wire::minor_version : wire::first_minor_with_state - 1,
                         .controller = name_,
                         .host = host_name(),
                         .process = static_cast<std::uint32_t>(::getpid()),
@@ -155,16 +161,18 @@ ClientEnd Client::run() {
       joins_.write(join);
       joins_at = Clock::now() + joins_again_every;
     }
+    auto sleep = stop_is_polled_every;
     {
       const std::lock_guard driving(driving_);
       Lock lock(mutex_);
       drive(lock);
       if (failure_) return fail(lock);
       if (end_) return *end_;
+      if (states_.are_awaited()) sleep = state_is_asked_for_every;
     }
     Lock lock(mutex_);
     if (const auto end = reason_to_leave()) return *end;
-    wake_.wait_for(lock, stop_is_polled_every, [&] { return news_; });
+    wake_.wait_for(lock, sleep, [&] { return news_; });
     news_ = false;
   }
 }
@@ -228,6 +236,7 @@ void Client::drive(Lock& lock) {
   try {
     for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
     if (offered_ && is_described(offered_->admit)) heed(*std::exchange(offered_, std::nullopt), lock);
+    exchange_states(lock);
     answer_frames(lock);
   } catch (const LeaveRun&) {
     for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
@@ -279,9 +288,22 @@ void Client::heed(Offer offer, Lock& lock) {
   const std::vector<wire::RobotDescription> descriptions = descriptions_;
   const Unlocked unlocked(lock);
   host_.start(current_->admit, descriptions);
+  states_.begin(current_->admit);
+}
+
+void Client::exchange_states(Lock& lock) {
+  if (!states_.have_work()) return;
+  std::vector<std::string> notices;
+  {
+    const std::uint64_t next_tick = frames_.next_tick();
+    const Unlocked unlocked(lock);
+    notices = states_.act(host_, next_tick);
+  }
+  for (const std::string& notice : notices) tell(Severity::warning, notice);
 }
 
 void Client::answer_frames(Lock& lock) {
+  if (states_.are_awaited()) return;
   // Frames may come faster than they can be answered, so what is more urgent is looked for between them.
   while (!end_ && !failure_ && !stop_ && !offered_ && reports_.empty()) {
     if (const auto repeat = frames_.next_repeat()) {
@@ -359,34 +381,6 @@ void Client::tell(Severity severity, const std::string& text) const {
 }
 
 }  // namespace
-
-bool RunWatch::is_over() const {
-  const std::lock_guard lock(mutex_);
-  return ended_ || (away_since_ && Clock::now() - *away_since_ > server_may_be_away);
-}
-
-void RunWatch::note_end() {
-  const std::lock_guard lock(mutex_);
-  ended_ = true;
-}
-
-void RunWatch::note_server(bool there) {
-  const std::lock_guard lock(mutex_);
-  if (there)
-    away_since_.reset();
-  else if (!away_since_)
-    away_since_ = Clock::now();
-}
-
-std::vector<std::string> split_selectors(std::string_view list) {
-  std::vector<std::string> parts;
-  while (!list.empty()) {
-    const std::string_view part = list.substr(0, list.find(','));
-    if (!part.empty()) parts.emplace_back(part);
-    list.remove_prefix(std::min(list.size(), part.size() + 1));
-  }
-  return parts;
-}
 
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop) {
   return Client(kind, options, stop).run();

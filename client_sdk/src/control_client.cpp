@@ -129,9 +129,10 @@ wire::Reply ControlClient::expect(wire::Request request, std::chrono::millisecon
   return *reply;
 }
 
-std::vector<std::byte> ControlClient::save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
+ControlClient::SavedSnapshot ControlClient::save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
   wire::Request request{.operation = wire::Operation::save_snapshot};
-  const std::uint64_t size = expect(request, at_most, stop).size;
+  const wire::Reply saved = expect(request, at_most, stop);
+  const std::uint64_t size = saved.size;
   if (size > wire::largest_data) throw ControlError("the server says that its snapshot is larger than may be");
   std::vector<std::byte> bytes;
   bytes.reserve(size);
@@ -144,7 +145,7 @@ std::vector<std::byte> ControlClient::save(std::chrono::milliseconds at_most, co
     const auto data = std::as_bytes(std::span(part.data));
     bytes.insert(bytes.end(), data.begin(), data.end());
   }
-  return bytes;
+  return {std::move(bytes), saved.error_message};
 }
 
 wire::Reply ControlClient::load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,

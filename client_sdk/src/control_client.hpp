@@ -49,9 +49,13 @@ class ControlClient {
   /// A server was there, and is there no more.
   bool server_is_gone() const;
 
+  struct SavedSnapshot {
+    std::vector<std::byte> bytes;
+    std::string text;  ///< what the server says of it, for people
+  };
   /// The snapshot of the run as it stands at the next boundary (SaveSnapshot, GetData). Throws ControlError; `at_most`
   /// counts for each of its parts.
-  std::vector<std::byte> save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+  SavedSnapshot save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
   /// Lets the run go on from a snapshot (PutData, LoadSnapshot). The reply of the run that does. Throws ControlError.
   wire::Reply load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,
                    const std::atomic<bool>& stop);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -45,7 +46,8 @@ StartReason reason_of(wire::StartReason reason) {
     case wire::StartReason::first: return StartReason::first;
     case wire::StartReason::takeover: return StartReason::takeover;
     case wire::StartReason::reset: return StartReason::reset;
-    case wire::StartReason::restored: return StartReason::restored;
+    case wire::StartReason::restored:
+    case wire::StartReason::restored_with_state: return StartReason::restored;
   }
   throw ControllerFailure("the server gives a reason to start that this version does not know");
 }
@@ -59,7 +61,8 @@ const wire::Team* team_of(const wire::Admit& admit, const wire::AdmittedRobot& r
 }  // namespace
 
 ControllerKind kind_of(const Plugin& plugin) {
-  return {plugin.name, [plugin] { return OwnedController(plugin.create(), plugin.destroy); }};
+  return {plugin.name, [plugin] { return OwnedController(plugin.create(), plugin.destroy); },
+          plugin.abi >= Plugin::first_abi_with_state};
 }
 
 Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
@@ -97,6 +100,7 @@ struct ControllerHost::Robot {
   OwnedController controller;
   std::size_t observation_size = 0;
   std::vector<double> neutral;
+  std::uint64_t tick = 0;  // of its start, or its last step
 };
 
 ControllerHost::ControllerHost(ControllerKind kind) : kind_(std::move(kind)) {}
@@ -114,8 +118,8 @@ ControllerHost::Robot* ControllerHost::find(std::uint32_t id) {
 }
 
 void ControllerHost::start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions) {
-  const bool same_controllers =
-      admit.start_reason == wire::StartReason::reset || admit.start_reason == wire::StartReason::restored;
+  const StartReason reason = reason_of(admit.start_reason);
+  const bool same_controllers = reason == StartReason::reset || reason == StartReason::restored;
   if (!same_controllers) robots_.clear();
   std::vector<Robot> robots;
   for (const wire::AdmittedRobot& admitted : admit.robots) {
@@ -133,7 +137,7 @@ void ControllerHost::start(const wire::Admit& admit, std::span<const wire::Robot
       neutral.insert(neutral.end(), channel.size, channel.neutral);
     }
     robots.push_back({admitted.robot, admitted.name, std::move(controller), size_of(start.observation_channels),
-                      std::move(neutral)});
+                      std::move(neutral), admit.tick});
   }
   std::sort(robots.begin(), robots.end(), [](const Robot& a, const Robot& b) { return a.id < b.id; });
   robots_ = std::move(robots);
@@ -167,11 +171,53 @@ std::span<const double> ControllerHost::answer(const wire::Observation& frame) {
     const std::span<double> values(values_.data() + written, robot.neutral.size());
     std::copy(robot.neutral.begin(), robot.neutral.end(), values.begin());
     Command command(values);
+    robot.tick = frame.tick;
     guarded(robot.name, "step", frame.tick, [&] { robot.controller->step(observation, command); });
     read += robot.observation_size;
     written += robot.neutral.size();
   }
   return values_;
+}
+
+std::vector<RobotState> ControllerHost::save() const {
+  std::vector<RobotState> states;
+  for (const Robot& robot : robots_) {
+    RobotState& saved = states.emplace_back(RobotState{robot.id});
+    if (!kind_.has_state) continue;
+    StateWriter writer;
+    guarded(robot.name, "save", robot.tick, [&] {
+      robot.controller->save(writer);
+      if (writer.bytes().size() > largest_state)
+        throw StateError("its state has " + std::to_string(writer.bytes().size()) + " bytes, and " +
+                         std::to_string(largest_state) + " are the most");
+    });
+    if (!writer.is_left_out()) saved.state = {kind_.name, {writer.bytes().begin(), writer.bytes().end()}};
+  }
+  return states;
+}
+
+std::vector<std::string> ControllerHost::load(std::span<const RobotState> states) {
+  std::set<std::string> useless;  // kinds of controllers
+  for (const auto& [id, state] : states) {
+    Robot* const robot = find(id);
+    if (robot == nullptr || !state) continue;
+    if (!kind_.has_state || state->controller != kind_.name) {
+      useless.insert(state->controller);
+      continue;
+    }
+    guarded(robot->name, "load", robot->tick, [&] {
+      StateReader reader(state->bytes);
+      robot->controller->load(reader);
+      if (!reader.rest().empty())
+        throw StateError("it left " + std::to_string(reader.rest().size()) + " of " +
+                         std::to_string(state->bytes.size()) + " bytes of its state unread");
+    });
+  }
+  std::vector<std::string> notices;
+  for (const std::string& kind : useless)
+    notices.push_back("the state is of controllers '" + kind + "', which '" + kind_.name +
+                      "' cannot go on from: it begins anew");
+  return notices;
 }
 
 }  // namespace cohort

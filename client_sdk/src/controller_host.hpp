@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client_sdk/include/cohort/controller.hpp"
+#include "client_sdk/src/controller_state.hpp"
 #include "idl/messages.hpp"
 
 namespace cohort {
@@ -28,6 +29,7 @@ using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
 struct ControllerKind {
   std::string name;  ///< shown to people
   std::function<OwnedController()> create;
+  bool has_state = true;  ///< they have `save` and `load`: of plugins of older interfaces, none have
 };
 ControllerKind kind_of(const Plugin& plugin);
 
@@ -52,6 +54,14 @@ class ControllerHost {
   /// The answer's values, robot after robot as in `frame.robots`. Valid until the next call. Throws as `start` does,
   /// also if the frame does not fit the descriptions.
   std::span<const double> answer(const wire::Observation& frame);
+
+  /// What the controllers of all robots remember now, in the order of their ids. Throws as `start` does, also if one
+  /// writes more than `largest_state`.
+  std::vector<RobotState> save() const;
+  /// Right after `start`: lets the controllers go on from `states`, which may be of other robots too. Throws as `start`
+  /// does, also if a controller leaves some of its state unread. A sentence for each kind of controllers whose state is
+  /// of no use to these.
+  std::vector<std::string> load(std::span<const RobotState> states);
 
  private:
   struct Robot;

@@ -25,6 +25,8 @@ class FrameQueue {
 
   /// The frame to answer next, or null. It is under way until `finish`; until then `begin` must not be called.
   const wire::Observation* next();
+  /// Of the lease, all frames before it are answered, under way, or not to come.
+  std::uint64_t next_tick() const { return next_tick_; }
   /// Takes the values that answer the frame under way, and gives the command to send. Valid until `begin` or until
   /// as many later answers as are kept.
   wire::Command finish(std::span<const double> values);

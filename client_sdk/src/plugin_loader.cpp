@@ -78,10 +78,11 @@ LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs
                              "COHORT_CONTROLLER(Class) at the end of the controller's source makes");
   }
   // First in the struct in every version, so it can be read before anything else is trusted.
-  if (plugin_->abi != Plugin::current_abi) {
+  if (plugin_->abi < Plugin::oldest_abi || plugin_->abi > Plugin::current_abi) {
     throw std::runtime_error(path_.string() + " was built for version " + std::to_string(plugin_->abi) +
-                             " of the controller interface, and this program has version " +
-                             std::to_string(Plugin::current_abi) + ". Build it again with the headers of this version");
+                             " of the controller interface, and this program takes versions " +
+                             std::to_string(Plugin::oldest_abi) + " to " + std::to_string(Plugin::current_abi) +
+                             ". Build it again with the headers of this version");
   }
 }
 

@@ -38,6 +38,8 @@ class Barrier {
   void open(std::uint64_t tick, Time now);
 
   std::uint64_t tick() const { return tick_; }
+  /// Whether nothing was opened yet.
+  bool is_fresh() const { return is_fresh_; }
   /// Whether the robot is asked at this tick: one that is detached, not driven or not in the world is not.
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 

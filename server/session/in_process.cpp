@@ -39,6 +39,13 @@ void ask_again(Exchange& exchange, const description::Experiment& experiment, st
   for (const auto& [tick, unanswered] : robots_of) ask(exchange, frame, experiment, unanswered, tick, host);
 }
 
+ControllerStates states_of(const std::vector<std::unique_ptr<ControllerHost>>& hosts, const Simulation& simulation) {
+  ControllerStates states(simulation.robot_count());
+  for (const auto& host : hosts)
+    for (auto& [robot, state] : host->save()) states[robot] = std::move(state);
+  return states;
+}
+
 }  // namespace
 
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
@@ -60,14 +67,21 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       hosts.push_back(std::make_unique<ControllerHost>(controllers[team]));
       if (options.from) admit.start_reason = wire::StartReason::restored;
       hosts.back()->start(admit, descriptions);
-      if (options.from)
-        ask_again(exchange, experiment, experiment.teams[team].robots, simulation.tick(), *hosts.back());
+      if (!options.from) continue;
+      const auto& robots = experiment.teams[team].robots;
+      for (const std::string& notice : hosts.back()->load(states_of(*options.from, robots)))
+        monitor.add_event("unsaved", "team '" + experiment.teams[team].name + "': " + notice);
+      ask_again(exchange, experiment, robots, simulation.tick(), *hosts.back());
     }
+    if (options.from) monitor.note_left_out(*options.from);
 
     monitor.start();
     Exchange::Frame frame;  // reused
     while (!monitor.is_over()) {
       if (stop) return monitor.finish(RunResult::End::interrupted);
+      if (listener.can_save)
+        listener.can_save(
+            [&] { return take_snapshot(experiment, simulation, exchange, states_of(hosts, simulation)); });
       const auto begin = RunMonitor::Clock::now();
       exchange.open(begin.time_since_epoch());
       monitor.at_boundary();

@@ -79,6 +79,8 @@ struct RunListener {
   std::function<void()> stepped{};
   /// The state of a tick is complete and its frames are out: once for each tick, from the run's first to its last.
   std::function<void()> boundary{};
+  /// Of a run in one process: at each boundary, before its frames go out. `take` makes a snapshot of the run as it is.
+  std::function<void(const std::function<SessionSnapshot()>& take)> can_save{};
   /// A tick has its answers: the wall time since its first frame was sent.
   std::function<void(std::chrono::nanoseconds)> barrier{};
   /// The commands of a tick are with the simulation, which is about to step: those of these robots have changed.

@@ -7,7 +7,8 @@ namespace cohort::session {
 
 RunMonitor::RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
                        RunListener listener)
-    : simulation_(simulation),
+    : experiment_(experiment),
+      simulation_(simulation),
       options_(std::move(options)),
       listener_(std::move(listener)),
       step_(experiment.world.step),

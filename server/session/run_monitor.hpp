@@ -60,6 +60,10 @@ class RunMonitor {
     result_.barrier.add(latency);
     if (listener_.barrier) listener_.barrier(latency);
   }
+  /// What a snapshot that is taken, or that the run goes on from, has not of its controllers.
+  void note_left_out(const SessionSnapshot& snapshot) {
+    for (const std::string& sentence : what_is_left_out(snapshot, experiment_)) add_event("unsaved", sentence);
+  }
   void add_resent(std::uint64_t frames) { result_.resent += frames; }
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
   void add_miss(const lockstep::Barrier::Miss& miss);
@@ -70,6 +74,7 @@ class RunMonitor {
   static constexpr std::chrono::milliseconds report_interval{200};
   Progress progress_at(Clock::time_point now);
 
+  const description::Experiment& experiment_;
   const Simulation& simulation_;
   RunOptions options_;
   RunListener listener_;

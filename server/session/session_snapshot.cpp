@@ -15,7 +15,7 @@ namespace cohort::session {
 namespace {
 
 constexpr std::uint64_t mark = 0x544f485354524843;  // "CHRTSHOT"
-constexpr std::uint32_t format = 1;
+constexpr std::uint32_t format = 2;
 constexpr std::size_t hash_size = sizeof(std::uint64_t);
 
 std::uint64_t hash_of(std::span<const std::byte> bytes) {
@@ -43,13 +43,58 @@ Bytes read_bytes(SnapshotReader& reader) {
   return bytes;
 }
 
+void add_states(SnapshotWriter& writer, const ControllerStates& states) {
+  writer.add_count(states.size());
+  for (const auto& state : states) {
+    writer.add(state.has_value());
+    if (!state) continue;
+    add_bytes(writer, state->controller);
+    add_bytes(writer, state->bytes);
+  }
+}
+
+ControllerStates read_states(SnapshotReader& reader) {
+  ControllerStates states(reader.read_count(sizeof(bool)));
+  for (auto& state : states) {
+    bool is_there = false;
+    reader.read(is_there);
+    if (!is_there) continue;
+    state.emplace();
+    state->controller = read_bytes<std::string>(reader);
+    state->bytes = read_bytes<std::vector<std::byte>>(reader);
+    if (state->bytes.size() > largest_state)
+      throw SnapshotError("the snapshot has " + std::to_string(state->bytes.size()) +
+                          " bytes of one controller's state, and " + std::to_string(largest_state) + " are the most");
+  }
+  return states;
+}
+
 }  // namespace
 
 SessionSnapshot take_snapshot(const description::Experiment& experiment, const Simulation& simulation,
-                              const Exchange& exchange) {
+                              const Exchange& exchange, ControllerStates controllers) {
   SnapshotWriter writer;
   exchange.save(writer);
-  return {experiment.name, experiment.seed, simulation.tick(), simulation.save(), writer.bytes()};
+  return {experiment.name,   experiment.seed, simulation.tick(),
+          simulation.save(), writer.bytes(),  std::move(controllers)};
+}
+
+std::vector<RobotState> states_of(const SessionSnapshot& snapshot, std::span<const std::uint32_t> robots) {
+  std::vector<RobotState> states;
+  for (const std::uint32_t robot : robots)
+    if (robot < snapshot.controllers.size() && snapshot.controllers[robot])
+      states.push_back({robot, snapshot.controllers[robot]});
+  return states;
+}
+
+std::vector<std::string> what_is_left_out(const SessionSnapshot& snapshot, const description::Experiment& experiment) {
+  std::vector<std::string> sentences;
+  if (snapshot.tick == 0) return sentences;
+  for (const description::Team& team : experiment.teams)
+    if (states_of(snapshot, team.robots).size() < team.robots.size())
+      sentences.push_back("the snapshot has nothing of what the controllers of team '" + team.name + "' (" +
+                          team.controller + ") remember: whoever goes on from it starts them anew");
+  return sentences;
 }
 
 std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot) {
@@ -62,6 +107,7 @@ std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot) {
   writer.add(snapshot.tick);
   add_bytes(writer, snapshot.simulation);
   add_bytes(writer, snapshot.exchange);
+  add_states(writer, snapshot.controllers);
   writer.add(hash_of(writer.bytes()));
   return writer.bytes();
 }
@@ -94,6 +140,7 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
   reader.read(snapshot.tick);
   snapshot.simulation = read_bytes<std::vector<std::byte>>(reader);
   snapshot.exchange = read_bytes<std::vector<std::byte>>(reader);
+  snapshot.controllers = read_states(reader);
   reader.read(hash);
   if (!reader.is_at_end()) throw SnapshotError("the snapshot goes on after its end");
   return snapshot;
@@ -110,6 +157,9 @@ void restore(const SessionSnapshot& snapshot, Simulation& simulation) {
   if (simulation.tick() != snapshot.tick)
     throw SnapshotError("the snapshot says that it is of tick " + std::to_string(snapshot.tick) +
                         ", and its world of tick " + std::to_string(simulation.tick()));
+  if (!snapshot.controllers.empty() && snapshot.controllers.size() != simulation.robot_count())
+    throw SnapshotError("the snapshot has the controllers of " + std::to_string(snapshot.controllers.size()) +
+                        " robots, and its world " + std::to_string(simulation.robot_count()) + " robots");
 }
 
 void restore(const SessionSnapshot& snapshot, Exchange& exchange) {

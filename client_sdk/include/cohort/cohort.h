@@ -159,8 +159,34 @@ typedef struct CohortController {
   void (*destroy)(void* self); /* of what `create` gave. May be NULL */
 } CohortController;
 
+/* ---- What a controller remembers ----
+ *
+ * When a snapshot of the run is taken, `save` writes what the controller remembers of the steps since its start,
+ * between steps and at most 1 MiB; where a run goes on from a snapshot, `load` of another object reads it to the last
+ * byte and in the same order, right after `start`. Who remembers nothing writes nothing. Both return 0, or anything
+ * else if they fail. Handles are valid until the callback returns. */
+typedef struct CohortStateWriter CohortStateWriter;
+typedef struct CohortStateReader CohortStateReader;
+
+void cohort_save_real(CohortStateWriter* state, double value);
+void cohort_save_whole(CohortStateWriter* state, int64_t value);
+void cohort_save_flag(CohortStateWriter* state, bool value);
+void cohort_save_bytes(CohortStateWriter* state, const void* bytes, size_t size);
+
+/* State that ends too early, or has what cannot be, gives 0, and ends the run whatever `load` returns. */
+double cohort_load_real(CohortStateReader* state);
+int64_t cohort_load_whole(CohortStateReader* state);
+bool cohort_load_flag(CohortStateReader* state);
+void cohort_load_bytes(CohortStateReader* state, void* bytes, size_t size);
+
+/* Of a controller that has them. */
+typedef struct CohortMemory {
+  int (*save)(const void* self, CohortStateWriter* state);
+  int (*load)(void* self, CohortStateReader* state); /* NULL if there is nothing to read */
+} CohortMemory;
+
 /* What a plugin exports as `cohort_plugin`: the same as plugins in C++ do. COHORT_C_CONTROLLER fills it in. */
-#define COHORT_PLUGIN_ABI 2u
+#define COHORT_PLUGIN_ABI 3u
 typedef struct CohortPlugin {
   uint32_t abi;
   const char* name;
@@ -168,8 +194,9 @@ typedef struct CohortPlugin {
   void (*destroy)(void*);
 } CohortPlugin;
 
-/* For COHORT_C_CONTROLLER. `controller` has to live as long as what is made. */
+/* For COHORT_C_CONTROLLER and its like. */
 void* cohort_make_controller(const CohortController* controller);
+void* cohort_make_controller_with_memory(const CohortController* controller, const CohortMemory* memory);
 void cohort_destroy_controller(void* made);
 /* The `main` of a controller that runs as a process of its own: `--robots`, `--server`, `--domain`, `--secure`,
  * `--help`. Returns the exit code: 0 when the run finished, 1 when it or a controller failed, 2 for a mistake in the
@@ -184,10 +211,23 @@ int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv);
 #endif
 
 /* Once in a controller, at the end of a source file, without a semicolon. `Name` is for messages; the others are the
- * functions of CohortController, `create` and `destroy` may be NULL. */
-#define COHORT_C_CONTROLLER(Name, create, start, step, destroy)                                             \
-  static const CohortController cohort_controller_ = {#Name, create, start, step, destroy};                 \
-  static void* cohort_create_(void) { return cohort_make_controller(&cohort_controller_); }                 \
+ * functions of CohortController, `create` and `destroy` may be NULL. Whoever goes on from a snapshot starts such a
+ * controller anew, and is told so. */
+#define COHORT_C_CONTROLLER(Name, create, start, step, destroy)                             \
+  static const CohortController cohort_controller_ = {#Name, create, start, step, destroy}; \
+  static void* cohort_create_(void) { return cohort_make_controller(&cohort_controller_); } \
+  COHORT_C_PLUGIN_(Name)
+
+/* The same of one that has the functions of CohortMemory. */
+#define COHORT_C_CONTROLLER_WITH_MEMORY(Name, create, start, step, destroy, save, load)     \
+  static const CohortController cohort_controller_ = {#Name, create, start, step, destroy}; \
+  static const CohortMemory cohort_memory_ = {save, load};                                  \
+  static void* cohort_create_(void) {                                                       \
+    return cohort_make_controller_with_memory(&cohort_controller_, &cohort_memory_);        \
+  }                                                                                         \
+  COHORT_C_PLUGIN_(Name)
+
+#define COHORT_C_PLUGIN_(Name)                                                                              \
   COHORT_EXTERN const CohortPlugin cohort_plugin __attribute__((visibility("default")));                    \
   const CohortPlugin cohort_plugin = {COHORT_PLUGIN_ABI, #Name, cohort_create_, cohort_destroy_controller}; \
   COHORT_C_CONTROLLER_MAIN

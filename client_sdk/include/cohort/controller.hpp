@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cohort/parameters.hpp>
+#include <cohort/state.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -133,8 +134,8 @@ class Command {
 };
 
 /// Drives one robot. An object of its own for each robot, made by its default constructor; all are called on one
-/// thread. An exception from constructor, `start` or `step` ends the run with its message. The run waits while a call
-/// lasts, as long as the team's `on_late` has patience.
+/// thread. An exception from constructor, `start`, `step`, `save` or `load` ends the run with its message. The run
+/// waits while a call lasts, as long as the team's `on_late` has patience.
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -145,16 +146,28 @@ class Controller {
   /// From one observation to one command. For lockstep with identical bits, a pure function of what `start` and the
   /// steps since gave: no clock, no random device, no state shared between robots.
   virtual void step(const Observation& observation, Command& command) = 0;
+
+  // In this place, and in this order: a program tells by a plugin's `abi` whether it has what follows.
+
+  /// Writes what it remembers of the steps since `start`, at most `largest_state`: between steps, when a snapshot of
+  /// the run is taken. Whoever remembers nothing writes nothing. A class that leaves this out is started anew by
+  /// whoever goes on from a snapshot, who is told so.
+  virtual void save(StateWriter& state) const { state.leave_out(); }
+  /// Reads, to the last byte, what `save` of the same class wrote in another object or process, and goes on from there:
+  /// right after `start`, whose channels, parameters and seed are those that the other one had.
+  virtual void load(StateReader&) {}
 };
 
-/// What a plugin exports as `cohort_plugin`; COHORT_CONTROLLER fills it in. A plugin is loaded if its `abi` is that of
-/// the program; it may come from another build of Cohort.
+/// What a plugin exports as `cohort_plugin`; COHORT_CONTROLLER fills it in. A plugin is loaded if its `abi` is one that
+/// the program knows; it may come from another build of Cohort.
 struct Plugin {
-  static constexpr std::uint32_t current_abi = 2;
-  std::uint32_t abi = 0;                   ///< current_abi of the headers that it was built with
-  const char* name = nullptr;              ///< of the class, for messages
-  Controller* (*create)() = nullptr;       ///< may throw
-  void (*destroy)(Controller*) = nullptr;  ///< of what `create` gave
+  static constexpr std::uint32_t current_abi = 3;
+  static constexpr std::uint32_t oldest_abi = 2;            ///< that is loaded
+  static constexpr std::uint32_t first_abi_with_state = 3;  ///< its controllers have `save` and `load`
+  std::uint32_t abi = 0;                                    ///< current_abi of the headers that it was built with
+  const char* name = nullptr;                               ///< of the class, for messages
+  Controller* (*create)() = nullptr;                        ///< may throw
+  void (*destroy)(Controller*) = nullptr;                   ///< of what `create` gave
 };
 
 /// The `main` of a controller that runs as a process of its own: `--robots`, `--server`, `--domain`, `--help`. Ends in

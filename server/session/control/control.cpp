@@ -32,6 +32,13 @@ SimulationState on_wire(PlaybackState state) {
   return SimulationState::paused;
 }
 
+// For people, after what was done.
+std::string left_out_text(const SessionSnapshot& snapshot, const description::Experiment& experiment) {
+  std::string text;
+  for (const std::string& sentence : what_is_left_out(snapshot, experiment)) text += "; " + sentence;
+  return text;
+}
+
 std::string ticks_text(std::uint64_t count) { return std::to_string(count) + (count == 1 ? " tick" : " ticks"); }
 
 std::string speed_text(double speed) {
@@ -64,10 +71,12 @@ void Control::begin(ControlledRun run) {
     kept_ =
         KeptSnapshots(static_cast<std::uint64_t>(run_->monitor.options().keep_interval / run_->experiment.world.step),
                       most_kept_bytes);
+  const auto& from = run_->monitor.options().from;
   for (const Request& request : std::exchange(answered_by_next_run_, {}))
     answer(request, ResultCode::ok,
            "run " + std::to_string(run_->number) + " stands at tick " + std::to_string(run_->simulation.tick()) +
-               ", with seed " + std::to_string(run_->experiment.seed));
+               ", with seed " + std::to_string(run_->experiment.seed) +
+               (from ? left_out_text(*from, run_->experiment) : std::string()));
 }
 
 void Control::end(RunResult::End how) {
@@ -211,10 +220,18 @@ void Control::tell(const Request& request, const std::string& text, std::vector<
 
 void Control::reach_boundary() {
   queries_.note_progress(Clock::now());
-  if (kept_.wants(run_->simulation.tick())) kept_.keep(run_->take_snapshot());
+  if (kept_.wants(run_->simulation.tick())) keep_snapshot();
   if (!playback_.has_steps()) return;
   const auto done = playback_.reached(run_->simulation.tick());
   answer_steps(done, ResultCode::ok, "paused at tick " + std::to_string(run_->simulation.tick()));
+}
+
+void Control::keep_snapshot() {
+  try {
+    kept_.keep(run_->take_snapshot());
+  } catch (const SnapshotError&) {
+    // A controller has failed: the run ends by that.
+  }
 }
 
 bool Control::perform(Moment moment) {
@@ -326,10 +343,11 @@ void Control::save(const Request& request) {
     return answer(request, ResultCode::operation_failed,
                   "the snapshot has " + std::to_string(bytes.size()) + " bytes, and " +
                       std::to_string(wire::largest_data) + " can be sent at the most");
-  tell(request, "saved at tick " + std::to_string(snapshot.tick));
+  const std::string text = "saved at tick " + std::to_string(snapshot.tick) + left_out_text(snapshot, run_->experiment);
+  tell(request, text);
   Reply reply = reply_to(request);
   reply.size = bytes.size();
-  reply.error_message = "saved at tick " + std::to_string(snapshot.tick);
+  reply.error_message = text;
   ledger_.offer(request.client, std::move(bytes));
   send(std::move(reply), true);
 }

@@ -75,6 +75,7 @@ class Control {
   void quit(const wire::Request& request);
   // What begins a run anew, and what is kept of one.
   void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
+  void keep_snapshot();
   void save(const wire::Request& request);
   void load(const wire::Request& request);
   void go_back(const wire::Request& request);

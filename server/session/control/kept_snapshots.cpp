@@ -7,7 +7,11 @@ namespace cohort::session {
 namespace {
 
 std::size_t size_of(const SessionSnapshot& snapshot) {
-  return sizeof snapshot + snapshot.experiment.size() + snapshot.simulation.size() + snapshot.exchange.size();
+  std::size_t size =
+      sizeof snapshot + snapshot.experiment.size() + snapshot.simulation.size() + snapshot.exchange.size();
+  for (const auto& state : snapshot.controllers)
+    size += sizeof state + (state ? state->controller.size() + state->bytes.size() : 0);
+  return size;
 }
 
 }  // namespace

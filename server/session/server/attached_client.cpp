@@ -19,7 +19,8 @@ AttachedClient::AttachedClient(const Inbox::Arrival& arrival, std::uint64_t its_
       label(label_of(join, identity)),
       admit(*arrival.participant, wire::partition_of(join.client)),
       observation(*arrival.participant, wire::partition_of(join.client)),
-      report(*arrival.participant, wire::partition_of(join.client)) {}
+      report(*arrival.participant, wire::partition_of(join.client)),
+      participant_(*arrival.participant) {}
 
 void AttachedClient::begin_run() {
   claims = false;
@@ -27,6 +28,7 @@ void AttachedClient::begin_run() {
   reported_rejections.clear();
   answer_times = {};
   late = rejected = resent_count = 0;
+  state = {};
 }
 
 void AttachedClient::refuse(ServedRun& run, const std::string& reason) {
@@ -68,6 +70,18 @@ void AttachedClient::write_frame(ServedRun& run, std::uint64_t tick, bool resent
     answer_times.sent(tick, now);
   }
   send(observation, message, &run);  // again, if it is lost
+}
+
+void AttachedClient::send_state(wire::ControllerState message, ServedRun& run) {
+  message.client = id();
+  message.run = run.number;
+  message.epoch = epoch;
+  try {
+    if (!states_) states_.emplace(participant_, wire::partition_of(id()));
+    send(*states_, message, &run);  // what is lost is asked for again
+  } catch (const wire::WireError& error) {
+    run.monitor.add_event("unsent", label + ": " + error.what());
+  }
 }
 
 wire::ControllerStatus AttachedClient::status(ServedRun& run) {

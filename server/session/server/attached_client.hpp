@@ -14,6 +14,7 @@
 #include "server/session/exchange.hpp"
 #include "server/session/server/inbox.hpp"
 #include "server/session/server/served_run.hpp"
+#include "server/session/server/state_transfer.hpp"
 
 namespace cohort::session {
 
@@ -44,6 +45,7 @@ struct AttachedClient {
   std::uint64_t late = 0;  // answers
   std::uint64_t rejected = 0;
   std::uint64_t resent_count = 0;  // frames
+  StateTransfer state{};
 
   std::uint64_t id() const { return join.client; }
   /// Another run begins: nothing is claimed of it yet.
@@ -62,11 +64,18 @@ struct AttachedClient {
   /// Its frame of this tick, if it has robots that are due. Under the lock.
   void fill_frame(ServedRun& run, std::uint64_t tick, bool resent);
   void write_frame(ServedRun& run, std::uint64_t tick, bool resent);
+  /// Whether it knows of ControllerState.
+  bool has_state() const { return join.minor >= wire::first_minor_with_state; }
+  /// To it, of its lease's epoch.
+  void send_state(wire::ControllerState message, ServedRun& run);
   /// Of one that drives robots, for whoever controls the run. Under the lock.
   wire::ControllerStatus status(ServedRun& run);
 
  private:
   void note_answers(ServedRun& run);
+
+  wire::Participant& participant_;
+  std::optional<wire::Writer<wire::ControllerState>> states_{};  // made when it is needed: writers cost discovery
 };
 
 }  // namespace cohort::session

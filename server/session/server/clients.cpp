@@ -227,6 +227,8 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
     answer.run = run_->number;
     answer.epoch = lease.epoch;
     answer.start_reason = why_it_starts(lease.robots, client);
+    if (answer.start_reason == wire::StartReason::restored && give_state(client, lease.robots))
+      answer.start_reason = wire::StartReason::restored_with_state;
     for (const std::uint32_t robot : lease.robots) run_->was_driven[robot] = true;
     answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
     answer.step_ns = run_->experiment.world.step.count();
@@ -246,6 +248,19 @@ wire::StartReason Clients::why_it_starts(const std::vector<std::uint32_t>& robot
   if (run_->started && takes_over) return wire::StartReason::takeover;
   if (!run_->started && run_->monitor.options().from) return wire::StartReason::restored;
   return client.drove ? wire::StartReason::reset : wire::StartReason::first;
+}
+
+// Whether the snapshot that the run goes on from has something for it. Under the lock.
+bool Clients::give_state(AttachedClient& client, std::span<const std::uint32_t> robots) {
+  const std::vector<RobotState> states = states_of(*run_->monitor.options().from, robots);
+  if (states.empty()) return false;
+  if (client.has_state()) {
+    client.state.to_load = pack(states);
+    return true;
+  }
+  run_->monitor.add_event("unsaved", client.label + " begins anew: it does not take what its controllers remembered, " +
+                                         "which is in the snapshot");
+  return false;
 }
 
 // All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
@@ -279,12 +294,16 @@ void Clients::resend_frames(RunMonitor::Clock::time_point now) {
       if (!run_->is_awaited(id)) continue;
       ticks = run_->frames_under_way(run_->leases.lease(id)->robots);
     }
-    ++client.times_resent;
-    for (const std::uint64_t tick : ticks) send_frame(client, tick, true);
-    run_->monitor.add_resent(ticks.size());
-    client.resent_count += ticks.size();
-    client.resend.resent(now.time_since_epoch());
+    resend_frames(client, ticks, now.time_since_epoch());
   }
+}
+
+void Clients::resend_frames(AttachedClient& client, std::span<const std::uint64_t> ticks, lockstep::Time now) {
+  ++client.times_resent;
+  for (const std::uint64_t tick : ticks) send_frame(client, tick, true);
+  run_->monitor.add_resent(ticks.size());
+  client.resent_count += ticks.size();
+  client.resend.resent(now);
 }
 
 RunMonitor::Clock::time_point Clients::next_resend(RunMonitor::Clock::time_point latest) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,17 @@ class Clients {
   void resend_frames(RunMonitor::Clock::time_point now);
   /// When `resend_frames` is due for somebody who is awaited, at the latest `latest`. Under the lock.
   RunMonitor::Clock::time_point next_resend(RunMonitor::Clock::time_point latest) const;
+  // At a boundary of a run that has started: what controllers remember, for a snapshot. Whoever gives nothing for 5 s,
+  // or dies, is left out.
+  /// Begins to gather it.
+  void begin_states();
+  /// Asks for what is missing; false if nothing more will come.
+  bool gather_states(RunMonitor::Clock::time_point now);
+  /// What came of it, by robot.
+  ControllerStates end_states();
+  /// Parts that were gathered, and questions of those who go on from a snapshot.
+  void take_states(const Inbox::States& states);
+
   /// An answer of the client has missed its deadline.
   void note_miss(std::uint64_t client) { ++clients_.at(client).late; }
   /// Its policy has ended the client's lease.
@@ -69,7 +81,10 @@ class Clients {
   std::string why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const;
   void admit(const lockstep::Leases::Granted& granted);
   wire::StartReason why_it_starts(const std::vector<std::uint32_t>& robots, const AttachedClient& client) const;
+  bool give_state(AttachedClient& client, std::span<const std::uint32_t> robots);
   void send_frame(AttachedClient& client, std::uint64_t tick, bool resent);
+  void resend_frames(AttachedClient& client, std::span<const std::uint64_t> ticks, lockstep::Time now);
+  void refuse_state(AttachedClient& client, const std::string& why);
 
   std::mutex& mutex_;
   ServedRun* run_ = nullptr;  // null between runs

@@ -18,6 +18,7 @@ struct Endpoints {
     wire::Reader<wire::Command>::Callbacks commands;
     wire::Reader<wire::Report>::Callbacks reports;
     wire::Reader<wire::Request>::Callbacks requests;
+    wire::Reader<wire::ControllerState>::Callbacks states;
     std::function<void(std::uint32_t)> foreign_version;  ///< major, of the protocol
   };
   Endpoints(wire::Participant& participant, Callbacks callbacks)
@@ -26,6 +27,7 @@ struct Endpoints {
         commands(participant, std::move(callbacks.commands), "", answers_kept),
         reports(participant, std::move(callbacks.reports)),
         requests(participant, std::move(callbacks.requests)),
+        states(participant, std::move(callbacks.states)),
         versions(participant, std::move(callbacks.foreign_version)) {}
 
   static constexpr int answers_kept = 8;  ///< of each client, by DDS, until they are taken
@@ -36,6 +38,7 @@ struct Endpoints {
   wire::Reader<wire::Command> commands;
   wire::Reader<wire::Report> reports;
   wire::Reader<wire::Request> requests;
+  wire::Reader<wire::ControllerState> states;
   wire::VersionWatch versions;
 };
 

@@ -71,6 +71,21 @@ bool Inbox::add_request(const wire::Request& request, const wire::Sender& sender
   return has_news_ = true;
 }
 
+bool Inbox::add_state(const wire::ControllerState& message, const wire::Sender& sender) {
+  if (message.kind > wire::StateKind::here) return false;  // of a later minor version
+  if (message.data.size() > wire::largest_state_part) {
+    reject(sender.participant, "malformed", "a ControllerState is larger than 256 KiB");
+    return false;
+  }
+  if (state_bytes_ + message.data.size() > most_state_bytes) {
+    reject(sender.participant, "flood", "more state of controllers than can be read");
+    return false;
+  }
+  state_bytes_ += message.data.size();
+  contents_.states.insert_or_assign({message.client, message.kind}, KeptStateMessage(message));
+  return has_news_ = true;
+}
+
 bool Inbox::add_gone_requester(const wire::Sender& sender) {
   contents_.gone_requesters.push_back(sender);
   return has_news_ = true;
@@ -94,7 +109,7 @@ void Inbox::reject(std::uint64_t who, const char* reason, std::string_view text)
 
 Inbox::Contents Inbox::take() {
   requests_of_.clear();
-  arrival_bytes_ = report_bytes_ = request_bytes_ = 0;
+  arrival_bytes_ = report_bytes_ = request_bytes_ = state_bytes_ = 0;
   has_news_ = false;
   return std::exchange(contents_, {});
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "client_sdk/src/state_parts.hpp"
 #include "idl/messages.hpp"
 #include "idl/wire.hpp"
 #include "server/session/control/received_request.hpp"
@@ -30,6 +31,8 @@ class Inbox {
   static constexpr std::size_t most_request_bytes = std::size_t{64} << 20;
   static constexpr std::size_t largest_request = std::size_t{4} << 20;
 
+  static constexpr std::size_t most_state_bytes = std::size_t{64} << 20;
+
   struct Arrival {
     wire::Join join;
     wire::Sender sender;
@@ -45,6 +48,8 @@ class Inbox {
   };
   /// By who, or what participant, and reason.
   using Rejected = std::map<std::pair<std::uint64_t, std::string>, Rejections>;
+  /// By client and kind: the last of each, since both sides ask again.
+  using States = std::map<std::pair<std::uint64_t, wire::StateKind>, KeptStateMessage>;
   /// Each in the order of coming.
   struct Contents {
     std::vector<Arrival> arrivals{};
@@ -53,6 +58,7 @@ class Inbox {
     std::vector<std::uint32_t> ended_processes{};
     std::vector<ReceivedRequest> requests{};
     std::vector<wire::Sender> gone_requesters{};
+    States states{};
     std::string failure{};                       ///< of something outside: the first
     std::set<std::uint32_t> foreign_versions{};  ///< of the protocol, that clients have
     Rejected rejected{};
@@ -64,6 +70,7 @@ class Inbox {
   bool add_report(const wire::Report& report, const wire::Sender& sender);
   bool add_ended_process(std::uint32_t process);
   bool add_request(const wire::Request& request, const wire::Sender& sender, wire::Participant* participant);
+  bool add_state(const wire::ControllerState& message, const wire::Sender& sender);
   bool add_gone_requester(const wire::Sender& sender);
   bool add_failure(const std::string& error);
   bool add_foreign_version(std::uint32_t major);
@@ -84,6 +91,7 @@ class Inbox {
   std::size_t arrival_bytes_ = 0;
   std::size_t report_bytes_ = 0;
   std::size_t request_bytes_ = 0;
+  std::size_t state_bytes_ = 0;
   bool has_news_ = false;
 };
 

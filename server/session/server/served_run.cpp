@@ -50,8 +50,13 @@ std::vector<std::uint64_t> ServedRun::frames_under_way(const std::vector<std::ui
   std::set<std::uint64_t> ticks;
   for (const std::uint32_t robot : robots)
     for (const std::uint64_t tick : exchange.barrier().unanswered(robot))
-      if (tick + simulation.policy(robot).delay >= simulation.tick()) ticks.insert(tick);
+      if (is_out(tick) && tick + simulation.policy(robot).delay >= simulation.tick()) ticks.insert(tick);
   return {ticks.begin(), ticks.end()};
+}
+
+// At a boundary the frames of its tick are not.
+bool ServedRun::is_out(std::uint64_t tick) const {
+  return tick < simulation.tick() || (!exchange.barrier().is_fresh() && tick <= exchange.barrier().tick());
 }
 
 std::uint64_t ServedRun::due_tick_of(const std::vector<std::uint32_t>& robots) const {
@@ -61,7 +66,7 @@ std::uint64_t ServedRun::due_tick_of(const std::vector<std::uint32_t>& robots) c
   std::optional<std::uint64_t> next;
   for (const std::uint32_t robot : robots) {
     const description::Policy& policy = simulation.policy(robot);
-    const std::uint64_t from = started ? now + 1 : now;
+    const std::uint64_t from = is_out(now) ? now + 1 : now;
     const std::uint64_t after = from <= policy.phase ? 0 : (from - policy.phase + policy.period - 1) / policy.period;
     const std::uint64_t tick = policy.phase + after * policy.period;
     next = std::min(next.value_or(tick), tick);

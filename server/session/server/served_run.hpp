@@ -43,6 +43,8 @@ struct ServedRun {
   bool is_awaited(std::uint64_t client) const;
   /// Ticks of unanswered frames whose answers can still act.
   std::vector<std::uint64_t> frames_under_way(const std::vector<std::uint32_t>& robots) const;
+  /// Whether the frames of this tick were sent.
+  bool is_out(std::uint64_t tick) const;
   /// Of the oldest frame without an answer, or of the next one.
   std::uint64_t due_tick_of(const std::vector<std::uint32_t>& robots) const;
   /// At a boundary: robots that do not require a controller are asked from now on if they have one.

@@ -55,6 +55,8 @@ Endpoints::Callbacks Server::callbacks(wire::Participant& participant) {
                    [this](const wire::Sender& sender, bool alive) {
                      if (!alive) put_aside([&] { return inbox_.add_gone_requester(sender); });
                    }},
+      .states = {[this](const wire::ControllerState& state, const wire::Sender& sender) { on_state(state, sender); },
+                 {}},
       .foreign_version = [this](std::uint32_t major) { put_aside([&] { return inbox_.add_foreign_version(major); }); }};
 }
 
@@ -63,6 +65,15 @@ void Server::on_report(const wire::Report& report, const wire::Sender& sender) {
   put_aside([&] {
     if (clients_.is_in_own_name(report.client, sender)) return inbox_.add_report(report, sender);
     inbox_.reject(sender.participant, "foreign", "a Report comes in the name of " + wire::partition_of(report.client));
+    return false;
+  });
+}
+
+void Server::on_state(const wire::ControllerState& state, const wire::Sender& sender) {
+  put_aside([&] {
+    if (clients_.is_in_own_name(state.client, sender)) return inbox_.add_state(state, sender);
+    inbox_.reject(sender.participant, "foreign",
+                  "a ControllerState comes in the name of " + wire::partition_of(state.client));
     return false;
   });
 }
@@ -110,7 +121,7 @@ void Server::note_process_end(std::uint32_t process) {
 
 RunResult Server::run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
                       const RunListener& listener, const std::atomic<bool>& stop) {
-  begin_run(experiment, simulation, options, listener);
+  begin_run(experiment, simulation, options, listener, stop);
   if (!wait_for_controllers(stop)) return end_early();
   RunMonitor& monitor = run_->monitor;
   monitor.start();
@@ -133,7 +144,7 @@ RunResult Server::run(const description::Experiment& experiment, Simulation& sim
 }
 
 void Server::begin_run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
-                       const RunListener& listener) {
+                       const RunListener& listener, const std::atomic<bool>& stop) {
   auto next = std::make_unique<ServedRun>(experiment, simulation, options, recordings_.listening(listener),
                                           ++run_number_, next_epoch_);
   if (options.from) restore(*options.from, next->exchange);
@@ -143,7 +154,9 @@ void Server::begin_run(const description::Experiment& experiment, Simulation& si
   }
   recordings_.begin(experiment, simulation, options.from != nullptr);
   control_.begin({experiment, simulation, run_->monitor, run_number_,
-                  [this](wire::SimulationStatus& status) { fill_status(status); }, [this] { return take_snapshot(); }});
+                  [this](wire::SimulationStatus& status) { fill_status(status); },
+                  [this, &stop] { return take_snapshot(stop); }});
+  if (options.from) run_->monitor.note_left_out(*options.from);
   publish_descriptions();
   clients_.begin(*run_);
 }
@@ -307,6 +320,7 @@ void Server::handle_inbox() {
                                            " of the protocol, and this server version 1: they never meet. Install the "
                                            "same major version of Cohort on both sides");
   clients_.note_rejections(inbox.rejected);
+  clients_.take_states(inbox.states);
   for (const wire::Sender& sender : inbox.gone_requesters) control_.lose(sender);
   for (const ReceivedRequest& received : inbox.requests) control_.take(received);
 }
@@ -387,11 +401,6 @@ void Server::let_recordings_be_fetched() {
     handle_inbox();
     if (std::exchange(fetched, recordings_.fetched()) != fetched) since = Clock::now();
   }
-}
-
-SessionSnapshot Server::take_snapshot() {
-  const std::lock_guard lock(mutex_);
-  return session::take_snapshot(run_->experiment, run_->simulation, run_->exchange);
 }
 
 void Server::fill_status(wire::SimulationStatus& status) {

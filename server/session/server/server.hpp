@@ -55,12 +55,13 @@ class Server {
   template <class Add>
   void put_aside(const Add& add);
   void on_report(const wire::Report& report, const wire::Sender& sender);
+  void on_state(const wire::ControllerState& state, const wire::Sender& sender);
   void on_command(const wire::Command& command, const wire::Sender& sender);
   bool take_answer(const wire::Command& command, const wire::Sender& sender);
 
   // On the thread of `run`; those that take the lock must not hold it.
   void begin_run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
-                 const RunListener& listener);
+                 const RunListener& listener, const std::atomic<bool>& stop);
   RunResult end_run(RunResult::End how, const std::string& error = {});
   RunResult end_early();
   bool wait_for_controllers(const std::atomic<bool>& stop);
@@ -76,7 +77,8 @@ class Server {
   void publish_scene(SceneBroadcast::When when);
   void let_recordings_be_fetched();
   // For control.
-  SessionSnapshot take_snapshot();
+  SessionSnapshot take_snapshot(const std::atomic<bool>& stop);
+  ControllerStates gather_states(const std::atomic<bool>& stop);
   void fill_status(wire::SimulationStatus& status);
 
   std::uint32_t run_number_ = 0;

@@ -113,6 +113,8 @@ class KeyboardController final : public Controller {
     }
   }
 
+  void save(StateWriter&) const override {}  // which keys are held is the keyboard's
+
  private:
   struct Setting {
     CommandChannel channel;

@@ -27,6 +27,8 @@ class ObedientController final : public Controller {
       for (std::size_t i = 0; i < channel.size; ++i) command.set(channel, *next++, i);
   }
 
+  void save(StateWriter&) const override {}  // what is held is the page's
+
  private:
   HeldCommand& held_;
   std::function<void()> begun_;

@@ -190,9 +190,9 @@ class Ctl {
 
   void save() {
     check_writable("the snapshot", command_.file);
-    const std::vector<std::byte> bytes = client_.save(patience_, stop_);
+    const auto [bytes, text] = client_.save(patience_, stop_);
     write_file("the snapshot", command_.file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    std::printf("%s: %zu bytes\n", command_.file.c_str(), bytes.size());
+    std::printf("%s: %zu bytes, %s\n", command_.file.c_str(), bytes.size(), text.c_str());
   }
 
   void load() {

@@ -90,9 +90,12 @@ std::vector<Allowed> allowed_to(wire::Role role, bool may_control) {
   switch (role) {
     case wire::Role::server: return {{"publish", {"cohort/v1/*"}, "*"}, {"subscribe", {"cohort/v1/*"}, "*"}};
     case wire::Role::controller:
-      allowed = {{"publish", {"cohort/v1/join", "cohort/v1/command", "cohort/v1/report"}, ""},
-                 {"subscribe", {"cohort/v1/admit", "cohort/v1/observation", "cohort/v1/report"}, "c*"},
-                 {"subscribe", {"cohort/v1/robot_description"}, ""}};
+      allowed = {
+          {"publish", {"cohort/v1/join", "cohort/v1/command", "cohort/v1/report", "cohort/v1/controller_state"}, ""},
+          {"subscribe",
+           {"cohort/v1/admit", "cohort/v1/observation", "cohort/v1/report", "cohort/v1/controller_state"},
+           "c*"},
+          {"subscribe", {"cohort/v1/robot_description"}, ""}};
       if (may_control) {
         allowed[0].topics.push_back("cohort/v1/request");
         allowed[1].topics.push_back("cohort/v1/reply");

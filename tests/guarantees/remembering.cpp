@@ -28,6 +28,9 @@ class Remembering final : public cohort::Controller {
     command.set(right_track_, speed_ * (1.0 - memory_));
   }
 
+  void save(cohort::StateWriter& state) const override { state.write(memory_); }
+  void load(cohort::StateReader& state) override { state.read(memory_); }
+
  private:
   std::vector<cohort::ObservationChannel> proximity_;
   cohort::CommandChannel left_track_;

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <bit>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <istream>
+#include <locale>
+#include <ostream>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+/// What a controller remembers, as bytes: `Controller::save` writes them, `Controller::load` reads them in the same
+/// order. Little-endian, the same on every machine.
+namespace cohort {
+
+static_assert(std::endian::native == std::endian::little, "state is written as it stands in memory");
+
+/// Of one robot's controller [bytes].
+inline constexpr std::size_t largest_state = std::size_t{1} << 20;
+
+/// State that ends too early, or has what cannot be.
+class StateError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A number, a flag or an enumerator; of `long double`, compilers have several.
+template <class Value>
+concept StateValue = (std::is_arithmetic_v<Value> && !std::is_same_v<Value, long double>) || std::is_enum_v<Value>;
+
+/// A generator of random numbers as the standard library has them, such as std::mt19937_64.
+template <class Engine>
+concept StateEngine = requires(Engine& engine, const Engine& same, std::istream& in, std::ostream& out) {
+  typename Engine::result_type;
+  engine.discard(1);
+  out << same;
+  in >> engine;
+};
+
+/// Valid during `save` only.
+class StateWriter {
+ public:
+  template <StateValue Value>
+  void write(Value value) {
+    add(&value, sizeof value);
+  }
+  template <class Ticks, class Period>
+  void write(std::chrono::duration<Ticks, Period> duration) {
+    write(duration.count());
+  }
+  void write(std::string_view text) {
+    write(static_cast<std::uint64_t>(text.size()));
+    add(text.data(), text.size());
+  }
+  template <StateValue Value>
+  requires(!std::is_same_v<Value, bool>) void write(const std::vector<Value>& values) {
+    write(static_cast<std::uint64_t>(values.size()));
+    add(values.data(), values.size() * sizeof(Value));
+  }
+  /// How a generator stands, in the words of the standard.
+  template <StateEngine Engine>
+  void write(const Engine& engine) {
+    std::ostringstream text;
+    text.imbue(std::locale::classic());
+    text << engine;
+    write(std::string_view(text.view()));
+  }
+  /// One after the other.
+  template <class First, class Second, class... More>
+  void write(const First& first, const Second& second, const More&... more) {
+    write(first);
+    write(second);
+    (write(more), ...);
+  }
+
+  /// What this controller remembers cannot be saved: whoever goes on from here starts it anew, and is told so.
+  void leave_out() { is_left_out_ = true; }
+  bool is_left_out() const { return is_left_out_; }
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  void add(const void* from, std::size_t size) {
+    const auto* const bytes = static_cast<const std::byte*>(from);
+    bytes_.insert(bytes_.end(), bytes, bytes + size);
+  }
+
+  std::vector<std::byte> bytes_;
+  bool is_left_out_ = false;
+};
+
+/// What a StateWriter wrote, read in the same order. Valid during `load` only. Functions throw StateError where the
+/// state ends too early; it may come from anywhere, so what cannot be is worth a check.
+class StateReader {
+ public:
+  explicit StateReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <StateValue Value>
+  requires(!std::is_same_v<Value, bool>) void read(Value& value) { take(&value, sizeof value); }
+  void read(bool& flag) {
+    std::uint8_t number = 0;
+    read(number);
+    if (number > 1) throw StateError("the state has a flag that is neither 0 nor 1");
+    flag = number == 1;
+  }
+  /// An enumerator from the first one, 0, up to `last`.
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void read_up_to(Enum& value, Enum last) {
+    read(value);
+    if (static_cast<std::int64_t>(value) < 0 || value > last)
+      throw StateError("the state has an enumerator that there is not");
+  }
+  template <class Ticks, class Period>
+  void read(std::chrono::duration<Ticks, Period>& duration) {
+    Ticks count{};
+    read(count);
+    duration = std::chrono::duration<Ticks, Period>(count);
+  }
+  void read(std::string& text) {
+    text.resize(read_count(1));
+    take(text.data(), text.size());
+  }
+  template <StateValue Value>
+  requires(!std::is_same_v<Value, bool>) void read(std::vector<Value>& values) {
+    values.resize(read_count(sizeof(Value)));
+    take(values.data(), values.size() * sizeof(Value));
+  }
+  template <StateEngine Engine>
+  void read(Engine& engine) {
+    std::string text;
+    read(text);
+    std::istringstream words(text);
+    words.imbue(std::locale::classic());
+    if (!(words >> engine)) throw StateError("the state has no random number generator where one is expected");
+  }
+  template <class First, class Second, class... More>
+  void read(First& first, Second& second, More&... more) {
+    read(first);
+    read(second);
+    (read(more), ...);
+  }
+
+  /// Bytes that are not read yet.
+  std::span<const std::byte> rest() const { return bytes_; }
+
+ private:
+  std::size_t read_count(std::size_t bytes_each) {
+    std::uint64_t count = 0;
+    read(count);
+    if (count > bytes_.size() / bytes_each) throw StateError("the state ends too early");
+    return static_cast<std::size_t>(count);
+  }
+  void take(void* to, std::size_t size) {
+    if (bytes_.size() < size) throw StateError("the state ends too early");
+    if (size != 0) std::memcpy(to, bytes_.data(), size);
+    bytes_ = bytes_.subspan(size);
+  }
+
+  std::span<const std::byte> bytes_;
+};
+
+}  // namespace cohort

@@ -1,0 +1,215 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <map>
+
+#include "client_sdk/src/plugin_loader.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/session/in_process.hpp"
+#include "tests/support/controlled_run.hpp"
+
+// A run goes on from a snapshot with what its controllers remembered.
+namespace cohort::test {
+namespace {
+
+using session::SessionSnapshot;
+using Snapshots = std::map<std::uint64_t, SessionSnapshot>;
+
+struct Case {
+  const char* experiment;
+  double seconds;
+  std::vector<std::uint64_t> ticks;  // of snapshots
+  bool has_memory = true;
+};
+void PrintTo(const Case& tested, std::ostream* out) { *out << tested.experiment; }
+
+std::string file_of(const Case& tested) {
+  return COHORT_SOURCE_DIR "/worlds/experiments/" + std::string(tested.experiment) + ".yaml";
+}
+
+// An experiment whose controllers are in this process.
+class RunHere {
+ public:
+  RunHere(const Case& tested, std::uint32_t threads, const SessionSnapshot* from = nullptr)
+      : experiment_(parsing::read_experiment(file_of(tested), {},
+                                             std::chrono::nanoseconds(std::llround(tested.seconds * 1e9)))),
+        simulation_(experiment_, threads) {
+    for (const description::Team& team : experiment_.teams) {
+      plugins_.push_back(std::make_unique<LoadedPlugin>(team.controller, default_plugin_directories()));
+      kinds_.push_back(kind_of(plugins_.back()->plugin()));
+    }
+    if (from == nullptr) return;
+    options_.from = std::make_shared<SessionSnapshot>(*from);
+    session::restore(*from, simulation_);
+  }
+
+  /// The hash at the end; snapshots of these ticks, which have been bytes in between.
+  std::uint64_t finish(Snapshots* snapshots = nullptr, const std::vector<std::uint64_t>& ticks = {}) {
+    session::RunListener listener;
+    listener.can_save = [&](const auto& take) {
+      if (std::ranges::find(ticks, simulation_.tick()) != ticks.end())
+        snapshots->emplace(simulation_.tick(), session::snapshot_from_bytes(session::to_bytes(take())));
+    };
+    result_ = session::run_in_process(experiment_, simulation_, kinds_, options_, listener, never);
+    EXPECT_EQ(result_.end, session::RunResult::End::finished) << result_.error;
+    return result_.state_hash;
+  }
+  bool has_unsaved() const {
+    return std::ranges::any_of(result_.events, [](const auto& event) { return event.kind == "unsaved"; });
+  }
+
+ private:
+  description::Experiment experiment_;
+  Simulation simulation_;
+  std::vector<std::unique_ptr<LoadedPlugin>> plugins_;
+  std::vector<ControllerKind> kinds_;
+  session::RunOptions options_;
+  session::RunResult result_;
+};
+
+class ControllersRemember : public ::testing::TestWithParam<Case> {
+ protected:
+  std::string summary_of(std::vector<std::string> arguments) {
+    return run_experiment(file_of(GetParam()), std::move(arguments))["state_hash"];
+  }
+  std::string seconds_ = std::to_string(GetParam().seconds);
+  ScratchFolder folder_;
+};
+
+TEST_P(ControllersRemember, FromASnapshotOfAnyTickTheRunHasTheBitsOfTheUndisturbedOne) {
+  Snapshots snapshots;
+  const std::uint64_t straight = RunHere(GetParam(), 2).finish(&snapshots, GetParam().ticks);
+  bool state_matters = false;
+  for (const auto& [tick, snapshot] : snapshots) {
+    for (const std::uint32_t threads : {1u, 2u}) {
+      RunHere again(GetParam(), threads, &snapshot);
+      EXPECT_EQ(again.finish(), straight) << "from tick " << tick << " with " << threads << " threads";
+      EXPECT_FALSE(again.has_unsaved());
+    }
+    SessionSnapshot forgotten = snapshot;
+    forgotten.controllers.clear();
+    RunHere other(GetParam(), 2, &forgotten);
+    state_matters = other.finish() != straight || state_matters;
+    EXPECT_TRUE(other.has_unsaved()) << "and it is told";
+  }
+  EXPECT_EQ(snapshots.size(), GetParam().ticks.size());
+  EXPECT_EQ(state_matters, GetParam().has_memory) << "without what they remember it is another run";
+}
+
+TEST_P(ControllersRemember, WhereverTheyRunAndWhereverTheyRan) {
+  const std::string expected = summary_of({"--controllers", "inprocess", "--duration", seconds_});
+  for (const std::string saved_by : {"process", "per-robot"}) {
+    const ReservedDomain domain;
+    const std::string file = (folder_ / (saved_by + ".snap")).string();
+    Process run({cohort_program(), "run", file_of(GetParam()), "--duration", seconds_, "--paused", "--controllers",
+                 saved_by, "--domain", domain.text()});
+    for (const std::vector<std::string>& what :
+         {std::vector<std::string>{"step", std::to_string(GetParam().ticks.front())}, {"save", file}, {"resume"}}) {
+      std::vector<std::string> ctl = {cohort_program(), "ctl",       "--domain",
+                                      domain.text(),    "--timeout", patience_in_seconds};
+      ctl.insert(ctl.end(), what.begin(), what.end());
+      const Ended ended = run_to_end(ctl);
+      ASSERT_EQ(ended.exit_code, 0) << ended.err << run.output();
+      EXPECT_EQ(ended.out.find("anew"), std::string::npos) << ended.out;
+    }
+    ASSERT_EQ(run.wait_for_exit(), 0) << run.output();
+    EXPECT_NE(run.output().find(expected), std::string::npos) << "saving changes nothing: " << run.output();
+    for (const std::string placement : {"inprocess", "process", "per-robot"})
+      for (const std::string threads : {"1", "2"})
+        EXPECT_EQ(
+            summary_of({"--controllers", placement, "--duration", seconds_, "--from", file, "--threads", threads}),
+            expected)
+            << saved_by << " to " << placement << " with " << threads << " threads";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfTheExperiment, ControllersRemember,
+    ::testing::Values(Case{"aggregation", 40.0, {500, 1700, 3000}}, Case{"assembly", 30.0, {300, 1200, 2000}},
+                      Case{"retrieval", 30.0, {300, 1200, 2000}}, Case{"lifting", 30.0, {600, 1500, 2200}},
+                      Case{"chain", 60.0, {600, 2500, 4000}}, Case{"phototaxis", 10.0, {100, 500}, false}),
+    [](const auto& tested) { return std::string(tested.param.experiment); });
+
+// Robots that are driven by all that they were ever told, with frames under way.
+class ServedMemory : public ::testing::Test {
+ protected:
+  static constexpr const char* policy = ", delay: 2, parameters: {speed: 0.1}";
+  const std::string plugin_ = test_controller("remembering");
+  const FieldOfRobots field_{4, 20.0, policy, plugin_};
+  const std::string expected_ = reference(field_);
+
+  void attach(ControlledRun& run) {
+    for (const char* robots : {"0..1", "2..3"})
+      hosts_.push_back(std::make_unique<Process>(FieldOfRobots::host(run.domain(), robots, plugin_)));
+  }
+  std::vector<std::unique_ptr<Process>> hosts_;
+};
+
+TEST_F(ServedMemory, GoesBackToASnapshotAndForwardToTheSameBits) {
+  ControlledRun run(field_, {"--paused", "--keep-snapshots", "1"}, false);
+  attach(run);
+  run.done({"step", "1234"});
+  run.done({"back", "7"});
+  EXPECT_EQ(run.tick(), 700u);
+  run.done({"step", "500"});
+  run.done({"back", "3.5"});
+  run.done({"resume"});
+  const auto summary = run.finish();
+  EXPECT_EQ(summary["state_hash"], expected_);
+  EXPECT_TRUE(events_of(summary, "unsaved").empty()) << summary["events"].dump(1);
+}
+
+TEST_F(ServedMemory, IsLoadedByControllersThatStayAndByOthers) {
+  const std::string file = (field_ / "saved.snap").string();
+  {
+    ControlledRun run(field_, {"--paused"}, false);
+    attach(run);
+    run.done({"step", "777"});
+    run.done({"save", file});
+    run.done({"step", "300"});
+    run.done({"load", file});
+    EXPECT_EQ(run.tick(), 777u);
+    const std::string again = (field_ / "again.snap").string();
+    run.done({"save", again});
+    EXPECT_TRUE(read_file(file) == read_file(again)) << "nothing has happened since";
+    run.done({"resume"});
+    EXPECT_EQ(run.finish()["state_hash"], expected_);
+  }
+  ControlledRun run(field_, {"--from", file}, false);
+  Process one(FieldOfRobots::host(run.domain(), "1..3", plugin_)),
+      other(FieldOfRobots::host(run.domain(), "0", plugin_));
+  EXPECT_EQ(run.finish()["state_hash"], expected_);
+}
+
+TEST_F(ServedMemory, OfAControllerThatDoesNotSaveIsToldToBeMissing) {
+  const FieldOfRobots field(2, 20.0, "", test_controller("misbehaving"));
+  const std::string file = (field / "saved.snap").string();
+  ControlledRun run(field, {"--paused"}, false);
+  Process host(FieldOfRobots::host(run.domain(), "all", test_controller("misbehaving")));
+  run.done({"step", "10"});
+  const std::string saved = run.done({"save", file});
+  EXPECT_NE(saved.find("team 'swarm' ("), std::string::npos) << saved;
+  EXPECT_NE(saved.find("anew"), std::string::npos) << saved;
+  run.done({"save", file});
+  run.done({"load", file});
+  run.done({"shutdown"});
+  const auto unsaved = events_of(run.finish(), "unsaved");
+  ASSERT_EQ(unsaved.size(), 1u) << "once";
+  EXPECT_NE(unsaved[0]["text"].get<std::string>().find("misbehaving"), std::string::npos) << unsaved[0].dump();
+}
+
+TEST_F(ServedMemory, OfAControllerThatIsStoppedIsNotWaitedForForEver) {
+  const std::string file = (field_ / "saved.snap").string();
+  ControlledRun run(field_, {"--paused"}, false);
+  attach(run);
+  run.done({"step", "50"});
+  hosts_[1]->signal(SIGSTOP);
+  const std::string saved = run.done({"save", file});
+  EXPECT_NE(saved.find("anew"), std::string::npos) << saved;
+  hosts_[1]->signal(SIGCONT);
+  run.done({"resume"});
+  EXPECT_EQ(run.finish()["state_hash"], expected_) << "and the run goes on as it would have";
+}
+
+}  // namespace
+}  // namespace cohort::test

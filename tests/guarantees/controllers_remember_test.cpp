@@ -2,11 +2,13 @@
 
 #include <csignal>
 #include <map>
+#include <mutex>
 
 #include "client_sdk/src/plugin_loader.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/session/in_process.hpp"
 #include "tests/support/controlled_run.hpp"
+#include "tests/support/sbot_layout.hpp"
 
 // A run goes on from a snapshot with what its controllers remembered.
 namespace cohort::test {
@@ -18,8 +20,8 @@ using Snapshots = std::map<std::uint64_t, SessionSnapshot>;
 struct Case {
   const char* experiment;
   double seconds;
-  std::vector<std::uint64_t> ticks;  // of snapshots
   bool has_memory = true;
+  std::uint64_t seed = 1;  // one with which somebody has something to remember
 };
 void PrintTo(const Case& tested, std::ostream* out) { *out << tested.experiment; }
 
@@ -27,11 +29,22 @@ std::string file_of(const Case& tested) {
   return COHORT_SOURCE_DIR "/worlds/experiments/" + std::string(tested.experiment) + ".yaml";
 }
 
+constexpr std::size_t few = 3;
+
+// Or has no memory at all.
+bool remembers_something(const SessionSnapshot& snapshot) {
+  const auto is_blank = [](const std::optional<ControllerState>& state) {
+    return state && std::ranges::all_of(state->bytes, [](std::byte byte) { return byte == std::byte{0}; });
+  };
+  const auto is_empty = [](const std::optional<ControllerState>& state) { return state && state->bytes.empty(); };
+  return std::ranges::all_of(snapshot.controllers, is_empty) || !std::ranges::all_of(snapshot.controllers, is_blank);
+}
+
 // An experiment whose controllers are in this process.
 class RunHere {
  public:
   RunHere(const Case& tested, std::uint32_t threads, const SessionSnapshot* from = nullptr)
-      : experiment_(parsing::read_experiment(file_of(tested), {},
+      : experiment_(parsing::read_experiment(file_of(tested), tested.seed,
                                              std::chrono::nanoseconds(std::llround(tested.seconds * 1e9)))),
         simulation_(experiment_, threads) {
     for (const description::Team& team : experiment_.teams) {
@@ -43,12 +56,17 @@ class RunHere {
     session::restore(*from, simulation_);
   }
 
-  /// The hash at the end; snapshots of these ticks, which have been bytes in between.
-  std::uint64_t finish(Snapshots* snapshots = nullptr, const std::vector<std::uint64_t>& ticks = {}) {
+  /// The hash at the end; of the snapshots in which somebody remembers something the first and the last ones, which
+  /// have been bytes in between.
+  std::uint64_t finish(Snapshots* snapshots = nullptr) {
     session::RunListener listener;
     listener.can_save = [&](const auto& take) {
-      if (std::ranges::find(ticks, simulation_.tick()) != ticks.end())
-        snapshots->emplace(simulation_.tick(), session::snapshot_from_bytes(session::to_bytes(take())));
+      constexpr std::uint64_t interval = 110;
+      if (snapshots == nullptr || simulation_.tick() % interval != interval - 1) return;
+      SessionSnapshot snapshot = session::snapshot_from_bytes(session::to_bytes(take()));
+      if (!remembers_something(snapshot)) return;
+      snapshots->emplace(simulation_.tick(), std::move(snapshot));
+      if (snapshots->size() > few) snapshots->erase(std::next(snapshots->begin()));
     };
     result_ = session::run_in_process(experiment_, simulation_, kinds_, options_, listener, never);
     EXPECT_EQ(result_.end, session::RunResult::End::finished) << result_.error;
@@ -73,12 +91,13 @@ class ControllersRemember : public ::testing::TestWithParam<Case> {
     return run_experiment(file_of(GetParam()), std::move(arguments))["state_hash"];
   }
   std::string seconds_ = std::to_string(GetParam().seconds);
+  std::string seed_ = std::to_string(GetParam().seed);
   ScratchFolder folder_;
 };
 
 TEST_P(ControllersRemember, FromASnapshotOfAnyTickTheRunHasTheBitsOfTheUndisturbedOne) {
   Snapshots snapshots;
-  const std::uint64_t straight = RunHere(GetParam(), 2).finish(&snapshots, GetParam().ticks);
+  const std::uint64_t straight = RunHere(GetParam(), 2).finish(&snapshots);
   bool state_matters = false;
   for (const auto& [tick, snapshot] : snapshots) {
     for (const std::uint32_t threads : {1u, 2u}) {
@@ -92,19 +111,22 @@ TEST_P(ControllersRemember, FromASnapshotOfAnyTickTheRunHasTheBitsOfTheUndisturb
     state_matters = other.finish() != straight || state_matters;
     EXPECT_TRUE(other.has_unsaved()) << "and it is told";
   }
-  EXPECT_EQ(snapshots.size(), GetParam().ticks.size());
+  EXPECT_FALSE(snapshots.empty());
   EXPECT_EQ(state_matters, GetParam().has_memory) << "without what they remember it is another run";
 }
 
 TEST_P(ControllersRemember, WhereverTheyRunAndWhereverTheyRan) {
-  const std::string expected = summary_of({"--controllers", "inprocess", "--duration", seconds_});
+  Snapshots snapshots;
+  RunHere(GetParam(), 2).finish(&snapshots);
+  ASSERT_FALSE(snapshots.empty());
+  const std::string tick = std::to_string(snapshots.begin()->first);
+  const std::string expected = summary_of({"--controllers", "inprocess", "--seed", seed_, "--duration", seconds_});
   for (const std::string saved_by : {"process", "per-robot"}) {
     const ReservedDomain domain;
     const std::string file = (folder_ / (saved_by + ".snap")).string();
-    Process run({cohort_program(), "run", file_of(GetParam()), "--duration", seconds_, "--paused", "--controllers",
-                 saved_by, "--domain", domain.text()});
-    for (const std::vector<std::string>& what :
-         {std::vector<std::string>{"step", std::to_string(GetParam().ticks.front())}, {"save", file}, {"resume"}}) {
+    Process run({cohort_program(), "run", file_of(GetParam()), "--seed", seed_, "--duration", seconds_, "--paused",
+                 "--controllers", saved_by, "--domain", domain.text()});
+    for (const std::vector<std::string>& what : {std::vector<std::string>{"step", tick}, {"save", file}, {"resume"}}) {
       std::vector<std::string> ctl = {cohort_program(), "ctl",       "--domain",
                                       domain.text(),    "--timeout", patience_in_seconds};
       ctl.insert(ctl.end(), what.begin(), what.end());
@@ -116,19 +138,18 @@ TEST_P(ControllersRemember, WhereverTheyRunAndWhereverTheyRan) {
     EXPECT_NE(run.output().find(expected), std::string::npos) << "saving changes nothing: " << run.output();
     for (const std::string placement : {"inprocess", "process", "per-robot"})
       for (const std::string threads : {"1", "2"})
-        EXPECT_EQ(
-            summary_of({"--controllers", placement, "--duration", seconds_, "--from", file, "--threads", threads}),
-            expected)
+        EXPECT_EQ(summary_of({"--controllers", placement, "--seed", seed_, "--duration", seconds_, "--from", file,
+                              "--threads", threads}),
+                  expected)
             << saved_by << " to " << placement << " with " << threads << " threads";
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    OfTheExperiment, ControllersRemember,
-    ::testing::Values(Case{"aggregation", 40.0, {500, 1700, 3000}}, Case{"assembly", 30.0, {300, 1200, 2000}},
-                      Case{"retrieval", 30.0, {300, 1200, 2000}}, Case{"lifting", 30.0, {600, 1500, 2200}},
-                      Case{"chain", 60.0, {600, 2500, 4000}}, Case{"phototaxis", 10.0, {100, 500}, false}),
-    [](const auto& tested) { return std::string(tested.param.experiment); });
+INSTANTIATE_TEST_SUITE_P(OfTheExperiment, ControllersRemember,
+                         ::testing::Values(Case{"aggregation", 20.0}, Case{"assembly", 20.0, true, 2},
+                                           Case{"retrieval", 40.0}, Case{"lifting", 40.0}, Case{"chain", 60.0},
+                                           Case{"phototaxis", 5.0, false}),
+                         [](const auto& tested) { return std::string(tested.param.experiment); });
 
 // Robots that are driven by all that they were ever told, with frames under way.
 class ServedMemory : public ::testing::Test {
@@ -209,6 +230,113 @@ TEST_F(ServedMemory, OfAControllerThatIsStoppedIsNotWaitedForForEver) {
   hosts_[1]->signal(SIGCONT);
   run.done({"resume"});
   EXPECT_EQ(run.finish()["state_hash"], expected_) << "and the run goes on as it would have";
+}
+
+// A client written from docs/protocol.md that drives robot 0 as it should, and gives as its state whatever it is told
+// to.
+class Liar {
+ public:
+  using Lie = std::function<void(wire::Writer<wire::ControllerState>&, wire::ControllerState)>;
+
+  explicit Liar(std::uint32_t domain)
+      : participant_(wire::Participant::client(domain)),
+        commands_(participant_),
+        joins_(participant_),
+        states_(participant_),
+        wanted_(participant_,
+                {[this](const wire::ControllerState& wanted, const wire::Sender&) {
+                   const std::lock_guard lock(mutex_);
+                   wire::ControllerState here = wanted;
+                   here.kind = wire::StateKind::here;
+                   if (lie_) lie_(states_, here);
+                 },
+                 {}},
+                wire::partition_of(id), 4),
+        frames_(participant_,
+                {[this](const wire::Observation& frame, const wire::Sender&) {
+                   const std::vector<double> still(sbot_command_size, 0.0);
+                   commands_.write({id, frame.run, frame.epoch, frame.tick, frame.robots, still});
+                 },
+                 {}},
+                wire::partition_of(id)) {
+    wire::Join join;
+    join.client = id;
+    join.controller = "liar";
+    join.robots = {"0"};
+    joins_.write(join);
+  }
+  void tell(Lie lie) {
+    const std::lock_guard lock(mutex_);
+    lie_ = std::move(lie);
+  }
+
+ private:
+  static constexpr std::uint64_t id = 0xabcdef;
+  std::mutex mutex_;
+  Lie lie_;
+  wire::Participant participant_;
+  wire::Writer<wire::Command> commands_;
+  wire::Writer<wire::Join> joins_;
+  wire::Writer<wire::ControllerState> states_;
+  wire::Reader<wire::ControllerState> wanted_;
+  wire::Reader<wire::Observation> frames_;
+};
+
+TEST_F(ServedMemory, OfAClientThatLiesIsLeftOutAndHarmsNobody) {
+  const FieldOfRobots field(2, 20.0, ", parameters: {speed: 0.1}", plugin_);
+  const std::string file = (field / "saved.snap").string();
+  ControlledRun run(field, {"--paused"}, false);
+  const Process honest(FieldOfRobots::host(run.domain(), "1", plugin_));
+  Liar liar(run.domain().number());
+  run.done({"step", "10"});
+  const auto bytes_as = [](std::span<const std::byte> bytes, wire::ControllerState here) {
+    here.size = bytes.size();
+    here.data = {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+    return here;
+  };
+  const std::vector<std::byte> noise(1000, std::byte{0x5a});
+  const std::vector<std::byte> too_much(wire::largest_state_part + 1);
+  const std::vector<std::byte> of_another = pack(std::vector<RobotState>{{1, ControllerState{"Remembering", noise}}});
+  const std::map<std::string, Liar::Lie> lies = {
+      {"noise", [&](auto& states, auto here) { states.write(bytes_as(noise, here)); }},
+      {"of another's robot", [&](auto& states, auto here) { states.write(bytes_as(of_another, here)); }},
+      {"too much at once", [&](auto& states, auto here) { states.write(bytes_as(too_much, here)); }},
+      {"more than can be",
+       [&](auto& states, auto here) {
+         here = bytes_as(noise, here);
+         here.size = std::uint64_t{1} << 60;
+         states.write(here);
+       }},
+      {"of another lease, run and tick, and of no kind",
+       [&](auto& states, auto here) {
+         here = bytes_as(noise, here);
+         for (auto* number : {&here.epoch, &here.tick}) {
+           ++*number;
+           states.write(here);
+           --*number;
+         }
+         ++here.run;
+         states.write(here);
+         here.kind = static_cast<wire::StateKind>(9);
+         states.write(here);
+       }},
+      {"silence", {}}};
+  for (const auto& [name, lie] : lies) {
+    liar.tell(lie);
+    const std::string saved = run.done({"save", file});
+    EXPECT_NE(saved.find("'swarm'"), std::string::npos) << name << ": " << saved;
+    run.done({"step", "3"});
+    const SessionSnapshot snapshot = session::read_snapshot(file);
+    ASSERT_EQ(snapshot.controllers.size(), 2u) << name;
+    EXPECT_FALSE(snapshot.controllers[0]) << name;
+    EXPECT_TRUE(snapshot.controllers[1] && snapshot.controllers[1]->bytes.size() == sizeof(double)) << name;
+  }
+  run.done({"shutdown"});
+  const auto rejected = events_of(run.finish(), "rejected");
+  EXPECT_TRUE(std::ranges::any_of(rejected, [](const auto& event) {
+    const std::string text = event["text"];
+    return text.starts_with("malformed") && text.find("liar") != std::string::npos;
+  })) << rejected;
 }
 
 }  // namespace

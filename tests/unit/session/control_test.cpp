@@ -279,6 +279,39 @@ TEST(SessionSnapshot, SaysWhatIsWrongWithOneThatDoesNotFit) {
   EXPECT_THROW(restore(snapshot, others), SnapshotError);
 }
 
+TEST(SessionSnapshot, HasWhatControllersRememberAndNamesTheTeamsThatAreLeftOut) {
+  const auto experiment = experiment_with_delays();
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  Answers().run(simulation, exchange, 3);
+  ControllerStates states(simulation.robot_count(), ControllerState{"Remembering", {std::byte{1}, std::byte{2}}});
+  states[1].reset();
+  const SessionSnapshot snapshot =
+      snapshot_from_bytes(to_bytes(take_snapshot(experiment, simulation, exchange, states)));
+  EXPECT_EQ(snapshot.controllers, states);
+  EXPECT_EQ(states_of(snapshot, std::vector<std::uint32_t>{0, 1}), (std::vector<RobotState>{{0, states[0]}}));
+  const auto left_out = what_is_left_out(snapshot, experiment);
+  ASSERT_EQ(left_out.size(), 1u);
+  EXPECT_NE(left_out[0].find("'" + experiment.teams[1].name + "' (" + experiment.teams[1].controller + ")"),
+            std::string::npos)
+      << left_out[0];
+  SessionSnapshot early = snapshot;
+  early.tick = 0;
+  EXPECT_TRUE(what_is_left_out(early, experiment).empty()) << "there is nothing to remember yet";
+}
+
+TEST(SessionSnapshot, RefusesStateThatCannotBe) {
+  const auto experiment = experiment_with_delays();
+  Simulation simulation(experiment, 1);
+  Exchange exchange(simulation);
+  SessionSnapshot snapshot = take_snapshot(experiment, simulation, exchange);
+  snapshot.controllers.resize(simulation.robot_count() + 1);
+  Simulation other(experiment, 1);
+  EXPECT_THROW(restore(snapshot, other), SnapshotError) << "of more robots than there are";
+  snapshot.controllers = {ControllerState{"Hoarding", std::vector<std::byte>(largest_state + 1)}};
+  EXPECT_THROW(snapshot_from_bytes(to_bytes(snapshot)), SnapshotError) << "larger than it may be";
+}
+
 // Megabytes: as large as may be, and what it costs to put into bytes and back.
 TEST(SessionSnapshot, MayBeLarge) {
   SessionSnapshot large{"large", 1, 2, std::vector<std::byte>(40'000'000, std::byte{3}), {}};

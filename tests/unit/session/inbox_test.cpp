@@ -123,5 +123,27 @@ TEST(Inbox, LivelinessCanBeTakenAlone) {
   EXPECT_EQ(inbox.take().ended_processes.size(), 1u);
 }
 
+TEST(Inbox, KeepsTheLastStateOfEachClientAndKindWithinItsBounds) {
+  Inbox inbox;
+  const std::vector<std::uint8_t> part(wire::largest_state_part), more(wire::largest_state_part + 1);
+  wire::ControllerState state{.client = 1, .kind = wire::StateKind::here, .data = part};
+  for (state.offset = 0; state.offset < 3; ++state.offset) EXPECT_TRUE(inbox.add_state(state, sender_of(1)));
+  state.data = more;
+  EXPECT_FALSE(inbox.add_state(state, sender_of(1)));
+  state.data = {};
+  state.kind = static_cast<wire::StateKind>(7);
+  EXPECT_FALSE(inbox.add_state(state, sender_of(1))) << "of a later version";
+  state.kind = wire::StateKind::here;
+  state.data = part;
+  std::size_t taken = 0;
+  for (state.client = 2; state.client < 1000; ++state.client)
+    if (inbox.add_state(state, sender_of(2))) ++taken;
+  EXPECT_LE(taken, Inbox::most_state_bytes / wire::largest_state_part);
+  const Inbox::Contents contents = inbox.take();
+  EXPECT_EQ(contents.states.at({1, wire::StateKind::here}).head.offset, 2u);
+  EXPECT_EQ(contents.rejected.at({1, "malformed"}).count, 1u);
+  EXPECT_GT(contents.rejected.at({2, "flood"}).count, 0u);
+}
+
 }  // namespace
 }  // namespace cohort::session

@@ -59,7 +59,7 @@ struct Parameter {
 struct Team {
   std::string name;
   std::vector<std::uint32_t> robots;  ///< ids, ascending
-  std::string controller;             ///< plugin name, or a path to a plugin
+  std::string controller;             ///< plugin name, or a path to a plugin; empty: none
   Policy policy;
   Restart restart = Restart::on_failure;
   std::vector<Parameter> parameters{};  ///< of the controllers, in the file's order

@@ -140,12 +140,10 @@ TEST(Errors, AFileThatIsNotThereIsSaidToBeMissing) {
       expect_only(run_to_end({cohort_program(), command, file}), std::string(file) + ": ", "there is no such file");
 }
 
-TEST(Errors, AFolderOrAWorldIsNoExperiment) {
+TEST(Errors, AFolderIsNoExperiment) {
   const SmallExperiment experiment;
   const std::string folder = (experiment / "").string();
   expect_only(run_to_end({cohort_program(), "run", folder}), folder + ": ", "this is a folder");
-  expect_only(run_to_end({cohort_program(), "run", (experiment / "world.sdf").string()}),
-              (experiment / "world.sdf").string() + ": ", "this is a world; expected an experiment");
 }
 
 TEST(Errors, PluginsOfAllTeamsAreNamedAtOnce) {

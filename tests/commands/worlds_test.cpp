@@ -75,6 +75,25 @@ TEST(Samples, RefuseWhatIsNoRing) {
   EXPECT_FALSE(std::filesystem::exists(folder / "s.csv"));
 }
 
+TEST(Run, TakesAModelOrAWorldWithoutAnExperiment) {
+  const ScratchFolder folder;
+  const std::string model = (folder / "ball.urdf").string();
+  write_file(
+      model,
+      "<robot name=\"ball\"><link name=\"l\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" "
+      "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"0.1\"/></geometry>"
+      "</collision></link></robot>");
+  const std::string recording = (folder / "r.mcap").string();
+  EXPECT_EQ(run_experiment(model, {"--record", recording})["ticks"], 1000);
+  std::filesystem::remove(model);
+  EXPECT_EQ(run_to_end({cohort_program(), "replay", recording, "--verify"}).exit_code, 0);
+  const SmallExperiment robots;
+  for (const std::string placement : {"process", "inprocess", "per-robot"})
+    EXPECT_EQ(
+        run_experiment((robots / "world.sdf").string(), {"--duration", "0.1", "--controllers", placement})["robots"],
+        2);
+}
+
 TEST(Help, FindsWhatIsAskedForAndSuggestsTheNearest) {
   const Ended contents = run_to_end({cohort_program(), "help"});
   EXPECT_EQ(contents.exit_code, 0);

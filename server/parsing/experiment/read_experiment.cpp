@@ -117,6 +117,8 @@ class ExperimentReader {
   Experiment read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration);
 
  private:
+  Experiment read_without_experiment(std::optional<std::uint64_t> seed,
+                                     std::optional<std::chrono::nanoseconds> duration);
   YamlPtr load();
   void read_world_of(const YamlMap& top, const std::vector<LaterObject>& later);
   void read_step(const YamlMap& top);
@@ -141,6 +143,7 @@ class ExperimentReader {
 };
 
 Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::optional<std::chrono::nanoseconds> duration) {
+  if (kind_of_file(input_, experiment_.file) == FileKind::sdf) return read_without_experiment(seed, duration);
   const YamlPtr document = load();
   const YamlMap top(*document, "", names_of_keys(experiment_part("experiment", "")), report_);
   experiment_.name = experiment_.file.stem().string();
@@ -167,13 +170,26 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   return std::move(experiment_);
 }
 
+Experiment ExperimentReader::read_without_experiment(std::optional<std::uint64_t> seed,
+                                                     std::optional<std::chrono::nanoseconds> duration) {
+  if (auto reason = input_.why_unreadable(experiment_.file))
+    throw InputError({{experiment_.file, 0, "", std::move(*reason)}});
+  experiment_.name = experiment_.file.stem().string();
+  experiment_.seed = seed.value_or(experiment_.seed);
+  experiment_.duration = duration.value_or(duration_without_experiment);
+  experiment_.world = read_world_or_standing_model(input_, experiment_.file, experiment_.seed, last_model_folders_);
+  if (experiment_.world.robots.empty()) return std::move(experiment_);
+  Team team;
+  team.name = "robots";
+  for (std::uint32_t robot = 0; robot < experiment_.world.robots.size(); ++robot) team.robots.push_back(robot);
+  team.policy.required = false;
+  experiment_.teams.push_back(std::move(team));
+  return std::move(experiment_);
+}
+
 YamlPtr ExperimentReader::load() {
   const fs::path& file = experiment_.file;
   if (auto reason = input_.why_unreadable(file)) throw InputError({{file, 0, "", std::move(*reason)}});
-  if (kind_of_file(input_, file) == FileKind::sdf)
-    throw InputError(
-        {{file, 0, "",
-          "this is a world; expected an experiment (YAML), which names a world and who controls its robots"}});
   const YamlDocument document = parse_yaml(input_.read(file));
   if (document.error) throw InputError({{file, document.error->line, "", document.error->message}});
   return document.root;

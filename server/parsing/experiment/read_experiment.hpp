@@ -5,8 +5,12 @@
 
 namespace cohort::parsing {
 
-/// Reads an experiment (YAML) and its world. `seed` and `duration`, if given, stand in for the file's;
-/// `last_model_folders` are those of `read_world`. Throws InputError with every problem found.
+/// How long a world or a model without an experiment runs.
+inline constexpr std::chrono::nanoseconds duration_without_experiment = std::chrono::seconds(10);
+
+/// Reads an experiment (YAML) and its world. Of a world or a model, an experiment without controllers: its robots are
+/// in one team, which needs none, and a model stands on a plane. `seed` and `duration`, if given, stand in for the
+/// file's; `last_model_folders` are those of `read_world`. Throws InputError with every problem found.
 Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
                            std::optional<std::chrono::nanoseconds> duration = {},
                            const std::vector<std::filesystem::path>& last_model_folders = {});

@@ -36,8 +36,9 @@ FileKind kind_of_file(const std::filesystem::path& file) {
 FileKind kind_of_file(InputFiles& input, const std::filesystem::path& file) {
   for (const char* const extension : {".sdf", ".world", ".urdf", ".xacro"})
     if (file.extension() == extension) return FileKind::sdf;
-  if (!is_yaml(file) || input.why_unreadable(file)) return FileKind::experiment;
+  if (input.why_unreadable(file)) return FileKind::experiment;
   const std::string& text = input.read(file);
+  if (!is_yaml(file)) return trimmed(text).starts_with('<') ? FileKind::sdf : FileKind::experiment;
   const YamlDocument document = parse_yaml(text);
   const bool is_sdf = document.root ? is_sdf_in_yaml(*document.root) : starts_like_sdf(text);
   return is_sdf ? FileKind::sdf : FileKind::experiment;

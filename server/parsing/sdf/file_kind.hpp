@@ -11,8 +11,8 @@ enum class FileKind {
   sdf          ///< a world or a model, in SDF, URDF or YAML
 };
 
-/// What a file that a user names is: by its extension, and of YAML by its content, since an experiment names its world
-/// and a world's file holds it.
+/// What a file that a user names is: by its extension, and otherwise by its content, since an experiment names its
+/// world and a world's file holds it.
 FileKind kind_of_file(const std::filesystem::path& file);
 FileKind kind_of_file(InputFiles& input, const std::filesystem::path& file);
 

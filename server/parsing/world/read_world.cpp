@@ -24,11 +24,15 @@
 #include "server/parsing/world/physics_settings.hpp"
 #include "server/parsing/world/population.hpp"
 #include "server/parsing/world/read_breakable_joints.hpp"
+#include "server/parsing/world/stand_on_plane.hpp"
 
 namespace cohort::parsing {
 namespace {
 
 const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
+
+// What a file may hold in the place of a world.
+enum class LoneModel { none, at_origin, on_plane };
 
 // A world has one at most.
 bool is_once(const Extension& extension) {
@@ -46,7 +50,7 @@ class WorldReader {
     world_.file = file;
   }
 
-  World read(bool may_be_a_model, const std::vector<LaterObject>& later);
+  World read(LoneModel lone, const std::vector<LaterObject>& later);
   /// A world with nothing but the model of the file. Materials are numbered on from `materials`.
   World read_model_file(std::vector<std::string> materials);
 
@@ -92,11 +96,12 @@ class WorldReader {
   std::size_t in_site_ = 0;
 };
 
-World WorldReader::read(bool may_be_a_model, const std::vector<LaterObject>& later) {
+World WorldReader::read(LoneModel lone, const std::vector<LaterObject>& later) {
   const SdfFile& file = files_.world();
   if (!file.loaded) throw InputError(std::move(problems_));
-  if (may_be_a_model && file.root.Model() != nullptr) {
+  if (lone != LoneModel::none && file.root.Model() != nullptr) {
     read_model_alone(file);
+    if (lone == LoneModel::on_plane && problems_.empty()) stand_on_plane(world_);
     return finished();
   }
   if (file.root.WorldCount() != 1) {
@@ -390,14 +395,19 @@ World read_world(const std::filesystem::path& file, std::uint64_t seed,
 
 World read_world(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
-  return WorldReader(input, file, seed, last_model_folders).read(false, later);
+  return WorldReader(input, file, seed, last_model_folders).read(LoneModel::none, later);
 }
 
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders) {
   InputFiles disk;
   disk.trust(file);
-  return WorldReader(disk, file, seed, last_model_folders).read(true, {});
+  return WorldReader(disk, file, seed, last_model_folders).read(LoneModel::at_origin, {});
+}
+
+World read_world_or_standing_model(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
+                                   const std::vector<std::filesystem::path>& last_model_folders) {
+  return WorldReader(input, file, seed, last_model_folders).read(LoneModel::on_plane, {});
 }
 
 std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world) {

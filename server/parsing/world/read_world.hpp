@@ -32,6 +32,10 @@ World read_world(InputFiles& input, const std::filesystem::path& file, std::uint
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders = {});
 
+/// The same; a model alone stands on a plane (`stand_on_plane`).
+World read_world_or_standing_model(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
+                                   const std::vector<std::filesystem::path>& last_model_folders);
+
 /// Adds to `world` the model that a text in SDF, URDF or YAML describes, and the materials that it names. Returns its
 /// index. What the text includes or names, such as a mesh, has to be in `inputs`, from which `world` was read; null is
 /// nothing. Throws InputError with every problem found; `world` is then as it was.

@@ -215,9 +215,7 @@ TEST_F(YamlDescription, AnExperimentTakesAWorldInYaml) {
   const Experiment experiment = parsing::read_experiment(
       write("e.yaml", "world: w.yaml\nduration: 1\nteams: [{name: t, robots: all, controller: c}]\n"));
   EXPECT_EQ(experiment.world.robots.size(), 1u);
-  const auto problems = problems_of([&] { parsing::read_experiment(folder_ / "w.yaml"); });
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_NE(problems[0].message.find("this is a world"), std::string::npos);
+  EXPECT_EQ(parsing::read_experiment(folder_ / "w.yaml").world.robots.size(), experiment.world.robots.size());
 }
 
 TEST_F(YamlDescription, AModelAloneCanBeRead) {

@@ -361,7 +361,8 @@ Subcommand add_run(CommandLine app, LogFlags& flags) {
                                                                 {"external", Controllers::external}};
   const auto command = std::make_shared<RunCommand>();
   CommandLine line = app.add_subcommand("run", "Run an experiment with its controllers");
-  line.add_option("FILE", command->files.emplace_back(), "Experiment (YAML), or the name of an example")
+  line.add_option("FILE", command->files.emplace_back(),
+                  "Experiment (YAML) or the name of an example; or a world or a model, which runs without controllers")
       .required()
       .type_name("");
   add_run_options(line, *command, flags);
@@ -379,7 +380,8 @@ Subcommand add_serve(CommandLine app, LogFlags& flags) {
   const auto command = std::make_shared<RunCommand>();
   command->controllers = Controllers::external;
   CommandLine line = app.add_subcommand("serve", "Run an experiment alone and wait for controllers to attach");
-  line.add_option("FILE", command->files, "Experiments (YAML) or names of examples, run one after the other")
+  line.add_option("FILE", command->files,
+                  "Experiments (YAML), names of examples, worlds or models, run one after the other")
       .required()
       .type_name("");
   add_run_options(line, *command, flags);

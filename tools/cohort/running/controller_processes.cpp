@@ -42,7 +42,7 @@ std::vector<Children::Command> controller_processes(const description::Experimen
   std::vector<Children::Command> commands;
   for (std::size_t i = 0; i < experiment.teams.size(); ++i) {
     const description::Team& team = experiment.teams[i];
-    if (controllers[i].is_keyboard()) continue;
+    if (!controllers[i].is_started()) continue;
     const std::string identity = secure.empty() ? std::string() : identity_for(experiment, team, secure).string();
     const auto add = [&](const std::vector<std::uint32_t>& robots) {
       const std::uint32_t domain = domains[commands.size() % domains.size()];

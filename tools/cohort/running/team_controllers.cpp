@@ -57,7 +57,7 @@ std::vector<TeamController> load_controllers(const Experiment& experiment) {
   std::vector<Problem> problems;
   for (const Team& team : experiment.teams) {
     TeamController& controller = controllers.emplace_back();
-    if (team.controller == keyboard_controller) continue;
+    if (team.controller == keyboard_controller || team.controller.empty()) continue;
     std::string name = team.controller;
     const bool is_path = name.find('/') != std::string::npos || name.ends_with(".so");
     if (is_path && std::filesystem::path(name).is_relative()) name = experiment.file.parent_path() / name;
@@ -77,6 +77,7 @@ void try_controllers(const Experiment& experiment, const Simulation& simulation,
   std::vector<Problem> problems;
   for (std::size_t i = 0; i < experiment.teams.size(); ++i) {
     const Team& team = experiment.teams[i];
+    if (team.controller.empty()) continue;
     std::set<std::uint32_t> kinds_tried;
     for (const std::uint32_t robot : team.robots) {
       if (!kinds_tried.insert(simulation.kind_of(robot)).second) continue;

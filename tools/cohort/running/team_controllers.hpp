@@ -12,9 +12,9 @@ namespace cohort::tool {
 
 /// What drives a team.
 struct TeamController {
-  std::optional<LoadedPlugin> plugin;  ///< none: people, by `cohort teleop`
+  std::optional<LoadedPlugin> plugin;  ///< none: people, by `cohort teleop`, or nobody
 
-  bool is_keyboard() const { return !plugin; }
+  bool is_started() const { return plugin.has_value(); }
   ControllerKind kind() const;
 };
 

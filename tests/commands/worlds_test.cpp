@@ -1,4 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
 
 #include "tests/commands/small_experiment.hpp"
 
@@ -44,6 +48,39 @@ TEST(Export, RefusesWhatItCannotWriteOrRead) {
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_NE(none.err.find("no such file"), std::string::npos) << none.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "w.sdf"));
+}
+
+TEST(Export, TakesAFileNameWithoutAFolder) {
+  const ScratchFolder folder;
+  write_file(folder / "tip.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  write_file(
+      folder / "m.sdf",
+      "<sdf version=\"1.9\"><model name=\"m\"><static>1</static><link name=\"l\"><collision name=\"c\"><geometry>"
+      "<mesh><uri>tip.obj</uri></mesh></geometry></collision></link></model></sdf>");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder / "");
+  const Ended exported = run_to_end({cohort_program(), "export", "m.sdf", "-o", "out.sdf"});
+  std::filesystem::current_path(before);
+  EXPECT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_NE(read_file(folder / "out.sdf").find("<uri>tip.obj</uri>"), std::string::npos);
+}
+
+// An element of SDF takes 60 kB while it is read, and a model has 20 of them.
+TEST(Check, AWorldOfManyModelsTakesAsMuchMemoryAsAFew) {
+  const ScratchFolder folder;
+  std::string world = "<sdf version=\"1.6\"><world name=\"w\">\n";
+  for (int i = 0; i < 1000; ++i)
+    world += "<model name=\"m" + std::to_string(i) + "\"><pose>" + std::to_string(i) +
+             " 0 0 0 0 0</pose><link name=\"l\"><inertial><mass>" + std::to_string(i + 1) +
+             "</mass></inertial><collision name=\"c\"><geometry><box><size>1 1 1</size></box></geometry></collision>"
+             "</link></model>\n";
+  write_file(folder / "w.sdf", world + "</world></sdf>\n");
+  const Ended checked = run_to_end({cohort_program(), "check", (folder / "w.sdf").string()});
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_LT(std::ranges::count(checked.err, '\n'), 4) << checked.err;  // of each kind of warning the first
+  rusage used{};
+  getrusage(RUSAGE_CHILDREN, &used);
+  EXPECT_LT(used.ru_maxrss, 600'000) << "kB";
 }
 
 TEST(Samples, OfARingAreReadAgainByTheTechniqueOfThisName) {

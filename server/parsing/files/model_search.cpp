@@ -76,10 +76,9 @@ fs::path ModelSearch::sdf_file_of(const fs::path& folder) const {
   if (outline.error)
     throw std::runtime_error(config.string() + ":" + std::to_string(outline.error->line) + ": " +
                              outline.error->message);
-  const XmlNode* const name = outline.root.child("name");
   const XmlNode* const sdf = outline.root.child("sdf");
-  if (outline.root.name != "model" || name == nullptr || name->text.empty() || sdf == nullptr || sdf->text.empty())
-    throw std::runtime_error(config.string() + " needs <model> with <name> and <sdf version=\"1.9\">FILE</sdf>");
+  if (outline.root.name != "model" || sdf == nullptr || sdf->text.empty())
+    throw std::runtime_error(config.string() + " needs <model> with <sdf version=\"1.9\">FILE</sdf>");
   const std::string file = best_file(outline.root);
   if (file.empty()) throw std::runtime_error(config.string() + " names no SDF file of a version that is read");
   if (!input_.is_file(folder / file))

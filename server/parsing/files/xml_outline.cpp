@@ -108,6 +108,17 @@ void OutlineBuilder::close() {
   (open_.empty() ? outline_.root : open_.back().children.emplace_back()) = std::move(node);
 }
 
+// Where something other than white space and comments begins.
+std::size_t after_comments(std::string_view text, std::size_t from) {
+  for (;;) {
+    from = std::min(text.find_first_not_of(" \t\r\n", from), text.size());
+    if (!text.substr(from).starts_with("<!--")) return from;
+    const std::size_t end = text.find("-->", from);
+    if (end == std::string_view::npos) return text.size();
+    from = end + 3;
+  }
+}
+
 // Where expat stopped, with what it knows and we do.
 XmlSyntaxError OutlineBuilder::error() const {
   const auto place = static_cast<std::size_t>(XML_GetCurrentByteIndex(parser_.get()));
@@ -164,17 +175,41 @@ bool is_xml_name(std::string_view name) {
   });
 }
 
-// Blank lines before the declaration are common, and no XML: then the declaration, which says nothing here, is blank
-// too.
+// Blank lines and comments before the declaration are common, and no XML: then the declaration, which says nothing
+// here, is blank too. So is a byte order mark.
 XmlOutline outline_xml(std::string_view text) {
-  const std::size_t start = text.find_first_not_of(" \t\r\n");
-  if (start == 0 || start == std::string_view::npos || !text.substr(start).starts_with("<?xml "))
-    return OutlineBuilder(text).build();
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  const std::size_t first = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+  const std::size_t start = after_comments(text, first);
+  const bool is_declared = start < text.size() && text.substr(start).starts_with("<?xml ");
+  if (first == 0 && (start == 0 || !is_declared)) return OutlineBuilder(text).build();
   std::string without(text);
-  const std::size_t end = std::min(without.find("?>", start), without.size() - 2) + 2;
-  for (std::size_t i = start; i < end; ++i)
-    if (without[i] != '\n') without[i] = ' ';
+  const auto blank = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i)
+      if (without[i] != '\n') without[i] = ' ';
+  };
+  blank(0, first);
+  if (is_declared) blank(start, std::min(without.find("?>", start), without.size() - 2) + 2);
   return OutlineBuilder(without).build();
+}
+
+XmlOutline outline_loose_xml(std::string_view text) {
+  std::string without(text);
+  const auto blank = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < std::min(to, without.size()); ++i)
+      if (without[i] != '\n') without[i] = ' ';
+  };
+  blank(0, without.find('<'));
+  for (std::size_t at = 0; (at = std::min(without.find("<!--", at), without.find("<![CDATA[", at))) < without.size();) {
+    const bool is_comment = without.compare(at, 4, "<!--") == 0;
+    const std::size_t end = without.find(is_comment ? "-->" : "]]>", at);
+    if (end == std::string::npos) break;
+    if (is_comment) blank(at, end + 3);
+    at = end + 3;
+  }
+  for (const std::string_view root : {"</sdf>", "</robot>"})
+    if (const std::size_t end = without.rfind(root); end != std::string::npos) blank(end + root.size(), without.size());
+  return outline_xml(without);
 }
 
 XmlText xml_text_of(const XmlNode& node) {

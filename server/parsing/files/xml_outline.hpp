@@ -41,6 +41,9 @@ struct XmlOutline {
 
 XmlOutline outline_xml(std::string_view text);
 
+/// The same of a text that others read though it is no XML: with "--" in comments, or text around the root.
+XmlOutline outline_loose_xml(std::string_view text);
+
 /// Whether it can be the name of an element or an attribute.
 bool is_xml_name(std::string_view name);
 

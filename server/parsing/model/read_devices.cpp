@@ -307,10 +307,13 @@ std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const s
   std::set<std::pair<bool, std::string>> names;
   const auto add = [&](const ExtensionValues& values, const Extension& extension) {
     const DeviceKind& kind = kinds.at(extension.name);
+    const std::size_t before = report.count();
     const bool is_new = (!kind.commands || names.emplace(true, values.name()).second) &&
                         (!kind.observes || names.emplace(false, values.name()).second);
     if (!is_new) report.problem(values.element(), "another device of the model has the name '" + values.name() + "'");
-    if (std::optional<Device> device = kind.read(values, references, report)) devices.push_back(*std::move(device));
+    std::optional<Device> device = kind.read(values, references, report);
+    if (report.forgive(values.element(), before, "it is ignored")) return;
+    if (device) devices.push_back(*std::move(device));
   };
   for (const auto& [element, extension, prefix] : found) {
     std::optional<ExtensionValues> values = ExtensionValues::read(element, *extension, report);

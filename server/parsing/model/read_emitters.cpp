@@ -35,7 +35,9 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
     light.quadratic = number(find(attenuation, {"quadratic"}), 0.0, report);
     const bool is_valid = light.constant >= 0.0 && light.linear >= 0.0 && light.quadratic >= 0.0 &&
                           light.constant + light.linear + light.quadratic > 0.0 && light.range >= 0.0;
-    if (!is_valid) report.problem(attenuation, "expected numbers >= 0, and one of the three factors > 0");
+    if (!is_valid && report.flaw(attenuation, "expected numbers >= 0, and one of the three factors > 0",
+                                 "the light weakens with its distance"))
+      light.constant = 0.0, light.linear = 1.0, light.quadratic = 0.0, light.range = 10.0;
   }
   if (light.intensity < 0.0 || !std::isfinite(light.intensity))
     report.problem(find(element, {"intensity"}), "expected a finite intensity >= 0");
@@ -52,9 +54,10 @@ Light read_light_values(const sdf::Light& sdf_light, const SdfReport& report) {
     light.inner_angle = 0.5 * number(find(element, {"spot", "inner_angle"}), 0.0, report);
     light.outer_angle = 0.5 * number(find(element, {"spot", "outer_angle"}), 0.0, report);
     light.falloff = number(find(element, {"spot", "falloff"}), 0.0, report);
-    if (!(light.inner_angle >= 0.0 && light.outer_angle >= light.inner_angle && light.falloff >= 0.0))
-      report.problem(find(element, {"spot"}) ? find(element, {"spot"}) : element,
-                     "expected 0 <= inner_angle <= outer_angle, and a falloff >= 0");
+    const bool is_cone = light.inner_angle >= 0.0 && light.outer_angle >= light.inner_angle && light.falloff >= 0.0;
+    if (!is_cone && report.flaw(find(element, {"spot"}) ? find(element, {"spot"}) : element,
+                                "expected 0 <= inner_angle <= outer_angle, and a falloff >= 0", "the cone is even"))
+      light.inner_angle = light.outer_angle = std::max(0.0, light.outer_angle), light.falloff = 0.0;
   }
   return light;
 }

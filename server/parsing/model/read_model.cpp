@@ -266,7 +266,10 @@ std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& r
 
   ModelFlattener parts(model, reading);
   parts.add_links(sdf_model, "", {}, false);
-  if (model.links.empty() && model.is_static) reading.report.problem(element, "expected at least one <link>");
+  if (model.links.empty() && reading.report.flaw(element, "expected at least one <link>", "nothing of it is there")) {
+    model.is_static = true;
+    model.links.push_back({"link", {}, {}, {}});
+  }
   if (model.is_static) {
     warn_of_what_static_has(parts, reading.report);
     return {std::move(model)};

@@ -363,9 +363,10 @@ std::vector<Device> read_sdf_sensors(const std::vector<SensorPlace>& places, con
         names.insert(other);
       }
     }
+    const std::size_t before = reading.report.count();
     std::optional<Device> device = kind_of(sensor.element())->read(sensor);
-    if (!device) continue;
-    *readout_of(*device) = sensor.readout();
+    if (device) *readout_of(*device) = sensor.readout();
+    if (reading.report.forgive(sensor.element(), before, "the sensor is ignored") || !device) continue;
     sensors.push_back(*std::move(device));
   }
   return sensors;

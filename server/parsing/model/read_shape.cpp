@@ -21,18 +21,21 @@ namespace {
 
 constexpr const char* geometries = "box, sphere, cylinder, capsule, ellipsoid, mesh, plane or heightmap";
 
-// NaN passes: check_numbers has reported it.
-void check_size(const sdf::ElementPtr& geometry, std::initializer_list<const char*> path, double least,
+constexpr const char* left_out = "the collision is left out";
+
+// NaN passes: check_numbers has reported it. False if the shape is left out.
+bool check_size(const sdf::ElementPtr& geometry, std::initializer_list<const char*> path, double least,
                 const SdfReport& report) {
   const sdf::ElementPtr element = find(geometry, path);
-  if (least <= 0.0 || std::isinf(least)) report.problem(element ? element : geometry, "expected a size > 0 m");
+  const bool is_wrong = least <= 0.0 || std::isinf(least);
+  return !is_wrong || !report.flaw(element ? element : geometry, "expected a size > 0 m", left_out);
 }
 
 std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& reading) {
   const sdf::ElementPtr element = mesh.Element();
   const Eigen::Vector3d scale = to_eigen(mesh.Scale());
   if ((scale.array() == 0.0).any()) {
-    reading.report.problem(find(element, {"scale"}), "expected a scale that is not zero");
+    reading.report.flaw(find(element, {"scale"}), "expected a scale that is not zero", left_out);
     return std::nullopt;
   }
   const bool convex = !reading.is_static;
@@ -41,7 +44,7 @@ std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& 
   try {
     return Mesh{reading.shape_files.mesh(uri, scale, convex), convex};
   } catch (const std::runtime_error& error) {
-    reading.report.problem(uri, error.what());
+    reading.report.flaw(uri, error.what(), left_out);
     return std::nullopt;
   }
 }
@@ -77,8 +80,10 @@ std::optional<Shape> read_terrain(const sdf::ElementPtr& element, const Eigen::V
 std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReading& reading) {
   const sdf::ElementPtr element = map.Element();
   const Eigen::Vector3d size = to_eigen(map.Size());
-  if (!reading.is_static) reading.report.problem(element, "a heightmap needs <static>true</static> in its model");
-  check_size(element, {"size"}, size.minCoeff(), reading.report);
+  if (!reading.is_static &&
+      reading.report.flaw(element, "a heightmap needs <static>true</static> in its model", left_out))
+    return std::nullopt;
+  if (!check_size(element, {"size"}, size.minCoeff(), reading.report)) return std::nullopt;
   const sdf::ElementPtr terrain = find(element, {"cohort:terrain"});
   if (terrain && size.minCoeff() > 0.0 && size.allFinite()) return read_terrain(terrain, size, reading.report);
   const sdf::ElementPtr uri = find(element, {"uri"});
@@ -86,7 +91,7 @@ std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReadin
   try {
     return Heightmap{reading.shape_files.height_grid(uri, size)};
   } catch (const std::runtime_error& error) {
-    reading.report.problem(uri, error.what());
+    reading.report.flaw(uri, error.what(), left_out);
     return std::nullopt;
   }
 }
@@ -98,31 +103,34 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   const SdfReport& report = reading.report;
   if (const sdf::Box* const box = geometry.BoxShape()) {
     const Eigen::Vector3d size = to_eigen(box->Size());
-    check_size(element, {"box", "size"}, size.minCoeff(), report);
+    if (!check_size(element, {"box", "size"}, size.minCoeff(), report)) return std::nullopt;
     return Box{size};
   }
   if (const sdf::Sphere* const sphere = geometry.SphereShape()) {
-    check_size(element, {"sphere", "radius"}, sphere->Radius(), report);
+    if (!check_size(element, {"sphere", "radius"}, sphere->Radius(), report)) return std::nullopt;
     return Sphere{sphere->Radius()};
   }
   if (const sdf::Cylinder* const cylinder = geometry.CylinderShape()) {
-    check_size(element, {"cylinder", "radius"}, cylinder->Radius(), report);
-    check_size(element, {"cylinder", "length"}, cylinder->Length(), report);
+    const bool has_radius = check_size(element, {"cylinder", "radius"}, cylinder->Radius(), report);
+    const bool has_length = check_size(element, {"cylinder", "length"}, cylinder->Length(), report);
+    if (!has_radius || !has_length) return std::nullopt;
     return Cylinder{cylinder->Radius(), cylinder->Length()};
   }
   if (const sdf::Capsule* const capsule = geometry.CapsuleShape()) {
-    check_size(element, {"capsule", "radius"}, capsule->Radius(), report);
-    check_size(element, {"capsule", "length"}, capsule->Length(), report);
+    const bool has_radius = check_size(element, {"capsule", "radius"}, capsule->Radius(), report);
+    const bool has_length = check_size(element, {"capsule", "length"}, capsule->Length(), report);
+    if (!has_radius || !has_length) return std::nullopt;
     return Capsule{capsule->Radius(), capsule->Length()};
   }
   if (const sdf::Ellipsoid* const ellipsoid = geometry.EllipsoidShape()) {
     const Eigen::Vector3d radii = to_eigen(ellipsoid->Radii());
-    check_size(element, {"ellipsoid", "radii"}, radii.minCoeff(), report);
+    if (!check_size(element, {"ellipsoid", "radii"}, radii.minCoeff(), report)) return std::nullopt;
     return Ellipsoid{radii};
   }
   if (const sdf::Plane* const plane = geometry.PlaneShape()) {
     const Eigen::Vector3d normal = to_eigen(plane->Normal());
-    if (!reading.is_static) report.problem(element, "a plane needs <static>true</static> in its model");
+    if (!reading.is_static && report.flaw(element, "a plane needs <static>true</static> in its model", left_out))
+      return std::nullopt;
     if (normal.isZero()) report.problem(element, "expected a normal that is not zero");
     return Plane{written_unit_vector(find(element, {"plane", "normal"})).value_or(normal.normalized())};
   }
@@ -131,7 +139,7 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   const sdf::ElementPtr kind = element->GetFirstElement();
   report.flaw(element,
               (kind ? "<" + kind->GetName() + "> is not supported; expected " : "expected ") + std::string(geometries),
-              "the collision is left out");
+              left_out);
   return std::nullopt;
 }
 

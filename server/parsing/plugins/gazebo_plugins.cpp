@@ -60,6 +60,8 @@ constexpr PluginKind known_plugins[] = {
     {"gazebo_ros_camera"},
 };
 
+constexpr const char* plugin_is_ignored = "the plugin is ignored";
+
 // What all spellings of a name have in common: `libignition-gazebo6-diff-drive-system.so`, `gz-sim-diff-drive-system`,
 // `libgazebo_ros_diff_drive.so` and `DiffDrive` are "diffdrive".
 std::string plain(std::string_view name) {
@@ -161,7 +163,9 @@ std::vector<Counterpart> read_model_plugins(const sdf::ElementPtr& model_element
   for_plugins(model_element, [&](const sdf::ElementPtr& element, const PluginKind& kind) {
     if (kind.in_model == nullptr || elsewhere.contains(element)) return;
     ModelPlugin plugin(element, prefix, model, names, report);
+    const std::size_t before = report.count();
     kind.in_model(plugin);
+    if (report.forgive(element, before, plugin_is_ignored)) return;
     plugin.warn_of_unread();
     for (Counterpart& counterpart : plugin.counterparts())
       if (!drives_one_of(counterpart, driven)) counterparts.push_back(std::move(counterpart));
@@ -173,7 +177,9 @@ void read_world_plugins(const sdf::ElementPtr& world_element, World& world, cons
   for_plugins(world_element, [&](const sdf::ElementPtr& element, const PluginKind& kind) {
     if (kind.in_world == nullptr) return;
     Plugin plugin(element, report);
+    const std::size_t before = report.count();
     kind.in_world(plugin, world);
+    report.forgive(element, before, plugin_is_ignored);
     plugin.warn_of_unread();
   });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string_view>
@@ -49,7 +50,11 @@ class UrdfMender {
   void pass_over(const XmlNode& node, const std::string& path, const std::string& message) {
     unknown_.add({file_, node.line, path, ""}, message);
   }
+  void take_optional_environment(XmlNode& node, const std::string& path);
+  void name_joints_apart(XmlNode& robot);
+  void mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path);
   void mend_materials(XmlNode& robot);
+  void mend_shape(XmlNode& geometry, const std::string& path, const std::pair<std::string, std::size_t>& place);
   void mend_link(XmlNode& link);
   void mend_visuals(XmlNode& link);
   bool can_be_shown(XmlNode& visual) const;
@@ -74,6 +79,8 @@ UrdfRest UrdfMender::mend(XmlNode& robot) {
     set_attribute(robot, "name", file_.stem().string());
     warn(robot, "robot", "has no name; it is called '" + file_.stem().string() + "', as its file");
   }
+  take_optional_environment(robot, "robot");
+  name_joints_apart(robot);
   mend_materials(robot);
   for (XmlNode& child : robot.children) {
     if (child.name == "link") mend_link(child);
@@ -85,12 +92,96 @@ UrdfRest UrdfMender::mend(XmlNode& robot) {
   return std::move(rest_);
 }
 
+// `$(optenv NAME VALUE)` is the value: what runs does not depend on the environment.
+void UrdfMender::take_optional_environment(XmlNode& node, const std::string& path) {
+  constexpr std::string_view opening = "$(optenv ";
+  for (auto& [name, value] : node.attributes)
+    for (std::size_t at = value.find(opening); at != std::string::npos; at = value.find(opening)) {
+      const std::size_t end = value.find(')', at);
+      if (end == std::string::npos) break;
+      const std::string inside = value.substr(at + opening.size(), end - at - opening.size());
+      const std::size_t space = std::min(inside.find(' '), inside.size());
+      value.replace(at, end + 1 - at, trimmed(inside.substr(space)));
+      pass_over(node, path, "$(optenv …) is what stands in it, whatever the environment says");
+    }
+  for (XmlNode& child : node.children) take_optional_environment(child, path + "/" + urdf_step(child));
+}
+
+// In SDF a joint and a link of a model are not of one name.
+void UrdfMender::name_joints_apart(XmlNode& robot) {
+  std::set<std::string> taken;
+  for (const XmlNode& child : robot.children)
+    if (child.name == "link") taken.insert(value_of(child, "name"));
+  std::map<std::string, std::string> renamed;
+  for (XmlNode& joint : robot.children) {
+    const std::string name = value_of(joint, "name");
+    if (joint.name != "joint" || !taken.contains(name)) continue;
+    std::string other = name + "_joint";
+    while (taken.contains(other)) other += "_";
+    pass_over(joint, "robot/" + urdf_step(joint), "has the name of a link; it is called after it, with '_joint'");
+    set_attribute(joint, "name", other);
+    renamed.emplace(name, other);
+  }
+  for (XmlNode& joint : robot.children)
+    if (XmlNode* const mimic = joint.name == "joint" ? child_of(joint, "mimic") : nullptr)
+      if (const auto leader = renamed.find(value_of(*mimic, "joint")); leader != renamed.end())
+        set_attribute(*mimic, "joint", leader->second);
+}
+
+// A comma between two numbers, or a point after one: others read up to there.
+void UrdfMender::mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path) {
+  for (const UrdfAttribute& attribute : form.attributes) {
+    const std::string value = value_of(node, attribute.name);
+    if (attribute.numbers == 0 || value.empty() || !what_is_wrong(value, attribute)) continue;
+    std::string spaced = value;
+    std::ranges::replace(spaced, ',', ' ');
+    std::string mended;
+    for (std::string_view word : words(spaced)) {
+      while (word.size() > 1 && word.ends_with('.')) word.remove_suffix(1);
+      mended += (mended.empty() ? "" : " ") + std::string(word);
+    }
+    if (what_is_wrong(mended, attribute)) continue;
+    warn(node, path, "expected numbers with spaces between them, not '" + value + "'; read as '" + mended + "'");
+    set_attribute(node, attribute.name, mended);
+  }
+}
+
 // Of no consequence for what moves, but the converter stops at them.
 void UrdfMender::mend_materials(XmlNode& robot) {
   std::erase_if(robot.children, [&](const XmlNode& child) {
     return child.name == "material" && (value_of(child, "name").empty() || child.children.empty() ||
                                         !materials_.insert(value_of(child, "name")).second);
   });
+}
+
+// Of Bullet: shapes that the converter does not know. What nobody does is left out.
+void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path,
+                            const std::pair<std::string, std::size_t>& place) {
+  XmlNode& shape = geometry.children.front();
+  const XmlNode bullets = shape;
+  const auto stand_in = [&](const char* name, const char* size, const char* value) {
+    shape = element_at(geometry, name);
+    set_attribute(shape, size, value);
+  };
+  if (shape.name == "capsule") {
+    rest_.capsules.insert(place);
+    shape.name = "cylinder";
+  } else if (shape.name == "plane") {
+    rest_.planes.emplace(place, value_of(bullets, "normal").empty() ? "0 0 1" : value_of(bullets, "normal"));
+    stand_in("sphere", "radius", "1");
+  } else if (form_of("geometry", shape.name) == nullptr) {
+    pass_over(bullets, path + "/" + bullets.name,
+              "a <" + bullets.name + "> is no shape here; the collision is left out");
+    rest_.left_out.insert(place);
+    stand_in("sphere", "radius", "1");
+  }
+  mend_mesh(geometry);
+}
+
+// The converter divides by the mass of links that it makes one.
+bool is_without_mass(const XmlNode& node) {
+  const XmlNode* const mass = node.name == "inertial" ? node.child("mass") : nullptr;
+  return mass != nullptr && parse_real(value_of(*mass, "value")) == 0.0;
 }
 
 void UrdfMender::mend_link(XmlNode& link) {
@@ -101,21 +192,17 @@ void UrdfMender::mend_link(XmlNode& link) {
   mend_visuals(link);
   std::size_t collision = 0;
   std::erase_if(link.children, [&](const XmlNode& child) {
-    const bool is_empty = child.name == "collision" && child.children.empty();
-    if (is_empty) pass_over(child, path + "/collision", "a <collision> without a shape, which is ignored");
+    if (child.name != "collision") return is_without_mass(child);
+    const XmlNode* const geometry = child.child("geometry");
+    const bool is_empty = geometry == nullptr || geometry->children.size() != 1;
+    if (is_empty) pass_over(child, path + "/collision", "a <collision> without one shape, which is ignored");
     return is_empty;
   });
   for (XmlNode& child : link.children) {
     if (child.name == "inertial") mend_inertial(child, path + "/inertial");
     XmlNode* const geometry = child_of(child, "geometry");
     if (child.name != "collision") continue;
-    if (geometry != nullptr) {
-      if (XmlNode* const capsule = child_of(*geometry, "capsule")) {
-        rest_.capsules.emplace(name, collision);
-        capsule->name = "cylinder";
-      }
-      mend_mesh(*geometry);
-    }
+    if (geometry != nullptr) mend_shape(*geometry, path + "/collision/geometry", {name, collision});
     ++collision;
   }
   take_unknown(link, path);
@@ -209,6 +296,13 @@ void UrdfMender::take_contact(const XmlNode& contact, const std::string& link, c
 }
 
 void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
+  std::set<std::string> met;
+  std::erase_if(node.children, [&](const XmlNode& child) {
+    const bool is_again = form_of(node.name, child.name) != nullptr && child.name != "collision" &&
+                          child.name != "visual" && !met.insert(child.name).second;
+    if (is_again) pass_over(child, path + "/" + urdf_step(child), "is given twice; only the first counts");
+    return is_again;
+  });
   std::erase_if(node.children, [&](const XmlNode& child) {
     if (child.name == "visual" || child.name.find(':') != std::string::npos) return false;
     if (form_of(node.name, child.name) != nullptr) return false;
@@ -225,6 +319,7 @@ void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
     const UrdfForm* const form = form_of(node.name, child.name);
     if (form == nullptr || child.name == "visual") continue;
     const std::string child_path = path + "/" + urdf_step(child);
+    mend_numbers(child, *form, child_path);
     std::vector<std::string> known;
     for (const UrdfAttribute& attribute : form->attributes) known.emplace_back(attribute.name);
     std::erase_if(child.attributes, [&](const auto& attribute) {
@@ -242,6 +337,14 @@ void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
 
 void UrdfMender::mend_joint(XmlNode& joint) {
   const std::string path = "robot/" + urdf_step(joint);
+  const std::string type = value_of(joint, "type");
+  if (type == "spherical") {
+    rest_.balls.insert(value_of(joint, "name"));
+    set_attribute(joint, "type", "continuous");
+  } else if (type == "planar") {
+    set_attribute(joint, "type", "floating");
+    warn(joint, path, "a planar joint is not supported; its child is free, as of a floating one");
+  }
   if (XmlNode* const properties = child_of(joint, "joint_properties"); properties != nullptr) {
     if (joint.child("dynamics") == nullptr) properties->name = "dynamics";
   }

@@ -259,6 +259,9 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file,
       if (const auto place = place_named_in(error.Message(), tree)) {
         node = place->node;
         problem.element = place->path;
+      } else if (const XmlNode* const model = tree.child("model")) {
+        node = model;
+        problem.element = step_of(*model);
       }
       // One unknown name is reported as a frame, as a link and as what a pose is relative to.
       const std::string name = name_in(problem.message, "").value_or(problem.message);

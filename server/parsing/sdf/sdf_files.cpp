@@ -13,6 +13,7 @@
 #include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/files/xacro.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
+#include "server/parsing/sdf/mend_sdf.hpp"
 #include "server/parsing/sdf/newer_sdf.hpp"
 #include "server/parsing/sdf/sdf_errors.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
@@ -86,51 +87,13 @@ void add_names(const XmlNode& node, std::set<std::string>& names) {
   for (const XmlNode& child : node.children) add_names(child, names);
 }
 
-// An <include> of an older version is put aside, since libsdformat would follow it. A <frame> keeps its place.
-constexpr std::string_view aside = "cohort:include:";
-
-void take_includes(XmlNode& node, std::vector<XmlNode>& taken) {
-  for (XmlNode& child : node.children) {
-    if (child.name == "world" || child.name == "model") take_includes(child, taken);
-    if (child.name != "include") continue;
-    XmlNode mark{"frame", child.line, child.file, {{"name", std::string(aside) + std::to_string(taken.size())}},
-                 "",      {}};
-    taken.push_back(std::exchange(child, std::move(mark)));
-    for (XmlNode& part : taken.back().children)
-      for (auto& [name, value] : part.attributes)
-        if (part.name == "pose" && name == "frame") name = "relative_to";  // its name up to SDF 1.6
-  }
-}
-
-void put_includes_back(XmlNode& node, const std::vector<XmlNode>& taken) {
-  for (XmlNode& child : node.children) {
-    const std::string name = name_of(child);
-    if (child.name == "frame" && name.starts_with(aside))
-      child = taken[std::stoul(name.substr(aside.size()))];
-    else
-      put_includes_back(child, taken);
-  }
-}
-
-// What libsdformat has made of a text, with the lines of the nodes that it was written from.
-XmlNode tree_of(const sdf::ElementPtr& element, const XmlNode& parent, const std::vector<const XmlNode*>& nodes) {
-  const auto line = static_cast<std::size_t>(element->LineNumber().value_or(0));
-  const XmlNode* const unknown = parent.child(element->GetName());  // libsdformat copies it without its line
-  const XmlNode& source = line > 0 && line < nodes.size() ? *nodes[line] : unknown != nullptr ? *unknown : parent;
-  XmlNode node{element->GetName(), source.line, source.file, {}, "", {}};
-  for (const sdf::ParamPtr& attribute : element->GetAttributes())
-    if (attribute->GetSet()) node.attributes.emplace_back(attribute->GetKey(), attribute->GetAsString());
-  node.text = written_text(element);
-  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement())
-    if (child->GetExplicitlySetInFile()) node.children.push_back(tree_of(child, source, nodes));
-  return node;
-}
-
 const XmlNode* nth_child(const XmlNode& node, std::string_view name, std::size_t n) {
   for (const XmlNode& child : node.children)
     if (child.name == name && n-- == 0) return &child;
   return nullptr;
 }
+
+bool is_ours(const XmlNode& root) { return root.attribute("xmlns:" + std::string(extension_prefix)) != nullptr; }
 
 // The first element that the program `xacro` expands; nullptr if there is none.
 const XmlNode* find_macro(const XmlNode& node, bool may_have_expressions) {
@@ -205,16 +168,18 @@ SdfFile& SdfFiles::open(const fs::path& path, const fs::path& shown) {
 void SdfFiles::make_readable(SdfFile& file) {
   pass_over_unknown(file.tree, warnings_);
   keep_what_is_shown(file.tree);
-  const auto is_include = [](const XmlNode& child) { return child.name == "include"; };
-  if (std::ranges::none_of(file.tree.children, is_include) || file.tree.child("world") != nullptr ||
-      file.tree.child("model") != nullptr)
+  const auto is_of_world = [](const XmlNode& child) {
+    return child.name == "include" || child.name == "light" || child.name == "actor";
+  };
+  // Of a file that others include as a light, nothing is met.
+  if (std::ranges::none_of(file.tree.children, is_of_world) || file.tree.child("world") != nullptr ||
+      file.tree.child("model") != nullptr || opening_.size() > 1)
     return;
-  // Of a file with nothing but includes they are those of a world.
+  // Of a file with nothing else they are those of a world.
   XmlNode world = element_at(file.tree, "world");
   set_attribute(world, "name", file.shown.stem().string());
-  for (XmlNode& child : file.tree.children)
-    if (is_include(child)) world.children.push_back(std::move(child));
-  std::erase_if(file.tree.children, is_include);
+  std::ranges::copy_if(file.tree.children, std::back_inserter(world.children), is_of_world);
+  std::erase_if(file.tree.children, is_of_world);
   file.tree.children.push_back(std::move(world));
 }
 
@@ -239,6 +204,10 @@ std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, SdfFile& file
     return std::nullopt;
   };
   XmlOutline outline = outline_xml(text);
+  if (outline.error) {
+    XmlOutline loose = outline_loose_xml(text);
+    if (!loose.error && !is_ours(loose.root)) outline = std::move(loose);
+  }
   if (outline.error) return fail(outline.error->line, outline.error->message);
   const XmlNode& root = outline.root;
   const XmlNode* const macro =
@@ -253,10 +222,14 @@ std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, SdfFile& file
     outline = outline_xml(input_.read(file.path));
     if (outline.error) return fail(line, "what xacro makes of it is not XML: " + outline.error->message);
   }
-  file.is_foreign = root.name == "robot" || root.attribute("xmlns:" + std::string(extension_prefix)) == nullptr;
-  if (root.name == "robot")
-    return sdf_of_urdf(std::move(outline.root), file.shown, libsdformat_.config(), problems_, warnings_);
+  file.is_foreign = root.name == "robot" || !is_ours(root);
+  if (root.name == "robot") {
+    auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, libsdformat_.config(), problems_, warnings_);
+    if (sdf) mend_sdf(*sdf, file.shown, warnings_);
+    return sdf;
+  }
 
+  if (root.name == "gazebo" && file.is_foreign) outline.root.name = "sdf";  // what it was called up to SDF 1.2
   const std::string* const version = root.attribute("version");
   if (root.name != "sdf" || version == nullptr)
     return fail(root.line,
@@ -265,6 +238,7 @@ std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, SdfFile& file
   if (version_of(*version) > newest_version || version_of(*version) == std::pair{0, 0})
     return fail(root.line, "SDF version '" + *version + "' cannot be read, only versions up to 1.12");
   if (version_of(*version) > version_of(sdf::SDF::Version())) make_older(outline.root, file.shown, warnings_);
+  if (file.is_foreign) mend_sdf(outline.root, file.shown, warnings_);
   return std::move(outline.root);
 }
 
@@ -275,37 +249,6 @@ std::optional<XmlNode> SdfFiles::read_yaml(const std::string& text, const SdfFil
     return std::nullopt;
   }
   return sdf_of_yaml(*document.root, file.shown, problems_);
-}
-
-std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
-  file.version = *tree.attribute("version");
-  if (version_of(file.version) >= std::pair{1, 8} && !names_are_simple(tree, "")) return std::nullopt;
-  if (file.version == sdf::SDF::Version()) return tree;
-  std::vector<XmlNode> includes;
-  take_includes(tree, includes);
-  XmlText written = xml_text_of(tree);
-  file.nodes = std::move(written.nodes);
-  sdf::Errors errors;
-  const sdf::SDFPtr sdf = empty_sdf();
-  sdf->SetFilePath(file.path.string());
-  bool is_read = false;
-  std::vector<Problem> found;
-  try {
-    is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
-    if (file.is_foreign) take_unknown_names(errors, file, warnings_);
-    found = problems_of(errors, file, tree);
-  } catch (const std::exception& error) {
-    found.push_back({file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()});
-  }
-  if (!is_read && found.empty()) found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
-  problems_.insert(problems_.end(), found.begin(), found.end());
-  if (!is_read) return std::nullopt;
-  XmlNode newest = tree_of(sdf->Root(), tree, file.nodes);
-  for (const auto& [name, value] : tree.attributes)
-    if (name.starts_with("xmlns:") && newest.attribute(name) == nullptr) newest.attributes.emplace_back(name, value);
-  put_includes_back(newest, includes);
-  file.nodes.clear();
-  return newest;
 }
 
 bool SdfFiles::names_are_simple(const XmlNode& node, const std::string& path) {
@@ -356,7 +299,9 @@ std::vector<Problem> SdfFiles::try_to_load(SdfFile& file) {
   try {
     std::set<std::string> names;
     add_names(file.tree, names);
-    const sdf::SDFPtr sdf = empty_sdf_for(names);
+    if (names != last_definition_.first || !last_definition_.second)
+      last_definition_ = {names, sdf_definition_for(names)};
+    const sdf::SDFPtr sdf = empty_sdf(last_definition_.second);
     sdf->SetFilePath(file.path.string());
     sdf->Root()->SetOriginalVersion(file.version);  // what an old version allowed stays allowed
     // Into an element: what reads into an SDFPtr tries anything that is not SDF as URDF, whose parser prints on its
@@ -364,7 +309,7 @@ std::vector<Problem> SdfFiles::try_to_load(SdfFile& file) {
     file.loaded = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
     if (file.loaded) {
       const sdf::Errors more = file.root.Load(sdf, libsdformat_.config());
-      errors.insert(errors.end(), more.begin(), more.end());
+      if (file.complete) errors.insert(errors.end(), more.begin(), more.end());  // otherwise they follow from that
     }
   } catch (const std::exception& error) {
     file.loaded = false;
@@ -391,6 +336,7 @@ Location SdfFiles::locate(const sdf::ElementPtr& element) const {
   location.line = node != nullptr ? node->line : 0;
   for (sdf::ElementPtr step = element; step && step->GetName() != "sdf"; step = step->GetParent())
     location.element = step_of(step) + (location.element.empty() ? "" : "/") + location.element;
+  if (const SdfFile* const part = find(element->FilePath())) location.element.insert(0, part->within);
   return location;
 }
 

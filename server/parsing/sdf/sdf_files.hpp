@@ -9,8 +9,10 @@
 #include <sdf/Element.hh>
 #include <sdf/ParserConfig.hh>
 #include <sdf/Root.hh>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "server/description/input_error.hpp"
@@ -28,14 +30,17 @@ std::string name_of(const XmlNode& node);
 /// The element as a step of a path, such as `model[NAME]`.
 std::string step_of(const XmlNode& node);
 
-/// An <include> of a world. Where others refer to it, or it to them, a <frame> of the same name stands for it in
-/// SdfFile::tree, or, where frames inside of the model are named, a <model> with nothing but its frames.
+/// An <include> of a world, or a <model> in it that nothing else there refers to, which is a part by itself. Where
+/// others refer to it, or it to them, a <frame> of the same name stands for it in SdfFile::tree, or, where frames
+/// inside of the model are named, a <model> with nothing but its frames.
 struct Include {
   std::string name;
   const SdfFile* file = nullptr;
   bool is_static = false;
   std::size_t place = 0;                       ///< models and frames before it in the <world> of the tree
   std::optional<ignition::math::Pose3d> X_WM;  ///< if nothing stands for it
+  bool is_part = false;                        ///< then `file` is loaded by SdfFiles::load_part; alike ones share it
+  bool is_quaternion = false;                  ///< of a part: how the rotation of `X_WM` is written
 };
 
 /// A file, in SDF, URDF or YAML, as SDF that libsdformat has read.
@@ -48,10 +53,12 @@ struct SdfFile {
   std::vector<const XmlNode*> nodes;  ///< of `tree`, by the line that libsdformat knows them by
   std::vector<Include> includes;      ///< directly in <world>, in document order
   sdf::Root root;
-  bool is_foreign = false;  ///< not written for Cohort: it does not declare our prefix, or is URDF
-  bool loaded = false;      ///< `root` has the elements of the file
-  bool sound = false;       ///< libsdformat has nothing to say against them, so that frames resolve
-  bool complete = true;     ///< every include was found
+  bool is_foreign = false;                      ///< not written for Cohort: it does not declare our prefix, or is URDF
+  bool loaded = false;                          ///< `root` has the elements of the file
+  bool sound = false;                           ///< libsdformat has nothing to say against them, so that frames resolve
+  bool complete = true;                         ///< every include was found
+  std::string within;                           ///< of a part: the path of what it stands in, with a slash
+  std::map<std::string, const SdfFile*> parts;  ///< by their content
 
   /// nullptr if there is none.
   const XmlNode* node_at(int line) const {
@@ -101,6 +108,11 @@ class SdfFiles {
     return open(found.file, found.file);
   }
 
+  /// Reads a model that is a part by itself. It costs libsdformat 1000 times its text: so one after the other, and each
+  /// is let go when its description is made.
+  const SdfFile& load_part(const SdfFile& part);
+  void let_go(const SdfFile& part);
+
   /// The file that the URI in `element` names, such as a mesh; a path is relative to the file that the element stands
   /// in. Throws std::runtime_error if there is none.
   std::filesystem::path find_file(const sdf::ElementPtr& element) const;
@@ -122,6 +134,8 @@ class SdfFiles {
   std::optional<XmlNode> read_yaml(const std::string& text, const SdfFile& file);
   /// An older version of SDF as the newest, with its includes as they are.
   std::optional<XmlNode> converted(XmlNode tree, SdfFile& file);
+  /// The same of what has no includes. `aside`: what marks in it stand for.
+  std::optional<XmlNode> convert(const XmlNode& tree, const std::vector<XmlNode>& aside, SdfFile& file);
   /// Whether no name has '::' in it, as is the rule from SDF 1.8 on.
   bool names_are_simple(const XmlNode& node, const std::string& path);
   /// Of an element that SDF has once, the first counts.
@@ -139,11 +153,15 @@ class SdfFiles {
   bool replace_includes(XmlNode& node, const std::string& path, SdfFile& file);
   /// Nothing if there is nothing to be put into its place.
   std::optional<Found> follow(const XmlNode& include, const std::string& path, SdfFile& file);
+  /// In a world of others, where another model has its name.
+  void rename_include(XmlNode& include, const std::string& path, const std::set<std::string>& taken, Found& found);
   static void replace_in_model(const XmlNode& include, const Found& found, bool merges, std::vector<XmlNode>& children);
   /// False as `fits`.
   bool replace_in_world(const XmlNode& include, const std::string& path, const Found& found, const Named& named,
                         std::vector<XmlNode>& children, SdfFile& file);
   bool fits(const XmlNode& include, const std::string& path, const SdfFile& included, SdfFile& file);
+  /// False if others refer to the model.
+  bool set_apart(XmlNode& model, const Named& named, std::size_t place, SdfFile& file);
 
   LibsdformatScope libsdformat_;
   InputFiles& input_;
@@ -152,8 +170,9 @@ class SdfFiles {
   ModelSearch search_;
   std::vector<Problem>& problems_;
   std::vector<Problem>& warnings_;
-  std::map<std::filesystem::path, std::unique_ptr<SdfFile>> files_;  // by absolute path
-  std::vector<std::filesystem::path> opening_;                       // from the world inwards
+  std::map<std::filesystem::path, std::unique_ptr<SdfFile>> files_;    // by absolute path
+  std::vector<std::filesystem::path> opening_;                         // from the world inwards
+  std::pair<std::set<std::string>, sdf::ElementPtr> last_definition_;  // of SDF with nothing but these names
 };
 
 }  // namespace cohort::parsing

@@ -166,6 +166,21 @@ std::set<std::string> names_in(const XmlNode& world) {
   return names;
 }
 
+std::set<std::string> repeated_names_in(const XmlNode& world) {
+  std::set<std::string> names;
+  std::set<std::string> repeated;
+  for (const XmlNode& child : world.children)
+    if ((child.name == "model" || child.name == "frame") && !names.insert(name_of(child)).second)
+      repeated.insert(name_of(child));
+  return repeated;
+}
+
+// How many models and frames there are before what comes next.
+std::size_t place_after(const std::vector<XmlNode>& children) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      children, [](const XmlNode& child) { return child.name == "model" || child.name == "frame"; }));
+}
+
 // Whatever refers to the merged model's own frame refers to `proxy` from now on.
 void refer_to_proxy(XmlNode& node, const std::string& proxy) {
   const auto redirect = [&](XmlNode* where, const std::string& attribute, bool also_if_absent) {
@@ -233,7 +248,8 @@ std::vector<XmlNode> merged(const XmlNode& model, const sdf::Model& sdf_model, c
 /// What of a world is named by something else in it.
 struct SdfFiles::Named {
   std::set<std::string> frames;
-  std::set<std::string> scopes;  ///< of `robot::link`, `robot`
+  std::set<std::string> scopes;    ///< of `robot::link`, `robot`
+  std::set<std::string> repeated;  ///< names of several models and frames
 
   void add(const std::string& text, bool is_frame) {
     if (const std::size_t end = text.find("::"); end != std::string::npos)
@@ -259,6 +275,7 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
   const bool is_world = node.name == "world";
   Named named;
   if (is_world) named.collect(node);
+  if (is_world) named.repeated = repeated_names_in(node);
   std::set<std::string> names = is_world ? names_in(node) : std::set<std::string>{};  // those of includes too
   bool usable = true;
   std::vector<XmlNode> children;
@@ -267,11 +284,13 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
     const std::string child_path = (path.empty() ? "" : path + "/") + step_of(child);
     if (child.name != "include" || (!is_world && node.name != "model")) {
       if (child.name == "world" || child.name == "model") usable = replace_includes(child, child_path, file) && usable;
+      if (is_world && child.name == "model" && set_apart(child, named, place_after(children), file)) continue;
       children.push_back(std::move(child));
       continue;
     }
-    const std::optional<Found> found = follow(child, child_path, file);
+    std::optional<Found> found = follow(child, child_path, file);
     if (!found) continue;
+    if (is_world && file.is_foreign && names.contains(found->name)) rename_include(child, child_path, names, *found);
     const bool merges = is_merged(child);
     if (is_world && merges) {
       problems_.push_back({file.shown, child.line, child_path, "merge=\"true\" has a meaning in a <model> only"});
@@ -290,6 +309,15 @@ bool SdfFiles::replace_includes(XmlNode& node, const std::string& path, SdfFile&
   return usable;
 }
 
+void SdfFiles::rename_include(XmlNode& include, const std::string& path, const std::set<std::string>& taken,
+                              Found& found) {
+  const std::string before = found.name;
+  for (int number = 1; taken.contains(found.name); ++number) found.name = before + "_" + std::to_string(number);
+  warnings_.push_back({include.file->shown, include.line, path,
+                       "another model has the name '" + before + "'; this one is called '" + found.name + "'"});
+  set_child(include, element_at(include, "name", found.name));
+}
+
 void SdfFiles::replace_in_model(const XmlNode& include, const Found& found, bool merges,
                                 std::vector<XmlNode>& children) {
   if (!merges) {
@@ -305,6 +333,56 @@ bool SdfFiles::fits(const XmlNode& include, const std::string& path, const SdfFi
   problems_.push_back({include.file->shown, include.line, path,
                        "with this, models in models have more than " + std::to_string(most_elements) + " elements"});
   return false;
+}
+
+bool SdfFiles::set_apart(XmlNode& model, const Named& named, std::size_t place, SdfFile& file) {
+  const std::string name = name_of(model);
+  const bool is_usual =
+      !name.empty() && name != "world" && !name.starts_with("__") && value_of(model, "placement_frame").empty();
+  if (!is_usual || named.frames.contains(name) || named.scopes.contains(name) || named.repeated.contains(name))
+    return false;
+  const auto X_WM = pose_in_world(model.child("pose"));
+  if (!X_WM) return false;
+  const XmlNode* const pose = model.child("pose");
+  const bool is_quaternion = pose != nullptr && value_of(*pose, "rotation_format") == "quat_xyzw";
+  std::string content;
+  add_content(model, content);
+  const auto [alike, is_new] = file.parts.emplace(std::move(content), nullptr);
+  if (!is_new) {
+    file.includes.push_back({name, alike->second, false, place, X_WM, true, is_quaternion});
+    return true;
+  }
+  const std::filesystem::path path = file.path / ("model " + std::to_string(file.includes.size()));
+  std::unique_ptr<SdfFile>& part = files_[path];
+  part = std::make_unique<SdfFile>();
+  part->path = path;
+  part->shown = file.shown;
+  part->version = file.version;
+  part->is_foreign = file.is_foreign;
+  part->complete = file.complete;
+  part->within = "world/";
+  part->tree = element_at(file.tree, "sdf");
+  part->tree.attributes = file.tree.attributes;
+  part->tree.children.push_back(std::move(model));
+  alike->second = part.get();
+  file.includes.push_back({name, part.get(), false, place, X_WM, true, is_quaternion});
+  return true;
+}
+
+const SdfFile& SdfFiles::load_part(const SdfFile& part) {
+  SdfFile& own = *files_.at(part.path);
+  const std::size_t before = problems_.size();
+  load(own);
+  for (std::size_t i = before; i < problems_.size(); ++i)
+    if (!problems_[i].element.empty()) problems_[i].element.insert(0, own.within);
+  return own;
+}
+
+void SdfFiles::let_go(const SdfFile& part) {
+  SdfFile& own = *files_.at(part.path);
+  own.root = sdf::Root();
+  own.nodes = {};
+  own.tree = {};
 }
 
 std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const std::string& path, SdfFile& file) {
@@ -335,7 +413,8 @@ std::optional<SdfFiles::Found> SdfFiles::follow(const XmlNode& include, const st
   }
   const XmlNode* const model = included.tree.child("model");
   if (included.root.Model() == nullptr || model == nullptr) {
-    if (included.tree.child("light") != nullptr) return std::nullopt;  // of no consequence here, as in a world
+    for (const char* const nothing : {"light", "actor"})  // of no consequence here, as in a world
+      if (included.tree.child(nothing) != nullptr) return std::nullopt;
     return problem(*uri, "'" + included.shown.string() + "' has no <model>");
   }
   const XmlNode* const name = include.child("name");
@@ -353,9 +432,7 @@ bool SdfFiles::replace_in_world(const XmlNode& include, const std::string& path,
   const XmlNode* const pose = include.child("pose") != nullptr ? include.child("pose") : own_pose;
   const XmlNode* const is_static =
       include.child("static") != nullptr ? include.child("static") : found.model.child("static");
-  const auto place = std::count_if(children.begin(), children.end(),
-                                   [](const XmlNode& child) { return child.name == "model" || child.name == "frame"; });
-  file.includes.push_back({found.name, &found.file, is_true(is_static), static_cast<std::size_t>(place), {}});
+  file.includes.push_back({found.name, &found.file, is_true(is_static), place_after(children), {}});
   const std::string* const placement = model.attribute("placement_frame");
   if (named.scopes.contains(found.name) || (placement != nullptr && !placement->empty())) {
     children.push_back(as_included(frames_of(found.model), include));

@@ -37,4 +37,14 @@ bool SdfReport::flaw(const sdf::ElementPtr& element, const std::string& message,
   return true;
 }
 
+bool SdfReport::forgive(const sdf::ElementPtr& element, std::size_t count, const std::string& remedy) const {
+  if (problems_.size() == count || !files_.is_foreign(element)) return false;
+  for (std::size_t i = count; i < problems_.size(); ++i) {
+    warnings_.push_back(std::move(problems_[i]));
+    warnings_.back().message += "; " + remedy;
+  }
+  problems_.resize(count);
+  return true;
+}
+
 }  // namespace cohort::parsing

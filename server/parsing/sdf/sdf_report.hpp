@@ -24,6 +24,11 @@ class SdfReport {
   /// What is wrong in a file of ours, and only told of one that was not written for Cohort, where `remedy` says what is
   /// done instead. True if it is to be remedied.
   bool flaw(const sdf::ElementPtr& element, const std::string& message, const std::string& remedy) const;
+  /// How many problems there are so far.
+  std::size_t count() const { return problems_.size(); }
+  /// What is wrong from `count` on is only told, as it is in a file that was not written for Cohort; `remedy` says what
+  /// is done instead. True if there is any.
+  bool forgive(const sdf::ElementPtr& element, std::size_t count, const std::string& remedy) const;
   /// Where it is, without a message.
   Problem place_of(const sdf::ElementPtr& element) const;
   void problem(Problem problem) const { problems_.push_back(std::move(problem)); }

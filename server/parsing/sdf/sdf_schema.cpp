@@ -78,13 +78,13 @@ const sdf::ElementPtr& sdf_definition() {
   return root;
 }
 
-sdf::SDFPtr empty_sdf() {
+sdf::SDFPtr empty_sdf(const sdf::ElementPtr& definition) {
   // Not a clone, which would copy the definition of every element there is: those are only read.
-  return sdf_with(copy_with(sdf_definition(), [](const sdf::ElementPtr& child) { return child; }));
+  return sdf_with(copy_with(definition, [](const sdf::ElementPtr& child) { return child; }));
 }
 
-sdf::SDFPtr empty_sdf_for(const std::set<std::string>& names) {
-  return sdf_with(definition_for(sdf_definition(), names));
+sdf::ElementPtr sdf_definition_for(const std::set<std::string>& names) {
+  return definition_for(sdf_definition(), names);
 }
 
 ElementSchema ElementSchema::root() {

@@ -57,11 +57,11 @@ class ElementSchema {
 const sdf::ElementPtr& sdf_definition();
 
 /// An empty <sdf> to read into, as sdf::init makes it, which shares the definitions of its elements with all others.
-sdf::SDFPtr empty_sdf();
+sdf::SDFPtr empty_sdf(const sdf::ElementPtr& definition = sdf_definition());
 
-/// The same for a document of SDFormat's newest version, with elements of these names only. libsdformat gives each
+/// Of <sdf>, for a document of SDFormat's newest version, with elements of these names only. libsdformat gives each
 /// element that it reads a copy of all that it could hold; here, what an element does not hold is defined no deeper
 /// than its children, for their default values.
-sdf::SDFPtr empty_sdf_for(const std::set<std::string>& names);
+sdf::ElementPtr sdf_definition_for(const std::set<std::string>& names);
 
 }  // namespace cohort::parsing

@@ -71,10 +71,14 @@ Pose to_pose(const ignition::math::Pose3d& X) {
 }
 
 Pose written_pose(const ignition::math::Pose3d& X, const sdf::ElementPtr& posed) {
-  Pose pose = to_pose(X);
   const sdf::ElementPtr element = find(posed, {"pose"});
   const sdf::ParamPtr format = element ? element->GetAttribute("rotation_format") : nullptr;
-  if (!format || format->GetAsString() != "quat_xyzw") return pose;
+  return written_pose(X, format && format->GetAsString() == "quat_xyzw");
+}
+
+Pose written_pose(const ignition::math::Pose3d& X, bool is_quaternion) {
+  Pose pose = to_pose(X);
+  if (!is_quaternion) return pose;
   const Eigen::Quaterniond written(X.Rot().W(), X.Rot().X(), X.Rot().Y(), X.Rot().Z());
   if (is_unit(written.squaredNorm())) pose.orientation = written;
   return pose;

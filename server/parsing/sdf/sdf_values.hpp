@@ -18,6 +18,8 @@ Pose to_pose(const ignition::math::Pose3d& X);
 /// The pose that an element has, as it is written there: `X` without what resolving frames would do to its last bits. A
 /// quaternion is normalised only if it needs it, so that one that was written by us is the same again.
 Pose written_pose(const ignition::math::Pose3d& X, const sdf::ElementPtr& posed);
+/// The same, if its rotation is written as a quaternion or not.
+Pose written_pose(const ignition::math::Pose3d& X, bool is_quaternion);
 
 /// A direction as it is written in an element, if that is a unit vector to the last bits but a few.
 std::optional<Eigen::Vector3d> written_unit_vector(const sdf::ElementPtr& element);

@@ -48,7 +48,27 @@ void add_rest(const UrdfRest& rest, XmlNode& model) {
       XmlNode* const geometry = child_of(collision, "geometry");
       XmlNode* const cylinder = geometry != nullptr ? child_of(*geometry, "cylinder") : nullptr;
       if (cylinder != nullptr && rest.capsules.contains(source)) cylinder->name = "capsule";
+      const auto plane = rest.planes.find(source);
+      if (geometry != nullptr && plane != rest.planes.end()) {
+        XmlNode shape = element_at(*geometry, "plane");
+        shape.children = {element_at(shape, "normal", plane->second)};
+        geometry->children = {std::move(shape)};
+      }
     }
+    std::erase_if(link.children, [&](const XmlNode& child) {
+      return child.name == "collision" && rest.left_out.contains(source_of_collision(value_of(child, "name")));
+    });
+  }
+  for (XmlNode& joint : model.children)
+    if (joint.name == "joint" && rest.balls.contains(value_of(joint, "name"))) {
+      set_attribute(joint, "type", "ball");
+      std::erase_if(joint.children, [](const XmlNode& child) { return child.name == "axis"; });
+    }
+  const bool has_joints =
+      std::ranges::any_of(model.children, [](const XmlNode& child) { return child.name == "joint"; });
+  if (!rest.planes.empty() && !rest.held.empty() && !has_joints) {  // ground
+    model.children.push_back(element_at(model, "static", "true"));
+    return;
   }
   for (const std::string& name : rest.let_go) {
     const auto joint = std::ranges::find_if(

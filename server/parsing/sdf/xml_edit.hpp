@@ -27,6 +27,23 @@ inline void set_attribute(XmlNode& node, std::string_view name, const std::strin
   node.attributes.emplace_back(name, value);
 }
 
+/// The content of a model but its name and where it is.
+inline void add_content(const XmlNode& node, std::string& content, bool is_top = true) {
+  content += '<' + node.name;
+  for (const auto& [name, value] : node.attributes)
+    if (!is_top || name != "name") content += ' ' + name + "=\"" + value + '"';
+  content += '>' + node.text;
+  for (const XmlNode& child : node.children) {
+    if (!is_top || child.name != "pose") {
+      add_content(child, content, false);
+      continue;
+    }
+    content += "<pose";
+    for (const auto& [name, value] : child.attributes) content += ' ' + name + "=\"" + value + '"';
+  }
+  content += "</>";
+}
+
 /// An element that stands where another one does.
 inline XmlNode element_at(const XmlNode& where, std::string name, std::string text = "") {
   return {std::move(name), where.line, where.file, {}, std::move(text), {}};

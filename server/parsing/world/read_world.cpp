@@ -62,6 +62,7 @@ class WorldReader {
   void read_lights(const sdf::World& sdf_world, const SdfFile& file);
   void read_inline_model(const sdf::Model& sdf_model, const SdfFile& file);
   void add_included_model(const Include& include, const Pose& X_WM);
+  void add_part(const SdfFile& unread, const std::string& name, const Pose& X_WM);
   void read_extensions(const sdf::World& sdf_world);
   void read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read);
   void add_material_pair(const ExtensionValues& values);
@@ -78,6 +79,7 @@ class WorldReader {
   /// The place in World::models of the model in a file: one for all that include it.
   std::size_t shared_model(const SdfFile& file, bool is_static);
   void add_later(const LaterObject& object);
+  std::vector<Model> renamed(std::size_t model, const std::string& name) const;
   /// Adds the bodies of a model, and returns the place of the first of them in World::models.
   std::size_t add_models(std::vector<Model> bodies);
   /// With all bodies of the model. False if a name is taken.
@@ -90,6 +92,7 @@ class WorldReader {
   ShapeFiles shape_files_;
   SdfReport report_;
   std::map<std::pair<const SdfFile*, bool>, std::size_t> shared_;
+  std::map<const SdfFile*, std::optional<std::size_t>> parts_;  // likewise; nothing if it cannot be read
   std::map<std::size_t, std::size_t> bodies_;  // of a model that has several: how many, by the place of the first
   std::set<std::string> names_;
   Occupancy occupancy_;  // with the first `in_site_` instances
@@ -165,7 +168,7 @@ void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) 
   auto next = file.includes.begin();
   const auto add_placed_before = [&](std::size_t place) {
     for (; next != file.includes.end() && next->place <= place; ++next)
-      if (next->X_WM) add_included_model(*next, to_pose(*next->X_WM));
+      if (next->X_WM) add_included_model(*next, written_pose(*next->X_WM, next->is_quaternion));
   };
   std::map<std::string, const sdf::Frame*> frames;  // FrameByName would search all of them for each
   for (std::uint64_t i = 0; i < sdf_world.FrameCount(); ++i)
@@ -221,7 +224,37 @@ void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& 
   add_instance(sdf_model.Name(), model, resolved_pose(sdf_model, how));
 }
 
+void WorldReader::add_part(const SdfFile& unread, const std::string& name, const Pose& X_WM) {
+  const auto [entry, is_new] = parts_.emplace(&unread, std::nullopt);
+  if (is_new) {
+    const SdfFile& part = files_.load_part(unread);
+    if (part.loaded && part.root.Model() != nullptr) {
+      check_numbers(part.root.Element(), report_);
+      const sdf::Model& sdf_model = *part.root.Model();
+      entry->second = add_models(read_model(sdf_model, reading(sdf_model.Static(), part)));
+      add_instance(name, *entry->second, X_WM);
+    }
+    files_.let_go(part);
+  } else if (entry->second) {
+    add_instance(name, add_models(renamed(*entry->second, name)), X_WM);
+  }
+}
+
+// As a model that was read, with all of its bodies.
+std::vector<Model> WorldReader::renamed(std::size_t model, const std::string& name) const {
+  const auto several = bodies_.find(model);
+  const std::size_t count = several == bodies_.end() ? 1 : several->second;
+  const std::size_t length = world_.models[model].name.size();
+  std::vector<Model> bodies;
+  for (std::size_t body = model; body < model + count; ++body) {
+    bodies.push_back(world_.models[body]);
+    bodies.back().name = name + bodies.back().name.substr(length);
+  }
+  return bodies;
+}
+
 void WorldReader::add_included_model(const Include& include, const Pose& X_WM) {
+  if (include.is_part) return add_part(*include.file, include.name, X_WM);
   add_instance(include.name, shared_model(*include.file, include.is_static), X_WM);
 }
 

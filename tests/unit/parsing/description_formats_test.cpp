@@ -206,15 +206,13 @@ TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
   EXPECT_EQ(world.models[0].links.size(), 3u);
 }
 
-TEST_F(Formats, ErrorsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
-  const auto problems = problems_of([&] {
-    read_urdf(
-        urdf_link("a") + "\n" +
-        urdf_link("b", "\n<collision><geometry>\n<mesh filename=\"package://r/none.stl\"/></geometry></collision>") +
-        urdf_joint("j", "continuous", "a", "b"));
-  });
-  ASSERT_EQ(problems.size(), 1u);
-  EXPECT_EQ(problems[0].line, 5) << problems[0].text();
+TEST_F(Formats, WarningsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
+  const World world = read_urdf(
+      urdf_link("a") + "\n" +
+      urdf_link("b", "\n<collision><geometry>\n<mesh filename=\"package://r/none.stl\"/></geometry></collision>") +
+      urdf_joint("j", "continuous", "a", "b"));
+  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+  EXPECT_EQ(world.warnings[0].line, 5) << world.warnings[0].text();
 }
 
 TEST_F(Formats, OfAnElementThatIsGivenTwiceTheFirstCountsWithAWarning) {

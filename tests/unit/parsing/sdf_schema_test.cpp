@@ -70,7 +70,7 @@ TEST_P(DefinitionsForADocument, AreFewerAndLetItReadTheSame) {
   add_names(whole->Root(), names);
   // As the file has them: what is required and absent is added by libsdformat.
   std::erase_if(names, [&](const std::string& name) { return text.find("<" + name) == std::string::npos; });
-  const sdf::SDFPtr lean = parsing::empty_sdf_for(names);
+  const sdf::SDFPtr lean = parsing::empty_sdf(parsing::sdf_definition_for(names));
   EXPECT_LT(2 * size_of_definition(lean->Root()), size_of_definition(whole->Root()));
   sdf::Errors errors_of_lean;
   ASSERT_TRUE(sdf::readString(text, sdf::ParserConfig::GlobalConfig(), lean->Root(), errors_of_lean));

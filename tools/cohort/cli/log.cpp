@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "client_sdk/src/client.hpp"
@@ -40,6 +41,17 @@ std::string json_members(const std::string& message, const LogFields& fields) {
   for (const auto& [name, value] : fields) std::visit([&](const auto& held) { object[name] = held; }, value.get());
   const std::string text = object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return text.substr(1, text.size() - 2);
+}
+
+// What a warning says, whatever it names.
+std::string kind_of(const description::Problem& warning) {
+  std::string kind = warning.file.string() + ":";
+  bool is_named = false;
+  for (const char letter : warning.message) {
+    if (letter == '\'') is_named = !is_named;
+    if (!is_named && (letter < '0' || letter > '9')) kind += letter;
+  }
+  return kind;
 }
 
 }  // namespace
@@ -84,6 +96,21 @@ void Log::problem(LogLevel level, const description::Problem& problem) {
 
 void Log::problems(const description::InputError& error) {
   for (const description::Problem& each : error.problems()) problem(LogLevel::error, each);
+}
+
+void Log::warnings(const std::vector<description::Problem>& warnings) {
+  const bool shows_all = options_.format == LogFormat::json || shows(LogLevel::info);
+  std::map<std::string, std::size_t> counts;
+  for (const description::Problem& each : warnings) ++counts[kind_of(each)];
+  for (const description::Problem& each : warnings) {
+    std::size_t& count = counts[kind_of(each)];
+    if (shows_all) count = 1;
+    if (count == 0) continue;  // its kind has been told
+    description::Problem first = each;
+    if (count > 1) first.message += " (and " + std::to_string(count - 1) + " more like this: --verbose)";
+    problem(LogLevel::warning, first);
+    count = 0;
+  }
 }
 
 void Log::notice(const std::string& message, const LogFields& fields) {

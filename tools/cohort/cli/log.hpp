@@ -70,6 +70,9 @@ class Log {
   /// In text as compilers do, so that editors find the place: `FILE:LINE: ELEMENT: MESSAGE`.
   void problem(LogLevel level, const description::Problem& problem);
   void problems(const description::InputError& error);
+  /// Warnings of a file: the first of each kind, with how many more there are; in JSON and at the level `info` all of
+  /// them.
+  void warnings(const std::vector<description::Problem>& warnings);
 
   /// What people wait for, such as that the server is there. In text without a prefix.
   void notice(const std::string& message, const LogFields& fields = {});

@@ -21,22 +21,18 @@ void print_world(const description::World& world) {
             << std::chrono::duration<double, std::milli>(world.step).count() << " ms\n";
 }
 
-void warn(const description::World& world, Log& log) {
-  for (const description::Problem& warning : world.warnings) log.problem(LogLevel::warning, warning);
-}
-
 int check(const std::filesystem::path& file, Log& log) {
   try {
     if (parsing::kind_of_file(file) == parsing::FileKind::sdf) {
       description::Experiment experiment;
       experiment.file = file;
       experiment.world = parsing::read_world_or_model(file, experiment.seed, installed_model_folders());
-      warn(experiment.world, log);
+      log.warnings(experiment.world.warnings);
       const Simulation built(experiment, 1);  // some mistakes only show when physics takes the world
       print_world(experiment.world);
     } else {
       const description::Experiment experiment = parsing::read_experiment(file, {}, {}, installed_model_folders());
-      warn(experiment.world, log);
+      log.warnings(experiment.world.warnings);
       const Simulation built(experiment, 1);
       try_controllers(experiment, built, load_controllers(experiment));
       print_world(experiment.world);

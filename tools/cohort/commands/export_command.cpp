@@ -33,8 +33,8 @@ int export_world(const ExportCommand& command, Log& log) {
   }
   check_writable("the world", command.output);
   const description::World world = read(command);
-  for (const description::Problem& warning : world.warnings) log.problem(LogLevel::warning, warning);
-  const parsing::XmlNode sdf = parsing::sdf_of(world, command.output.parent_path());
+  log.warnings(world.warnings);
+  const parsing::XmlNode sdf = parsing::sdf_of(world, std::filesystem::absolute(command.output).parent_path());
   write_file("the world", command.output, as_yaml ? parsing::yaml_of_sdf(sdf) : parsing::xml_text(sdf));
   return exit_ok;
 }

@@ -104,7 +104,7 @@ description::Experiment read(const RunCommand& command, const std::filesystem::p
   description::Experiment experiment =
       parsing::read_experiment(file, command.seed, duration, installed_model_folders());
   set_recorded(experiment, command.record);
-  for (const description::Problem& warning : experiment.world.warnings) log.problem(LogLevel::warning, warning);
+  log.warnings(experiment.world.warnings);
   log.info(
       fmt::format("read {} and {}: {}, {}, {}, in {:.2f} s", file.string(), experiment.world.file.string(),
                   counted(experiment.world.instances.size(), "model"), counted(experiment.world.robots.size(), "robot"),

@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/written_worlds.hpp"
+
+// Files of the field that SDF or URDF in the strict sense would refuse: what becomes of them.
+namespace cohort::description {
+namespace {
+
+class MendedFiles : public Description {
+ protected:
+  static World read_file(const std::string& name) {
+    return parsing::read_world_or_model(source / "tests/data/corpus/valid" / name, 1);
+  }
+  /// Each of `parts` is in a warning.
+  static void expect_warnings(const World& world, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts)
+      EXPECT_NE(texts_of(world.warnings).find(part), std::string::npos) << part << "\nnot in\n"
+                                                                        << texts_of(world.warnings);
+  }
+};
+
+TEST_F(MendedFiles, ALinkCalledWorldIsTheWorld) {
+  const World world = read_file("link_called_world.sdf");
+  ASSERT_EQ(world.models[0].links.size(), 1u);
+  EXPECT_STREQ(world.models[0].why_fixed(), "is tied to the world by a joint");
+  EXPECT_EQ(world.models[0].joints[0].parent, Joint::world);
+  expect_warnings(world, {"link_called_world.sdf:2: model[m]/link[world]: a link called 'world'"});
+}
+
+TEST_F(MendedFiles, TheWorldHoldsARootWithoutMassAndWhatHangsOnAJointHasAGram) {
+  const World world = read_file("links_without_mass.sdf");
+  const Model& model = world.models[0];
+  ASSERT_EQ(model.links.size(), 3u);
+  EXPECT_STREQ(model.why_fixed(), "is tied to the world by a joint");
+  EXPECT_EQ(model.links[2].inertial.mass, 1e-3);
+  expect_warnings(world,
+                  {":2: model[m]/link[base]: a root without mass", ":4: model[m]/link[tip]: a link without mass"});
+}
+
+TEST_F(MendedFiles, SensorsThatNobodyKnowsHereAreIgnored) {
+  expect_warnings(read_file("sensor_of_an_unknown_type.sdf"),
+                  {"sensor[air]: there is no sensor of type 'air_speed' here; it is ignored"});
+}
+
+TEST_F(MendedFiles, CollisionsOfOneNameAreNumbered) {
+  const auto& collisions = read_file("collisions_of_one_name.sdf").models[0].links[0].collisions;
+  ASSERT_EQ(collisions.size(), 3u);
+  EXPECT_EQ(collisions[1].name, "c_1");
+  EXPECT_EQ(collisions[2].name, "c_2");
+}
+
+TEST_F(MendedFiles, ACollisionThatCannotBeIsLeftOut) {
+  const World world = read_file("mesh_that_is_not_there.sdf");
+  EXPECT_EQ(world.models[0].links[0].collisions.size(), 1u);
+  expect_warnings(world, {"collision[d]/geometry/mesh/uri: there is no such file",
+                          "collision[e]/geometry/sphere/radius: expected a size > 0 m",
+                          "collision[f]/geometry: a plane needs <static>true</static>"});
+}
+
+TEST_F(MendedFiles, AModelWithoutLinksIsThereAndIsNothing) {
+  const World world = read_file("nothing_in_a_model.sdf");
+  ASSERT_EQ(world.models.size(), 1u);
+  EXPECT_TRUE(world.models[0].links[0].collisions.empty());
+}
+
+TEST_F(MendedFiles, AxesWithoutDirectionAreThoseOfTheFrame) {
+  const World world = read_file("axis_without_a_direction.sdf");
+  EXPECT_EQ(world.models[0].joints[0].axis.direction, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(world.models[0].joints[0].second_axis.direction, Eigen::Vector3d(0, 1, 0));
+}
+
+TEST_F(MendedFiles, FrictionBelowZeroHoldsWhateverPulls) {
+  EXPECT_EQ(read_file("friction_below_zero.sdf").models[0].links[0].collisions[0].surface.friction, 1000.0);
+}
+
+TEST_F(MendedFiles, PluginsWithFlawsAreIgnored) {
+  const World world = read_file("plugins_with_flaws.sdf");
+  EXPECT_FALSE(world.models[0].is_robot());
+  expect_warnings(world, {"link_name: missing: the link that it acts on; the plugin is ignored",
+                          "left_joint: the model has no joint 'nowhere'"});
+}
+
+TEST_F(MendedFiles, ALightAloneIsAWorld) {
+  const World world = read_file("light_alone.sdf");
+  ASSERT_EQ(world.instances.size(), 1u);
+  EXPECT_EQ(world.instances[0].name, "sun");
+}
+
+TEST_F(MendedFiles, JointsOfBulletAreBallsAndFree) {
+  const World world = read_file("joints_of_bullet.urdf");
+  ASSERT_EQ(world.instances.size(), 2u);
+  EXPECT_EQ(world.models[0].joints[0].type, JointType::ball);
+  expect_warnings(world, {"robot/joint[k]: a planar joint is not supported"});
+}
+
+TEST_F(MendedFiles, APlaneOfBulletIsGround) {
+  const World world = read_file("plane_of_bullet.urdf");
+  EXPECT_TRUE(world.models[0].is_static);
+  EXPECT_TRUE(std::holds_alternative<Plane>(world.models[0].links[0].collisions.at(0).shape));
+}
+
+TEST_F(MendedFiles, AShapeThatIsNoneIsLeftOutOfAUrdf) {
+  const World world = read_file("shapes_of_nobody.urdf");
+  EXPECT_EQ(world.models[0].links[0].collisions.size(), 1u);
+  EXPECT_EQ(world.models[0].links[0].inertial.mass, 1.0);
+}
+
+TEST_F(MendedFiles, OfAnOptionalVariableItsDefaultCounts) {
+  const World world = read_file("words_of_xacro_in_a_urdf.urdf");
+  expect_warnings(world, {"robot/joint[j]/origin: $(optenv …)"});
+  EXPECT_LT((world.models[0].links[0].inertial.X_LI.position - Eigen::Vector3d(0.5, 1.0, 1.5)).norm(), 1e-9);
+}
+
+TEST_F(MendedFiles, NumbersAndNamesOfAUrdfAreReadAsOthersReadThem) {
+  const World world = read_file("numbers_with_commas.urdf");
+  const Model& model = world.models[0];
+  EXPECT_EQ(model.joints[0].name, "b_joint");
+  EXPECT_EQ(model.joints[0].axis.lower, -1.57);
+  EXPECT_EQ(model.joints[0].axis.direction, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(model.links[1].X_ML.position, Eigen::Vector3d(1, 0, 2));
+}
+
+TEST_F(MendedFiles, AFileOfOursWithTextAfterItsRootIsRefused) {
+  const auto file = write("w.sdf",
+                          "<sdf version=\"1.9\" xmlns:cohort=\"https://cohort-sim.org/sdf/1\"><world "
+                          "name=\"w\"/></sdf>\nend\n");
+  const auto problems = problems_of([&] { parsing::read_world(file, 1); });
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].message.find("text outside of the root"), std::string::npos);
+}
+
+TEST_F(MendedFiles, TheSecondIncludeOfANameHasANumber) {
+  write_model("crate", links("l"));
+  const std::string include = "<include><uri>model://crate</uri></include>\n";
+  const World world = parsing::read_world(
+      write("w.sdf", "<sdf version=\"1.6\"><world name=\"w\">\n" + include + include + "</world></sdf>\n"), 1);
+  ASSERT_EQ(world.instances.size(), 2u);
+  EXPECT_EQ(world.instances[1].name, "crate_1");
+  expect_warnings(world, {"w.sdf:3: world/include: another model has the name 'crate'"});
+}
+
+TEST_F(MendedFiles, OfAnIncludeThatIsNotThereNothingElseIsSaid) {
+  const auto problems = problems_of([&] {
+    parsing::read_world_or_model(
+        write("m.sdf", "<sdf version=\"1.6\"><model name=\"m\"><include>\n<uri>model://nowhere</uri></include>" +
+                           links("l") + joint("j", "l", "nowhere::l") + "</model></sdf>\n"),
+        1);
+  });
+  ASSERT_EQ(problems.size(), 1u) << texts_of(problems);
+  EXPECT_EQ(problems[0].line, 2);
+  EXPECT_EQ(problems[0].element, "model[m]/include/uri");
+}
+
+std::string crate(const std::string& name, double x, const std::string& more = "") {
+  return "<model name=\"" + name + "\"><pose>" + std::to_string(x) + " 0 0 0 0 0</pose>" + links("a") + more +
+         "</model>\n";
+}
+
+TEST_F(MendedFiles, ModelsThatAreAlikeAreReadOnceAndKeepTheirNames) {
+  for (const std::string version : {"1.6", "1.9"}) {
+    std::string text = "<sdf version=\"" + version + "\"><world name=\"w\">\n";
+    for (int i = 0; i < 40; ++i) text += crate("m" + std::to_string(i), i, i % 3 == 2 ? links("b") : "");
+    const World world = parsing::read_world(write("w.sdf", text + "</world></sdf>\n"), 1);
+    ASSERT_EQ(world.models.size(), 53u);
+    EXPECT_EQ(world.instances.back().name, "m39");
+    EXPECT_EQ(world.instances.back().X_WM.position.x(), 39.0);
+    EXPECT_EQ(world.models[world.instances.back().model].name, "m39");
+    EXPECT_EQ(world.instances[3].name, "m2/b");
+    EXPECT_EQ(world.models[world.instances[7].model].name, "m5/b");
+  }
+}
+
+TEST_F(MendedFiles, AMistakeInAModelOfAWorldHasItsPlace) {
+  const Flaw flaw{
+      "<model name=\"m\"><link name=\"l\"/></model>\n<model name=\"n\">\n<link name=\"l\"><inertial><mass>x"
+      "</mass></inertial></link></model>",
+      4, "world/model[n]/link[l]/inertial/mass", "cannot have the value 'x'"};
+  expect_only_flaw(flaw, write_world(flaw.content));
+}
+
+}  // namespace
+}  // namespace cohort::description

@@ -27,16 +27,26 @@ Eigen::Vector3d nearest_moments(const Eigen::Vector3d& moments, double mass) {
   return nearest;
 }
 
+// Those of the collisions, as if the mass were spread evenly in them; nothing if nothing of the link is solid.
+std::optional<Eigen::Matrix3d> inertia_of_collisions(const Link& link, double mass) {
+  std::vector<MassProperties> parts;
+  for (const Collision& collision : link.collisions)
+    parts.push_back(moved(mass_properties(collision.shape, 1.0), collision.X_LC));
+  const MassProperties whole = together(parts);
+  if (!(whole.mass > 0.0) || !whole.inertia.allFinite()) return std::nullopt;
+  return mass / whole.mass * whole.inertia;
+}
+
 // Here and below, NaN passes: check_numbers has reported it.
-Inertial read_written_inertial(const sdf::Link& link, const SdfReport& report) {
-  const sdf::ElementPtr element = link.Element();
+Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, const SdfReport& report) {
+  const sdf::ElementPtr element = sdf_link.Element();
   const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
   const sdf::ElementPtr inertia = find(element, {"inertial", "inertia"});
   if (!mass) report.warning(element, "has no mass; SDF's default acts, 1 kg");
   if (!inertia) report.warning(element, "has no inertia; SDF's default acts, 1 kg m^2 about each axis");
 
   Inertial inertial;
-  inertial.X_LI = written_pose(link.Inertial().Pose(), find(element, {"inertial"}));
+  inertial.X_LI = written_pose(sdf_link.Inertial().Pose(), find(element, {"inertial"}));
   if (mass) inertial.mass = mass->Get<double>();
   if (inertial.mass <= 0.0 || std::isinf(inertial.mass))
     report.problem(mass, "expected a mass > 0 kg, not " + mass->GetValue()->GetAsString());
@@ -48,6 +58,13 @@ Inertial read_written_inertial(const sdf::Link& link, const SdfReport& report) {
   inertial.inertia << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   if (!inertial.inertia.allFinite()) {
     if (!inertial.inertia.hasNaN()) report.problem(inertia, "expected finite moments of inertia");
+    return inertial;
+  }
+  if (const auto solid = inertial.inertia.isZero(0.0) ? inertia_of_collisions(link, inertial.mass) : std::nullopt) {
+    if (report.flaw(inertia, "the matrix is not positive definite", "that of the collisions stands in for it")) {
+      inertial.X_LI.orientation.setIdentity();
+      inertial.inertia = *solid;
+    }
     return inertial;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertial.inertia);
@@ -264,7 +281,7 @@ Link read_link(const sdf::Link& sdf_link, const ModelReading& reading) {
   link.feels_gravity = !is_written(gravity) || gravity->Get<bool>();
   link.is_kinematic = sdf_link.Element()->Get<bool>("kinematic", false).first;
   const auto computed = read_inertial_from_density(sdf_link, link, reading.report);
-  link.inertial = computed ? *computed : read_written_inertial(sdf_link, reading.report);
+  link.inertial = computed ? *computed : read_written_inertial(sdf_link, link, reading.report);
   return link;
 }
 

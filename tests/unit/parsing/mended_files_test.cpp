@@ -65,6 +65,13 @@ TEST_F(MendedFiles, AModelWithoutLinksIsThereAndIsNothing) {
   EXPECT_TRUE(world.models[0].links[0].collisions.empty());
 }
 
+TEST_F(MendedFiles, OfALinkWithoutInertiaThatOfItsCollisionsStandsInForIt) {
+  const World world = read_file("no_inertia.urdf");
+  const Eigen::Matrix3d& inertia = world.models[0].links[0].inertial.inertia;
+  EXPECT_LT((inertia.diagonal() - Eigen::Vector3d(25.0, 10.0, 25.0)).norm(), 1e-9) << inertia;
+  expect_warnings(world, {"that of the collisions stands in for it"});
+}
+
 TEST_F(MendedFiles, AxesWithoutDirectionAreThoseOfTheFrame) {
   const World world = read_file("axis_without_a_direction.sdf");
   EXPECT_EQ(world.models[0].joints[0].axis.direction, Eigen::Vector3d(0, 0, 1));

@@ -38,8 +38,44 @@ std::string readable_path(std::string_view xpath) {
   return path;
 }
 
+// What libsdformat says of names, in words that say what is to be done.
+struct Saying {
+  std::string_view part;    // of what libsdformat says
+  std::string_view before;  // what the name stands after there; empty if none is needed
+  std::string_view ours;    // with '*' where the name comes
+};
+constexpr Saying sayings[] = {
+    {"causing a graph cycle", "name[", "'*' refers to itself; expected another frame"},
+    {"must not specify its own name", "name[", "the joint '*' names itself; expected a link or another frame"},
+    {"cycle detected", "", "frames refer to each other in a circle"},
+    {"not found in model", "name[", "there is no link or frame '*' in the model"},
+    {"relative_to name[", "name[", "there is no frame '*' that it could be relative to"},
+    {"attached_to name[", "name[", "there is no frame '*' that it could be attached to"},
+    {"is reserved.", "name [", "the name '*' is reserved; give it another one"},
+    {"already exists.", "name[", "another one has the name '*'; names are unique in what they stand in"},
+    {"non-unique name", "name [", "something else in the model has the name '*'; names are unique there"},
+    {"must have at least one link", "", "expected at least one <link>"},
+    {"must specify different frame names", "", "expected two different links as parent and child"},
+    {"Root object can only contain one", "", "expected one <model>, <light> or <actor> in a file without a <world>"},
+    {"unable to find unique frame", "name [", "there is no frame '*' here"},
+    {"invalid child link", "name[", "the child of the joint '*' has to be a link of the model"},
+};
+
+std::optional<std::string> in_our_words(const std::string& message) {
+  for (const Saying& saying : sayings) {
+    if (message.find(saying.part) == std::string::npos) continue;
+    std::string ours(saying.ours);
+    const std::size_t name = saying.before.empty() ? std::string::npos : message.find(saying.before);
+    if (name == std::string::npos) return saying.before.empty() ? std::optional(ours) : std::nullopt;
+    const std::size_t begin = name + saying.before.size();
+    return ours.replace(ours.find('*'), 1, message.substr(begin, message.find(']', begin) - begin));
+  }
+  return std::nullopt;
+}
+
 std::string readable_message(const sdf::Error& error) {
   std::string message = error.Message();
+  if (auto ours = in_our_words(message)) return *std::move(ours);
   if (const std::size_t rest = message.find(" Copying["); rest != std::string::npos) message.resize(rest);
   while (!message.empty() && message.back() == '\n') message.pop_back();
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -128,8 +164,8 @@ std::optional<Place> place_named_in(std::string message, const XmlNode& xml) {
 sdf::ElementPtr definition_of(std::string_view path) {
   sdf::ElementPtr element = sdf_definition();
   while (element && !path.empty()) {
-    const std::string_view step = path.substr(0, path.find('/'));
-    const std::string name(step.substr(0, step.find('[')));
+    const std::string step(path.substr(0, path.find('/')));
+    const std::string name = step.substr(0, step.find('['));
     path.remove_prefix(std::min(path.size(), step.size() + 1));
     // A model may hold models, and so on: those are described by the outer one.
     if (name != element->GetName()) element = element->GetElementDescription(name);
@@ -264,7 +300,7 @@ std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file,
         problem.element = step_of(*model);
       }
       // One unknown name is reported as a frame, as a link and as what a pose is relative to.
-      const std::string name = name_in(problem.message, "").value_or(problem.message);
+      const std::string name = name_in(error.Message(), "").value_or(error.Message());
       if (!named.emplace(problem.element, name).second) continue;
     } else if (is_cannot_read_element(error)) {
       problem.message = message_with_value(error, node);

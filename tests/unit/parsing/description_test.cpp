@@ -438,9 +438,9 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"<include><uri>model://sbot</uri>\n<pose relativ_to=\"x\"/></include>", 3, "world/include/pose",
              "did you mean 'relative_to'?"},
         Flaw{"\n<include><name>s</name><uri>model://sbot</uri><pose relative_to=\"x\"/></include>", 3,
-             "world/include[s]", "name[x]"},
+             "world/include[s]", "'x'"},
         Flaw{"<model name=\"m\">" + links("ab") + "\n" + joint("j", "a", "x") + "</model>", 3,
-             "world/model[m]/joint[j]", "name[x]"},
+             "world/model[m]/joint[j]", "'x'"},
         Flaw{motor("<cohort:joint>hinge</cohort:joint>\n<cohort:max_velocity>1</cohort:max_velocity>"), 3,
              in_motor + "/cohort:max_effort", "missing"},
         Flaw{motor("<cohort:joint>hinge</cohort:joint><cohort:max_velocity>-1</cohort:max_velocity>\n"

@@ -179,6 +179,13 @@ TEST_F(MendedFiles, ModelsThatAreAlikeAreReadOnceAndKeepTheirNames) {
   }
 }
 
+TEST_F(MendedFiles, NamesThatAreWrongAreToldWithWhatIsToBeDone) {
+  expect_only_flaw({"", 2, "world/model[m]/joint[j]", "there is no link or frame 'z' in the model"},
+                   write_world("<model name=\"m\">" + links("ab") + joint("j", "a", "z") + "</model>"));
+  expect_only_flaw({"", 2, "world/model[m]/link[a]", "another one has the name 'a'"},
+                   write_world("<model name=\"m\">" + links("aa") + "</model>"));
+}
+
 TEST_F(MendedFiles, AMistakeInAModelOfAWorldHasItsPlace) {
   const Flaw flaw{
       "<model name=\"m\"><link name=\"l\"/></model>\n<model name=\"n\">\n<link name=\"l\"><inertial><mass>x"

@@ -25,7 +25,7 @@ constexpr std::size_t turret = 1;
 std::string changed_experiment(const ScratchFolder& folder, const std::string& experiment, const std::string& arena,
                                const std::string& from, const std::string& to) {
   const std::filesystem::path worlds = shipped_experiments.parent_path();
-  std::filesystem::create_directory_symlink(worlds / "robots", folder / "robots");
+  std::filesystem::copy(worlds / "robots", folder / "robots", std::filesystem::copy_options::recursive);
   bool is_changed = false;
   for (const std::string& file : {"arenas/" + arena + ".yaml", "experiments/" + experiment + ".yaml"}) {
     std::string text = read_file(worlds / file);

@@ -356,7 +356,7 @@ Experiment read_experiment(const fs::path& file, std::optional<std::uint64_t> se
                            std::optional<std::chrono::nanoseconds> duration,
                            const std::vector<fs::path>& last_model_folders) {
   InputFiles disk;
-  disk.trust(file);
+  disk.trust(file, last_model_folders);
   Experiment experiment = ExperimentReader(disk, file, last_model_folders).read(seed, duration);
   KeptFiles kept = disk.kept();
   kept.experiment = file.string();

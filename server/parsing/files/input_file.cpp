@@ -79,8 +79,10 @@ InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)
       model_path_(source_->model_path),
       folders_(source_->folders.begin(), source_->folders.end()) {}
 
-void InputFiles::trust(const fs::path& file) { trusted_.add_around(absolute(file)); }
-void InputFiles::trust_folder(const fs::path& folder) { trusted_.add(absolute(folder)); }
+void InputFiles::trust(const fs::path& file, const std::vector<fs::path>& last_model_folders) {
+  trusted_.add_around(absolute(file));
+  for (const fs::path& folder : last_model_folders) trusted_.add(absolute(folder).parent_path());
+}
 
 void InputFiles::add(const fs::path& file, std::string bytes) { files_[key_of(file)] = std::move(bytes); }
 

@@ -30,10 +30,9 @@ class InputFiles {
   InputFiles(const InputFiles&) = delete;
   InputFiles& operator=(const InputFiles&) = delete;
 
-  /// A person has named this file: it may be read, and what belongs to it (TrustedFolders::add_around).
-  void trust(const std::filesystem::path& file);
-  /// With all that is below it.
-  void trust_folder(const std::filesystem::path& folder);
+  /// A person has named this file: it may be read, and what belongs to it (TrustedFolders::add_around), and what comes
+  /// with Cohort beside its folders of models.
+  void trust(const std::filesystem::path& file, const std::vector<std::filesystem::path>& last_model_folders = {});
 
   /// Answers for `file` with `bytes` from now on.
   void add(const std::filesystem::path& file, std::string bytes);

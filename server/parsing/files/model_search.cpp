@@ -63,7 +63,6 @@ ModelSearch::ModelSearch(InputFiles& input, const fs::path& world_file, const st
     if (folder == folder.parent_path()) break;
     folder = folder.parent_path();
   }
-  for (const fs::path& last : last_folders) input_.trust_folder(last.parent_path());  // arenas, meshes
   for (const fs::path& last : last_folders)
     if (std::find(folders_.begin(), folders_.end(), last) == folders_.end()) folders_.push_back(last);
 }

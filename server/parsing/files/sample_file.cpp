@@ -174,6 +174,7 @@ class SampleReader {
 
 Samples read_samples(const std::filesystem::path& file) {
   InputFiles disk;
+  disk.trust(file);
   return read_samples(disk, file);
 }
 

@@ -422,7 +422,7 @@ bool WorldReader::add_instance(const std::string& name, std::size_t model, const
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
   InputFiles disk;
-  disk.trust(file);
+  disk.trust(file, last_model_folders);
   return read_world(disk, file, seed, last_model_folders, later);
 }
 
@@ -434,7 +434,7 @@ World read_world(InputFiles& input, const std::filesystem::path& file, std::uint
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders) {
   InputFiles disk;
-  disk.trust(file);
+  disk.trust(file, last_model_folders);
   return WorldReader(disk, file, seed, last_model_folders).read(LoneModel::at_origin, {});
 }
 

@@ -18,6 +18,9 @@ namespace fs = std::filesystem;
 
 class ExportedWorlds : public Description {
  protected:
+  // What is exported names the files of what it was made of.
+  ExportedWorlds() { setenv("COHORT_ALLOW_FILES", source.c_str(), 1); }
+  ~ExportedWorlds() override { unsetenv("COHORT_ALLOW_FILES"); }
   fs::path write_back(const World& world, const std::string& name = "exported.sdf") const {
     return write(name, parsing::xml_text(parsing::sdf_of(world, folder_)));
   }

@@ -17,6 +17,8 @@ using description::KeptFile;
 using description::Problem;
 using description::problems_of;
 
+// With this a file is held to the letter.
+constexpr const char* ours = " xmlns:cohort='https://cohort-sim.org/sdf/1'";
 constexpr const char* tetrahedron =
     "mtllib {}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl grey\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
@@ -32,10 +34,11 @@ class TrustedFolders : public Description {
     std::string text = tetrahedron;
     write(name, text.replace(text.find("{}"), 2, material));
   }
-  void write_arena(const std::string& mesh) const {
+  void write_arena(const std::string& mesh, const std::string& prefix = ours) const {
     write("world/arena.sdf",
-          "<sdf version='1.9'><world name='w'>\n<model name='rock'><static>true</static><link name='l'>\n<collision "
-          "name='c'><geometry><mesh><uri>" +
+          "<sdf version='1.9'" + prefix +
+              "><world name='w'>\n<model name='rock'><static>true</static><link name='l'>\n<collision "
+              "name='c'><geometry><mesh><uri>" +
               mesh + "</uri></mesh></geometry></collision></link></model></world></sdf>");
   }
   Experiment read() const { return parsing::read_experiment(folder_ / "world/run.yaml"); }
@@ -61,6 +64,16 @@ TEST_F(TrustedFolders, AreNotLeftByAPath) {
   setenv("COHORT_ALLOW_FILES", ("/nowhere:" + (folder_ / "secret").string()).c_str(), 1);
   EXPECT_EQ(message(), "");
   unsetenv("COHORT_ALLOW_FILES");
+}
+
+TEST_F(TrustedFolders, AreNotLeftByAFileOfOthersWhichGoesOnWithoutIt) {
+  write_arena("../secret/rock.obj", "");
+  const Experiment experiment = read();
+  ASSERT_EQ(experiment.world.warnings.size(), 1u);
+  EXPECT_NE(experiment.world.warnings[0].message.find("--allow-files"), std::string::npos)
+      << experiment.world.warnings[0].text();
+  EXPECT_TRUE(std::ranges::none_of(experiment.inputs->files,
+                                   [](const KeptFile& file) { return file.path.find("secret") != std::string::npos; }));
 }
 
 TEST_F(TrustedFolders, AreNotLeftByASymbolicLink) {

@@ -247,10 +247,10 @@ TEST_P(MistypedCommand, IsOneMessageThatSaysWhatToDo) {
 INSTANTIATE_TEST_SUITE_P(
     Mistakes, MistypedCommand,
     ::testing::Values(
-        Typed{
-            {},
-            "expected a command; known: run, serve, host, teleop, ctl, record, view, check, export, samples, security, "
-            "doctor, replay, diff, export-data, plot, recover, help, completion, man-page, bench. Try 'cohort --help'"},
+        Typed{{},
+              "expected a command; known: run, serve, host, teleop, ctl, record, view, examples, check, export, "
+              "samples, security, doctor, recordings, replay, diff, export-data, plot, recover, help, completion, "
+              "man-page, bench. Try 'cohort --help'"},
         Typed{{"rn", "x"}, "there is no command 'rn'; did you mean 'run'?"},
         Typed{{"run"}, "FILE is required. Try 'cohort run --help'"}, Typed{{"run", "x", "y"}, "unexpected 'y'"},
         Typed{{"run", "x", "--thread", "3"}, "there is no option '--thread'; did you mean '--threads'?"},

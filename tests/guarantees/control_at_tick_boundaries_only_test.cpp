@@ -278,7 +278,7 @@ TEST(ControlAtTickBoundariesOnly, WhatCannotBeIsRefusedWithASentence) {
 
 // As fast as it can, from two processes' worth of participants: what makes sense, what does not, and another's name.
 TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
-  const FieldOfRobots field(4, 5.0);
+  const FieldOfRobots field(4, 2.0);
   const std::string expected = reference(field);
   ControlledRun run(field, {"--paused"});
   EXPECT_EQ(run.done({"step"}), "paused at tick 1\n");
@@ -289,7 +289,8 @@ TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
       stranger.send(of(Operation::get_status), ++number);
       stranger.send(of(Operation::save_snapshot), ++number);
       ++number;
-      stranger.send(of(static_cast<Operation>(number)), number);
+      const auto any = static_cast<Operation>(number);
+      if (any != Operation::reset_simulation) stranger.send(of(any), number);  // which would be another run
       stranger.send(of(Operation::set_entity_state), 3);
       wire::Request large = of(Operation::put_data);
       large.size = wire::largest_data;

@@ -19,7 +19,7 @@ bool is_below(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
-bool is_unit(const fs::path& folder) {
+bool is_package_or_repository(const fs::path& folder) {
   std::error_code none;
   return std::ranges::any_of(std::initializer_list<const char*>{"package.xml", "model.config", ".git"},
                              [&](const char* sign) { return fs::exists(folder / sign, none); });
@@ -46,7 +46,7 @@ void TrustedFolders::add_around(const fs::path& file) {
   if (missing) return;
   add(folder);
   for (fs::path above = folder; above != above.parent_path() && !holds_home(above); above = above.parent_path())
-    if (is_unit(above)) {
+    if (is_package_or_repository(above)) {
       add(above);
       break;
     }

@@ -3,15 +3,16 @@
 namespace cohort::actuation {
 
 UserActions::UserActions(const description::World& description, const physics::World& world) : world_(world) {
-  for (std::uint32_t robot = 0; robot < description.robots.size(); ++robot) {
-    const auto body = static_cast<std::uint32_t>(description.robots[robot]);
-    const std::vector<description::Device>& devices = description.robot_model(robot).devices;
-    for (std::size_t device = 0; device < devices.size(); ++device) {
-      const auto* const action = std::get_if<description::UserAction>(&devices[device]);
-      if (action == nullptr) continue;
-      numbers_[{body, device}] = static_cast<std::uint32_t>(actions_.size());
-      actions_.push_back({.name = action->name, .robot = robot, .body = body});
-    }
+  for (std::uint32_t robot = 0; robot < description.robots.size(); ++robot)
+    add_robot(robot, static_cast<std::uint32_t>(description.robots[robot]), description.robot_model(robot));
+}
+
+void UserActions::add_robot(std::uint32_t robot, std::uint32_t body, const description::Model& model) {
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    const auto* const action = std::get_if<description::UserAction>(&model.devices[device]);
+    if (action == nullptr) continue;
+    numbers_[{body, device}] = static_cast<std::uint32_t>(actions_.size());
+    actions_.push_back({.name = action->name, .robot = robot, .body = body});
   }
 }
 

@@ -33,6 +33,8 @@ class UserActions {
   /// What it refers to must outlive it.
   UserActions(const description::World& description, const physics::World& world);
 
+  /// A robot has come, with the next id.
+  void add_robot(std::uint32_t robot, std::uint32_t body, const description::Model& model);
   /// The number of the action that is a device of a robot.
   std::uint32_t of_device(std::uint32_t body, std::size_t device) const { return numbers_.at({body, device}); }
   void command(std::uint32_t action, double value) { actions_[action].value = value; }

@@ -40,7 +40,23 @@ bool is_mounted(const std::filesystem::path& file) {
   return is_known && (facts.stx_attributes & facts.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT) != 0;
 }
 
-// 0, or why it failed.
+}  // namespace
+
+std::string why_not_written(int error) {
+  const std::string reason = std::generic_category().message(error);
+  switch (error) {
+    case ENOENT:
+    case ENOTDIR: return reason + "; its folder has to be there";
+    case EACCES:
+    case EPERM:
+    case EROFS: return reason + "; choose a folder that you may write to";
+    case ENOSPC:
+    case EDQUOT: return reason + "; free some space there, or choose another disk";
+    case EFBIG: return reason + "; raise the limit of file sizes (ulimit -f), or choose another file system";
+    default: return reason;
+  }
+}
+
 int sync_folder_of(const std::filesystem::path& file) {
   const int descriptor = open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return 0;  // one that may be written to and not read
@@ -49,11 +65,8 @@ int sync_folder_of(const std::filesystem::path& file) {
   return error == EINVAL ? 0 : error;  // some file systems know no such thing
 }
 
-}  // namespace
-
 void AtomicFile::fail(int error) const {
-  throw std::runtime_error(what_ + " cannot be written to " + target_.string() + ": " +
-                           std::generic_category().message(error));
+  throw WriteError(what_ + " cannot be written to " + target_.string() + ": " + why_not_written(error));
 }
 
 AtomicFile::AtomicFile(std::string_view what, std::filesystem::path target)
@@ -95,8 +108,10 @@ void AtomicFile::commit() {
     if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
     return;
   }
-  if (fsync(descriptor_) != 0) fail(errno);
-  if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+  if (descriptor_ >= 0) {  // none: it was here before, and its name could not be given
+    if (fsync(descriptor_) != 0) fail(errno);
+    if (close(std::exchange(descriptor_, -1)) != 0) fail(errno);
+  }
   if (rename(path_.c_str(), target_.c_str()) != 0) fail(errno);
   path_ = target_;
   if (const int error = sync_folder_of(target_); error != 0) fail(error);

@@ -82,31 +82,4 @@ inline void restore_pose(SnapshotReader& reader, Pose& pose) {
   expect_placed(pose);
 }
 
-/// The bodies beyond the `described` ones, which a world was given in mid-run: of which model, and where.
-template <class Body>
-void save_added_bodies(const std::vector<Body>& bodies, std::size_t described, SnapshotWriter& writer) {
-  writer.add_count(described);
-  writer.add_count(bodies.size());
-  for (std::size_t body = described; body < bodies.size(); ++body) {
-    writer.add_count(bodies[body].model);
-    visit_pose(bodies[body].X_WM, StateSaver{writer});
-  }
-}
-
-/// Calls `create(model, X_WM)` for each. Throws SnapshotError if there are not as many described bodies, or a model is
-/// not below `models`.
-template <class Create>
-void restore_added_bodies(SnapshotReader& reader, std::size_t described, std::size_t models, Create&& create) {
-  reader.expect_count(described, "models in its world");
-  constexpr std::size_t least_bytes = 1;
-  const std::size_t count = reader.read_count(least_bytes);
-  for (std::size_t body = described; body < count; ++body) {
-    const std::size_t model = reader.read_count(least_bytes);
-    if (model >= models) throw SnapshotError("the snapshot has a model that is not there");
-    Pose X_WM;
-    restore_pose(reader, X_WM);
-    create(model, X_WM);
-  }
-}
-
 }  // namespace cohort

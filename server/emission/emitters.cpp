@@ -24,24 +24,16 @@ Pose on_ring(const Pose& X_LS, double bearing, double radius) {
 
 }  // namespace
 
-Emitters::Emitters(const description::World& description, const physics::World& world)
-    : description_(description), world_(world) {
+Emitters::Emitters(const description::World& description, const physics::World& world) : world_(world) {
   marker_grid_.set_cell_size(marker_cell);
   beacon_grid_.set_cell_size(beacon_cell);
-  for (std::uint32_t body = 0; body < description.instances.size(); ++body) {
-    const description::Model& model = description.models[description.instances[body].model];
-    add_emitters(body, model);
-    add_devices(body, model);
-  }
+  for (std::uint32_t body = 0; body < description.instances.size(); ++body)
+    add_body(body, description.models[description.instances[body].model]);
 }
 
-void Emitters::add_body(std::uint32_t body, std::size_t model) {
-  added_.emplace_back(body, static_cast<std::uint32_t>(model));
-  add_emitters(body, description_.models[model]);
-}
-
-void Emitters::add_emitters(std::uint32_t body, const description::Model& model) {
+void Emitters::add_body(std::uint32_t body, const description::Model& model) {
   for (std::size_t i = 0; i < model.emitters.size(); ++i) add(body, i, model.emitters[i]);
+  add_devices(body, model);
 }
 
 void Emitters::add(std::uint32_t body, std::size_t place, const description::Emitter& emitter) {
@@ -229,25 +221,11 @@ std::size_t Emitters::emitter_count() const {
 void Emitters::hash(StateHash& hash) const { visit_state(*this, StateHasher{hash}); }
 
 void Emitters::save(SnapshotWriter& writer) const {
-  writer.add_count(added_.size());
-  for (const auto& [body, model] : added_) {
-    writer.add(body);
-    writer.add(model);
-  }
   writer.add_count(emitter_count());
   visit_state(*this, StateSaver{writer});
 }
 
 void Emitters::restore(SnapshotReader& reader) {
-  for (std::size_t left = reader.read_count(2 * sizeof(std::uint32_t)); left > 0; --left) {
-    std::uint32_t body = 0;
-    std::uint32_t model = 0;
-    reader.read(body);
-    reader.read(model);
-    if (body >= world_.body_count() || model >= description_.models.size())
-      throw SnapshotError("the snapshot has a model that is not there");
-    add_body(body, model);
-  }
   reader.expect_count(emitter_count(), "emitters");
   visit_state(*this, StateRestorer{reader});
 }

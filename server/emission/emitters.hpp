@@ -70,8 +70,8 @@ class Emitters {
   /// Those of all instances: of their models and of their devices. Keeps references to both.
   Emitters(const description::World& description, const physics::World& world);
 
-  /// Those of a body that was added to the world, of one of the description's models.
-  void add_body(std::uint32_t body, std::size_t model);
+  /// A body has come, of one of the description's models.
+  void add_body(std::uint32_t body, const description::Model& model);
   /// Takes the poses of this boundary and what is on.
   void update(WorkerPool& workers);
 
@@ -139,23 +139,20 @@ class Emitters {
     Kind kind = Kind::lamp;
     std::uint32_t index = 0;  // among those of its kind
   };
-  void add_emitters(std::uint32_t body, const description::Model& model);
   void add(std::uint32_t body, std::size_t place, const description::Emitter& emitter);
   void add_devices(std::uint32_t body, const description::Model& model);
   std::size_t emitter_count() const;
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);
 
-  const description::World& description_;
   const physics::World& world_;
   std::vector<Lamp> lamps_;
   std::vector<Tone> tones_;
   std::vector<Marker> markers_;
   std::vector<ClimateSource> climate_sources_;
   std::vector<Beacon> beacons_;
-  std::vector<Entry> entries_;                                  // ascending by body, then emitter
-  std::vector<DeviceEntry> devices_;                            // ascending by body, then device
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> added_;  // bodies and their models
+  std::vector<Entry> entries_;        // ascending by body, then emitter
+  std::vector<DeviceEntry> devices_;  // ascending by body, then device
 
   std::vector<std::uint32_t> lit_lamps_;
   std::vector<std::uint32_t> sounding_tones_;

@@ -4,24 +4,27 @@
 
 namespace cohort::gripping {
 
-DetachableJoints::DetachableJoints(const description::World& description, physics::World& world) : world_(world) {
-  const auto& instances = description.instances;
-  for (std::uint32_t body = 0; body < instances.size(); ++body) {
-    const description::Model& model = description.models[instances[body].model];
-    for (std::size_t device = 0; device < model.devices.size(); ++device) {
-      const auto* const its = std::get_if<description::DetachableJoint>(&model.devices[device]);
-      if (its == nullptr) continue;
-      numbers_[{body, device}] = static_cast<std::uint32_t>(joints_.size());
-      Joint& joint = joints_.emplace_back(Joint{.body = body, .link = its->link});
-      const auto child = std::ranges::find(instances, its->child, &description::Instance::name);
-      if (child == instances.end()) continue;
-      const auto& links = description.models[child->model].links;
-      const auto link =
-          its->child_link.empty() ? links.begin() : std::ranges::find(links, its->child_link, &description::Link::name);
-      if (link == links.end()) continue;
-      joint.child = static_cast<std::uint32_t>(child - instances.begin());
-      joint.child_link = static_cast<std::size_t>(link - links.begin());
-    }
+DetachableJoints::DetachableJoints(const description::World& description, physics::World& world)
+    : description_(description), world_(world) {
+  for (std::uint32_t body = 0; body < description.instances.size(); ++body)
+    add_body(body, description.models[description.instances[body].model]);
+}
+
+void DetachableJoints::add_body(std::uint32_t body, const description::Model& model) {
+  const auto& instances = description_.instances;
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    const auto* const its = std::get_if<description::DetachableJoint>(&model.devices[device]);
+    if (its == nullptr) continue;
+    numbers_[{body, device}] = static_cast<std::uint32_t>(joints_.size());
+    Joint& joint = joints_.emplace_back(Joint{.body = body, .link = its->link});
+    const auto child = std::ranges::find(instances, its->child, &description::Instance::name);
+    if (child == instances.end()) continue;
+    const auto& links = description_.models[child->model].links;
+    const auto link =
+        its->child_link.empty() ? links.begin() : std::ranges::find(links, its->child_link, &description::Link::name);
+    if (link == links.end()) continue;
+    joint.child = static_cast<std::uint32_t>(child - instances.begin());
+    joint.child_link = static_cast<std::size_t>(link - links.begin());
   }
 }
 

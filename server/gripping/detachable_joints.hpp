@@ -22,6 +22,8 @@ class DetachableJoints {
   /// What it refers to must outlive it. An object that is not there is never held.
   DetachableJoints(const description::World& description, physics::World& world);
 
+  /// A body has come, of one of the description's models: an instance of the description by now.
+  void add_body(std::uint32_t body, const description::Model& model);
   /// The number of the joint that is a device of a robot.
   std::uint32_t of_device(std::uint32_t body, std::size_t device) const { return numbers_.at({body, device}); }
 
@@ -47,6 +49,7 @@ class DetachableJoints {
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);
 
+  const description::World& description_;
   physics::World& world_;
   std::vector<Joint> joints_;
   std::map<std::pair<std::uint32_t, std::size_t>, std::uint32_t> numbers_;

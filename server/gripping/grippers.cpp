@@ -34,21 +34,18 @@ Eigen::Quaterniond axes_of(const Vector3d& axis_W, const Vector3d& forward_W) {
 
 Grippers::Grippers(const description::World& description, physics::World& world)
     : description_(description), world_(world), step_(std::chrono::duration<double>(description.step).count()) {
-  for (std::uint32_t body = 0; body < description.instances.size(); ++body) {
-    const description::Model& model = description.models[description.instances[body].model];
-    for (std::size_t device = 0; device < model.devices.size(); ++device) {
-      const auto* gripper = std::get_if<description::Gripper>(&model.devices[device]);
-      if (gripper == nullptr) continue;
-      numbers_[{body, device}] = static_cast<std::uint32_t>(grippers_.size());
-      grippers_.push_back({.body = body, .device = gripper});
-    }
-  }
-  for (std::size_t model = 0; model < description.models.size(); ++model) note_model(model);
+  for (std::uint32_t body = 0; body < description.instances.size(); ++body)
+    add_body(body, description.models[description.instances[body].model]);
 }
 
-void Grippers::note_model(std::size_t model) {
-  for (const description::GripRing& ring : description_.models[model].grip_rings)
-    largest_ring_ = std::max(largest_ring_, ring.radius);
+void Grippers::add_body(std::uint32_t body, const description::Model& model) {
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    const auto* gripper = std::get_if<description::Gripper>(&model.devices[device]);
+    if (gripper == nullptr) continue;
+    numbers_[{body, device}] = static_cast<std::uint32_t>(grippers_.size());
+    grippers_.push_back({.body = body, .device = gripper});
+  }
+  for (const description::GripRing& ring : model.grip_rings) largest_ring_ = std::max(largest_ring_, ring.radius);
 }
 
 void Grippers::command(std::uint32_t number, double opening) {

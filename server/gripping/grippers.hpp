@@ -32,6 +32,8 @@ class Grippers {
   /// What it refers to must outlive it.
   Grippers(const description::World& description, physics::World& world);
 
+  /// A body has come, of one of the description's models.
+  void add_body(std::uint32_t body, const description::Model& model);
   /// The number of the gripper that is a device of a robot.
   std::uint32_t of_device(std::uint32_t body, std::size_t device) const { return numbers_.at({body, device}); }
 
@@ -48,8 +50,6 @@ class Grippers {
   bool is_gripping(std::uint32_t gripper) const;
   /// At the connection, over the last step [N]; 0 if it holds nothing.
   double force(std::uint32_t gripper) const;
-  /// A model has come to the description, which may have rings to grip.
-  void note_model(std::size_t model);
   /// The light barrier.
   bool is_something_between(std::uint32_t gripper) const;
   /// The nearest within the acceptance; of two as near, that of the lower body, then link.

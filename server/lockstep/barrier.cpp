@@ -6,14 +6,14 @@ namespace cohort::lockstep {
 
 using description::OnLate;
 
-Barrier::Barrier(std::vector<description::Policy> policies, const std::vector<std::size_t>& command_sizes) {
-  robots_.resize(policies.size());
-  for (std::size_t i = 0; i < policies.size(); ++i) {
-    robots_[i].policy = policies[i];
-    robots_[i].answers.resize(policies[i].delay + 1);
-    for (Answer& answer : robots_[i].answers) answer.values.resize(command_sizes[i]);
-    answer_of(robots_[i], 0).asked = is_asked(robots_[i], 0);
-  }
+void Barrier::add(const description::Policy& policy, std::size_t command_size, std::uint64_t tick) {
+  Robot& robot = robots_.emplace_back();
+  robot.policy = policy;
+  robot.answers.resize(policy.delay + 1);
+  for (Answer& answer : robot.answers) answer.values.resize(command_size);
+  robot.first_tick = tick;
+  robot.heard_at = opened_at_;
+  if (is_fresh_) answer_of(robot, tick_).asked = is_asked(robot, tick_);
 }
 
 void Barrier::set_driven(std::uint32_t robot, bool driven) {
@@ -187,6 +187,7 @@ void Barrier::save(SnapshotWriter& writer) const {
   for (const Robot& robot : robots_) {
     for (const bool flag : {robot.present, robot.driven, robot.detached, robot.silent, robot.answered.has_value()})
       writer.add(flag);
+    writer.add(robot.first_tick);
     writer.add(robot.answered.value_or(0));
     writer.add_count(robot.answers.size());
     for (const Answer& answer : robot.answers) {
@@ -208,6 +209,7 @@ void Barrier::restore(SnapshotReader& reader) {
     robot.awaited = false;
     bool has_answered = false;
     reader.read(has_answered);
+    reader.read(robot.first_tick);
     std::uint64_t answered = 0;
     reader.read(answered);
     robot.answered = has_answered ? std::optional(answered) : std::nullopt;

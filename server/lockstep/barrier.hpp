@@ -22,8 +22,8 @@ using Time = std::chrono::nanoseconds;
 /// way. A robot that is free is asked too, but nothing is needed of it: the newest answer that has come acts.
 class Barrier {
  public:
-  /// `policies` and `command_sizes` (float64 values) by robot.
-  Barrier(std::vector<description::Policy> policies, const std::vector<std::size_t>& command_sizes);
+  /// The robot with the next id, which is asked from `tick` on; that is not opened yet. `command_size`: float64 values.
+  void add(const description::Policy& policy, std::size_t command_size, std::uint64_t tick);
 
   /// Whether the robot is in the world, from the tick on that is opened next: one that is not is not asked. At first
   /// all are. Frames under way stay as they are.
@@ -117,7 +117,8 @@ class Barrier {
   };
   struct Robot {
     description::Policy policy;
-    std::vector<Answer> answers;  // by frame tick, modulo delay + 1
+    std::vector<Answer> answers;   // by frame tick, modulo delay + 1
+    std::uint64_t first_tick = 0;  // it was not there before
     bool present = true;
     bool driven = true;
     bool awaited = false;
@@ -143,9 +144,9 @@ class Barrier {
   bool is_too_late(const Robot& robot, Time now) const;
   static bool is_too_silent(const Robot& robot, Time now);
   static bool is_free(const Robot& robot) { return robot.policy.mode == description::Mode::free; }
-  /// By the robot's policy alone.
+  /// By the robot's policy alone, once it is there.
   static bool is_asked(const Robot& robot, std::uint64_t tick) {
-    if (tick < robot.policy.phase) return false;
+    if (tick < robot.policy.phase || tick < robot.first_tick) return false;
     return robot.policy.period == 1 || (tick - robot.policy.phase) % robot.policy.period == 0;
   }
 

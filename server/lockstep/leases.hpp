@@ -38,6 +38,9 @@ class Leases {
     std::vector<Answered> news{};  ///< answers since `drain_news`; at most 64
   };
 
+  /// Robots have come: there are so many now.
+  void note_robots(std::uint32_t robot_count) { holder_.resize(robot_count); }
+
   /// `robots`: ascending, at least one. A client's new claim stands in for its earlier one that still waits.
   void claim(std::uint64_t client, std::vector<std::uint32_t> robots);
 

@@ -98,6 +98,16 @@ Recorder::Recorder(std::shared_ptr<ByteStore> store, RecordingOptions options,
   for (const description::KeptFile& input : experiment.inputs->files) file_.add_attachment(attachment_of(input));
 }
 
+// Where there is no memory for what is to be recorded the recording ends, and not the run.
+template <class Act>
+void Recorder::unless_memory_lacks(const Act& act) {
+  try {
+    act();
+  } catch (const std::bad_alloc&) {
+    file_.end_early("there is no memory for what is to be recorded");
+  }
+}
+
 void Recorder::begin(const description::Experiment& experiment, const Simulation& simulation, Beginning reason) {
   if (experiment_ != nullptr) {
     ++run_;
@@ -110,12 +120,13 @@ void Recorder::begin(const description::Experiment& experiment, const Simulation
   joint_interval_ = ticks_at_rate(recorded_.joint_rate, step);
   observation_interval_ = ticks_at_rate(recorded_.observation_rate, step);
   snapshot_interval_ = ticks_every(recorded_.snapshot_interval, step);
-  if (observed_.empty() && observation_interval_ != 0) add_observed();
-
-  write(world_, WorldBegins{run_, static_cast<std::uint8_t>(reason), experiment.seed, simulation.tick(),
-                            experiment.duration.count(), log_offset_.count()});
-  write_roster();
-  if (reason == Beginning::restored || reason == Beginning::attached) write_snapshot(Importance::essential);
+  unless_memory_lacks([&] {
+    if (observed_.empty() && observation_interval_ != 0) add_observed();
+    write(world_, WorldBegins{run_, static_cast<std::uint8_t>(reason), experiment.seed, simulation.tick(),
+                              experiment.duration.count(), log_offset_.count()});
+    write_roster();
+    if (reason == Beginning::restored || reason == Beginning::attached) write_snapshot(Importance::essential);
+  });
 }
 
 void Recorder::add_observed() {
@@ -151,9 +162,10 @@ void Recorder::write_roster() {
     roster.robots.push_back(
         {simulation_->robot_name(robot), "", simulation_->kind_of(robot), {command.begin(), command.end()}});
   }
-  for (const description::Team& team : experiment_->teams)
+  for (const description::Team& team : simulation_->experiment().teams)
     for (const std::uint32_t robot : team.robots) roster.robots[robot].team = team.name;
   write(roster_, roster);
+  robots_told_ = simulation_->robot_count();
 }
 
 template <RosMessage Message>
@@ -170,25 +182,36 @@ void Recorder::write_bytes(Topic& topic, ByteView bytes, Importance importance) 
 }
 
 void Recorder::event(std::string_view kind, std::string_view text, std::uint64_t count) {
-  write(event_, RecordedEvent{simulation_->tick(), std::string(kind), std::string(text), count});
+  unless_memory_lacks([&] {
+    write(event_, RecordedEvent{simulation_->tick(), std::string(kind), std::string(text), count});
+  });
 }
 
-void Recorder::miss(const RecordedMiss& miss) { write(miss_, miss); }
+void Recorder::miss(const RecordedMiss& miss) {
+  unless_memory_lacks([&] { write(miss_, miss); });
+}
 
 void Recorder::action(std::string_view text, std::span<const std::byte> action) {
-  write(action_, ActionTaken{simulation_->tick(), std::string(text), bytes_of(action)});
+  unless_memory_lacks([&] { write(action_, ActionTaken{simulation_->tick(), std::string(text), bytes_of(action)}); });
 }
 
 void Recorder::boundary() {
-  write(boundary_, Boundary{simulation_->tick(), simulation_->state_hash()});
-  keep_commands();
-  if (is_now(snapshot_interval_) && simulation_->tick() > 0) write_snapshot(Importance::display);
-  if (is_now(pose_interval_)) write_poses();
-  if (is_now(joint_interval_)) write_joints();
-  if (is_now(observation_interval_)) write_observations();
+  unless_memory_lacks([this] {
+    if (simulation_->robot_count() != robots_told_) write_roster();
+    write(boundary_, Boundary{simulation_->tick(), simulation_->state_hash()});
+    keep_commands();
+    if (is_now(snapshot_interval_) && simulation_->tick() > 0) write_snapshot(Importance::display);
+    if (is_now(pose_interval_)) write_poses();
+    if (is_now(joint_interval_)) write_joints();
+    if (is_now(observation_interval_)) write_observations();
+  });
 }
 
 void Recorder::commands(std::span<const std::uint32_t> robots) {
+  unless_memory_lacks([&] { write_commands(robots); });
+}
+
+void Recorder::write_commands(std::span<const std::uint32_t> robots) {
   changes_.tick = simulation_->tick();
   changes_.robots.clear();
   changes_.places.clear();

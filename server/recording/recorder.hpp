@@ -60,6 +60,8 @@ class Recorder {
     ChannelId channel = 0;
     std::uint32_t sequence = 0;
   };
+  template <class Act>
+  void unless_memory_lacks(const Act& act);
   template <RosMessage Message>
   Topic add_topic(const std::string& topic, bool is_latched = false);
   template <RosMessage Message>
@@ -67,6 +69,7 @@ class Recorder {
   void write_bytes(Topic& topic, ByteView bytes, Importance importance);
   void add_observed();
   bool is_static(std::uint32_t object) const;
+  void write_commands(std::span<const std::uint32_t> robots);
   void write_roster();
   void write_snapshot(Importance importance);
   void write_poses();
@@ -102,6 +105,7 @@ class Recorder {
   // As they stand at the boundary, robot after robot: an empty battery changes them too.
   std::vector<double> commands_before_;
   std::vector<std::size_t> command_offsets_;  // by robot
+  std::uint32_t robots_told_ = 0;             // in the last roster
   Commands changes_;                          // reused, like the next
   CdrWriter cdr_;
 };

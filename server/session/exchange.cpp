@@ -5,19 +5,6 @@
 namespace cohort::session {
 namespace {
 
-std::vector<description::Policy> policies_of(const Simulation& simulation) {
-  std::vector<description::Policy> policies;
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) policies.push_back(simulation.policy(robot));
-  return policies;
-}
-
-std::vector<std::size_t> command_sizes_of(const Simulation& simulation) {
-  std::vector<std::size_t> sizes;
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
-    sizes.push_back(simulation.kinds()[simulation.kind_of(robot)].command_size);
-  return sizes;
-}
-
 std::string reason_word(CommandFault::Reason reason) {
   switch (reason) {
     case CommandFault::Reason::wrong_size: return "wrong_size";
@@ -29,12 +16,16 @@ std::string reason_word(CommandFault::Reason reason) {
 
 }  // namespace
 
-Exchange::Exchange(Simulation& simulation)
-    : simulation_(simulation), barrier_(policies_of(simulation), command_sizes_of(simulation)) {
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
-    const std::uint32_t delay = simulation.policy(robot).delay;
-    history_.emplace_back(delay == 0 ? 0
-                                     : simulation.kinds()[simulation.kind_of(robot)].observation_size * (delay + 1));
+Exchange::Exchange(Simulation& simulation) : simulation_(simulation) { add_robots(0); }
+
+void Exchange::add_newcomers() { add_robots(simulation_.tick()); }
+
+void Exchange::add_robots(std::uint64_t first_tick) {
+  for (auto robot = static_cast<std::uint32_t>(history_.size()); robot < simulation_.robot_count(); ++robot) {
+    const description::Policy& policy = simulation_.policy(robot);
+    const RobotKind& kind = simulation_.kinds()[simulation_.kind_of(robot)];
+    barrier_.add(policy, kind.command_size, first_tick);
+    history_.emplace_back(policy.delay == 0 ? 0 : kind.observation_size * (policy.delay + 1));
   }
 }
 

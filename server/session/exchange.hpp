@@ -19,6 +19,9 @@ class Exchange {
   lockstep::Barrier& barrier() { return barrier_; }
   const lockstep::Barrier& barrier() const { return barrier_; }
 
+  /// Robots that have come to the simulation since, at this boundary.
+  void add_newcomers();
+
   /// Opens the simulation's current tick and keeps the observations of all robots due.
   void open(lockstep::Time now);
 
@@ -56,6 +59,7 @@ class Exchange {
   void restore(SnapshotReader& reader);
 
  private:
+  void add_robots(std::uint64_t first_tick);
   std::span<const double> kept(std::uint32_t robot, std::uint64_t tick) const;
 
   Simulation& simulation_;

@@ -57,20 +57,21 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
   const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
 
   std::vector<std::unique_ptr<ControllerHost>> hosts;
+  const std::vector<description::Team>& teams = simulation.experiment().teams;
   try {
-    for (std::size_t team = 0; team < experiment.teams.size(); ++team) {
+    for (std::size_t team = 0; team < teams.size(); ++team) {
       wire::Admit admit;
       admit.client = team;
       admit.step_ns = experiment.world.step.count();
       admit.tick = simulation.tick();
-      admit_robots(admit, experiment, simulation, experiment.teams[team].robots);
+      admit_robots(admit, simulation.experiment(), simulation, teams[team].robots);
       hosts.push_back(std::make_unique<ControllerHost>(controllers[team]));
       if (options.from) admit.start_reason = wire::StartReason::restored;
       hosts.back()->start(admit, descriptions);
       if (!options.from) continue;
-      const auto& robots = experiment.teams[team].robots;
+      const auto& robots = teams[team].robots;
       for (const std::string& notice : hosts.back()->load(states_of(*options.from, robots)))
-        monitor.add_event("unsaved", "team '" + experiment.teams[team].name + "': " + notice);
+        monitor.add_event("unsaved", "team '" + teams[team].name + "': " + notice);
       ask_again(exchange, experiment, robots, simulation.tick(), *hosts.back());
     }
     if (options.from) monitor.note_left_out(*options.from);
@@ -86,8 +87,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       exchange.open(begin.time_since_epoch());
       monitor.at_boundary();
       for (std::size_t team = 0; team < hosts.size(); ++team) {
-        const auto taken =
-            ask(exchange, frame, experiment, experiment.teams[team].robots, simulation.tick(), *hosts[team]);
+        const auto taken = ask(exchange, frame, experiment, teams[team].robots, simulation.tick(), *hosts[team]);
         if (!taken.is_fault) continue;
         monitor.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
         for (const lockstep::Barrier::Miss& miss : exchange.barrier().take_refused()) monitor.add_miss(miss);

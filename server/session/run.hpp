@@ -34,6 +34,8 @@ struct RunOptions {
   std::shared_ptr<const SessionSnapshot> from{};
   /// Simulated time between snapshots that stay in memory, so that whoever controls the run can go back; 0: none do.
   std::chrono::nanoseconds keep_interval{0};
+  /// Whether it ends with an error when its recording does.
+  bool needs_recording = false;
   /// Makes the world of a reset or of a snapshot, before this run is ended for it. What it throws is the answer to
   /// whoever asked, and the run goes on. Empty: there are neither resets nor snapshots to load.
   std::function<void(const NextRun&)> prepare{};
@@ -54,6 +56,7 @@ struct Progress {
   std::chrono::nanoseconds duration{0};  ///< simulated, of the whole run
   double real_time_factor = 0.0;         ///< over the last report's interval
   bool started = false;                  ///< false while controllers are missing at the start
+  bool unrecorded = false;               ///< it was to be recorded, and is no more
   bool paused = false;                   ///< until whoever controls the run lets it go on
   std::vector<std::string> awaited;      ///< names of the robots that are waited for, in order
   std::string awaited_from;              ///< who drives the first of them, if anybody does
@@ -86,6 +89,8 @@ struct RunListener {
   /// The commands of a tick are with the simulation, which is about to step: those of these robots have changed.
   std::function<void(std::span<const std::uint32_t>)> commands{};
   std::function<void(const ControlEvent&)> control{};
+  /// Asked at each boundary, and while the run waits: why it is recorded no more, if it was to be.
+  std::function<std::optional<std::string>()> unrecorded{};
   std::function<void()> stopped{};  ///< the last step is done, or there will be none
 };
 
@@ -107,6 +112,7 @@ struct RunResult {
   std::chrono::nanoseconds wall_time{0};  ///< from the first frame to the last step
   std::uint64_t state_hash = 0;
   std::uint32_t robots = 0;
+  std::vector<std::string> newcomers;   ///< of these the names of those that came in mid-run, by their ids
   lockstep::LatencyHistogram barrier;   ///< from the first frame of a tick sent to the last answer needed
   std::uint64_t late = 0;               ///< answers that missed their deadline
   std::uint64_t resent = 0;             ///< frames that were sent again

@@ -7,10 +7,10 @@ namespace cohort::session {
 
 RunMonitor::RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
                        RunListener listener)
-    : experiment_(experiment),
-      simulation_(simulation),
+    : simulation_(simulation),
       options_(std::move(options)),
       listener_(std::move(listener)),
+      robots_at_first_(static_cast<std::uint32_t>(experiment.world.robots.size())),
       step_(experiment.world.step),
       total_ticks_(static_cast<std::uint64_t>(experiment.duration / experiment.world.step)),
       start_(Clock::now()),
@@ -45,6 +45,14 @@ void RunMonitor::at_boundary() {
   if (last_boundary_ == simulation_.tick()) return;
   last_boundary_ = simulation_.tick();
   if (listener_.boundary) listener_.boundary();
+  see_whether_recorded();
+}
+
+// Whoever waits for a result learns at once that there will be none.
+void RunMonitor::see_whether_recorded() {
+  if (unrecorded_ || !listener_.unrecorded) return;
+  unrecorded_ = listener_.unrecorded();
+  if (unrecorded_) add_event("unrecorded", *unrecorded_);
 }
 
 std::optional<RunMonitor::Clock::time_point> RunMonitor::due_time() const {
@@ -74,6 +82,7 @@ Progress RunMonitor::progress_at(Clock::time_point now) {
   progress.time = simulation_.time();
   progress.duration = step_ * static_cast<std::int64_t>(total_ticks_);
   progress.started = started_;
+  progress.unrecorded = unrecorded_.has_value();
   const std::chrono::duration<double> wall = now - last_report_;
   const std::chrono::duration<double> simulated = progress.time - last_report_time_;
   progress.real_time_factor = wall.count() > 0.0 ? simulated / wall : 0.0;
@@ -101,13 +110,16 @@ void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
 
 RunResult RunMonitor::finish(RunResult::End end, std::string error) {
   stop();
-  result_.end = end;
-  result_.error = std::move(error);
+  const bool needs_more = unrecorded_ && options_.needs_recording && end == RunResult::End::finished;
+  result_.end = needs_more ? RunResult::End::failed : end;
+  result_.error = needs_more ? *unrecorded_ : std::move(error);
   result_.stop_reason = simulation_.stop_reason().value_or("");
   result_.ticks = simulation_.tick();
   result_.sim_time = simulation_.time();
   result_.state_hash = simulation_.state_hash();
   result_.robots = simulation_.robot_count();
+  for (std::uint32_t robot = robots_at_first_; robot < result_.robots; ++robot)
+    result_.newcomers.push_back(simulation_.robot_name(robot));
   result_.touches = simulation_.touches();
   result_.events.assign(log_.events().begin(), log_.events().end());
   return std::move(result_);

@@ -19,8 +19,10 @@ class RunMonitor {
   RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
              RunListener listener);
 
-  /// The whole duration is simulated, or a stop condition holds.
-  bool is_over() const { return simulation_.tick() >= total_ticks_ || simulation_.stop_reason(); }
+  /// The whole duration is simulated, a stop condition holds, or the recording that it needs has ended.
+  bool is_over() const {
+    return simulation_.tick() >= total_ticks_ || simulation_.stop_reason() || (unrecorded_ && options_.needs_recording);
+  }
   void start();  ///< the first frame is about to go out
   void stop();   ///< the last step is done, or there will be none
   /// A step is done.
@@ -34,6 +36,7 @@ class RunMonitor {
   template <class Complete>
   void report(bool now_anyway, Complete&& complete) {
     const Clock::time_point now = Clock::now();
+    if (now - last_report_ >= report_interval) see_whether_recorded();
     if (!listener_.progress || (!now_anyway && now - last_report_ < report_interval)) return;
     Progress progress = progress_at(now);
     complete(progress);
@@ -62,7 +65,8 @@ class RunMonitor {
   }
   /// What a snapshot that is taken, or that the run goes on from, has not of its controllers.
   void note_left_out(const SessionSnapshot& snapshot) {
-    for (const std::string& sentence : what_is_left_out(snapshot, experiment_)) add_event("unsaved", sentence);
+    for (const std::string& sentence : what_is_left_out(snapshot, simulation_.experiment()))
+      add_event("unsaved", sentence);
   }
   void add_resent(std::uint64_t frames) { result_.resent += frames; }
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
@@ -73,15 +77,17 @@ class RunMonitor {
  private:
   static constexpr std::chrono::milliseconds report_interval{200};
   Progress progress_at(Clock::time_point now);
+  void see_whether_recorded();
 
-  const description::Experiment& experiment_;
   const Simulation& simulation_;
   RunOptions options_;
   RunListener listener_;
+  std::uint32_t robots_at_first_;
   std::chrono::nanoseconds step_;
   std::uint64_t total_ticks_;
   bool started_ = false;
   bool stopped_ = false;
+  std::optional<std::string> unrecorded_;       // why not
   std::optional<std::uint64_t> last_boundary_;  // that the listener was told of
   Clock::time_point start_;
   // The pace is counted from here.

@@ -15,7 +15,7 @@ namespace cohort::session {
 namespace {
 
 constexpr std::uint64_t mark = 0x544f485354524843;  // "CHRTSHOT"
-constexpr std::uint32_t format = 2;
+constexpr std::uint32_t format = 3;
 constexpr std::size_t hash_size = sizeof(std::uint64_t);
 
 std::uint64_t hash_of(std::span<const std::byte> bytes) {

@@ -19,6 +19,7 @@ void visit_members(Self& self, Visit&& visit) {
     visit(self.model);
     visit(self.X_WM);
     visit(self.allow_renaming);
+    visit.if_any(self.team);
   } else if constexpr (std::is_same_v<Kind, SetPose>) {
     visit(self.X_WM);
   } else if constexpr (std::is_same_v<Kind, SetVelocity>) {
@@ -58,6 +59,10 @@ struct Writer {
     (*this)(value.has_value());
     if (value) (*this)(*value);
   }
+  // At the end of a kind that had no such member at first.
+  void if_any(const std::string& text) const {
+    if (!text.empty()) (*this)(text);
+  }
 };
 
 struct Reader {
@@ -89,6 +94,9 @@ struct Reader {
     bool is_there = false;
     (*this)(is_there);
     if (is_there) (*this)(value.emplace());
+  }
+  void if_any(std::string& text) const {
+    if (!bytes.is_at_end()) (*this)(text);
   }
 };
 

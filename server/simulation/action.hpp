@@ -15,12 +15,13 @@
 /// why it cannot be done. Names follow simulation_interfaces (ros-simulation).
 namespace cohort {
 
-/// A new object, at rest.
+/// A new object, at rest. A robot gets the next id, which was never another's, and joins a team.
 struct SpawnObject {
   std::string name;             ///< scoped; empty: that of the model
   std::string model;            ///< the name of one of the world's models, or the text of one in SDF, URDF or YAML
   Pose X_WM;                    ///< of the model
   bool allow_renaming = false;  ///< a name that is taken gets a number
+  std::string team{};           ///< of a robot; empty: the only team, or the only one with robots of this model
 };
 /// Out of the world, for good.
 struct RemoveObject {

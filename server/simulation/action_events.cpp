@@ -205,6 +205,36 @@ std::string name_of_new(const SpawnObject& spawn, const std::string& model, cons
     if (std::string name = wanted + "_" + std::to_string(number); !objects.find(name)) return name;
 }
 
+std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t model,
+                                       const description::Experiment& experiment) {
+  const description::World& world = experiment.world;
+  const std::string& model_name = world.models[model].name;
+  check_name(spawn.team, "the name of the team");
+  if (!world.models[model].is_robot()) {
+    if (!spawn.team.empty()) refuse("the model " + quoted(model_name) + " is no robot, so it is in no team");
+    return std::nullopt;
+  }
+  std::vector<std::string> names;
+  std::vector<std::size_t> of_this_model;
+  for (std::size_t team = 0; team < experiment.teams.size(); ++team) {
+    names.push_back(experiment.teams[team].name);
+    if (std::ranges::any_of(experiment.teams[team].robots,
+                            [&](std::uint32_t robot) { return world.robot(robot).model == model; }))
+      of_this_model.push_back(team);
+  }
+  if (!spawn.team.empty()) {
+    const auto found = std::ranges::find(names, spawn.team);
+    if (found == names.end()) refuse("there is no team " + quoted(spawn.team) + suggestion(spawn.team, names));
+    return static_cast<std::size_t>(found - names.begin());
+  }
+  if (names.empty()) refuse(quoted(model_name) + " is a robot, and the experiment has no team that says who drives it");
+  if (names.size() == 1) return 0;
+  if (of_this_model.size() == 1) return of_this_model.front();
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  refuse(quoted(model_name) + " is a robot: say which team it joins, of " + list);
+}
+
 description::Event event_of(const Action& action, const ActionScope& scope) {
   return std::visit(
       Overloaded{[](const SpawnObject&) -> description::Event { throw std::logic_error("a new object is no event"); },

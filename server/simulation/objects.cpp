@@ -12,27 +12,27 @@ std::uint64_t ticks_of(std::chrono::nanoseconds time, std::chrono::nanoseconds s
   return static_cast<std::uint64_t>(std::max<std::int64_t>(1, (time + step - std::chrono::nanoseconds(1)) / step));
 }
 
-Objects::Objects(const description::Experiment& experiment, physics::World& world)
+Objects::Objects(description::Experiment& experiment, physics::World& world)
     : experiment_(experiment),
       world_(world),
+      described_(static_cast<std::uint32_t>(experiment.world.instances.size())),
       history_ticks_(ticks_of(experiment.history.every, experiment.world.step)),
       histories_(experiment.history.objects.size()) {
-  for (const description::Instance& instance : experiment.world.instances) {
-    names_.push_back(instance.name);
+  for (const description::Instance& instance : experiment.world.instances)
     present_.push_back(instance.is_present ? 1 : 0);
-  }
 }
 
 std::optional<std::uint32_t> Objects::find(const std::string& name) const {
-  const auto found = std::find(names_.begin(), names_.end(), name);
-  if (found == names_.end()) return std::nullopt;
-  return static_cast<std::uint32_t>(found - names_.begin());
+  const auto& instances = experiment_.world.instances;
+  const auto found = std::ranges::find(instances, name, &description::Instance::name);
+  if (found == instances.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - instances.begin());
 }
 
 std::vector<std::uint32_t> Objects::in_scope(const std::string& scope) const {
   std::vector<std::uint32_t> found;
   for (std::uint32_t object = 0; object < size(); ++object)
-    if (scope.empty() || names_[object].starts_with(scope + "/")) found.push_back(object);
+    if (scope.empty() || name(object).starts_with(scope + "/")) found.push_back(object);
   return found;
 }
 
@@ -47,11 +47,10 @@ void Objects::set_present(std::uint32_t object, bool present) {
 
 std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pose& X_WM) {
   if (find(name)) throw std::invalid_argument("another object has the name '" + name + "'");
-  if (experiment_.world.models[model].is_robot())
-    throw std::invalid_argument(
-        "a robot comes into the world by an event of the experiment, which says who controls it");
+  if (size() - described_ == most_added)
+    throw std::invalid_argument("no more than " + std::to_string(most_added) + " objects come in one run");
   const std::uint32_t body = world_.add_body(model, X_WM);
-  names_.push_back(name);
+  experiment_.world.instances.push_back({name, model, X_WM});
   present_.push_back(1);
   return body;
 }
@@ -74,16 +73,15 @@ const std::deque<PastPose>& Objects::history(std::uint32_t object) const {
   return histories_[static_cast<std::size_t>(place - asked_for.begin())];
 }
 
-// What is as the description says adds nothing.
+// What is as it was at first, or when it came, adds nothing else.
 void Objects::hash(StateHash& hash) const {
   const std::vector<description::Instance>& instances = experiment_.world.instances;
   for (std::uint32_t object = 0; object < size(); ++object) {
-    const bool is_known = object < instances.size();
-    if (!is_known) {
-      hash.add(hash_name(names_[object]));
-      hash.add(static_cast<std::uint64_t>(world_.model_of(object)));
+    if (object >= described_) {
+      hash.add(hash_name(instances[object].name));
+      hash.add(static_cast<std::uint64_t>(instances[object].model));
     }
-    if (is_present(object) != (!is_known || instances[object].is_present))
+    if (is_present(object) != instances[object].is_present)
       hash.add(static_cast<std::uint64_t>(object) << 1 | static_cast<std::uint64_t>(is_present(object)));
   }
   for (const std::deque<PastPose>& history : histories_)
@@ -93,12 +91,45 @@ void Objects::hash(StateHash& hash) const {
     }
 }
 
-void Objects::save(SnapshotWriter& writer) const {
-  writer.add_count(names_.size());
-  for (std::size_t object = experiment_.world.instances.size(); object < names_.size(); ++object) {
-    writer.add_count(names_[object].size());
-    writer.add_all(names_[object].data(), names_[object].size());
+void Objects::save_added(SnapshotWriter& writer) const {
+  writer.add_count(described_);
+  writer.add_count(size() - described_);
+  for (std::uint32_t object = described_; object < size(); ++object) {
+    const description::Instance& instance = experiment_.world.instances[object];
+    writer.add_count(instance.name.size());
+    writer.add_all(instance.name.data(), instance.name.size());
+    writer.add_count(instance.model);
+    visit_pose(instance.X_WM, [&](const double& number) { writer.add(number); });
   }
+}
+
+void Objects::restore_added(SnapshotReader& reader) {
+  reader.expect_count(described_, "models in its world");
+  constexpr std::size_t least_bytes = 1;
+  const std::size_t count = reader.read_count(least_bytes);
+  if (count > most_added) throw SnapshotError("the snapshot has more objects than can come in a run");
+  for (std::size_t left = count; left > 0; --left) {
+    description::Instance instance;
+    instance.name.resize(reader.read_count(least_bytes));
+    reader.read_all(instance.name.data(), instance.name.size());
+    std::uint64_t model = 0;
+    reader.read(model);
+    instance.model = static_cast<std::size_t>(model);
+    restore_pose(reader, instance.X_WM);
+    if (instance.model >= experiment_.world.models.size())
+      throw SnapshotError("the snapshot has a model that is not there");
+    try {
+      world_.recreate_body(instance.model, instance.X_WM);
+    } catch (const std::invalid_argument& error) {
+      throw SnapshotError("the snapshot has an object that cannot be simulated: " + std::string(error.what()));
+    }
+    experiment_.world.instances.push_back(std::move(instance));
+    present_.push_back(1);
+  }
+}
+
+void Objects::save(SnapshotWriter& writer) const {
+  writer.add_count(present_.size());
   writer.add_all(present_.data(), present_.size());
   for (const std::deque<PastPose>& history : histories_) {
     writer.add_count(history.size());
@@ -110,13 +141,7 @@ void Objects::save(SnapshotWriter& writer) const {
 }
 
 void Objects::restore(SnapshotReader& reader) {
-  reader.expect_count(world_.body_count(), "objects");
-  while (names_.size() < world_.body_count()) {
-    std::string name(reader.read_count(1), ' ');
-    reader.read_all(name.data(), name.size());
-    names_.push_back(std::move(name));
-  }
-  present_.resize(names_.size());
+  reader.expect_count(present_.size(), "objects");
   reader.read_all(present_.data(), present_.size());
   for (std::deque<PastPose>& history : histories_) {
     history.resize(reader.read_count(sizeof(PastPose)));

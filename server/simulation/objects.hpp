@@ -19,14 +19,15 @@ struct PastPose {
   Pose X_WL;
 };
 
-/// Everything in a world under its scoped name: the instances of the description, then what was added. An object's
-/// index is that of its body. Names form a hierarchy by their slashes.
+/// Everything in a world under its scoped name: the instances of the description, to which what comes in mid-run is
+/// added. An object's index is that of its instance and of its body. Names form a hierarchy by their slashes.
 class Objects {
  public:
-  Objects(const description::Experiment& experiment, physics::World& world);
+  /// What comes is added to the instances of `experiment`, which must outlive this.
+  Objects(description::Experiment& experiment, physics::World& world);
 
-  std::uint32_t size() const { return static_cast<std::uint32_t>(names_.size()); }
-  const std::string& name(std::uint32_t object) const { return names_[object]; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(present_.size()); }
+  const std::string& name(std::uint32_t object) const { return experiment_.world.instances[object].name; }
   std::optional<std::uint32_t> find(const std::string& name) const;
   /// All whose names begin with `scope` and a slash, ascending; all there are if it is empty.
   std::vector<std::uint32_t> in_scope(const std::string& scope) const;
@@ -35,8 +36,10 @@ class Objects {
   bool is_present(std::uint32_t object) const { return present_[object] != 0; }
   bool is_quarantined(std::uint32_t object) const { return is_present(object) && !world_.is_active(object); }
   void set_present(std::uint32_t object, bool present);
-  /// Throws std::invalid_argument if the name is taken, or the model is a robot's or cannot be simulated.
+  /// Throws std::invalid_argument if the name is taken, or the model cannot be simulated.
   std::uint32_t add(const std::string& name, std::size_t model, const Pose& X_WM);
+  /// How many there were at first.
+  std::uint32_t described() const { return described_; }
 
   /// Keeps the poses of those that the experiment asks for, at a boundary.
   void record(std::uint64_t tick);
@@ -44,14 +47,21 @@ class Objects {
   const std::deque<PastPose>& history(std::uint32_t object) const;
 
   void hash(StateHash& hash) const;
+  /// Those that have come, before all else of a world.
+  void save_added(SnapshotWriter& writer) const;
+  /// Brings them again, right before the world is restored.
+  void restore_added(SnapshotReader& reader);
   void save(SnapshotWriter& writer) const;
   /// After the world is restored.
   void restore(SnapshotReader& reader);
 
  private:
-  const description::Experiment& experiment_;
+  // Each may be a robot's, and a stranger's request may bring it.
+  static constexpr std::size_t most_added = 100'000;
+
+  description::Experiment& experiment_;
   physics::World& world_;
-  std::vector<std::string> names_;
+  std::uint32_t described_;
   std::vector<char> present_;
   std::uint64_t history_ticks_ = 1;
   std::vector<std::deque<PastPose>> histories_;  // in the order of History::objects

@@ -20,6 +20,12 @@ void append(std::vector<Channel>& channels, const std::vector<Channel>& more) {
   channels.insert(channels.end(), more.begin(), more.end());
 }
 
+// The number of teams if it is in none, as in a world without any.
+std::uint32_t find_team(const description::Experiment& experiment, std::uint32_t robot) {
+  const auto has_it = [&](const description::Team& team) { return std::ranges::binary_search(team.robots, robot); };
+  return static_cast<std::uint32_t>(std::ranges::find_if(experiment.teams, has_it) - experiment.teams.begin());
+}
+
 std::vector<double> neutral_values(const RobotKind& kind) {
   std::vector<double> values;
   for (const Channel& channel : kind.command) values.insert(values.end(), channel.size, channel.neutral);
@@ -50,49 +56,49 @@ void observe(const sensing::Sensor& sensor, sensing::SignalChain& chain, std::ui
 
 }  // namespace
 
-Robots::Robots(const description::Experiment& experiment, physics::World& world, emission::Emitters& emitters,
-               gripping::Grippers& grippers, gripping::DetachableJoints& detachable_joints,
-               actuation::UserActions& actions, const Objects& objects, WorkerPool& workers)
-    : experiment_(experiment), objects_(objects), workers_(workers), scratch_(workers.threads()) {
-  const description::World& description = experiment.world;
-  robots_.resize(description.robots.size());
-  of_body_.assign(description.instances.size(), none);
-  for (const description::Team& team : experiment.teams)
-    for (const std::uint32_t robot : team.robots) robots_[robot].policy = team.policy;
+Robots::Robots(const Surroundings& around)
+    : around_(around), described_(around.experiment.world.robots.size()), scratch_(around.workers.threads()) {
+  while (robots_.size() < described_) add();
+}
 
-  std::vector<std::uint32_t> kind_of_model(description.models.size(), none);
-  for (std::uint32_t id = 0; id < robots_.size(); ++id) {
-    Robot& robot = robots_[id];
-    robot.body = static_cast<std::uint32_t>(description.robots[id]);
-    of_body_[robot.body] = id;
-    const description::Model& model = description.robot_model(id);
-    RobotKind kind{model.name, {}, {}, 0, 0};
-    for (std::size_t device = 0; device < model.devices.size(); ++device) {
-      if (auto sensor = sensing::make_sensor(
-              {world, emitters, description, grippers, views_, robot.body, device, experiment.seed})) {
-        if (sensor->needs_record()) world.record(robot.body);
-        append(kind.observation, sensor->channels());
-        add_sensor(id, std::move(sensor), model.devices[device]);
-      }
-      if (auto actuator = actuation::make_actuator(
-              {world, emitters, description, grippers, detachable_joints, actions, robot.body, device})) {
-        const std::vector<Channel> channels = actuator->channels();
-        append(kind.command, channels);
-        robot.actuators.push_back({std::move(actuator), total_size(channels)});
-      }
+void Robots::add() {
+  const auto id = size();
+  const description::World& description = around_.experiment.world;
+  Robot& robot = robots_.emplace_back();
+  robot.body = static_cast<std::uint32_t>(description.robots[id]);
+  of_body_.resize(description.instances.size(), none);
+  of_body_[robot.body] = id;
+  robot.team = find_team(around_.experiment, id);
+  if (robot.team < around_.experiment.teams.size()) robot.policy = around_.experiment.teams[robot.team].policy;
+
+  const description::Model& model = description.robot_model(id);
+  RobotKind kind{model.name, {}, {}, 0, 0};
+  for (std::size_t device = 0; device < model.devices.size(); ++device) {
+    if (auto sensor = sensing::make_sensor({around_.world, around_.emitters, description, around_.grippers, views_,
+                                            robot.body, device, around_.experiment.seed})) {
+      if (sensor->needs_record()) around_.world.record(robot.body);
+      append(kind.observation, sensor->channels());
+      add_sensor(id, std::move(sensor), model.devices[device]);
     }
-    std::uint32_t& known = kind_of_model[description.robot(id).model];
-    if (known == none) {
-      known = static_cast<std::uint32_t>(kinds_.size());
-      kind.observation_size = total_size(kind.observation);
-      kind.command_size = total_size(kind.command);
-      kinds_.push_back(std::move(kind));
+    if (auto actuator = actuation::make_actuator({around_.world, around_.emitters, description, around_.grippers,
+                                                  around_.detachable_joints, around_.actions, robot.body, device})) {
+      const std::vector<Channel> channels = actuator->channels();
+      append(kind.command, channels);
+      robot.actuators.push_back({std::move(actuator), total_size(channels)});
     }
-    robot.kind = known;
-    robot.observation_offset = observations_.size();
-    observations_.resize(observations_.size() + kinds_[known].observation_size);
-    robot.command = neutral_values(kinds_[known]);
   }
+  kind_of_model_.resize(description.models.size(), none);
+  std::uint32_t& known = kind_of_model_[description.robot(id).model];
+  if (known == none) {
+    known = static_cast<std::uint32_t>(kinds_.size());
+    kind.observation_size = total_size(kind.observation);
+    kind.command_size = total_size(kind.command);
+    kinds_.push_back(std::move(kind));
+  }
+  robot.kind = known;
+  robot.observation_offset = observations_.size();
+  observations_.resize(observations_.size() + kinds_[known].observation_size);
+  robot.command = neutral_values(kinds_[known]);
 }
 
 void Robots::add_sensor(std::uint32_t id, std::unique_ptr<sensing::Sensor> sensor, const description::Device& device) {
@@ -102,8 +108,8 @@ void Robots::add_sensor(std::uint32_t id, std::unique_ptr<sensing::Sensor> senso
   const description::Readout* const readout = description::readout_of(device);
   sensors.push_back(
       {std::move(sensor),
-       sensing::SignalChain(readout != nullptr ? *readout : description::Readout{}, channels, experiment_.seed,
-                            name(id), description::name_of(device), experiment_.world.step),
+       sensing::SignalChain(readout != nullptr ? *readout : description::Readout{}, channels, around_.experiment.seed,
+                            name(id), description::name_of(device), around_.experiment.world.step),
        total_size(channels)});
 }
 
@@ -174,28 +180,31 @@ void Robots::update_shared_views(std::uint64_t tick) {
     const SensorOfRobot& each = robots_[robot].sensors[place];
     if (is_present(robot) && each.signal_chain.measures_at(tick, is_due(robot, tick))) each.sensor->ask_shared_view();
   }
-  views_.update(workers_);
+  views_.update(around_.workers);
 }
 
 void Robots::sense(std::uint64_t tick) {
   update_shared_views(tick);
-  workers_.for_each_chunk(robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
-    for (auto id = static_cast<std::uint32_t>(begin); id < end; ++id) {
-      if (!is_present(id)) continue;
-      Robot& robot = robots_[id];
-      const bool is_asked = is_due(id, tick);
-      const bool was_asked = tick == 0 || is_due(id, tick - 1);
-      std::span<double> values(observations_.data() + robot.observation_offset, kinds_[robot.kind].observation_size);
-      for (SensorOfRobot& each : robot.sensors) {
-        each.sensor->remember(tick, was_asked);
-        observe(*each.sensor, each.signal_chain, tick, is_asked, values.first(each.size), scratch_[worker]);
-        values = values.subspan(each.size);
-      }
-    }
-  });
+  around_.workers.for_each_chunk(
+      robots_.size(), robots_a_chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+        for (auto id = static_cast<std::uint32_t>(begin); id < end; ++id) {
+          if (!is_present(id)) continue;
+          Robot& robot = robots_[id];
+          const bool is_asked = is_due(id, tick);
+          const bool was_asked = tick == 0 || is_due(id, tick - 1);
+          std::span<double> values(observations_.data() + robot.observation_offset,
+                                   kinds_[robot.kind].observation_size);
+          for (SensorOfRobot& each : robot.sensors) {
+            each.sensor->remember(tick, was_asked);
+            observe(*each.sensor, each.signal_chain, tick, is_asked, values.first(each.size), scratch_[worker]);
+            values = values.subspan(each.size);
+          }
+        }
+      });
 }
 
 void Robots::hash(std::uint32_t robot, StateHash& hash) const {
+  if (robot >= described_) hash.add(std::uint64_t{robots_[robot].team});
   for (const double value : observation(robot)) hash.add(value);
   for (const double value : robots_[robot].command) hash.add(value);
   for (const SensorOfRobot& each : robots_[robot].sensors) {

@@ -41,20 +41,34 @@ class Robots {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  /// Keeps references to all that it is given.
-  Robots(const description::Experiment& experiment, physics::World& world, emission::Emitters& emitters,
-         gripping::Grippers& grippers, gripping::DetachableJoints& detachable_joints, actuation::UserActions& actions,
-         const Objects& objects, WorkerPool& workers);
+  /// What robots sense and act on; all of it must outlive them.
+  struct Surroundings {
+    const description::Experiment& experiment;
+    physics::World& world;
+    emission::Emitters& emitters;
+    gripping::Grippers& grippers;
+    gripping::DetachableJoints& detachable_joints;
+    actuation::UserActions& actions;
+    const Objects& objects;
+    WorkerPool& workers;
+  };
+  /// Those of the experiment.
+  explicit Robots(const Surroundings& around);
 
+  /// The next robot of the experiment's world, which has come to it and to one of its teams, and which all others that
+  /// know of bodies were told of. Nobody has asked it yet.
+  void add();
   std::uint32_t size() const { return static_cast<std::uint32_t>(robots_.size()); }
-  const std::string& name(std::uint32_t robot) const { return experiment_.world.robot(robot).name; }
+  const std::string& name(std::uint32_t robot) const { return around_.experiment.world.robot(robot).name; }
   std::span<const RobotKind> kinds() const { return kinds_; }
   std::uint32_t kind_of(std::uint32_t robot) const { return robots_[robot].kind; }
+  /// By its index in the experiment.
+  std::uint32_t team_of(std::uint32_t robot) const { return robots_[robot].team; }
   const description::Policy& policy(std::uint32_t robot) const { return robots_[robot].policy; }
   std::uint32_t body_of(std::uint32_t robot) const { return robots_[robot].body; }
   /// `none` of a body that is no robot's.
   std::uint32_t of_body(std::uint32_t body) const { return body < of_body_.size() ? of_body_[body] : none; }
-  bool is_present(std::uint32_t robot) const { return objects_.is_present(robots_[robot].body); }
+  bool is_present(std::uint32_t robot) const { return around_.objects.is_present(robots_[robot].body); }
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const;
@@ -87,6 +101,7 @@ class Robots {
   struct Robot {
     std::uint32_t kind = 0;
     std::uint32_t body = 0;
+    std::uint32_t team = 0;
     description::Policy policy;
     std::vector<SensorOfRobot> sensors;
     std::vector<ActuatorOfRobot> actuators;
@@ -103,12 +118,12 @@ class Robots {
   CommandFault unfit(std::uint32_t robot, const Channel& channel, double value) const;
   void update_shared_views(std::uint64_t tick);
 
-  const description::Experiment& experiment_;
-  const Objects& objects_;
-  WorkerPool& workers_;
+  Surroundings around_;
   sensing::SharedViews views_;
   std::vector<Place> sharing_views_;
   std::vector<RobotKind> kinds_;
+  std::vector<std::uint32_t> kind_of_model_;
+  std::size_t described_;  // robots that there were at first
   std::vector<Robot> robots_;
   std::vector<std::uint32_t> of_body_;
   std::vector<double> observations_;

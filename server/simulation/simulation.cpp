@@ -28,7 +28,7 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
       detachable_joints_(experiment_.world, *world_),
       actions_(experiment_.world, *world_),
       objects_(experiment_, *world_),
-      robots_(experiment_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_),
+      robots_({experiment_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_}),
       schedule_(experiment_, *world_, objects_, emitters_, actions_),
       spawned_models_(experiment_) {
   note_bodies();
@@ -80,16 +80,32 @@ void Simulation::begin_tick() {
   schedule_.check_stops();
 }
 
-std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM) {
+std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM, std::size_t team) {
   note_change();
+  if (experiment_.world.models[model].is_robot() && team >= experiment_.teams.size())
+    throw std::invalid_argument("a robot joins a team, and there is none of that index");
   const std::uint32_t object = objects_.add(name, model, X_WM);
-  emitters_.add_body(object, model);
-  grippers_.note_model(model);
+  enrol(object, team);
   note_bodies();
   return object;
 }
 
-// The world has bodies that were not here before; later ones are not in the description.
+// All who know of bodies and robots are told of one that has come.
+void Simulation::enrol(std::uint32_t object, std::size_t team) {
+  description::World& world = experiment_.world;
+  const description::Model& model = world.models[world.instances[object].model];
+  emitters_.add_body(object, model);
+  grippers_.add_body(object, model);
+  detachable_joints_.add_body(object, model);
+  if (!model.is_robot()) return;
+  const auto robot = static_cast<std::uint32_t>(world.robots.size());
+  world.robots.push_back(object);
+  experiment_.teams[team].robots.push_back(robot);
+  actions_.add_robot(robot, object, model);
+  robots_.add();
+}
+
+// The world has bodies that were not here before.
 void Simulation::note_bodies() {
   body_hashes_.resize(world_->body_count());
   const geometry::Scene& scene = world_->scene();
@@ -167,13 +183,11 @@ std::string Simulation::spawn_object(const SpawnObject& spawn) {
   try {
     const std::size_t model = spawned_models_.find_or_add(spawn.model);
     const description::Model& described = experiment_.world.models[model];
-    if (described.is_robot())
-      throw std::invalid_argument(
-          "'" + described.name +
-          "' is a robot, and robots cannot be spawned yet: let an event of the experiment add it");
+    const std::optional<std::size_t> team = team_of_new(spawn, model, experiment_);
     const std::string name = name_of_new(spawn, described.name, objects_);
-    add_object(name, model, X_WM);
-    return "spawn '" + name + "' of model '" + described.name + "'";
+    add_object(name, model, X_WM, team.value_or(0));
+    return "spawn '" + name + "' of model '" + described.name + "'" +
+           (team ? " in team '" + experiment_.teams[*team].name + "'" : "");
   } catch (const std::invalid_argument&) {
     spawned_models_.shrink(models_before);
     throw;
@@ -188,6 +202,7 @@ std::vector<std::byte> Simulation::save() const {
   writer.add(static_cast<std::uint64_t>(experiment_.world.step.count()));
   writer.add(tick_);
   spawned_models_.save(writer);
+  save_added(writer);
   world_->save(writer);
   objects_.save(writer);
   schedule_.save(writer);
@@ -218,11 +233,10 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   if (tick_ > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / experiment_.world.step.count()))
     throw SnapshotError("the snapshot is of a tick beyond all time");
   spawned_models_.restore(reader);
-  for (std::size_t model = 0; model < experiment_.world.models.size(); ++model) grippers_.note_model(model);
+  restore_added(reader);
   world_->restore(reader);
   objects_.restore(reader);
   schedule_.restore(reader, tick_);
-  note_bodies();
   emitters_.restore(reader);
   emitters_.update(workers_);
   grippers_.restore(reader);
@@ -233,6 +247,26 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   reader.read(touches_.obstacles);
   reader.read(touches_.robots);
   if (!reader.is_at_end()) throw SnapshotError("the snapshot goes on after its end");
+}
+
+void Simulation::save_added(SnapshotWriter& writer) const {
+  objects_.save_added(writer);
+  for (std::uint32_t object = objects_.described(); object < objects_.size(); ++object)
+    if (const std::uint32_t robot = robots_.of_body(object); robot != Robots::none) writer.add(robots_.team_of(robot));
+}
+
+void Simulation::restore_added(SnapshotReader& reader) {
+  objects_.restore_added(reader);
+  const description::World& world = experiment_.world;
+  for (std::uint32_t object = objects_.described(); object < objects_.size(); ++object) {
+    std::uint32_t team = 0;
+    if (world.models[world.instances[object].model].is_robot()) {
+      reader.read(team);
+      if (team >= experiment_.teams.size()) throw SnapshotError("the snapshot has a robot of a team that is not there");
+    }
+    enrol(object, team);
+  }
+  note_bodies();
 }
 
 std::uint64_t Simulation::state_hash() const {

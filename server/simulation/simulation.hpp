@@ -111,14 +111,15 @@ class Simulation {
   /// One after the other, with one sensing after all of them.
   std::vector<ActionResult> act(std::span<const Action> actions);
 
-  /// The world as it was described, with the models that have come since.
+  /// As it was described, with the models, objects and robots that have come since.
+  const description::Experiment& experiment() const { return experiment_; }
   const description::World& description() const { return experiment_.world; }
   /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
   /// The next five between steps. They act on any object, at once; what is sensed changes with the next step. An object
-  /// of one of the description's models, not a robot's; throws std::invalid_argument if the name is taken or the model
-  /// cannot be simulated.
-  std::uint32_t add_object(const std::string& name, std::size_t model, const Pose& X_WM);
+  /// of one of the description's models; a robot joins a team, by its index. Throws std::invalid_argument if the name
+  /// is taken or the model cannot be simulated.
+  std::uint32_t add_object(const std::string& name, std::size_t model, const Pose& X_WM, std::size_t team = 0);
   void remove_object(std::uint32_t object) {
     note_change();
     objects_.set_present(object, false);
@@ -176,8 +177,11 @@ class Simulation {
   void handle_actions();
   void begin_tick();
   void note_bodies();
+  void enrol(std::uint32_t object, std::size_t team);
+  void save_added(SnapshotWriter& writer) const;
+  void restore_added(SnapshotReader& reader);
 
-  description::Experiment experiment_;  // with the models that have come since
+  description::Experiment experiment_;  // with what has come since
   mutable WorkerPool workers_;
   std::unique_ptr<physics::World> world_;
   BreakableJoints breakable_joints_;

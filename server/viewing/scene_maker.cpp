@@ -78,14 +78,14 @@ SceneEmitter SceneMaker::emitter(const emission::Mount& mount) const {
   return {.entity = mount.body, .link = place_of(mount), .position = vector_of(mount.X_LE.position)};
 }
 
-void SceneMaker::add_entities(Scene& scene, std::span<const description::Team> teams) const {
+void SceneMaker::add_entities(Scene& scene) const {
   scene.entities.reserve(objects_);
   for (std::uint32_t body = 0; body < objects_; ++body)
     scene.entities.push_back(
         {simulation_.objects().name(body), static_cast<std::uint32_t>(simulation_.world().model_of(body))});
   const auto& robots = simulation_.description().robots;
   for (std::uint32_t robot = 0; robot < robots.size(); ++robot) scene.entities[robots[robot]].robot = robot;
-  for (const description::Team& team : teams)
+  for (const description::Team& team : simulation_.experiment().teams)
     for (const std::uint32_t robot : team.robots) scene.entities[robots[robot]].team = team.name;
 }
 
@@ -109,14 +109,14 @@ void SceneMaker::add_emitters(Scene& scene) const {
   for (const emission::Marker& marker : emitters.markers()) scene.leds.push_back(emitter(marker.mount));
 }
 
-Scene SceneMaker::scene(std::span<const description::Team> teams) const {
+Scene SceneMaker::scene() const {
   const description::World& world = simulation_.description();
   Scene scene;
   scene.revision = revision_;
   scene.world = world.name;
   scene.step_ns = world.step.count();
   add_models(simulation_, scene);
-  add_entities(scene, teams);
+  add_entities(scene);
   add_emitters(scene);
   return scene;
 }

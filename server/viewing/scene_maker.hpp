@@ -17,8 +17,7 @@ class SceneMaker {
 
   /// Objects have come that are not in the scene: time for another maker.
   bool is_outdated() const;
-  /// `teams`: those of the experiment, by the robots' ids.
-  Scene scene(std::span<const description::Team> teams = {}) const;
+  Scene scene() const;
   SceneFrame frame(std::uint32_t run, std::uint64_t state_hash) const;
   SceneSignals signals() const;
   SceneContacts contacts() const;
@@ -34,7 +33,7 @@ class SceneMaker {
     return first_of_link_[simulation_.world().model_of(mount.body)][mount.link] + place_in_model_[mount.body];
   }
   SceneEmitter emitter(const emission::Mount& mount) const;
-  void add_entities(Scene& scene, std::span<const description::Team> teams) const;
+  void add_entities(Scene& scene) const;
   void add_emitters(Scene& scene) const;
   void choose_lamps();
 

@@ -139,7 +139,8 @@ struct SceneEmitter {
                  field("range", &SceneEmitter::range));
 };
 
-/// What there is in a world. Another one comes with another world, and when objects come that were not in it.
+/// What there is in a world. Another one comes with another world, when objects come that were not in it, and when the
+/// last run has ended: that one has nothing in it.
 struct Scene {
   std::uint32_t revision = 0;  ///< that frames refer to; never used twice by a source
   std::string world;
@@ -150,11 +151,14 @@ struct Scene {
   std::vector<SceneEmitter> lamps;
   std::vector<SceneEmitter> tones;
   std::vector<SceneEmitter> leds;
+  std::string end{};       ///< how the run ended, as a recording says it, such as `finished`; empty: it has not
+  std::string end_text{};  ///< why, for people; maybe empty
   static constexpr const char* type = "cohort_msgs/msg/Scene";
   static constexpr auto fields =
       std::tuple(field("revision", &Scene::revision), field("world", &Scene::world), field("step_ns", &Scene::step_ns),
                  field("meshes", &Scene::meshes), field("models", &Scene::models), field("entities", &Scene::entities),
-                 field("lamps", &Scene::lamps), field("tones", &Scene::tones), field("leds", &Scene::leds));
+                 field("lamps", &Scene::lamps), field("tones", &Scene::tones), field("leds", &Scene::leds),
+                 field("end", &Scene::end), field("end_text", &Scene::end_text));
 };
 
 /// Where everything is at a boundary. Links are in the order of models, within a model of its links, and within a link

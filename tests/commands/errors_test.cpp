@@ -249,7 +249,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Typed{{},
               "expected a command; known: run, serve, host, teleop, ctl, record, view, examples, check, export, "
-              "samples, security, doctor, recordings, replay, diff, export-data, plot, recover, help, completion, "
+              "models, samples, security, doctor, recordings, replay, diff, export-data, plot, recover, help, "
+              "completion, "
               "man-page, bench. Try 'cohort --help'"},
         Typed{{"rn", "x"}, "there is no command 'rn'; did you mean 'run'?"},
         Typed{{"run"}, "FILE is required. Try 'cohort run --help'"}, Typed{{"run", "x", "y"}, "unexpected 'y'"},

@@ -49,6 +49,33 @@ TEST_F(Recordings, SayWhatTheyHold) {
     EXPECT_NE(listed.out.find(fact), std::string::npos) << fact << listed.out;
 }
 
+// On a disk that is full after 100 kB, as a limit of file sizes makes it.
+TEST_F(Recordings, ThatEndEarlyAreToldAtOnceAndEndTheRunIfThatIsWanted) {
+  const std::string file = *this / "run.mcap";
+  const std::string summary = *this / "summary.json";
+  const auto run = [&](const FieldOfRobots& field, const std::string& controllers,
+                       const std::vector<std::string>& more) {
+    std::vector<std::string> command = {"/bin/sh", "-c", "ulimit -f 200; exec \"$@\"", "sh", cohort_program(), "run"};
+    command.insert(command.end(), {field.file(), "--controllers", controllers, "--record", file, "--summary", summary});
+    command.insert(command.end(), more.begin(), more.end());
+    return run_to_end(command);
+  };
+  const auto unrecorded = [&] { return events_of(read_json(summary), "unrecorded"); };
+  for (const char* const controllers : {"inprocess", "process"}) {
+    const Ended stopped = run(FieldOfRobots(8, 1e5), controllers, {"--record-or-stop"});
+    EXPECT_EQ(stopped.exit_code, 4) << controllers << stopped.err;
+    EXPECT_NE(stopped.err.find("ulimit -f"), std::string::npos) << "what to do is said: " << stopped.err;
+    ASSERT_EQ(unrecorded().size(), 1u) << controllers;
+    EXPECT_NE(unrecorded()[0]["text"].get<std::string>().find(file), std::string::npos);
+    EXPECT_LT(read_json(summary)["ticks"], 1'000'000) << "it would have gone on for 10 million";
+  }
+  const Ended whole = run(FieldOfRobots(8, 60.0), "inprocess", {});
+  EXPECT_EQ(whole.exit_code, 1) << whole.err;
+  EXPECT_EQ(read_json(summary)["ticks"], 6000);
+  EXPECT_EQ(unrecorded().size(), 1u);
+  EXPECT_LT(unrecorded()[0]["tick"], 6000) << "at once, and not at the end";
+}
+
 TEST_F(Recordings, SayWhereTwoRunsPart) {
   const std::string file = record("run.mcap");
   const Ended same = cohort({"diff", file, record("again.mcap")});
@@ -74,6 +101,20 @@ TEST_F(Recordings, SayWhereTwoRunsPart) {
   EXPECT_TRUE(
       noise.out.starts_with("they part at tick 0 (0.000 s), after 0 identical ticks\n  observation  swarm/sbot_0"))
       << noise.out;
+  EXPECT_NE(noise.err.find("their seeds are 1 and 2"), std::string::npos) << noise.err;
+}
+
+TEST_F(Recordings, AreNotWhatOneRecordsThemFrom) {
+  const FieldOfRobots field(2, 2.0);
+  const std::string picture = *this / "run.svg";
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"replay", field.file()},
+                                                  {"view", field.file()},
+                                                  {"plot", field.file(), "--output", picture}}) {
+    const Ended refused = cohort(command);
+    EXPECT_EQ(refused.exit_code, 2) << command[0] << refused.err;
+    EXPECT_NE(refused.err.find("'cohort run experiment.yaml --record run.mcap' records it"), std::string::npos)
+        << command[0] << refused.err;
+  }
 }
 
 TEST_F(Recordings, HoldWhatIsAskedFor) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tests/commands/small_experiment.hpp"
 
@@ -129,6 +130,44 @@ TEST(Run, TakesAModelOrAWorldWithoutAnExperiment) {
     EXPECT_EQ(
         run_experiment((robots / "world.sdf").string(), {"--duration", "0.1", "--controllers", placement})["robots"],
         2);
+}
+
+TEST(Models, ShowWhatAModelIsMadeOfAndWhereItRests) {
+  const ScratchFolder folder;
+  const std::string model = (folder / "cart.urdf").string();
+  write_file(
+      model,
+      "<robot name=\"cart\"><link name=\"rail\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" "
+      "izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"2 1 0.2\"/>"
+      "</geometry></collision></link><link name=\"slide\"><inertial><origin rpy=\"0 0 1.5707963267948966\"/><mass "
+      "value=\"3\"/><inertia ixx=\"4\" iyy=\"5\" izz=\"6\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>"
+      "<joint name=\"j\" type=\"prismatic\"><origin xyz=\"0 0 0.5\"/><parent link=\"rail\"/><child "
+      "link=\"slide\"/><axis xyz=\"0 1 0\"/><limit lower=\"-0.3\" upper=\"0.4\" effort=\"7\" velocity=\"8\"/>"
+      "</joint></robot>");
+  const Ended shown = run_to_end({cohort_program(), "models", "show", model, "--json", "--after", "1"});
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  const auto facts = nlohmann::json::parse(shown.out);
+  EXPECT_EQ(facts["time_s"], 1.0);
+  const auto& cart = facts["objects"][0];
+  EXPECT_NEAR(cart["links"][0]["pose_in_world"][2].get<double>(), 0.1, 1e-3);
+  EXPECT_NEAR(cart["links"][1]["inertia"][0][0].get<double>(), 5.0, 1e-9);  // turned by a quarter
+  EXPECT_EQ(cart["links"][1]["mass"], 3.0);
+  const auto& axis = cart["joints"][0]["axis"];
+  EXPECT_NEAR(axis["direction_in_world"][1].get<double>(), 1.0, 1e-6);
+  EXPECT_EQ(axis["lower"], -0.3);
+  EXPECT_EQ(axis["upper"], 0.4);
+  EXPECT_EQ(axis["max_effort"], 7.0);
+  const Ended text = run_to_end({cohort_program(), "models", "show", model});
+  EXPECT_NE(text.out.find("joint j  prismatic  rail to slide  from -0.3 to 0.4"), std::string::npos) << text.out;
+}
+
+TEST(Models, AreKnownByNameAndSuggestTheNearest) {
+  const Ended known = run_to_end({cohort_program(), "models", "show", "sbot"});
+  EXPECT_EQ(known.exit_code, 0) << known.err;
+  EXPECT_TRUE(known.out.starts_with("sbot: ")) << known.out;
+  const Ended misspelt = run_to_end({cohort_program(), "models", "show", "sbott"});
+  EXPECT_EQ(misspelt.exit_code, 2);
+  EXPECT_NE(misspelt.err.find("did you mean 'sbot'?"), std::string::npos) << misspelt.err;
 }
 
 TEST(Help, FindsWhatIsAskedForAndSuggestsTheNearest) {

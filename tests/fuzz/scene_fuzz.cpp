@@ -18,8 +18,8 @@ Encoded encoded() {
   Simulation simulation(experiment, 1);
   simulation.step();
   const viewing::SceneMaker maker(simulation, 1);
-  return {recording::encode(maker.scene(experiment.teams)), recording::encode(maker.frame(1, 2)),
-          recording::encode(maker.signals()), recording::encode(maker.contacts()), recording::encode(maker.robot(0))};
+  return {recording::encode(maker.scene()), recording::encode(maker.frame(1, 2)), recording::encode(maker.signals()),
+          recording::encode(maker.contacts()), recording::encode(maker.robot(0))};
 }
 
 template <class Message, class Check>

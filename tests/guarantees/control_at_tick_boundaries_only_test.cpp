@@ -288,9 +288,9 @@ TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
     while (!enough.stop_requested()) {
       stranger.send(of(Operation::get_status), ++number);
       stranger.send(of(Operation::save_snapshot), ++number);
-      ++number;
-      const auto any = static_cast<Operation>(number);
-      if (any != Operation::reset_simulation) stranger.send(of(any), number);  // which would be another run
+      const auto any = static_cast<Operation>(++number % 128);
+      if (any != Operation::reset_simulation && any != Operation::set_simulation_state)  // which end this run
+        stranger.send(of(any), number);
       stranger.send(of(Operation::set_entity_state), 3);
       wire::Request large = of(Operation::put_data);
       large.size = wire::largest_data;
@@ -306,6 +306,22 @@ TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
   for (const auto& event : events_of(summary, "rejected"))
     is_named = is_named || event["text"].get<std::string>().starts_with("flood");
   EXPECT_TRUE(is_named) << summary["events"].dump(1);
+}
+
+TEST(ControlAtTickBoundariesOnly, AFloodOfResetsLeavesTheSameRun) {
+  const FieldOfRobots field(4, 2.0);
+  const std::string expected = reference(field);
+  ControlledRun run(field, {"--paused"});
+  {
+    Stranger stranger(run.domain(), 0x1111);
+    std::jthread flood([&](const std::stop_token& enough) {
+      for (std::uint64_t number = 2; !enough.stop_requested(); ++number)
+        stranger.send(of(Operation::reset_simulation), number);
+    });
+    EXPECT_TRUE(run.comes_to([](const auto& status) { return status["run"] >= 5; }));
+  }
+  run.done({"resume"});
+  EXPECT_EQ(run.finish()["state_hash"], expected);
 }
 
 TEST(ControlAtTickBoundariesOnly, WithoutAServerItSaysWhatToLookFor) {

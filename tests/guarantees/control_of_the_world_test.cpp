@@ -66,6 +66,50 @@ TEST(ControlAtTickBoundariesOnly, ActionsChangeTheWorldAndAreTheSameTwice) {
   EXPECT_GE(events_of(first, "control").size(), 4u) << first["events"].dump(1);
 }
 
+// However many threads step the world, and whether the controller is there before its robot is asked or long after.
+TEST(ControlAtTickBoundariesOnly, ARobotThatComesIsWaitedForUntilItHasAController) {
+  const FieldOfRobots field(2, 1e4);
+  const auto act = [&](const std::string& threads, bool comes_late) {
+    const std::string recording = field / (threads + ".mcap");
+    const std::string saved = field / "saved";
+    const std::string without = field / "without";
+    ControlledRun run(field, {"--paused", "--threads", threads, "--record", recording});
+    run.done({"step", "10"});
+    EXPECT_NE(run.done({"spawn", "sbot", "--name", "swarm/late", "--pose", "0.4 0.1 0"}).find("in team 'swarm'"),
+              std::string::npos);
+    EXPECT_EQ(run.status()["robots"], 3);
+    if (!comes_late) run.attach("swarm/late");
+    Process steps(run.ctl({"--timeout", patience_in_seconds, "step", "20"}));
+    if (comes_late) {
+      EXPECT_TRUE(run.comes_to([](const auto& status) { return status["awaited"] == nlohmann::json{"swarm/late"}; }));
+      EXPECT_EQ(run.tick(), 10u);
+      run.attach("2");
+    }
+    EXPECT_EQ(steps.wait_for_exit(), 0) << steps.output();
+    run.done({"save", saved});
+    run.done({"step", "20"});
+    const nlohmann::json after = run.status();
+    EXPECT_EQ(after["controllers"].size(), 2u);
+    run.done({"remove", "swarm/late"});
+    run.done({"save", without});
+    run.done({"step", "5"});
+    const std::string hash = run.status()["state_hash"];
+    run.done({"load", saved});
+    run.done({"step", "20"});
+    EXPECT_EQ(run.status()["state_hash"], after["state_hash"]) << "a snapshot brings the robot along";
+    run.done({"load", without});
+    run.done({"step", "5"});
+    EXPECT_EQ(run.status()["state_hash"], hash) << "nobody waits for a robot that is gone";
+    run.done({"shutdown"});
+    run.finish();
+    const Ended replayed = run_to_end({cohort_program(), "replay", "--verify", recording});
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+    EXPECT_NE(replayed.out.find("identical"), std::string::npos) << replayed.out;
+    return hash;
+  };
+  EXPECT_EQ(act("1", false), act("3", true));
+}
+
 constexpr const char* lamp = R"(<sdf version="1.9"><model name="lamp"><static>true</static><link name="post">
   <collision name="hull"><geometry><box><size>0.1 0.1 1</size></box></geometry></collision>
   <light name="bulb" type="point"><pose>0 0 0.6 0 0 0</pose><diffuse>1 1 1 1</diffuse><attenuation><range>5</range></attenuation></light>

@@ -186,11 +186,30 @@ async function keepsProfile(page) {
 
 async function isFoundAgain(page) {
   console.log("connected");
-  await until(page, () => !document.getElementById("lost").hidden);
+  await until(page, () => document.getElementById("phase").innerText.includes("The connection is lost"));
   console.log("lost");
-  await until(page, () => document.getElementById("lost").hidden);
+  await until(page, () => document.getElementById("phase").hidden);
   await run(page, "pause; seek 0.3");
   await atTick(page, 30);
+}
+
+// A run that records itself; the page was there before its first tick.
+async function seesTheEnd(page) {
+  const says = (text) => until(page, (each) => document.getElementById("phase").innerText.includes(each), text);
+  await says("The run has finished");
+  await says("At 0:03.00");
+  await says("cohort run");
+  if (process.env.COHORT_SCREENSHOT) await page.screenshot({ path: process.env.COHORT_SCREENSHOT });
+  const hash = await page.evaluate(() => document.getElementById("hash").textContent);
+  await until(page, () => {
+    if (document.getElementById("name").textContent.endsWith(".mcap")) return true;
+    document.getElementById("replay").click(); // the file may still be being written
+    return false;
+  });
+  await until(page, () => document.getElementById("phase").hidden);
+  await run(page, "pause; seek 3");
+  await atTick(page, 300);
+  assert.equal(await page.evaluate(() => document.getElementById("hash").textContent), hash);
 }
 
 async function steersServer(page) {
@@ -323,6 +342,7 @@ await runScenario({
   steers_recording: steersRecording,
   keeps_profile: keepsProfile,
   is_found_again: isFoundAgain,
+  sees_the_end: seesTheEnd,
   steers_server: steersServer,
   goes_back: goesBack,
   only_looks: onlyLooks,

@@ -261,8 +261,15 @@ async function drivesFirst(page) {
       },
       part,
     );
-  await noted("controllers are missing");
-  await noted(robot);
+  await until(
+    page,
+    (name) => {
+      const text = document.getElementById("phase").innerText;
+      return text.includes("Waits for controllers") && text.includes(`cohort teleop --robots ${name}`);
+    },
+    robot,
+  );
+  await page.locator("#phase-close").click();
   assert.equal(await tick(page), 0);
   await drawCoarsely(page);
   await run(page, "select sbot_0");
@@ -311,7 +318,7 @@ async function handlesObjects(page) {
   await page.locator("#adding-name").fill("bar_1");
   await page.mouse.click(at.x, at.y);
   await told(page, "another object has the name 'bar_1'");
-  await assert.rejects(run(page, "spawn sbot one_more 0 0"), /robots cannot be spawned/);
+  await assert.rejects(run(page, "spawn sbott one_more 0 0"), /the world has no model/);
   await page.locator("#canvas").focus();
   await page.keyboard.press("Escape");
   assert.equal(await page.locator("#adding").isVisible(), false);

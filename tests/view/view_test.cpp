@@ -66,6 +66,21 @@ TEST_F(InTheBrowser, ARunBringsItsView) {
   for (const pid_t child : children) EXPECT_TRUE(wait_until_gone(child));
 }
 
+// It begins when it is seen, and stays as long as it is.
+TEST_F(InTheBrowser, ARunThatEndsSaysHowAndShowsItsRecording) {
+  write_file(scratch / "xdg-open", "#!/bin/sh\nprintf %s \"$1\" > " + (scratch / "opened").string() + "\n");
+  std::filesystem::permissions(scratch / "xdg-open", std::filesystem::perms::owner_all);
+  const std::string path = scratch.path().string() + ":" + std::getenv("PATH");
+  Process run({cohort_program(), "run", demo_experiment(), "--view", "--open", "--duration", "3", "--record",
+               scratch / "run.mcap"},
+              {{"PATH", path}});
+  ASSERT_TRUE(run.wait_for_output("http://127.0.0.1:")) << run.output();
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(scratch / "opened"); })) << run.output();
+  ASSERT_TRUE(eventually([&] { return !read_file(scratch / "opened").empty(); }));
+  run_script("browser.mjs", {"sees_the_end", read_file(scratch / "opened")});
+  EXPECT_EQ(run.wait_for_exit(), 0) << run.output();
+}
+
 TEST_F(InTheBrowser, ARecordingIsSteeredByMouseKeysAndConsole) {
   record_demo(scratch / "run.mcap", "4");
   const View view({scratch / "run.mcap"});

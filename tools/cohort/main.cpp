@@ -4,6 +4,7 @@
 
 #include "client_sdk/src/program.hpp"
 #include "idl/wire.hpp"
+#include "server/core/atomic_file.hpp"
 #include "server/description/input_error.hpp"
 #include "tools/cohort/cli/build_facts.hpp"
 #include "tools/cohort/commands/commands.hpp"
@@ -29,9 +30,9 @@ std::vector<Subcommand> add_commands(CommandLine app, LogFlags& flags) {
   std::vector<Subcommand> commands;
   for (const auto add : {add_run, add_serve, add_host}) commands.push_back(add(app, flags));
   for (const auto add : {
-           add_teleop,  add_ctl,      add_record, add_view,       add_examples, add_check, add_export,
-           add_samples, add_security, add_doctor, add_recordings, add_replay,   add_diff,  add_export_data,
-           add_plot,    add_recover,  add_help,   add_completion, add_man_page, add_bench,
+           add_teleop,      add_ctl,     add_record,   add_view,   add_examples,   add_check,    add_export,
+           add_models,      add_samples, add_security, add_doctor, add_recordings, add_replay,   add_diff,
+           add_export_data, add_plot,    add_recover,  add_help,   add_completion, add_man_page, add_bench,
        }) {
     commands.push_back(add(app));
     add_log_flags(commands.back().line, flags);
@@ -46,6 +47,12 @@ int run_chosen(const std::vector<Subcommand>& commands, Log& log, const std::ato
     return chosen->run(log, stop);
   } catch (const cohort::description::InputError& error) {
     log.problems(error);
+  } catch (const cohort::WriteError& error) {
+    log.error(error.what());
+    return exit_failed;
+  } catch (const std::bad_alloc& error) {
+    log.error(text_of(error));
+    return exit_failed;
   } catch (const std::exception& error) {
     log.error(error.what());
   }

@@ -34,7 +34,7 @@ class Handle {
  public:
   using Close = herr_t (*)(hid_t);
   Handle(hid_t id, Close close, const std::filesystem::path& file) : id_(id), close_(close) {
-    if (id < 0) throw std::runtime_error(file.string() + " cannot be written as HDF5: " + last_error());
+    if (id < 0) throw WriteError(file.string() + " cannot be written as HDF5: " + last_error());
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
@@ -47,7 +47,7 @@ class Handle {
 };
 
 void check(herr_t result, const std::filesystem::path& file) {
-  if (result < 0) throw std::runtime_error(file.string() + " cannot be written: " + last_error());
+  if (result < 0) throw WriteError(file.string() + " cannot be written: " + last_error());
 }
 
 hid_t text_type() {

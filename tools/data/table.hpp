@@ -27,7 +27,7 @@ class TableWriter {
   TableWriter& operator=(const TableWriter&) = delete;
   virtual ~TableWriter() = default;
 
-  /// A cell for each column, of its type. Throws std::runtime_error if it cannot be written.
+  /// A cell for each column, of its type. Throws WriteError if it cannot be written.
   virtual void add(std::span<const Cell> row) = 0;
   /// After the last row: all of it is in the file. Throws std::runtime_error if it is not.
   virtual void finish() = 0;

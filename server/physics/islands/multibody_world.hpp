@@ -28,6 +28,10 @@ class MultibodyWorld final : public World {
     return !is_static(body) && assembly_.members[bodies_[body].member].is_asleep;
   }
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
+  void recreate_body(std::size_t model, const Pose& X_WM) override {
+    create_body(model, X_WM);
+    assembly_.scene.build();
+  }
   void remove_body(std::uint32_t index) override;
   void put_back_body(std::uint32_t index) override;
   void place_body(std::uint32_t index, const Pose& X_WM) override;

@@ -28,7 +28,6 @@ void MultibodyWorld::hash_contacts(StateHash& hash) const {
 
 void MultibodyWorld::save(SnapshotWriter& writer) const {
   const StateSaver save{writer};
-  save_added_bodies(bodies_, description_.instances.size(), writer);
   save_changes(bodies_, writer);
   for (const Member& member : assembly_.members) {
     save(member.is_active);
@@ -47,9 +46,6 @@ void MultibodyWorld::save(SnapshotWriter& writer) const {
 void MultibodyWorld::restore(SnapshotReader& reader) {
   using Numbers = StateRestorer::Numbers;
   const StateRestorer restore{reader};
-  restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
-                       [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
-  assembly_.scene.build();
   restore_changes(reader, *this);
   for (std::uint32_t index = 0; index < assembly_.members.size(); ++index) {
     bool is_active = true;

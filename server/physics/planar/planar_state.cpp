@@ -26,7 +26,6 @@ void PlanarWorld::hash_contacts(StateHash& hash) const {
 
 void PlanarWorld::save(SnapshotWriter& writer) const {
   const StateSaver save{writer};
-  save_added_bodies(bodies_, description_.instances.size(), writer);
   save_changes(bodies_, writer);
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     save(members_[member].is_active);
@@ -51,9 +50,6 @@ void PlanarWorld::expect_sound(std::uint32_t member) const {
 void PlanarWorld::restore(SnapshotReader& reader) {
   using Numbers = StateRestorer::Numbers;
   const StateRestorer restore{reader};
-  restore_added_bodies(reader, description_.instances.size(), description_.models.size(),
-                       [&](std::size_t model, const Pose& X_WM) { create_body(model, X_WM); });
-  scene_.build();
   restore_changes(reader, *this);
   for (std::uint32_t member = 0; member < members_.size(); ++member) {
     bool is_active = true;

@@ -45,6 +45,10 @@ class PlanarWorld final : public World {
   bool is_active(std::uint32_t body) const override;
   bool is_asleep(std::uint32_t) const override { return false; }
   std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
+  void recreate_body(std::size_t model, const Pose& X_WM) override {
+    create_body(model, X_WM);
+    scene_.build();
+  }
   void remove_body(std::uint32_t index) override;
   void put_back_body(std::uint32_t index) override;
   void place_body(std::uint32_t index, const Pose& X_WM) override;

@@ -99,6 +99,8 @@ class World {
   /// Returns its body, the next free index. Throws std::invalid_argument for a model that cannot be simulated, or not
   /// there; nothing is changed then.
   virtual std::uint32_t add_body(std::size_t model, const Pose& X_WM) = 0;
+  /// The same right before `restore`, which says where it is: one that the world of the snapshot was given in mid-run.
+  virtual void recreate_body(std::size_t model, const Pose& X_WM) = 0;
   /// Takes a body out of the world, also one that is static: it touches nothing, is seen by nobody and does not move,
   /// and what connects it is released. Between steps, as the next three.
   virtual void remove_body(std::uint32_t body) = 0;

@@ -26,6 +26,7 @@ inline void hash_changes(const PlacedBody& body, StateHash& hash) {
 
 inline void save_changes(const std::vector<PlacedBody>& bodies, SnapshotWriter& writer) {
   const StateSaver save{writer};
+  writer.add_count(bodies.size());
   for (const PlacedBody& body : bodies) {
     save(body.is_placed_again);
     if (body.is_placed_again) visit_pose(body.X_WM, save);
@@ -38,6 +39,7 @@ inline void save_changes(const std::vector<PlacedBody>& bodies, SnapshotWriter& 
 template <class Engine>
 void restore_changes(SnapshotReader& reader, Engine& engine) {
   const StateRestorer restore{reader};
+  reader.expect_count(engine.body_count(), "bodies in its world");
   for (std::uint32_t body = 0; body < engine.body_count(); ++body) {
     bool is_placed_again = false;
     restore(is_placed_again);

@@ -235,6 +235,7 @@ void Control::keep_snapshot() {
 }
 
 bool Control::perform(Moment moment) {
+  saved_.reset();
   std::deque<Request>& waiting = ledger_.waiting();
   for (std::size_t i = 0; i < waiting.size() && !ending_;) {
     if (moment == Moment::midst && !ends_the_run(waiting[i])) {
@@ -337,18 +338,20 @@ void Control::begin_anew(const Request& request, NextRun next, const std::string
 }
 
 void Control::save(const Request& request) {
-  const SessionSnapshot snapshot = run_->take_snapshot();
-  std::vector<std::byte> bytes = to_bytes(snapshot);
-  if (bytes.size() > wire::largest_data)
+  if (!saved_) {
+    const SessionSnapshot snapshot = run_->take_snapshot();
+    saved_ = Saved{"saved at tick " + std::to_string(snapshot.tick) + left_out_text(snapshot, run_->experiment),
+                   std::make_shared<const std::vector<std::byte>>(to_bytes(snapshot))};
+  }
+  if (saved_->bytes->size() > wire::largest_data)
     return answer(request, ResultCode::operation_failed,
-                  "the snapshot has " + std::to_string(bytes.size()) + " bytes, and " +
+                  "the snapshot has " + std::to_string(saved_->bytes->size()) + " bytes, and " +
                       std::to_string(wire::largest_data) + " can be sent at the most");
-  const std::string text = "saved at tick " + std::to_string(snapshot.tick) + left_out_text(snapshot, run_->experiment);
-  tell(request, text);
+  tell(request, saved_->text);
   Reply reply = reply_to(request);
-  reply.size = bytes.size();
-  reply.error_message = text;
-  ledger_.offer(request.client, std::move(bytes));
+  reply.size = saved_->bytes->size();
+  reply.error_message = saved_->text;
+  ledger_.offer(request.client, saved_->bytes);
   send(std::move(reply), true);
 }
 
@@ -395,6 +398,7 @@ void Control::go_on_from(const Request& request, std::shared_ptr<const SessionSn
 }
 
 void Control::do_actions(std::span<const Request> requests) {
+  saved_.reset();  // the world is another now
   for (ActionOutcome& outcome : act(run_->simulation, requests)) {
     for (ActionOutcome::Done& done : outcome.done) tell(*outcome.request, done.text, std::move(done.action));
     Reply reply = reply_to(*outcome.request);

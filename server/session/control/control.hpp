@@ -88,6 +88,12 @@ class Control {
   Playback playback_;
   std::optional<Ending> ending_;
   std::vector<wire::Request> answered_by_next_run_;
+  // The snapshot of this boundary: it costs every controller a round trip, so those who ask for it together share it.
+  struct Saved {
+    std::string text;
+    std::shared_ptr<const std::vector<std::byte>> bytes;
+  };
+  std::optional<Saved> saved_;
   KeptSnapshots kept_{0, 0};
   bool goes_back_ = false;  // the next run is this one's past
   RequestLedger ledger_;

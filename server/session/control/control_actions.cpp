@@ -37,7 +37,7 @@ std::vector<Action> actions_of(const Request& request) {
   switch (request.operation) {
     case Operation::spawn_entity:
       return {SpawnObject{request.entity, request.resource_string.empty() ? request.uri : request.resource_string,
-                          from_wire(request.pose), request.allow_renaming}};
+                          from_wire(request.pose), request.allow_renaming, request.filter}};
     case Operation::delete_entity: return {RemoveObject{request.entity}};
     case Operation::set_entity_state: return state_actions(request);
     case Operation::set_light: {

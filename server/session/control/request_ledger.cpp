@@ -66,14 +66,14 @@ void RequestLedger::keep(const wire::Reply& reply) {
   if (place != client->second.replies.end()) place->second = reply;
 }
 
-void RequestLedger::offer(std::uint64_t client, std::vector<std::byte> data) {
+void RequestLedger::offer(std::uint64_t client, std::shared_ptr<const std::vector<std::byte>> data) {
   renew(outgoing_, client) = std::move(data);
 }
 
 std::optional<RequestLedger::Part> RequestLedger::part(std::uint64_t client, std::uint64_t offset) const {
   const auto holder = find(outgoing_, client);
   if (holder == outgoing_.end()) return std::nullopt;
-  const std::vector<std::byte>& data = holder->second;
+  const std::vector<std::byte>& data = *holder->second;
   const std::uint64_t begin = std::min<std::uint64_t>(offset, data.size());
   const std::uint64_t count = std::min<std::uint64_t>(data.size() - begin, wire::largest_part);
   return Part{data.size(), std::span(data).subspan(begin, count)};

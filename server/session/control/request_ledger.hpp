@@ -43,7 +43,7 @@ class RequestLedger {
 
   /// Data that the client fetches in parts; what it had before is gone. Of the clients that have some, the two last
   /// ones keep it.
-  void offer(std::uint64_t client, std::vector<std::byte> data);
+  void offer(std::uint64_t client, std::shared_ptr<const std::vector<std::byte>> data);
   /// The part from `offset` on, empty after the end; nothing if there is no data for the client.
   struct Part {
     std::uint64_t size = 0;  ///< of all
@@ -85,7 +85,7 @@ class RequestLedger {
   std::map<std::uint64_t, std::uint64_t> client_of_;  // by participant
   std::uint64_t uses_ = 0;
   std::deque<wire::Request> waiting_;
-  Holders<std::vector<std::byte>> outgoing_;
+  Holders<std::shared_ptr<const std::vector<std::byte>>> outgoing_;
   Holders<Incoming> incoming_;
 };
 

@@ -159,7 +159,7 @@ void Clients::claim(AttachedClient& client) {
   for (const std::string& selector : client.join.robots) {
     if (!refusal.empty()) break;
     try {
-      const auto selected = description::select_robots(run_->experiment.world, selector);
+      const auto selected = description::select_robots(run_->simulation.description(), selector);
       robots.insert(selected.begin(), selected.end());
     } catch (const std::invalid_argument& error) {
       refusal = error.what();
@@ -181,7 +181,7 @@ std::string Clients::why_forbidden(const AttachedClient& client, const std::set<
   const std::string who = "its identity '" + client.identity->name + "' may ";
   if (selectors.empty()) return who + "look on, and drive no robot";
   // The same identities may serve several experiments, of which this one need not have all their robots.
-  const auto allowed = description::select_robots_of_any(run_->experiment.world, selectors);
+  const auto allowed = description::select_robots_of_any(run_->simulation.description(), selectors);
   const auto forbidden =
       std::ranges::find_if(robots, [&](std::uint32_t robot) { return !std::ranges::binary_search(allowed, robot); });
   if (forbidden == robots.end()) return {};
@@ -232,7 +232,7 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
     for (const std::uint32_t robot : lease.robots) run_->was_driven[robot] = true;
     answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
     answer.step_ns = run_->experiment.world.step.count();
-    admit_robots(answer, run_->experiment, run_->simulation, lease.robots);
+    admit_robots(answer, run_->simulation.experiment(), run_->simulation, lease.robots);
     for (wire::AdmittedRobot& robot : answer.robots) robot.description = run_->descriptions[robot.description];
     if (!granted.again) run_->monitor.add_event("joined", client.label + " drives " + run_->robots_text(lease.robots));
   }

@@ -67,10 +67,21 @@ void SceneBroadcast::publish(const Shown& shown, When when) {
   next_ = end + std::max<Clock::duration>(interval, share_of_time * (end - begin));
 }
 
+// Also for those who come later, as long as the server is there.
+void SceneBroadcast::end(const std::string& how, const std::string& why) {
+  maker_.reset();  // its simulation may be gone
+  viewing::Scene scene;
+  scene.revision = ++revision_;
+  scene.end = how;
+  scene.end_text = why;
+  const recording::Bytes bytes = recording::encode(scene);
+  descriptions_.write({run_, revision_, bytes_of(bytes)});
+}
+
 void SceneBroadcast::describe(const Shown& shown) {
   run_ = shown.run;
   maker_.emplace(shown.simulation, ++revision_);
-  const recording::Bytes scene = recording::encode(maker_->scene(shown.experiment.teams));
+  const recording::Bytes scene = recording::encode(maker_->scene());
   descriptions_.write({shown.run, revision_, bytes_of(scene)});
 }
 

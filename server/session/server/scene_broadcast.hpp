@@ -3,9 +3,9 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "idl/wire.hpp"
-#include "server/description/experiment.hpp"
 #include "server/viewing/scene_maker.hpp"
 
 namespace cohort::session {
@@ -17,7 +17,6 @@ class SceneBroadcast {
   SceneBroadcast(wire::Participant& participant, const std::string& partition);
 
   struct Shown {
-    const description::Experiment& experiment;
     const Simulation& simulation;
     std::uint32_t run;  ///< another one for each simulation
   };
@@ -28,6 +27,8 @@ class SceneBroadcast {
   };
   /// At a boundary whose frames are out.
   void publish(const Shown& shown, When when);
+  /// There will be no further run, and the last one ended so: a word, and maybe a sentence.
+  void end(const std::string& how, const std::string& why);
 
  private:
   using Clock = std::chrono::steady_clock;

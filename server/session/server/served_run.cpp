@@ -15,23 +15,45 @@ ServedRun::ServedRun(const description::Experiment& its_experiment, Simulation& 
       monitor(its_experiment, its_simulation, options, listener),
       exchange(its_simulation),
       leases(its_simulation.robot_count(), first_epoch),
-      was_driven(its_simulation.robot_count()) {
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
-    if (!simulation.policy(robot).required) undemanding.push_back(robot);
+      robots_at_first(static_cast<std::uint32_t>(its_experiment.world.robots.size())) {
+  add_newcomers();
 }
 
-bool ServedRun::is_ready() const {
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
-    if (!leases.holder(robot) && simulation.policy(robot).required && !exchange.barrier().is_detached(robot))
-      return false;
+bool ServedRun::add_newcomers() {
+  const auto before = static_cast<std::uint32_t>(was_driven.size());
+  if (before == simulation.robot_count()) return false;
+  for (std::uint32_t robot = before; robot < simulation.robot_count(); ++robot)
+    if (!simulation.policy(robot).required) undemanding.push_back(robot);
+  was_driven.resize(simulation.robot_count());
+  leases.note_robots(simulation.robot_count());
+  exchange.add_newcomers();
   return true;
 }
 
-std::vector<std::uint32_t> ServedRun::awaited(bool is_held) const {
-  if (started) return is_held ? std::vector<std::uint32_t>() : exchange.barrier().awaited();
+std::vector<std::uint32_t> ServedRun::undriven_newcomers() const {
   std::vector<std::uint32_t> robots;
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot)
+  for (std::uint32_t robot = robots_at_first; robot < was_driven.size(); ++robot)
+    if (!was_driven[robot] && simulation.policy(robot).required && simulation.is_present(robot) &&
+        !exchange.barrier().is_detached(robot))
+      robots.push_back(robot);
+  return robots;
+}
+
+bool ServedRun::is_ready() const {
+  for (std::uint32_t robot = 0; robot < robots_at_first; ++robot)
+    if (!leases.holder(robot) && simulation.policy(robot).required && !exchange.barrier().is_detached(robot))
+      return false;
+  return undriven_newcomers().empty();
+}
+
+std::vector<std::uint32_t> ServedRun::awaited(bool is_held) const {
+  if (started && is_held) return {};
+  const std::vector<std::uint32_t> newcomers = undriven_newcomers();
+  if (started) return newcomers.empty() ? exchange.barrier().awaited() : newcomers;
+  std::vector<std::uint32_t> robots;
+  for (std::uint32_t robot = 0; robot < robots_at_first; ++robot)
     if (!leases.holder(robot) && simulation.policy(robot).required) robots.push_back(robot);
+  robots.insert(robots.end(), newcomers.begin(), newcomers.end());
   return robots;
 }
 

@@ -29,12 +29,17 @@ struct ServedRun {
   std::vector<std::uint32_t> undemanding;   // robots that do not require a controller
   std::vector<bool> was_driven;             // by robot, whether somebody drove it in this run
   std::vector<std::uint32_t> descriptions;  // on the wire, by kind
+  std::uint32_t robots_at_first;            // of the experiment: those beyond have come in mid-run
 
   void fail(const std::string& why) {
     if (error.empty()) error = why;
   }
+  /// At a boundary: robots may have come to the simulation. Whether any have.
+  bool add_newcomers();
   /// Whether no robot that requires a controller is without one.
   bool is_ready() const;
+  /// Robots that have come in mid-run, require a controller and have never had one: the run stands still until they do.
+  std::vector<std::uint32_t> undriven_newcomers() const;
   /// Robots that the run waits for: for their answers, or before it starts for their controllers. `is_held`: by whoever
   /// controls it.
   std::vector<std::uint32_t> awaited(bool is_held) const;

@@ -5,6 +5,7 @@
 
 #include "server/session/printable.hpp"
 #include "server/session/roster.hpp"
+#include "server/session/run_recorder.hpp"
 
 namespace cohort::session {
 namespace {
@@ -200,6 +201,7 @@ bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
     handle_inbox();
     const bool had_work = control_.has_work();
     if (!control_.perform(Control::Moment::boundary)) return false;
+    welcome_newcomers();
     publish_scene(is_new || had_work ? SceneBroadcast::When::at_once : SceneBroadcast::When::for_newcomers);
     clients_.decide_claims();
     report_progress(false);
@@ -210,8 +212,21 @@ bool Server::wait_for_controllers(const std::atomic<bool>& stop) {
   }
 }
 
-// At the boundary before a tick: does what was requested, and waits while the run is paused or ahead of its pace. False
-// if the run has to end.
+// At a boundary: robots may have come. Whether one lacks a controller that it requires.
+bool Server::welcome_newcomers() {
+  bool has_newcomers = false;
+  bool lacks_controllers = false;
+  {
+    const std::lock_guard lock(mutex_);
+    has_newcomers = run_->add_newcomers();
+    lacks_controllers = run_->started && !run_->undriven_newcomers().empty();
+  }
+  if (has_newcomers) publish_descriptions();
+  return lacks_controllers;
+}
+
+// At the boundary before a tick: does what was requested, and waits while the run is paused or ahead of its pace, or a
+// robot that has come lacks a controller. False if the run has to end.
 bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
   RunMonitor& monitor = run_->monitor;
   control_.reach_boundary();
@@ -224,12 +239,13 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
     const bool had_work = control_.has_work();
     if (!control_.perform(Control::Moment::boundary)) return false;
     if (monitor.is_over()) return true;
-    const auto go_on_at = due();
+    const bool lacks_controllers = welcome_newcomers();
+    const auto go_on_at = lacks_controllers ? std::nullopt : due();
     if (go_on_at && Clock::now() >= *go_on_at) {
       if (monitor.speed() > 0.0 && run_->simulation.tick() > 0) monitor.add_lateness(Clock::now() - *go_on_at);
       return true;
     }
-    if (control_.holds()) {
+    if (control_.holds() || lacks_controllers) {
       if (!was_held || had_work) publish_world_state();  // no tick is about to
       publish_scene(was_held && !had_work ? SceneBroadcast::When::for_newcomers : SceneBroadcast::When::at_once);
       was_held = true;
@@ -373,6 +389,7 @@ void Server::report_progress(bool now_anyway) {
 // Tells of the robots' kinds. An id is never used for two things, since clients keep what they were told in earlier
 // runs.
 void Server::publish_descriptions() {
+  run_->descriptions.clear();
   for (wire::RobotDescription& kind : describe_kinds(run_->simulation)) {
     const auto known = std::ranges::find_if(descriptions_, [&](const wire::RobotDescription& other) {
       return other.model == kind.model && other.observation == kind.observation && other.command == kind.command;
@@ -385,9 +402,7 @@ void Server::publish_descriptions() {
   }
 }
 
-void Server::publish_scene(SceneBroadcast::When when) {
-  scenes_.publish({run_->experiment, run_->simulation, run_->number}, when);
-}
+void Server::publish_scene(SceneBroadcast::When when) { scenes_.publish({run_->simulation, run_->number}, when); }
 
 // The run has ended. Whoever fetches nothing is not waited for.
 void Server::let_recordings_be_fetched() {
@@ -417,6 +432,7 @@ void Server::fill_status(wire::SimulationStatus& status) {
 
 // What is not delivered when the participant goes is lost: hence the wait.
 void Server::dismiss(const RunResult& last) {
+  scenes_.end(word_of(last.end), last.end == RunResult::End::finished ? last.stop_reason : last.error);
   std::set<std::uint64_t> staying = clients_.dismiss(last, run_number_);
   const Clock::time_point until = Clock::now() + farewell;
   std::unique_lock lock(mutex_);

@@ -65,6 +65,7 @@ class Server {
   RunResult end_run(RunResult::End how, const std::string& error = {});
   RunResult end_early();
   bool wait_for_controllers(const std::atomic<bool>& stop);
+  bool welcome_newcomers();
   bool stand_at_boundary(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
   void handle_inbox();

@@ -77,7 +77,8 @@ TEST(AtomicFile, LeavesWhatWasThereWhereItCannotBeWritten) {
       put(folder / "a", std::string(2000, 'x'));
       ADD_FAILURE() << "it cannot have been written";
     } catch (const std::runtime_error& error) {
-      EXPECT_EQ(error.what(), "the text cannot be written to " + (folder / "a").string() + ": File too large");
+      EXPECT_EQ(error.what(),
+                "the text cannot be written to " + (folder / "a").string() + ": " + why_not_written(EFBIG));
     }
   }
   { const AtomicFile given_up("the text", folder / "a"); }

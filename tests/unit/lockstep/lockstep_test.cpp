@@ -23,9 +23,10 @@ Policy policy(std::uint32_t period = 1, std::uint32_t phase = 0, std::uint32_t d
   return {period, phase, delay, on_late, deadline};
 }
 
-Barrier barrier_of(std::vector<Policy> policies) {
-  const std::vector<std::size_t> sizes(policies.size(), 1);
-  return {std::move(policies), sizes};
+Barrier barrier_of(const std::vector<Policy>& policies) {
+  Barrier barrier;
+  for (const Policy& policy : policies) barrier.add(policy, 1, 0);
+  return barrier;
 }
 
 void answer(Barrier& barrier, std::uint32_t robot, std::uint64_t frame, double value) {

@@ -10,6 +10,7 @@
 #include <csignal>
 
 #include "server/recording/mcap/format/mcap_error.hpp"
+#include "server/recording/mcap/writing/disk_file.hpp"
 #include "tests/support/patience.hpp"
 #include "tests/support/recordings.hpp"
 
@@ -110,6 +111,24 @@ TEST(RecordingFile, AtTheLimitOfFileSizesKeepsWhatItHasAndSaysSo) {
   setrlimit(RLIMIT_FSIZE, &small);
   expect_stopped_early(file.path(), "ulimit -f");
   setrlimit(RLIMIT_FSIZE, &before);
+}
+
+// A recording of which nothing came to the disk takes no other's place.
+TEST(RecordingFile, LeavesWhatItReplacesUntilSomethingOfItIsOnTheDisk) {
+  const TemporaryFile file(test::small_recording(3));
+  {
+    DiskFile unsynced(file.path());
+    unsynced.write(bytes_of("the beginning of another"));
+    EXPECT_EQ(messages_of(McapReader(file.path())).size(), 3U);
+    EXPECT_THROW(DiskFile(file.path()), FileError) << "somebody records to it";
+  }
+  EXPECT_EQ(messages_of(McapReader(file.path())).size(), 3U);
+  RecordingFile recording(file.path());
+  const ChannelId channel = recording.add_channel("/t", 0, "cdr");
+  for (int i = 0; i < 5; ++i) write_one(recording, channel, i);
+  recording.close();
+  EXPECT_EQ(recording.error(), std::nullopt);
+  EXPECT_EQ(messages_of(McapReader(file.path())).size(), 5U);
 }
 
 // In a process of its own, whose mount nobody else sees.

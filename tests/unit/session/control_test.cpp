@@ -132,14 +132,17 @@ TEST(RequestLedger, RefusesPartsThatCannotBe) {
 TEST(RequestLedger, GivesDataInPartsToWhoAskedForItAndKeepsThatOfTwo) {
   RequestLedger ledger;
   const std::vector<std::byte> data(wire::largest_part + 10, std::byte{7});
-  ledger.offer(1, data);
-  ledger.offer(2, {std::byte{1}});
+  const auto shared = [](std::vector<std::byte> bytes) {
+    return std::make_shared<const std::vector<std::byte>>(std::move(bytes));
+  };
+  ledger.offer(1, shared(data));
+  ledger.offer(2, shared({std::byte{1}}));
   EXPECT_EQ(ledger.part(1, 0)->bytes.size(), wire::largest_part);
   EXPECT_EQ(ledger.part(1, wire::largest_part)->bytes.size(), 10u);
   EXPECT_EQ(ledger.part(1, wire::largest_part)->size, data.size());
   EXPECT_TRUE(ledger.part(1, ~std::uint64_t{0})->bytes.empty());
   EXPECT_FALSE(ledger.part(3, 0));
-  ledger.offer(3, {});
+  ledger.offer(3, shared({}));
   EXPECT_FALSE(ledger.part(1, 0)) << "the oldest is gone";
   EXPECT_TRUE(ledger.part(2, 0));
 }

@@ -145,6 +145,9 @@ TEST_P(Actions, ChangeAStateHashThatSomebodyHasAskedFor) {
       [&](Simulation& simulation) {
         simulation.add_object("second_box", experiment_.world.instances[box_].model, at(5, 5, 0.1));
       },
+      [](Simulation& simulation) {
+        simulation.act(SpawnObject{"team/late", "tracked_robot", at(1, 0.3, 0)});
+      },
   };
   Simulation asked(experiment_, 1);
   run(asked, 10);
@@ -244,8 +247,78 @@ TEST_P(Actions, ATextThatIsNoModelIsRefusedWithLineAndReason) {
                 .find("there is no '/etc/hostname'"),
             std::string::npos);
   EXPECT_EQ(reason("bax").substr(0, 46), "the world has no model 'bax'; did you mean 'bo");
-  EXPECT_NE(reason("tracked_robot").find("robots cannot be spawned yet: let an event of the experiment add it"),
-            std::string::npos);
+}
+
+TEST_P(Actions, RobotsComeWithTheNextIdAndTheirTeamsPolicyAndAreSensedAtOnce) {
+  Simulation simulation(experiment_, 1);
+  run(simulation, 10);
+  EXPECT_EQ(simulation.act(SpawnObject{"team/late", "tracked_robot", at(1, 0.3, 0)}),
+            "spawn 'team/late' of model 'tracked_robot' in team 'team'");
+  ASSERT_EQ(simulation.robot_count(), 3u);
+  EXPECT_EQ(simulation.robot_name(2), "team/late");
+  EXPECT_EQ(simulation.policy(2).period, 2u);
+  EXPECT_EQ(simulation.kind_of(2), simulation.kind_of(0));
+  EXPECT_EQ(simulation.kinds().size(), 2u) << "as before";
+  EXPECT_EQ(simulation.experiment().teams[0].robots, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_TRUE(simulation.is_due(2, 10));
+  EXPECT_EQ(simulation.observation(2).size(), simulation.observation(0).size());
+  const auto senses = [](double value) { return value != 0.0; };
+  EXPECT_TRUE(std::ranges::any_of(simulation.observation(2), senses)) << "it is due at this tick";
+  run(simulation, 60);
+  EXPECT_GT(simulation.robot_pose(2).position.x(), 1.01) << "it drives";
+
+  // Gone is gone: the next has another id, and another name.
+  simulation.act(RemoveObject{"team/late"});
+  EXPECT_FALSE(simulation.is_present(2));
+  simulation.act(SpawnObject{"team/later", "tracked_robot", at(1, 0.3, 0)});
+  EXPECT_EQ(simulation.robot_name(3), "team/later");
+}
+
+TEST_P(Actions, RobotsThatComeAreTheSameOnAnyThreadsAndAfterRestore) {
+  const auto with_newcomers = [&](unsigned threads) {
+    auto simulation = std::make_unique<Simulation>(experiment_, threads);
+    run(*simulation, 11);
+    simulation->act(SpawnObject{"crate", crate_sdf, at(4, 4, 0.2)});
+    simulation->act(SpawnObject{"team/late", "tracked_robot", at(0.2, 0.15, 0)});
+    run(*simulation, 20);
+    simulation->act(SpawnObject{"team/later", "tracked_robot", at(1, 0.3, 0)});
+    simulation->act(RemoveObject{"team/late"});
+    run(*simulation, 30);
+    return simulation;
+  };
+  const auto alone = with_newcomers(1);
+  const auto together = with_newcomers(4);
+  EXPECT_EQ(alone->state_hash(), together->state_hash());
+  Simulation restored(experiment_, 2);
+  restored.restore(alone->save());
+  EXPECT_EQ(restored.state_hash(), alone->state_hash());
+  EXPECT_TRUE(restored.save() == alone->save());
+  ASSERT_EQ(restored.robot_count(), 4u);
+  EXPECT_FALSE(restored.is_present(2));
+  run(*alone, 80);
+  run(restored, 80);
+  EXPECT_EQ(restored.state_hash(), alone->state_hash());
+}
+
+TEST_P(Actions, ARobotJoinsTheTeamThatIsSaid) {
+  description::Team others{"others", {}, "none", {}};
+  others.policy.period = 3;
+  experiment_.teams.push_back(others);
+  Simulation simulation(experiment_, 1);
+  const auto spawn = [](const std::string& name, const std::string& model, const std::string& team) {
+    return SpawnObject{name, model, at(1, 1, 0.1), false, team};
+  };
+  EXPECT_EQ(simulation.act(spawn("a", "tracked_robot", "others")),
+            "spawn 'a' of model 'tracked_robot' in team 'others'");
+  EXPECT_EQ(simulation.policy(2).period, 3u);
+  EXPECT_EQ(why_not(simulation, spawn("b", "tracked_robot", "other")),
+            "there is no team 'other'; did you mean 'others'?");
+  EXPECT_EQ(why_not(simulation, spawn("b", "tracked_robot", "")),
+            "'tracked_robot' is a robot: say which team it joins, of team, others");
+  EXPECT_EQ(why_not(simulation, spawn("b", "box", "others")), "the model 'box' is no robot, so it is in no team");
+  EXPECT_EQ(simulation.robot_count(), 3u);
+  const auto again = std::get<SpawnObject>(action_from_bytes(to_bytes(spawn("a", "tracked_robot", "others"))));
+  EXPECT_EQ(again.team, "others");
 }
 
 TEST_P(Actions, WhatIsRemovedIsGoneForGood) {

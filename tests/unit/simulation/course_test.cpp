@@ -206,7 +206,7 @@ TEST_P(CourseOfARun, HasItsObjectsInAHierarchyThatGrowsAndShrinks) {
   const std::uint32_t added = simulation.add_object("things/another", model, at(-1, 1, 0.1));
   EXPECT_EQ(simulation.objects().in_scope("things"), (std::vector<std::uint32_t>{box_, added}));
   EXPECT_THROW(simulation.add_object("things/box", model, at(-1, 2, 0.1)), std::invalid_argument);
-  EXPECT_THROW(simulation.add_object("r", experiment_.world.instances[first_].model, at(5, 5, 0)),
+  EXPECT_THROW(simulation.add_object("r", experiment_.world.instances[first_].model, at(5, 5, 0), 9),
                std::invalid_argument);
   run(simulation, 10);
   EXPECT_TRUE(simulation.objects().is_present(added));

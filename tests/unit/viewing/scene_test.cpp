@@ -16,7 +16,7 @@ description::Experiment shipped(const std::string& name) {
 TEST(SceneOfAWorld, HasEveryObjectWithItsVisuals) {
   const description::Experiment experiment = shipped("obstacle_avoidance");
   const Simulation simulation(experiment, 1);
-  const Scene scene = SceneMaker(simulation, 7).scene(experiment.teams);
+  const Scene scene = SceneMaker(simulation, 7).scene();
   EXPECT_EQ(scene.revision, 7U);
   ASSERT_EQ(scene.entities.size(), simulation.objects().size());
   std::set<std::uint32_t> robots;

@@ -45,6 +45,21 @@ std::filesystem::path experiment_called(const std::filesystem::path& name) {
                               suggestion(name.string(), known) + " ('cohort examples' lists them)");
 }
 
+std::filesystem::path model_called(const std::filesystem::path& name) {
+  std::error_code none;
+  if (name.has_parent_path() || name.has_extension() || std::filesystem::exists(name, none)) return name;
+  std::vector<std::string> known;
+  for (const std::filesystem::path& folder : installed_model_folders())
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+      const std::filesystem::path file = entry.path() / "model.sdf";
+      if (!std::filesystem::exists(file, none)) continue;
+      if (entry.path().filename() == name) return file;
+      known.push_back(entry.path().filename());
+    }
+  throw std::invalid_argument("there is neither a file '" + name.string() + "' nor a model of this name" +
+                              suggestion(name.string(), known));
+}
+
 std::filesystem::path installed_page_folder() { return installed("view"); }
 
 }  // namespace cohort::tool

@@ -20,6 +20,10 @@ std::vector<std::string> installed_experiments();
 /// this name; anything else as it is. Throws std::invalid_argument for a name that is neither.
 std::filesystem::path experiment_called(const std::filesystem::path& name);
 
+/// The file of what a person calls a model: the name of one that comes with Cohort, unless there is a file of this
+/// name; anything else as it is. Throws std::invalid_argument for a name that is neither.
+std::filesystem::path model_called(const std::filesystem::path& name);
+
 /// The built page of `cohort view`.
 std::filesystem::path installed_page_folder();
 

@@ -56,6 +56,11 @@ std::string kind_of(const description::Problem& warning) {
 
 }  // namespace
 
+std::string text_of(const std::exception& error) {
+  const bool lacks_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  return lacks_memory ? "there is not enough memory" : error.what();
+}
+
 LogLevel level_of(Severity severity) {
   switch (severity) {
     case Severity::info: return LogLevel::info;

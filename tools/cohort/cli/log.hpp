@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -22,6 +23,9 @@ namespace cohort::tool {
 
 enum class LogFormat { text, json };
 enum class LogLevel { debug, info, warning, error, off };
+
+/// What it says, in words for people also if memory is what lacks.
+std::string text_of(const std::exception& error);
 
 /// The level of what a client tells.
 LogLevel level_of(Severity severity);

@@ -42,6 +42,7 @@ void Terminal::progress(const session::Progress& progress) {
         fmt::runtime(log_.format() == LogFormat::text ? "{:8.2f} of {:.2f} s simulated   {:6.1f} x real time"
                                                       : "{:.2f} of {:.2f} s simulated, {:.1f} x real time"),
         seconds(progress.time), seconds(progress.duration), progress.real_time_factor);
+  if (progress.unrecorded) line += log_.format() == LogFormat::text ? "   NOT RECORDED" : ", not recorded any more";
   if (waits) line += (line.empty() ? "" : log_.format() == LogFormat::text ? "   " : ", ") + awaited;
   if (progress.paused) line += log_.format() == LogFormat::text ? "   paused" : ", paused";
   if (waits && progress.started) line += fmt::format(", {:.1f} s", seconds(progress.waiting));
@@ -56,6 +57,7 @@ void Terminal::progress(const session::Progress& progress) {
   LogFields fields = {{"sim_time_s", seconds(progress.time)}, {"duration_s", seconds(progress.duration)}};
   if (progress.started) fields.emplace_back("real_time_factor", progress.real_time_factor);
   if (progress.paused) fields.emplace_back("paused", true);
+  if (progress.unrecorded) fields.emplace_back("unrecorded", true);
   if (waits) fields.emplace_back("waiting_for", progress.awaited);
   log_.progress(line, fields);
 }
@@ -72,6 +74,7 @@ LogLevel Terminal::level_of(const session::RunEvent& event) {
       kind == "control" || kind == "stopped")
     return LogLevel::info;
   if (kind == "lost" && options_.own_controllers) return LogLevel::info;
+  if (kind == "unrecorded") return LogLevel::error;
   // A frame that is sent again may be answered twice.
   if (kind == "rejected" && (event.text.starts_with("repeated") || event.text.starts_with("stale")))
     return LogLevel::info;

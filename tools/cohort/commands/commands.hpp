@@ -43,6 +43,7 @@ Subcommand add_view(CommandLine app);
 Subcommand add_examples(CommandLine app);
 Subcommand add_check(CommandLine app);
 Subcommand add_export(CommandLine app);
+Subcommand add_models(CommandLine app);
 Subcommand add_samples(CommandLine app);
 Subcommand add_security(CommandLine app);
 Subcommand add_doctor(CommandLine app);

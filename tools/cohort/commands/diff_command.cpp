@@ -64,6 +64,11 @@ int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {
   const recording::Recording second(command.second);
   for (const recording::Recording* each : {&first, &second})
     if (!each->damage().empty()) log.warning(each->damage());
+  const std::uint64_t first_seed = first.worlds().front().begins.seed;
+  const std::uint64_t second_seed = second.worlds().front().begins.seed;
+  if (first_seed != second_seed)
+    log.warning(fmt::format("their seeds are {} and {}, so they part where the first random number is used", first_seed,
+                            second_seed));
   ReplayProgress progress(log);
   const recording::Comparison found =
       recording::compare(first, second, available_processors(), [&](std::chrono::nanoseconds log_time) {

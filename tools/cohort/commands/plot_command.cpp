@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/core/atomic_file.hpp"
 #include "server/core/processors.hpp"
 #include "server/core/text.hpp"
 #include "server/description/select_robots.hpp"
@@ -134,16 +135,16 @@ std::string draw_series(Replay& replay, const PlotCommand& command, Log& log, co
 
 // What has no picture of its own is drawn by librsvg.
 void write_png(const std::filesystem::path& file, const std::string& svg) {
-  const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
-  const std::filesystem::path source = file.string() + ".svg";
+  AtomicFile picture("the picture", std::filesystem::absolute(file));
+  const std::filesystem::path source = picture.path().string() + ".svg";
   write_file("the picture", source, svg);
-  const ProgramResult result =
-      run_program({"rsvg-convert", "--background-color", "white", "--zoom", "2", "--output",
-                   std::filesystem::absolute(file).string(), std::filesystem::absolute(source).string()},
-                  folder);
+  const ProgramResult result = run_program({"rsvg-convert", "--background-color", "white", "--zoom", "2", "--output",
+                                            picture.path().string(), source.string()},
+                                           picture.path().parent_path());
   std::filesystem::remove(source);
   if (result.exit_code != 0)
-    throw std::runtime_error(fmt::format("{} cannot be drawn: rsvg-convert says {}", file.string(), result.errors));
+    throw WriteError(fmt::format("{} cannot be drawn: rsvg-convert says {}", file.string(), result.errors));
+  picture.commit();
 }
 
 int plot(const PlotCommand& command, Log& log, const std::atomic<bool>& stop) {

@@ -79,15 +79,24 @@ class LiveRecording {
         const ControlClient::RecordingPart part = client_.get_recording(size_, for_a_reply, never_);
         file_->write(std::as_bytes(std::span(part.bytes)));
         size_ += part.bytes.size();
+        sync_if_due();
         if (part.is_last) return finish(part);
         if (part.bytes.empty()) std::this_thread::sleep_for(asks_again_after);
       }
     } catch (const recording::FileError& error) {
       log_.error(fmt::format("{}. 'cohort recover' closes what is there", error.what()));
     } catch (const std::exception& error) {
-      log_.error(fmt::format("the recording ended before its run: {}. {}", error.what(), close_what_came()));
+      log_.error(fmt::format("the recording ended before its run: {}. {}", text_of(error), close_what_came()));
     }
     return exit_failed;
+  }
+
+  // From the first part on, which gives the file its name.
+  void sync_if_due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_sync_) return;
+    file_->sync();
+    next_sync_ = now + std::chrono::seconds(1);
   }
 
   int finish(const ControlClient::RecordingPart& last) {
@@ -119,6 +128,7 @@ class LiveRecording {
   ControlClient client_;
   std::optional<recording::DiskFile> file_;
   std::uint64_t size_ = 0;
+  std::chrono::steady_clock::time_point next_sync_{};
   bool is_stopped_ = false;
 };
 
@@ -129,7 +139,7 @@ int record(const RecordCommand& command, Log& log, const std::atomic<bool>& stop
   try {
     return recording.run();
   } catch (const std::exception& error) {
-    log.error(error.what());
+    log.error(text_of(error));
     return exit_failed;
   }
 }

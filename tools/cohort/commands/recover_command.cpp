@@ -24,7 +24,7 @@ int recover(const RecoverCommand& command, Log& log) {
     std::cout << target.string() << ": " << recovery.text();
     return exit_ok;
   } catch (const std::exception& error) {
-    log.error(error.what());
+    log.error(text_of(error));
   }
   return exit_failed;
 }

@@ -181,9 +181,10 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
   const RunCommand& command = runs.command;
   session::RunOptions options = {
       .speed = speed_of(command, *world.experiment),
-      .state = command.paused ? session::PlaybackState::paused : session::PlaybackState::playing,
+      .state = command.paused || command.view_opens ? session::PlaybackState::paused : session::PlaybackState::playing,
       .from = runs.from,
-      .keep_interval = keep_interval_of(command, *world.experiment)};
+      .keep_interval = keep_interval_of(command, *world.experiment),
+      .needs_recording = command.record_or_stop};
   using enum recording::Beginning;
   OneRun one(command, numbered(command.outputs, number, count), log, stop);
   one.begin(*world.experiment, *world.simulation, runs.from ? restored : first);
@@ -208,7 +209,8 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
     options = {.speed = result.next->speed,
                .state = result.next->state,
                .from = result.next->snapshot,
-               .keep_interval = options.keep_interval};
+               .keep_interval = options.keep_interval,
+               .needs_recording = options.needs_recording};
   }
 }
 
@@ -239,7 +241,7 @@ int run_each(Runs& runs, Log& log, const std::atomic<bool>& stop) {
       code = run_one(runs, number, count, std::move(world), log, stop, goes_on);
     }
   } catch (const std::exception& error) {
-    log.error(error.what());
+    log.error(text_of(error));
     return exit_failed;
   }
   return code;
@@ -278,9 +280,11 @@ int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
   warn_if_not_portable(log);
 
   if (!in_process) runs.serving.emplace(command, first, log);
-  if (runs.serving && command.view) runs.serving->start_view(first);
+  if (runs.serving && command.view) runs.serving->start_view(first, numbered(command.outputs, count, count).recording);
   if (runs.serving) runs.serving->start_controllers(first, runs.controllers);
-  return run_each(runs, log, stop);
+  const int code = run_each(runs, log, stop);
+  if (runs.serving && !stop) runs.serving->let_look(stop);
+  return code;
 }
 
 std::vector<std::uint64_t> seeds_or_usage_error(const std::string& text) {
@@ -325,10 +329,16 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
   add_viewpoint_option(line, "--plot-view", "Of the plot", command.outputs.viewpoint);
   line.add_option("--csv", command.outputs.csv, "Write what the experiment prints to this file as CSV")
       .type_name("FILE");
-  line.add_option("--record", command.outputs.recording, "Record the run to this file (MCAP)").type_name("FILE");
+  const Option record =
+      line.add_option("--record", command.outputs.recording, "Record the run to this file (MCAP)").type_name("FILE");
+  line.add_flag("--record-or-stop", command.record_or_stop,
+                "End the run when it cannot be recorded any more, with the exit code 4")
+      .needs(record);
   add_recorded_options(line, command.record, "--record-");
   const Option view = line.add_flag("--view", command.view, "Show it in a browser, as 'cohort view' does");
   line.add_flag("--control", command.view_controls, "With --view: let whoever looks control it").needs(view);
+  line.add_flag("--open", command.view_opens, "With --view: open it in a browser, and begin when it is seen there")
+      .needs(view);
   line.add_flag("--paused", command.paused, "Begin paused, until 'cohort ctl resume' or 'step'");
   line.add_option("--keep-snapshots", command.keep_interval,
                   "Simulated seconds between snapshots in memory, for 'cohort ctl back' (default: none)")

@@ -42,6 +42,7 @@ session::RunListener OneRun::listener() {
             if (trace_) trace_->boundary();
             if (table_) table_->boundary();
           },
+      .unrecorded = [&] { return recorder_ ? recorder_->error() : std::nullopt; },
       .stopped = [&] { watchdog_.reset(); },
   };
   session::add_recorders(listener, recorders_);
@@ -51,12 +52,13 @@ session::RunListener OneRun::listener() {
 int OneRun::finish(const RunResult& result, double cpu_seconds) {
   using enum RunResult::End;
   terminal_->summary(*experiment_, result, cpu_seconds);
-  bool is_complete = write_files(result, cpu_seconds);
+  const bool is_complete = write_files(result, cpu_seconds);
+  const bool was_recorded = !recorder_ || close_recording(result);
+  if (!was_recorded && result.end == failed && result.error == recorder_->error()) return exit_unrecorded;
   if (result.end == failed)
     log_.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
-  if (recorder_) is_complete &= close_recording(result);
   if (result.end == interrupted) return exit_interrupted;
-  return is_complete && (result.end == finished || result.end == shut_down) ? exit_ok : exit_failed;
+  return is_complete && was_recorded && (result.end == finished || result.end == shut_down) ? exit_ok : exit_failed;
 }
 
 bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
@@ -65,7 +67,7 @@ bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
       write();
       return true;
     } catch (const std::exception& error) {
-      log_.error(error.what());
+      log_.error(text_of(error));
       return false;
     }
   };

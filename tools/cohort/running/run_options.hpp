@@ -37,10 +37,12 @@ struct RunCommand {
   std::optional<double> speed;  ///< 0: as fast as it goes; none: that, or real time if people drive
   Outputs outputs;
   RecordOptions record;
+  bool record_or_stop = false;  ///< the run ends when its recording does
   bool quiet = false;
   bool paused = false;                 ///< at first
   bool view = false;                   ///< in a browser too
   bool view_controls = false;          ///< which may steer it
+  bool view_opens = false;             ///< which is opened; the run begins when it is seen
   double keep_interval = 0.0;          ///< [s], simulated, between snapshots to go back to; 0: none
   std::filesystem::path from;          ///< snapshot to go on from; empty: from the beginning
   std::vector<std::uint32_t> domains;  ///< empty: any free ones, or 0 if others start controllers

@@ -5,8 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 #include "tools/cohort/cli/wording.hpp"
@@ -92,6 +96,22 @@ std::string domains_text(const std::vector<std::uint32_t>& domains) {
   return fmt::format("domains {}", fmt::join(domains, ", "));
 }
 
+// As a shell takes it.
+std::string own_command_line() {
+  std::ifstream words("/proc/self/cmdline", std::ios::binary);
+  std::string line = "cohort";
+  std::string word;
+  std::getline(words, word, '\0');  // the program's path
+  while (std::getline(words, word, '\0')) {
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+@%";
+    const bool is_plain = !word.empty() && word.find_first_not_of(plain) == std::string::npos;
+    for (std::size_t at = 0; !is_plain && (at = word.find('\'', at)) != std::string::npos; at += 4)
+      word.replace(at, 1, "'\\''");
+    line += is_plain ? " " + word : " '" + word + "'";
+  }
+  return line;
+}
+
 // Of the view: one that looks, and if it may do more, one that controls, and one that drives what people are to drive.
 void add_identities_of_view(const RunCommand& command, const description::Experiment& experiment,
                             std::vector<std::string>& arguments) {
@@ -99,10 +119,11 @@ void add_identities_of_view(const RunCommand& command, const description::Experi
     arguments.insert(arguments.end(), {option, identity.string()});
   };
   add("--secure", command.secure / "clients" / "observer");
-  if (!command.view_controls) return;
+  if (!command.view_controls && !command.view_opens) return;
   const std::vector<wire::Identity> doors = wire::read_doors(command.secure);
   const auto controls = std::ranges::find_if(doors, &wire::Identity::may_control);
   if (controls != doors.end()) add("--secure-control", command.secure / "clients" / controls->name);
+  if (!command.view_controls) return;
   const auto driven = std::ranges::find(experiment.teams, keyboard_controller, &description::Team::controller);
   if (driven != experiment.teams.end()) add("--secure-drive", identity_for(experiment, *driven, command.secure));
 }
@@ -150,7 +171,7 @@ void Serving::start_controllers(const description::Experiment& experiment,
       listener_of_controllers(*server_, log_));
 }
 
-void Serving::start_view(const description::Experiment& experiment) {
+void Serving::start_view(const description::Experiment& experiment, const std::filesystem::path& recording) {
   Children::Command view;
   view.arguments = {std::filesystem::read_symlink("/proc/self/exe"),
                     "view",
@@ -158,13 +179,30 @@ void Serving::start_view(const description::Experiment& experiment) {
                     command_.network,
                     "--domain",
                     std::to_string(domains_.front())};
+  view.arguments.insert(view.arguments.end(), {"--while-watched", "--again", own_command_line()});
+  if (!recording.empty()) view.arguments.insert(view.arguments.end(), {"--written", recording.string()});
+  if (command_.view_opens) view.arguments.emplace_back("--open");
+  if (command_.view_opens && !command_.paused) view.arguments.emplace_back("--play-when-seen");
   if (command_.view_controls) view.arguments.push_back("--control");
   if (!command_.secure.empty()) add_identities_of_view(command_, experiment, view.arguments);
   view.name = "the view";
   view.restarts = false;
   Children::Listener listener;
   listener.gave_up = [this](const std::string& text) { log_.warning(text); };
+  listener.ended = [this](pid_t) { has_view_ = false; };
+  has_view_ = true;
   view_ = std::make_unique<Children>(std::vector{std::move(view)}, std::move(listener));
+}
+
+void Serving::let_look(const std::atomic<bool>& stop) {
+  constexpr std::chrono::seconds before_saying{3};
+  constexpr std::chrono::milliseconds interval{50};
+  std::optional<std::chrono::steady_clock::time_point> say_at = std::chrono::steady_clock::now() + before_saying;
+  for (; has_view_ && !stop; std::this_thread::sleep_for(interval)) {
+    if (!say_at || std::chrono::steady_clock::now() < *say_at) continue;
+    log_.notice("the run has ended, and its view stays until its pages are closed, or Ctrl-C");
+    say_at.reset();
+  }
 }
 
 session::RunResult Serving::run(const description::Experiment& experiment, Simulation& simulation,

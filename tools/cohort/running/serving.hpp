@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,8 +26,11 @@ class Serving {
   /// `experiment` must outlive this call only.
   void start_controllers(const description::Experiment& experiment, const std::vector<TeamController>& controllers);
 
-  /// Starts a process that shows the runs in a browser (`cohort view`); that it cannot is a warning.
-  void start_view(const description::Experiment& experiment);
+  /// Starts a process that shows the runs in a browser (`cohort view`); that it cannot is a warning. `recording` is
+  /// what the last one writes; empty: nothing.
+  void start_view(const description::Experiment& experiment, const std::filesystem::path& recording);
+  /// Waits while somebody looks at what has ended, unless asked to `stop`.
+  void let_look(const std::atomic<bool>& stop);
 
   /// `is_last`: controllers may leave afterwards.
   session::RunResult run(const description::Experiment& experiment, Simulation& simulation,
@@ -39,6 +44,7 @@ class Serving {
   std::vector<wire::Participant> participants_;
   std::optional<session::Server> server_;
   std::unique_ptr<Children> children_;
+  std::atomic<bool> has_view_{false};
   std::unique_ptr<Children> view_;
 };
 

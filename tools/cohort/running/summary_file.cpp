@@ -24,11 +24,15 @@ void write_summary(const std::filesystem::path& file, const description::Experim
   nlohmann::ordered_json events = nlohmann::ordered_json::array();
   for (const session::RunEvent& event : result.events)
     events.push_back({{"tick", event.tick}, {"kind", event.kind}, {"text", event.text}, {"count", event.count}});
+  const auto name_of = [&](std::uint32_t robot) {
+    const std::size_t at_first = experiment.world.robots.size();
+    return robot < at_first ? experiment.world.robot(robot).name : result.newcomers.at(robot - at_first);
+  };
   nlohmann::ordered_json misses = nlohmann::ordered_json::array();
   for (const session::Miss& miss : result.misses)
     misses.push_back({{"tick", miss.tick},
                       {"frame", miss.frame_tick},
-                      {"robot", experiment.world.robot(miss.robot).name},
+                      {"robot", name_of(miss.robot)},
                       {"on_late", word_of(miss.consequence)},
                       {"waited_s", seconds(miss.waited)}});
   const nlohmann::ordered_json summary = {

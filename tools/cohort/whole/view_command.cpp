@@ -1,16 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "server/recording/recording.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
-#include "tools/view/sources/live_source.hpp"
+#include "tools/processes/external_program.hpp"
+#include "tools/view/sources/followed_run.hpp"
 #include "tools/view/sources/recording_source.hpp"
 #include "tools/view/web/admission.hpp"
 #include "tools/view/web/web_server.hpp"
@@ -29,6 +33,12 @@ struct ViewCommand {
   std::string token{};                  ///< that browsers have to give; empty: one is made where strangers can connect
   std::vector<std::string> origins{};   ///< of other pages that may connect
   unsigned threads = 0;                 ///< that replay a recording; 0: one for each core
+  bool opens = false;                   ///< a browser
+  // What a run tells the view that it starts.
+  bool plays_when_seen = false;
+  bool while_watched = false;       ///< ends when the server has ended and nobody looks any more
+  std::filesystem::path written{};  ///< recording that the server writes
+  std::string again{};              ///< what to type to run it again
 };
 
 constexpr std::uint16_t usual_port = 8080;
@@ -50,20 +60,48 @@ view::PageFiles page_or_warning(Log& log) {
   return page;
 }
 
-void say_where(const ViewCommand& command, const view::WebOptions& options, std::uint16_t port) {
+std::string say_where(const ViewCommand& command, const view::WebOptions& options, std::uint16_t port) {
   const std::string host = command.network == "0.0.0.0" ? "127.0.0.1" : command.network;
   const std::string token = options.token.empty() ? "" : "#token=" + options.token;
-  std::printf("http://%s:%u/%s\n", host.c_str(), static_cast<unsigned>(port), token.c_str());
+  std::string address = fmt::format("http://{}:{}/{}", host, port, token);
+  std::printf("%s\n", address.c_str());
   std::fflush(stdout);
+  return address;
 }
 
-void serve_until(view::WebServer& server, view::Source& source, const std::atomic<bool>& stop) {
-  std::jthread watch([&](const std::stop_token& is_over) {
-    while (!stop && !is_over.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+// The browser is the user's: in a session of its own it stays when this ends, and it is not waited for.
+void open_browser(const std::string& address, Log& log) {
+  const std::string script = "command -v xdg-open > /dev/null && { setsid xdg-open \"$0\" > /dev/null 2>&1 & }";
+  if (run_program({"sh", "-c", script, address}, "/").exit_code != 0)
+    log.warning("no browser was opened, since there is no xdg-open here: open " + address + " yourself");
+}
+
+// `is_over`, which is asked now and then: nobody needs it any more.
+void serve_until(view::WebServer& server, view::Source& source, const std::atomic<bool>& stop,
+                 const std::function<bool()>& is_over) {
+  std::jthread watch([&](const std::stop_token& has_ended) {
+    while (!stop && !has_ended.stop_requested() && !is_over())
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
     server.stop();
   });
   server.run(source);
 }
+
+// Whether nobody has looked for a while: a page that is loaded again is gone only for a moment.
+class Desertion {
+ public:
+  explicit Desertion(const view::Topics& topics) : topics_(topics) {}
+  bool is_complete() {
+    constexpr std::chrono::seconds moment{2};
+    const auto now = std::chrono::steady_clock::now();
+    if (topics_.is_read()) seen_at_ = now;
+    return !seen_at_ || now - *seen_at_ > moment;
+  }
+
+ private:
+  const view::Topics& topics_;
+  std::optional<std::chrono::steady_clock::time_point> seen_at_;
+};
 
 std::unique_ptr<view::WebServer> listen(const ViewCommand& command, view::WebOptions options, Log& log,
                                         view::Topics& topics) {
@@ -80,7 +118,7 @@ std::unique_ptr<view::WebServer> listen(const ViewCommand& command, view::WebOpt
 // `make_source` makes what publishes to its topics.
 template <class MakeSource>
 int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
-          MakeSource make_source) {
+          MakeSource make_source, const std::function<bool()>& has_ended = {}) {
   view::WebServer* published_to = nullptr;
   view::Topics topics([&] {
     if (published_to != nullptr) published_to->published();
@@ -89,18 +127,22 @@ int serve(const ViewCommand& command, const std::string& name, Log& log, const s
   const auto server = listen(command, options, log, topics);
   published_to = server.get();
   const auto source = make_source(topics);
-  say_where(command, options, server->port());
-  serve_until(*server, *source, stop);
+  const std::string address = say_where(command, options, server->port());
+  if (command.opens) open_browser(address, log);
+  Desertion desertion(topics);
+  serve_until(*server, *source, stop, [&] { return desertion.is_complete() && has_ended && has_ended(); });
   return stop ? exit_interrupted : exit_ok;
+}
+
+unsigned threads_of(const ViewCommand& command) {
+  return command.threads == 0 ? std::max(1u, std::thread::hardware_concurrency()) : command.threads;
 }
 
 int view_recording(const ViewCommand& command, Log& log, const std::atomic<bool>& stop) {
   const recording::Recording recording(command.recording);
   if (!recording.damage().empty()) log.warning(recording.damage());
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  const unsigned threads = command.threads == 0 ? cores : command.threads;
   return serve(command, recording.file().filename().string(), log, stop, [&](view::Topics& topics) {
-    return std::make_unique<view::RecordingSource>(recording, topics, threads);
+    return std::make_unique<view::RecordingSource>(recording, topics, threads_of(command));
   });
 }
 
@@ -111,9 +153,18 @@ int view_server(const ViewCommand& command, Log& log, const std::atomic<bool>& s
                                .secure = command.connection.secure.string(),
                                .secure_control = command.secure_control.string(),
                                .secure_drive = secure_drive.string(),
-                               .may_control = command.may_control};
-  return serve(command, "Cohort at " + command.connection.server, log, stop,
-               [&](view::Topics& topics) { return std::make_unique<view::LiveSource>(live, topics); });
+                               .may_control = command.may_control,
+                               .plays_when_seen = command.plays_when_seen,
+                               .again = command.again};
+  view::FollowedRun* followed = nullptr;
+  return serve(
+      command, "Cohort at " + command.connection.server, log, stop,
+      [&](view::Topics& topics) {
+        auto source = std::make_unique<view::FollowedRun>(live, command.written, threads_of(command), topics);
+        followed = source.get();
+        return source;
+      },
+      [&] { return command.while_watched && followed->has_ended(); });
 }
 
 }  // namespace
@@ -130,6 +181,15 @@ Subcommand add_view(CommandLine app) {
   line.add_option("--secure-drive", command->secure_drive,
                   "Folder of the identity that drives robots from the page (default: that of --secure-control)")
       .type_name("DIR");
+  line.add_flag("--open", command->opens, "Open it in a browser");
+  line.add_flag("--play-when-seen", command->plays_when_seen,
+                "Let a run that begins paused go on as soon as somebody looks");
+  line.add_flag("--while-watched", command->while_watched, "End when the server has ended and nobody looks any more");
+  line.add_option("--written", command->written, "Recording that the server writes, to show when it has ended")
+      .excludes(recording)
+      .type_name("FILE");
+  line.add_option("--again", command->again, "What to type to run it again, for who looks when it has ended")
+      .type_name("TEXT");
   line.add_option("--port", command->port, "Where browsers find it (default: 8080, or any free one if that is taken)")
       .check(whole_number(0, std::numeric_limits<std::uint16_t>::max()))
       .type_name("N");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -47,6 +48,10 @@ class Topics {
   void add_reader(Topic topic);
   void remove_reader(Topic topic);
   bool is_read(Topic topic) const { return readers_[index_of(topic)] > 0; }
+  /// Any of them.
+  bool is_read() const {
+    return std::ranges::any_of(readers_, [](int readers) { return readers > 0; });
+  }
   /// Higher each time a topic gets a reader.
   std::uint64_t arrivals() const { return arrivals_; }
 

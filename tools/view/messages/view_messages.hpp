@@ -24,6 +24,13 @@ struct ViewStatus {
   std::int64_t seekable_to_ns = 0;
   std::string note{};                  ///< what keeps it from going on; empty if nothing does
   std::vector<std::string> awaited{};  ///< robots
+  /// `waiting` for a server; `gathering`: for controllers, before the first tick; `running`; `ended`; `gone`: the
+  /// server is, without a word.
+  std::string phase = "running";
+  std::string end{};        ///< how it ended: `finished`, `interrupted`, `failed`, `shut_down`
+  std::string end_text{};   ///< why
+  std::string to_type{};    ///< what to type in a shell now: to attach a controller, or to run it again
+  std::string recording{};  ///< name of the file that `replay` shows in its place
   static constexpr const char* type = "cohort_msgs/msg/ViewStatus";
   static constexpr auto fields = std::tuple(
       field("source", &ViewStatus::source), field("name", &ViewStatus::name),
@@ -33,7 +40,9 @@ struct ViewStatus {
       field("time_ns", &ViewStatus::time_ns), field("begin_ns", &ViewStatus::begin_ns),
       field("end_ns", &ViewStatus::end_ns), field("seekable_from_ns", &ViewStatus::seekable_from_ns),
       field("seekable_to_ns", &ViewStatus::seekable_to_ns), field("note", &ViewStatus::note),
-      field("awaited", &ViewStatus::awaited));
+      field("awaited", &ViewStatus::awaited), field("phase", &ViewStatus::phase), field("end", &ViewStatus::end),
+      field("end_text", &ViewStatus::end_text), field("to_type", &ViewStatus::to_type),
+      field("recording", &ViewStatus::recording));
 };
 
 /// Something that happened, perhaps more than once.

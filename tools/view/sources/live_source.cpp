@@ -51,7 +51,7 @@ LiveSource::LiveSource(const LiveOptions& options, Topics& topics)
                     {[this](const wire::SceneDescription& each, const wire::Sender&) { on_scene(each); }, {}}, "view"),
       updates_(participant_, {[this](const wire::SceneUpdate& each, const wire::Sender&) { on_update(each); }, {}},
                "view") {
-  show_status(blank_status());
+  show_status(status_without_run());
   shower_ = std::thread([this] { show_what_arrives(); });
   steward_ = std::thread([this] { serve_requests(); });
 }
@@ -96,7 +96,7 @@ void LiveSource::show_what_arrives() {
     try {
       show(arrived);
     } catch (const recording::CdrError& error) {
-      ViewStatus status = blank_status();
+      ViewStatus status = status_without_run();
       status.note =
           std::string("what the server shows cannot be read, perhaps since it is of another version: ") + error.what();
       show_status(status);
@@ -107,9 +107,15 @@ void LiveSource::show_what_arrives() {
 void LiveSource::show(Arrived& arrived) {
   if (arrived.scene) {
     auto scene = recording::decode<viewing::Scene>(*arrived.scene);
+    if (!scene.end.empty()) {
+      arrived.scene.reset();
+      show(arrived);  // the last picture may have come with it
+      return end({std::move(scene.end), std::move(scene.end_text)});
+    }
     links_ = viewing::check_scene(scene);
     revision_ = scene.revision;
     publisher_.show_as_it_is(std::move(scene), time_);
+    begin();
   }
   if (!arrived.has_update) {
     if (arrived.has_other_watched || arrivals_ != topics_.arrivals()) show_extras();
@@ -126,6 +132,22 @@ void LiveSource::show(Arrived& arrived) {
   contacts_ = std::move(arrived.contacts);
   robots_ = std::move(arrived.robots);
   show_extras();
+}
+
+void LiveSource::begin() {
+  const std::lock_guard lock(mutex_);
+  end_.reset();
+  has_ended_ = false;
+}
+
+// What was shown last stays.
+void LiveSource::end(End how) {
+  {
+    const std::lock_guard lock(mutex_);
+    end_ = std::move(how);
+  }
+  show_status(status_without_run());
+  has_ended_ = true;
 }
 
 void LiveSource::show_extras() {
@@ -187,7 +209,7 @@ void LiveSource::serve_requests() {
         has_server_ = client.wait_for_server(for_a_server, is_stopping_);
         if (!has_server_) {
           answer_all(no_server);
-          show_status(blank_status());
+          show_status(status_without_run());
           continue;
         }
         std::optional<ReceivedRequest> asked;
@@ -202,10 +224,11 @@ void LiveSource::serve_requests() {
         if (asked) asked->answer(done(client, asked->request));
         if (!is_stopping_) ask_status(client);
         if (!is_stopping_) ask_history(client);
+        if (!is_stopping_) play_if_seen(client);
       }
     } catch (const std::exception& error) {
       has_server_ = false;
-      ViewStatus status = blank_status();
+      ViewStatus status = status_without_run();
       status.note = error.what();
       show_status(status);
       std::unique_lock lock(requests_mutex_);
@@ -258,21 +281,52 @@ void LiveSource::answer_all(const std::string& text) {
   for (const ReceivedRequest& each : asked) each.answer({false, text});
 }
 
-ViewStatus LiveSource::blank_status() const {
+void LiveSource::play_if_seen(ControlClient& client) {
+  if (!options_.plays_when_seen || has_played_ || !publisher_.is_read(Topic::frame)) return;
+  const auto reply = client.ask(request_of({.operation = "play"}), for_a_reply, is_stopping_);
+  has_played_ = reply && reply->is_done();
+}
+
+// There is none yet, or none any more.
+ViewStatus LiveSource::status_without_run() {
   ViewStatus status;
   status.source = "server";
   status.name = options_.server + ", domain " + std::to_string(options_.domain);
   status.may_control = options_.may_control;
-  status.note = "waiting for a server";
+  status.phase = "waiting";
+  const std::lock_guard lock(mutex_);
+  if (had_run_) {
+    status.name = run_.experiment;
+    status.time_ns = time_.count();
+    status.end_ns = run_.duration_ns;
+    if (!has_server_) status.phase = "gone";
+  }
+  if (end_) {
+    status.phase = "ended";
+    status.end = end_->how;
+    status.end_text = end_->why;
+  }
+  const bool is_over = status.phase != "waiting";
+  has_ended_ = is_over;
+  status.to_type = is_over ? options_.again : "cohort run EXPERIMENT --domain " + std::to_string(options_.domain);
+  if (is_over) status.recording = options_.recording;
   return status;
+}
+
+// Any controller does; this one everybody has.
+std::string LiveSource::to_attach(const std::string& robot) const {
+  std::string line = "cohort teleop --robots " + robot + " --domain " + std::to_string(options_.domain);
+  if (options_.server != LiveOptions().server) line += " --server " + options_.server;
+  return line;
 }
 
 void LiveSource::ask_status(ControlClient& client) {
   const auto reply = client.ask({.operation = wire::Operation::get_status}, for_a_reply, is_stopping_);
-  ViewStatus status = blank_status();
+  ViewStatus status = status_without_run();
   if (reply && !reply->status.empty()) {
     const wire::SimulationStatus& run = reply->status.front();
     status.name = run.experiment;
+    status.phase = run.started ? "running" : "gathering";
     status.is_playing = reply->state == SimulationState::playing;
     status.speed = run.speed;
     status.real_time_factor = run.real_time_factor;
@@ -282,12 +336,14 @@ void LiveSource::ask_status(ControlClient& client) {
     status.loses_what_follows = true;
     status.seekable_from_ns = history_.first_kept().count();
     status.seekable_to_ns = reply->time_ns;
-    status.note = run.started ? "" : "controllers are missing";
     constexpr auto noticeable = 500ms;
     if (!run.started || std::chrono::nanoseconds(run.waiting_ns) > noticeable) status.awaited = run.awaited;
-    run_ = run;
+    status.to_type = run.started || run.awaited.empty() ? "" : to_attach(run.awaited.front());
     run_time_ = std::chrono::nanoseconds(reply->time_ns);
-  } else {
+    const std::lock_guard lock(mutex_);
+    run_ = run;
+    had_run_ = true;
+  } else if (status.phase == "waiting") {
     status.note = reply ? "there is no run" : "the server does not answer";
   }
   show_status(status);

@@ -25,6 +25,9 @@ struct LiveOptions {
   std::string secure_control{};  ///< folder of an identity that may control
   std::string secure_drive{};    ///< and of one that may drive robots
   bool may_control = false;
+  bool plays_when_seen = false;  ///< a run that begins paused goes on as soon as somebody looks
+  std::string again{};           ///< what to type to run it again, for who looks when it has ended
+  std::string recording{};       ///< name of the file that it writes; empty: none
 };
 
 /// Shows a running server, as any observer may. Requests, if it may control: `play`, `pause`, `step`, `speed`, `reset`,
@@ -41,6 +44,8 @@ class LiveSource final : public Source {
   void ask(const ViewRequest& request, std::function<void(const Answer&)> answer) override;
   void watch(const std::vector<std::uint32_t>& robots) override;
   void leave(std::uint64_t visitor) override;
+  /// The server has said that there will be no further run, or is gone after one. Any thread.
+  bool has_ended() const { return has_ended_; }
 
  private:
   using Bytes = recording::Bytes;
@@ -56,11 +61,16 @@ class LiveSource final : public Source {
     bool has_update = false;
     bool has_other_watched = false;  // robots
   };
+  struct End {
+    std::string how, why;
+  };
 
   void on_scene(const wire::SceneDescription& description);
   void on_update(const wire::SceneUpdate& update);
   void show_what_arrives();
   void show(Arrived& arrived);
+  void begin();
+  void end(End how);
   void show_extras();
   void show_robots();
   void serve_requests();
@@ -68,16 +78,19 @@ class LiveSource final : public Source {
   Answer gone_back(ControlClient& client, std::chrono::nanoseconds time);
   void ask_status(ControlClient& client);
   void ask_history(ControlClient& client);
+  void play_if_seen(ControlClient& client);
   void answer_all(const std::string& text);
   void drive(const ViewRequest& request, std::function<void(const Answer&)> answer);
   void show_status(const ViewStatus& status);
-  ViewStatus blank_status() const;
+  ViewStatus status_without_run();
+  std::string to_attach(const std::string& robot) const;
 
   const LiveOptions options_;
   Topics& topics_;
   ScenePublisher publisher_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<bool> has_server_{false};  // that can be controlled
+  std::atomic<bool> has_ended_{false};
   Drivers drivers_;
 
   std::mutex mutex_;
@@ -85,6 +98,9 @@ class LiveSource final : public Source {
   Arrived arrived_;
   std::vector<std::uint32_t> watched_;
   std::chrono::nanoseconds time_{0};  // simulated
+  std::optional<End> end_;            // of the last run, if there will be no further one
+  wire::SimulationStatus run_;        // as the server said it last; had_run_ if it has
+  bool had_run_ = false;
 
   std::mutex requests_mutex_;
   std::condition_variable requests_changed_;
@@ -101,7 +117,7 @@ class LiveSource final : public Source {
   std::size_t links_ = 0;
   // Of the thread that serves requests: what the server said last.
   LiveHistory history_;
-  wire::SimulationStatus run_;
+  bool has_played_ = false;
   std::chrono::nanoseconds run_time_{0};
   std::thread shower_;
   std::thread steward_;

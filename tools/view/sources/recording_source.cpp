@@ -222,8 +222,7 @@ bool RecordingSource::advance() {
 void RecordingSource::show_scene() {
   const Simulation& simulation = replay_.simulation();
   is_new_world_ = false;
-  const std::uint32_t revision =
-      publisher_.show(viewing::SceneMaker(simulation, 0).scene(replay_.experiment().teams), log_time_);
+  const std::uint32_t revision = publisher_.show(viewing::SceneMaker(simulation, 0).scene(), log_time_);
   maker_.emplace(simulation, revision);
 }
 

@@ -98,7 +98,12 @@ void check_entries(const Contents& contents, const FileBytes& file, std::uint64_
 void check_magic(const FileBytes& file) {
   Bytes bytes = file.read(0, std::min<std::uint64_t>(file.size(), mcap_magic.size()));
   if (is_magic(bytes)) return;
-  const std::string found = bytes.empty() ? "the file is empty" : "the file begins otherwise";
+  const bool is_text =
+      std::ranges::all_of(bytes, [](std::byte byte) { return byte < std::byte{0x80} && byte != std::byte{0}; });
+  const std::string found = bytes.empty() ? "the file is empty"
+                            : is_text     ? "the file is a text. If it is an experiment, 'cohort run " +
+                                            file.path().filename().string() + " --record run.mcap' records it"
+                                      : "the file begins otherwise";
   file.at(0).fail("this is no MCAP file: it should begin with the bytes 89 4D 43 41 50 30 0D 0A; " + found);
 }
 

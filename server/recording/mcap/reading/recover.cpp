@@ -94,7 +94,7 @@ Statistics write(const FileBytes& source, Scan& scan, const std::filesystem::pat
   const auto telling = [](const auto& act) {
     try {
       act();
-    } catch (const std::runtime_error& error) {
+    } catch (const WriteError& error) {
       throw FileError(error.what());
     }
   };

@@ -13,6 +13,8 @@ class ByteStore {
   ByteStore& operator=(const ByteStore&) = delete;
   virtual ~ByteStore() = default;
 
+  /// For messages.
+  virtual std::string name() const { return "the recording"; }
   /// All of them; if it throws, maybe some.
   virtual void write(ByteView bytes) = 0;
   /// Forgets what was written after the first `size` bytes.

@@ -6,26 +6,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
+#include <utility>
 
 #include "server/recording/mcap/format/mcap_error.hpp"
 
 namespace cohort::recording {
 namespace {
-
-std::string advice(int error) {
-  switch (error) {
-    case ENOENT:
-    case ENOTDIR: return "; its folder has to be there";
-    case EACCES:
-    case EPERM:
-    case EROFS: return "; record to a folder that you may write to";
-    case ENOSPC:
-    case EDQUOT: return "; free some space there, or record to another disk";
-    case EFBIG: return "; raise the limit of file sizes (ulimit -f), or record to another file system";
-    default: return "";
-  }
-}
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& reason) {
   throw FileError("the recording " + path.string() + " cannot be written: " + reason);
@@ -35,23 +21,50 @@ constexpr const char* is_taken = "another process is recording to it";
 
 }  // namespace
 
-void DiskFile::fail(int error) const { refuse(path_, std::generic_category().message(error) + advice(error)); }
+void DiskFile::fail(int error) const { refuse(path_, why_not_written(error)); }
 
 DiskFile::DiskFile(std::filesystem::path path) : path_(std::move(path)) {
   // Not blocking, so that a pipe that nobody reads from is refused below.
   descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
   if (descriptor_ < 0) fail(errno);
-  struct stat status {};
-  std::string reason;
-  if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) reason = "it is no file";
-  if (reason.empty() && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) reason = is_taken;
-  if (reason.empty() && ftruncate(descriptor_, 0) != 0) reason = std::generic_category().message(errno);
-  if (reason.empty()) return;
-  close(descriptor_);
-  refuse(path_, reason);
+  try {
+    struct stat status {};
+    if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) refuse(path_, "it is no file");
+    lock();
+    struct stat now {};
+    if (stat(path_.c_str(), &now) == 0 && now.st_ino != status.st_ino) refuse(path_, is_taken);  // just replaced
+    if (status.st_size > 0) write_beside();
+  } catch (...) {
+    close_all();
+    throw;
+  }
 }
 
-DiskFile::~DiskFile() { close(descriptor_); }
+DiskFile::~DiskFile() { close_all(); }
+
+void DiskFile::lock() const {
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) refuse(path_, is_taken);
+}
+
+void DiskFile::close_all() {
+  for (int* const descriptor : {&descriptor_, &replaced_})
+    if (*descriptor >= 0) close(std::exchange(*descriptor, -1));
+}
+
+// What is there stays, and stays locked, until something of this recording is on the disk.
+void DiskFile::write_beside() {
+  try {
+    beside_.emplace("the recording", std::filesystem::canonical(path_));
+  } catch (const WriteError& error) {
+    throw FileError(error.what());
+  }
+  if (std::filesystem::equivalent(beside_->path(), path_))  // nothing can take its place: it is empty now
+    return beside_.reset();
+  const int beside = open(beside_->path().c_str(), O_WRONLY | O_CLOEXEC);
+  if (beside < 0) fail(errno);
+  replaced_ = std::exchange(descriptor_, beside);
+  lock();
+}
 
 void DiskFile::write(ByteView bytes) {
   while (!bytes.empty()) {
@@ -68,7 +81,19 @@ void DiskFile::cut_off(std::uint64_t size) {
 }
 
 void DiskFile::sync() {
+  const std::lock_guard lock(mutex_);
   if (fdatasync(descriptor_) != 0) fail(errno);
+  if (has_its_name_) return;
+  if (beside_) {
+    try {
+      beside_->commit();
+    } catch (const WriteError& error) {
+      throw FileError(error.what());
+    }
+  } else if (const int error = sync_folder_of(path_); error != 0) {
+    fail(error);
+  }
+  has_its_name_ = true;
 }
 
 void check_not_being_written(const std::filesystem::path& path) {

@@ -89,7 +89,13 @@ void McapWriter::write_message(ChannelId channel, std::uint32_t sequence, Timest
   MessageIndex& index = message_indexes_[channel];
   index.channel = channel;
   index.entries.push_back({log_time, chunk_.size()});
-  append(chunk_, Message{{channel, sequence, log_time, publish_time}, data});
+  try {
+    append(chunk_, Message{{channel, sequence, log_time, publish_time}, data});
+  } catch (const std::bad_alloc&) {  // without a part of it
+    chunk_.resize(index.entries.back().offset);
+    index.entries.pop_back();
+    throw;
+  }
   chunk_start_ = pending_messages_ == 0 ? log_time : std::min(chunk_start_, log_time);
   chunk_end_ = pending_messages_ == 0 ? log_time : std::max(chunk_end_, log_time);
   ++pending_messages_;

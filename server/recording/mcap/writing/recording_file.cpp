@@ -19,6 +19,7 @@ constexpr std::size_t block_size = 256U << 10U;
 constexpr std::size_t wake_size = 512U << 10U;  // so much waits before the writer is woken early
 constexpr std::size_t most_spare = 16;
 constexpr int writer_niceness = 10;
+constexpr const char* no_memory = "there is no memory for what is to be recorded";
 
 // What stands before each message in a block, or in its place.
 struct Entry {
@@ -53,7 +54,7 @@ RecordingFile::RecordingFile(const std::filesystem::path& path, RecordingOptions
 RecordingFile::RecordingFile(std::shared_ptr<ByteStore> store, RecordingOptions options)
     : options_(std::move(options)),
       store_(std::move(store)),
-      writer_([this](ByteView bytes) { store_->write(bytes); }, options_.mcap) {
+      writer_([this](ByteView bytes) { write(bytes); }, options_.mcap) {
   sync_thread_ = quiet_thread([this] { sync_now_and_then(); });
   try {
     writer_thread_ = quiet_thread([this] {
@@ -68,6 +69,17 @@ RecordingFile::RecordingFile(std::shared_ptr<ByteStore> store, RecordingOptions 
 }
 
 RecordingFile::~RecordingFile() { close(); }
+
+// What fails once is tried once more: the run goes on, and cannot be had again.
+void RecordingFile::write(ByteView bytes) {
+  try {
+    store_->write(bytes);
+  } catch (const FileError&) {
+    store_->cut_off(size_);
+    store_->write(bytes);
+  }
+  size_ += bytes.size();
+}
 
 RecordingFile::Block& RecordingFile::block_for(std::size_t size) {
   if (!queue_.empty() && queue_.back().bytes.capacity() - queue_.back().bytes.size() >= size) return queue_.back();
@@ -96,6 +108,31 @@ void RecordingFile::add_entry(const MessageHead& head, std::uint64_t size, bool 
   if (is_first || (before < wake_size && queued_ >= wake_size)) wake_.notify_one();
 }
 
+// Under the lock.
+void RecordingFile::end(const std::string& why) {
+  if (!error_.empty()) return;
+  error_ = store_->name() + " ends early: " + why + ". What was recorded before is whole";
+  is_closing_ = true;
+  wake_.notify_one();
+}
+
+void RecordingFile::end_early(const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  end(why);
+}
+
+// Under the lock. False if there is no memory for it, which ends the recording and nothing else.
+template <class Add>
+bool RecordingFile::is_added(const Add& add) {
+  try {
+    add();
+    return true;
+  } catch (const std::bad_alloc&) {
+    end(no_memory);
+    return false;
+  }
+}
+
 bool RecordingFile::write_message(ChannelId channel, std::uint32_t sequence, Timestamp log_time, Timestamp publish_time,
                                   ByteView data, Importance importance) noexcept {
   const std::lock_guard lock(mutex_);
@@ -105,20 +142,18 @@ bool RecordingFile::write_message(ChannelId channel, std::uint32_t sequence, Tim
     return false;
   }
   if (queued_ + data.size() > options_.most_essential_queued) {
-    error_ =
-        std::to_string(queued_ >> 20U) + " MiB wait to be written, and more may not. What was recorded before is whole";
-    is_closing_ = true;
-    wake_.notify_one();
+    end(std::to_string(queued_ >> 20U) + " MiB wait to be written, and more may not");
     return false;
   }
-  add_entry({channel, sequence, log_time, publish_time}, data.size(), false, data);
-  return true;
+  return is_added([&] { add_entry({channel, sequence, log_time, publish_time}, data.size(), false, data); });
 }
 
 void RecordingFile::add_call(Call call, std::size_t bytes) {
   if (is_closing_ || !error_.empty()) return;
-  add_entry({}, bytes, true, {});
-  queue_.back().calls.push_back(std::move(call));
+  is_added([&] {
+    add_entry({}, bytes, true, {});
+    queue_.back().calls.push_back(std::move(call));
+  });
 }
 
 SchemaId RecordingFile::add_schema(std::string name, std::string encoding, std::string data) noexcept {
@@ -274,28 +309,50 @@ void RecordingFile::release(Block block) {
   if (block.bytes.capacity() == block_size && spare_.size() < most_spare) spare_.push_back(std::move(block));
 }
 
+// Closes what is there: with the chunk that was begun, if that can be written now, or without it.
 void RecordingFile::give_up(const std::exception& reason) {
-  std::string text = reason.what();
-  std::string rest = "can be read as far as it goes, and 'cohort recover' closes it";
-  try {
-    store_->cut_off(writer_.size());
-    writer_.discard_chunk();
-    writer_.close();
-    store_->finish();
-    rest = "is closed and can be read";
-  } catch (const std::exception&) {
-    try {
-      store_->cut_off(writer_.size());
-    } catch (const std::exception& cut) {
-      rest += " (" + std::string(cut.what()) + ")";
-    }
+  const bool lacks_memory = dynamic_cast<const std::bad_alloc*>(&reason) != nullptr;
+  const std::string text = lacks_memory ? store_->name() + " ends early: " + no_memory : reason.what();
+  std::string rest;
+  for (const bool with_chunk : {true, false}) {
+    rest = is_closed_up(with_chunk);
+    if (rest.empty()) break;
   }
+  if (rest.empty())
+    rest = "is closed and can be read";
+  else if (writer_.statistics().message_count > 0)
+    rest = "can be read as far as it goes, and 'cohort recover' closes it" + keep_unclosed();
+  else
+    rest = "is not worth a file: what was there before is left as it was";
   const std::lock_guard lock(mutex_);
   error_ =
       text + ". What was recorded before (" + std::to_string(writer_.statistics().message_count) + " messages) " + rest;
   queue_.clear();
   spare_.clear();
   queued_ = 0;
+}
+
+// Nothing, or why it cannot be.
+std::string RecordingFile::is_closed_up(bool with_chunk) {
+  try {
+    store_->cut_off(size_);
+    if (!with_chunk) writer_.discard_chunk();
+    writer_.close();
+    store_->finish();
+    return "";
+  } catch (const std::exception& problem) {
+    return problem.what();
+  }
+}
+
+std::string RecordingFile::keep_unclosed() {
+  try {
+    store_->cut_off(size_);
+    store_->finish();
+    return "";
+  } catch (const std::exception& problem) {
+    return " (" + std::string(problem.what()) + ")";
+  }
 }
 
 // A thread of its own: while the disk is slow, chunks go on to the operating system.

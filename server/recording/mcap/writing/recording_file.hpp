@@ -32,8 +32,9 @@ struct RecordingOptions {
 /// writing it takes has been given to the operating system, so that a killed process loses no more; once a second the
 /// disk is told to have it.
 ///
-/// After the constructor nothing throws. If writing fails, the chunk that could not be written whole is cut off, the
-/// file is closed if there is room for its summary, everything later is ignored, and `error` says what happened.
+/// After the constructor nothing throws. What cannot be written is tried once more. If that fails too, or there is no
+/// memory, the chunk that could not be written whole is cut off, the file is closed if there is room for its summary,
+/// everything later is ignored, and `error` says what happened.
 ///
 /// Any thread; what different threads write stands in the file in the order of the calls.
 class RecordingFile {
@@ -57,6 +58,9 @@ class RecordingFile {
   /// Copies the message; false if it was dropped.
   bool write_message(ChannelId channel, std::uint32_t sequence, Timestamp log_time, Timestamp publish_time,
                      ByteView data, Importance importance) noexcept;
+
+  /// What was written until now is all of it: `error` says why.
+  void end_early(const std::string& why);
 
   /// Display messages that were dropped, by channel.
   std::map<ChannelId, std::uint64_t> dropped() const;
@@ -82,6 +86,10 @@ class RecordingFile {
     std::vector<Call> calls;
   };
 
+  void write(ByteView bytes);
+  void end(const std::string& why);
+  template <class Add>
+  bool is_added(const Add& add);
   void add_call(Call call, std::size_t bytes);
   void add_entry(const MessageHead& head, std::uint64_t size, bool is_call, ByteView data);
   Block& block_for(std::size_t size);
@@ -92,12 +100,15 @@ class RecordingFile {
   void ask_for_sync();
   void release(Block block);
   void give_up(const std::exception& reason);
+  std::string is_closed_up(bool with_chunk);
+  std::string keep_unclosed();
   void sync_now_and_then();
   void stop_syncing();
 
   RecordingOptions options_;
   std::shared_ptr<ByteStore> store_;
-  McapWriter writer_;  // of the writer's thread, once that runs
+  std::uint64_t size_ = 0;  // of what was written, of the writer's thread like the next, once that runs
+  McapWriter writer_;
 
   mutable std::mutex mutex_;  // guards all below up to the next line
   std::condition_variable wake_;

@@ -214,7 +214,7 @@ int ctl(const CtlCommand& command, Log& log, const std::atomic<bool>& stop) {
     return one.run();
   } catch (const std::exception& error) {
     if (stop) return exit_interrupted;
-    log.error(error.what());
+    log.error(text_of(error));
     return exit_failed;
   }
 }

@@ -136,11 +136,12 @@ void add_time_commands(Requests& requests, CtlCommand& command) {
 
 void add_world_commands(Requests& requests, CtlCommand& command) {
   wire::Request& request = command.request;
-  CommandLine spawn = requests.add("spawn", "Add an object to the world", Operation::spawn_entity);
+  CommandLine spawn = requests.add("spawn", "Add an object or a robot to the world", Operation::spawn_entity);
   spawn.add_option("MODEL", command.model, "A model of the world, or a file with one (.sdf, .urdf, .yaml)")
       .required()
       .type_name("");
   spawn.add_option("--name", request.entity, "Its name in the world").required().type_name("NAME");
+  spawn.add_option("--team", request.filter, "That a robot joins, where several could be meant").type_name("NAME");
   spawn.add_flag("--rename", request.allow_renaming, "Take another name where this one is taken");
   requests.add_pose(spawn).required();
   CommandLine remove = requests.add("remove", "Take an object out of the world", Operation::delete_entity);

@@ -57,6 +57,7 @@ function playbackCommands({ connection, timeBar }: Parts): Command[] {
   return [
     plain("play", "goes on"),
     plain("pause", "stands still"),
+    plain("replay", "shows the recording of a run that has ended"),
     command("step [TICKS]", "goes on by ticks, one if none is said; back where seek can", ([ticks]) =>
       ask(connection, { operation: "step", number: ticks === undefined ? 1 : numberOf(ticks, "a number of ticks") }),
     ),

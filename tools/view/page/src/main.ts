@@ -8,6 +8,7 @@ import { Driving } from "./driving";
 import { element } from "./element";
 import { seconds, type ViewEvent, type ViewStatus } from "./messages";
 import { Objects } from "./objects";
+import { PhaseCard } from "./phase_card";
 import { clockText, TimeBar } from "./time_bar";
 import { Viewer } from "./viewer";
 
@@ -35,6 +36,7 @@ const timeBar = new TimeBar({
   speed: (factor) => void connection.ask({ operation: "speed", number: factor }),
 });
 
+const phaseCard = new PhaseCard(() => void consolePanel.run("replay"));
 const connection: Connection = new Connection(
   addressOfServer(location),
   {
@@ -62,7 +64,7 @@ const connection: Connection = new Connection(
     "/cohort/events": ({ events }) => showEvents(events),
   },
   (isConnected) => {
-    element("lost").hidden = isConnected;
+    phaseCard.connect(isConnected);
     if (isConnected && viewer.selected !== undefined) viewer.select(viewer.selected);
   },
 );
@@ -75,6 +77,7 @@ for (const command of [...driving.consoleCommands(), ...objects.consoleCommands(
 
 function showStatus(status: ViewStatus): void {
   timeBar.take(status);
+  phaseCard.take(status);
   document.body.classList.toggle("is-server", status.source === "server");
   element("name").textContent = status.name;
   document.title = `${status.name} · Cohort`;

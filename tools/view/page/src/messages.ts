@@ -134,6 +134,11 @@ export interface ViewStatus {
   seekable_to_ns: bigint;
   note: string;
   awaited: string[];
+  phase: "waiting" | "gathering" | "running" | "ended" | "gone";
+  end: string;
+  end_text: string;
+  to_type: string;
+  recording: string;
 }
 export interface ViewEvent {
   time_ns: bigint;

@@ -1,0 +1,56 @@
+#include <cstdio>
+
+#include "server/description/experiment.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/simulation/simulation.hpp"
+#include "tools/cohort/cli/installed_files.hpp"
+#include "tools/cohort/cli/wording.hpp"
+#include "tools/cohort/commands/commands.hpp"
+#include "tools/cohort/commands/shared_options.hpp"
+#include "tools/cohort/models/model_facts.hpp"
+
+namespace cohort::tool {
+namespace {
+
+struct ShowCommand {
+  std::filesystem::path file;
+  double seconds = 0.0;  ///< simulated before it is shown
+  bool as_json = false;
+};
+
+int show(const ShowCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const description::Experiment experiment =
+      parsing::read_experiment(model_called(command.file), {}, {}, installed_model_folders());
+  if (!command.as_json) log.warnings(experiment.world.warnings);
+  Simulation simulation(experiment, 1);
+  const std::chrono::nanoseconds end = nanoseconds(command.seconds);
+  while (simulation.time() < end) {
+    if (stop) return exit_interrupted;
+    simulation.step();
+  }
+  const std::string text = command.as_json ? facts_as_json(simulation) : facts_as_text(simulation);
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) return exit_failed;
+  return exit_ok;
+}
+
+}  // namespace
+
+Subcommand add_models(CommandLine app) {
+  const auto command = std::make_shared<ShowCommand>();
+  CommandLine line = app.add_subcommand("models", "What models are made of, as Cohort reads them");
+  line.require_subcommand();
+  CommandLine of = line.add_subcommand("show", "Print links, masses, joints and limits of a model or a world");
+  of.add_option("FILE", command->file, "Model (SDF, URDF or YAML), world or experiment, or the name of a robot")
+      .required()
+      .type_name("");
+  of.add_flag("--json", command->as_json, "For programs: inertias, axes, poses and velocities too");
+  of.add_option("--after", command->seconds, "Simulated seconds before that; a model alone stands on a plane")
+      .check(number_from_zero(most_seconds))
+      .type_name("SECONDS");
+  add_allow_files_option(of);
+  of.footer("Example: cohort models show sbot --json --after 5");
+  line.footer("Example: cohort models show sbot");
+  return {line, [command](Log& log, const std::atomic<bool>& stop) { return show(*command, log, stop); }};
+}
+
+}  // namespace cohort::tool

@@ -1,0 +1,106 @@
+import { element } from "./element";
+import type { ViewStatus } from "./messages";
+import { clockText } from "./time_bar";
+
+interface Card {
+  title: string;
+  text: string;
+  toType?: string;
+  recording?: string;
+  isWrong?: boolean;
+}
+
+const ends: Record<string, string> = {
+  finished: "The run has finished",
+  interrupted: "The run was interrupted",
+  failed: "The run has failed",
+  shut_down: "The run was shut down",
+};
+
+/** What is to be said before a run, after it, and without a connection; nothing while it runs. */
+export function cardOf(status: ViewStatus | undefined, isConnected: boolean): Card | undefined {
+  const isOver = status?.phase === "ended" || status?.phase === "gone";
+  if (!isConnected && !isOver)
+    return {
+      title: "The connection is lost",
+      text: "The view has ended or cannot be reached. This page tries again by itself.",
+      isWrong: true,
+    };
+  if (!status) return undefined;
+  const at = clockText(Number(status.time_ns) * 1e-9);
+  const over = { toType: status.to_type, recording: isConnected ? status.recording : "" };
+  switch (status.phase) {
+    case "waiting":
+      return { title: "Waits for a server", text: `None is at ${status.name}. To start one:`, toType: status.to_type };
+    case "gathering": {
+      const [first, ...others] = status.awaited;
+      const more = others.length > 0 ? ` and ${others.length} more` : "";
+      const drive = status.may_control ? ", or select a robot and press drive" : "";
+      return {
+        title: "Waits for controllers",
+        text: `Nobody drives ${first ?? "the robots"}${more}. Start a controller${drive}, or in a shell:`,
+        toType: status.to_type,
+      };
+    }
+    case "ended":
+      return {
+        title: ends[status.end] ?? "The run has ended",
+        text: `At ${at}${status.end_text ? `: ${status.end_text}` : "."}`,
+        isWrong: status.end === "failed",
+        ...over,
+      };
+    case "gone":
+      return {
+        title: "The server is gone",
+        text: `At ${at}, without a word: it was killed, or cannot be reached.`,
+        isWrong: true,
+        ...over,
+      };
+    default:
+      return undefined;
+  }
+}
+
+/** Shows it over the picture, until whoever looks wants to see that. */
+export class PhaseCard {
+  private status: ViewStatus | undefined;
+  private isConnected = false;
+  private isFirst = true;
+  private closed = "";
+  private readonly panel = element("phase");
+
+  constructor(replay: () => void) {
+    element("replay").addEventListener("click", replay);
+    element("phase-close").addEventListener("click", () => {
+      this.closed = element("phase-title").textContent ?? "";
+      this.show();
+    });
+    element("copy").addEventListener("click", () => {
+      void navigator.clipboard?.writeText(element("to-type").textContent ?? "");
+    });
+  }
+
+  take(status: ViewStatus): void {
+    this.status = status;
+    this.show();
+  }
+  connect(isConnected: boolean): void {
+    if (this.isFirst && !isConnected) return;
+    this.isFirst = false;
+    this.isConnected = isConnected;
+    this.show();
+  }
+
+  private show(): void {
+    const card = cardOf(this.status, this.isConnected);
+    if (card?.title !== this.closed) this.closed = "";
+    this.panel.hidden = !card || this.closed !== "";
+    if (!card) return;
+    this.panel.classList.toggle("wrong", card.isWrong ?? false);
+    element("phase-title").textContent = card.title;
+    element("phase-text").textContent = card.text;
+    element("phase-type").hidden = !card.toType;
+    element("to-type").textContent = card.toType ?? "";
+    element("replay").hidden = !card.recording;
+  }
+}

@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "tests/support/control.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
@@ -81,12 +82,20 @@ TEST_F(Conformance, AClientMayStartBeforeItsServer) {
 }
 
 TEST_F(Conformance, AClientThatWantsARobotOfAnotherIsRefused) {
-  const auto server = serve(demo_experiment(), {"--duration", "5", "--speed", "2.5"});
+  const auto server = serve(demo_experiment(), {"--duration", "5", "--paused"});
   const auto first = start_foreign("all");
-  ASSERT_TRUE(first->wait_for_output("answered 100 frames")) << first->output();
+  control(domain, {"step", "100"});
   const auto second = start_foreign("explorers/sbot_1*");
+  // The first one shows that it lives when it answers.
+  EXPECT_TRUE(eventually(
+      [&] {
+        control(domain, {"step", "1"});
+        return !second->running();
+      },
+      patience, 100ms));
   EXPECT_EQ(second->wait_for_exit(), 1) << second->output();
   EXPECT_NE(second->output().find("refused: "), std::string::npos) << second->output();
+  control(domain, {"resume"});
   expect_end(*server, reference_hash(5));
   expect_finished(*first);
 }
@@ -123,11 +132,12 @@ TEST_F(Conformance, FramesAndAnswersThatAreLostAreSentAgainAndGiveTheSameBits) {
 }
 
 TEST_F(Conformance, AClientThatWasKilledAndStartedAgainGivesTheSameBits) {
-  const auto server = serve(demo_experiment(), {"--duration", "5", "--speed", "2.5"});
+  const auto server = serve(demo_experiment(), {"--duration", "5", "--paused"});
   const auto own = start_own("8..15");
   const auto killed = start_foreign("0..7");
-  ASSERT_TRUE(killed->wait_for_output("answered 200 frames")) << killed->output();
+  control(domain, {"step", "200"});
   killed->signal(SIGKILL);
+  control(domain, {"resume"});
   ASSERT_TRUE(server->wait_for_output("waiting for explorers/sbot_0 and 7 more")) << server->output();
   const auto again = start_foreign("0..7");
   expect_end(*server, reference_hash(5));

@@ -100,11 +100,18 @@ TEST_F(Container, ServerAndControllersInSeparateOnesGiveTheBitsOfOneProcess) {
 
 TEST_F(Container, ARunSurvivesTheKillingOfAControllersContainer) {
   Containers containers(*podman);
-  start_server(containers, {"--duration", "10", "--speed", "4", "--record", "run.mcap"});
+  start_server(containers, {"--duration", "10", "--paused", "--record", "run.mcap"});
   start_controller(containers, "red", "0..7");
   start_controller(containers, "blue", "8..15");
-  ASSERT_TRUE(reaches(containers, 100)) << containers.logs("server");
+  const auto control = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> command = {"cohort", "ctl", "--timeout", patience_in_seconds};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    const Ended ended = containers.execute("server", command);
+    ASSERT_EQ(ended.exit_code, 0) << ended.out << containers.logs("server");
+  };
+  control({"step", "100"});
   containers.kill("red");
+  control({"resume"});
   start_controller(containers, "red_again", "0..7");
   EXPECT_EQ(containers.wait("server"), 0);
   EXPECT_EQ(containers.wait("red"), 137);

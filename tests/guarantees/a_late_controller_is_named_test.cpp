@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "idl/wire.hpp"
+#include "tests/support/control.hpp"
 #include "tests/support/process.hpp"
 
 namespace cohort::test {
@@ -42,7 +43,7 @@ class DisturbedRun : public ::testing::Test {
 
   ReservedDomain domain;
   Process server{
-      {cohort_program(), "serve", demo_experiment(), "--duration", "10", "--speed", "5", "--domain", domain.text()},
+      {cohort_program(), "serve", demo_experiment(), "--duration", "10", "--paused", "--domain", domain.text()},
       {{"COHORT_LOG", "info"}}};
   Observer observer{domain.number()};
 };
@@ -50,8 +51,9 @@ class DisturbedRun : public ::testing::Test {
 TEST_F(DisturbedRun, AControllerKilledAndStartedAgainBringsTheRunToTheSameBits) {
   const auto steady = start_controllers("0..7");
   const auto killed = start_controllers("8..15");
-  ASSERT_TRUE(observer.wait_for_tick(200)) << server.output();
+  control(domain, {"step", "200"});
   killed->signal(SIGKILL);
+  control(domain, {"resume"});
   ASSERT_TRUE(server.wait_for_output("waiting for explorers/sbot_8 and 7 more")) << server.output();
   const std::uint64_t blocked_at = observer.tick();
   const auto restarted = start_controllers("8..15");
@@ -64,8 +66,9 @@ TEST_F(DisturbedRun, AControllerKilledAndStartedAgainBringsTheRunToTheSameBits) 
 TEST_F(DisturbedRun, AControllerStoppedForThreeSecondsBringsTheRunToTheSameBits) {
   const auto steady = start_controllers("0..7");
   const auto stopped = start_controllers("8..15");
-  ASSERT_TRUE(observer.wait_for_tick(200)) << server.output();
+  control(domain, {"step", "200"});
   stopped->signal(SIGSTOP);
+  control(domain, {"resume"});
   const auto stopped_at = std::chrono::steady_clock::now();
   EXPECT_TRUE(server.wait_for_output("waiting for explorers/sbot_8 and 7 more")) << server.output();
   std::this_thread::sleep_until(stopped_at + 3s);
@@ -76,12 +79,14 @@ TEST_F(DisturbedRun, AControllerStoppedForThreeSecondsBringsTheRunToTheSameBits)
 
 TEST(ALateControllerIsNamed, CohortRunStartsItsControllerAgainWhenItIsKilled) {
   const std::string expected = reference_hash(10);
-  Process run({cohort_program(), "run", demo_experiment(), "--duration", "10", "--speed", "2.5"});
+  const ReservedDomain domain;
+  Process run({cohort_program(), "run", demo_experiment(), "--duration", "10", "--paused", "--domain", domain.text()});
   eventually([&] { return !children_of(run.pid()).empty(); });
   const auto children = children_of(run.pid());
   ASSERT_EQ(children.size(), 1u);
-  ASSERT_TRUE(run.wait_for_output("simulated")) << run.output();
+  control(domain, {"step", "200"});
   kill(children[0], SIGKILL);
+  control(domain, {"resume"});
   EXPECT_TRUE(run.wait_for_output("starting it again")) << run.output();
   EXPECT_EQ(run.wait_for_exit(), 0) << run.output();
   EXPECT_NE(run.output().find(expected), std::string::npos) << run.output();

@@ -2,6 +2,7 @@
 
 #include <csignal>
 
+#include "tests/support/control.hpp"
 #include "tests/support/field_of_robots.hpp"
 
 namespace cohort::test {
@@ -16,15 +17,20 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, OfControllersThatARunCanDoWithout) {
                             "constant, parameters: {treel/left/velocity: 0.1, "
                             "treel/right/velocity: 0.1}");
   const ReservedDomain domain;
-  Process server(field.serve(domain, {"--speed", "4"}), {{"COHORT_LOG", "info"}});
-  ASSERT_TRUE(server.wait_for_output("simulated")) << "it begins with nobody: " << server.output();
+  Process server(field.serve(domain, {"--paused"}), {{"COHORT_LOG", "info"}});
+  control(domain, {"step", "100"});  // it begins with nobody
   Process early(FieldOfRobots::host(domain, "0..1", "constant"));
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_0")) << server.output();
+  control(domain, {"step", "100"});
   Process late(FieldOfRobots::host(domain, "2", "constant"));
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_2")) << server.output();
+  control(domain, {"step", "100"});
   early.signal(SIGTERM);
   ASSERT_TRUE(server.wait_for_output("with swarm/sbot_0 and 1 more is gone")) << server.output();
+  control(domain, {"step", "100"});
   Process again(FieldOfRobots::host(domain, "0", "constant"));
+  ASSERT_TRUE(comes_to_drive(domain, 0)) << server.output();
+  control(domain, {"resume"});
   EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
   EXPECT_EQ(late.wait_for_exit(), 0) << late.output();
   EXPECT_EQ(again.wait_for_exit(), 0) << again.output();
@@ -35,11 +41,10 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, OfControllersThatARunCanDoWithout) {
   const auto lost = events_of(summary, "lost");
   ASSERT_EQ(joined.size(), 3u) << summary.dump(1);
   ASSERT_EQ(lost.size(), 1u) << summary.dump(1);
-  // One after the other; where the server has little time, at the boundary of the same tick.
-  EXPECT_GT(tick_of(joined[0]), 0u);
-  EXPECT_GE(tick_of(joined[1]), tick_of(joined[0]));
-  EXPECT_GE(tick_of(lost[0]), tick_of(joined[1]));
-  EXPECT_GE(tick_of(joined[2]), tick_of(lost[0]));
+  EXPECT_EQ(tick_of(joined[0]), 100u);
+  EXPECT_EQ(tick_of(joined[1]), 200u);
+  EXPECT_EQ(tick_of(lost[0]), 300u);
+  EXPECT_EQ(tick_of(joined[2]), 400u);
 }
 
 // A robot that is free is never waited for: its controller may be stopped for as long as anybody likes.
@@ -48,10 +53,11 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, AFreeControllerThatIsStoppedHoldsNobodyUp
                             "constant, parameters: {treel/left/velocity: 0.1, "
                             "treel/right/velocity: 0.1}");
   const ReservedDomain domain;
-  Process server(field.serve(domain, {"--speed", "2"}), {{"COHORT_LOG", "info"}});
+  Process server(field.serve(domain, {"--paused", "--speed", "2"}), {{"COHORT_LOG", "info"}});
   Process controller(FieldOfRobots::host(domain, "all", "constant"));
-  ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_0")) << server.output();
+  control(domain, {"step", "10"});
   controller.signal(SIGSTOP);
+  control(domain, {"resume"});
   EXPECT_TRUE(server.wait_for_output("missed: swarm/sbot_0")) << server.output();
   EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
   controller.signal(SIGCONT);

@@ -74,15 +74,20 @@ TEST(SameHashOnReplayOf, ARunWithLateJoinsAndCrashes) {
   const FieldOfRobots field(4, 10.0, ", required: false");
   const ReservedDomain domain;
   const std::filesystem::path file = field / "run.mcap";
-  Process server(field.serve(domain, {"--speed", "4", "--record", file}), {{"COHORT_LOG", "info"}});
-  ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
+  Process server(field.serve(domain, {"--paused", "--record", file}), {{"COHORT_LOG", "info"}});
+  control(domain, {"step", "100"});
   Process early(FieldOfRobots::host(domain, "0..1"));
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_0")) << server.output();
+  control(domain, {"step", "100"});
   Process late(FieldOfRobots::host(domain, "2"));
   ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_2")) << server.output();
+  control(domain, {"step", "100"});
   early.signal(SIGKILL);
   ASSERT_TRUE(server.wait_for_output("with swarm/sbot_0 and 1 more is gone")) << server.output();
+  control(domain, {"step", "100"});
   Process again(FieldOfRobots::host(domain, "1"));
+  ASSERT_TRUE(server.wait_for_output("drives swarm/sbot_1")) << server.output();
+  control(domain, {"resume"});
   ASSERT_EQ(server.wait_for_exit(), 0) << server.output();
   expect_identical(verified(file), 1001);
 }
@@ -130,11 +135,12 @@ TEST(SameHashOnReplayOf, ARunWithMissedDeadlines) {
     const FieldOfRobots field(3, 20.0, ", delay: 1, deadline: 0.05, on_late: " + std::string(on_late));
     const ReservedDomain domain;
     const std::filesystem::path file = field / "run.mcap";
-    Process server(field.serve(domain, {"--speed", "4", "--record", file}), {{"COHORT_LOG", "info"}});
+    Process server(field.serve(domain, {"--paused", "--speed", "4", "--record", file}), {{"COHORT_LOG", "info"}});
     Process all(FieldOfRobots::host(domain, "0..1"));
     Process stopped(FieldOfRobots::host(domain, "2"));
-    ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
+    control(domain, {"step", "100"});
     stopped.signal(SIGSTOP);
+    control(domain, {"resume"});
     ASSERT_TRUE(server.wait_for_output("missed: swarm/sbot_2")) << server.output();
     stopped.signal(SIGCONT);
     ASSERT_EQ(server.wait_for_exit(), 0) << server.output();

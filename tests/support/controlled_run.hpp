@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client_sdk/src/control_client.hpp"
+#include "tests/support/control.hpp"
 #include "tests/support/field_of_robots.hpp"
 
 namespace cohort::test {
@@ -24,17 +25,10 @@ class ControlledRun {
   const ReservedDomain& domain() const { return domain_; }
 
   std::vector<std::string> ctl(const std::vector<std::string>& arguments) const {
-    std::vector<std::string> command = {cohort_program(), "ctl", "--domain", domain_.text()};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return command;
+    return ctl_command(domain_, arguments);
   }
-  /// `cohort ctl` as people type it; what it printed, if it says that it is done.
-  std::string done(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), {"--timeout", patience_in_seconds});
-    const Ended ended = run_to_end(ctl(arguments));
-    EXPECT_EQ(ended.exit_code, 0) << arguments[2] << ": " << ended.err << ended.out;
-    return ended.out;
-  }
+  /// Returns what `cohort ctl` printed; it has to succeed.
+  std::string done(const std::vector<std::string>& arguments) const { return control(domain_, arguments); }
   nlohmann::json status() const { return nlohmann::json::parse(done({"status", "--json"})); }
   std::uint64_t tick() const { return status()["tick"]; }
   /// Asks until the status has what `condition` wants; false if it does not in time.

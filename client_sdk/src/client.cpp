@@ -64,12 +64,17 @@ class Client {
   using Lock = std::unique_lock<std::mutex>;
   struct Offer {
     wire::Admit admit;
-    std::uint64_t sender = 0;
+    wire::Sender sender;
+  };
+  // What one server has said of its robots: another one, in its place, is another participant.
+  struct Description {
+    wire::RobotDescription description;
+    std::uint64_t server = 0;
   };
 
   // On threads of DDS.
   void receive(const wire::Admit& admit, const wire::Sender& sender);
-  void receive(const wire::RobotDescription& description);
+  void receive(const wire::RobotDescription& description, const wire::Sender& sender);
   void receive(const wire::Observation& frame);
   void receive(const wire::Report& report);
   void note_server(const wire::Sender& writer, bool alive);
@@ -83,7 +88,7 @@ class Client {
   void exchange_states(Lock& lock);
   void answer_frames(Lock& lock);
 
-  bool is_described(const wire::Admit& admit) const;
+  bool is_described(const Offer& offer) const;
   std::optional<ClientEnd> reason_to_leave();
   bool server_is_lost() const;
   std::string waiting_text() const;
@@ -104,7 +109,7 @@ class Client {
   int long_frames_ = 0;           // in a row, of those that a thread of DDS has answered
   std::optional<Offer> offered_;  // an Admit not yet acted on
   std::optional<Offer> current_;
-  std::vector<wire::RobotDescription> descriptions_;
+  std::vector<Description> descriptions_;
   std::vector<wire::Report> reports_;
   FrameQueue frames_;
   std::uint64_t tick_ = 0;  // of the frame last begun
@@ -136,7 +141,8 @@ Client::Client(const ControllerKind& kind, const ClientOptions& options, const s
       joins_(participant_),
       commands_(participant_),
       own_reports_(participant_),
-      description_reader_(participant_, {[this](const auto& message, const auto&) { receive(message); }, nullptr}),
+      description_reader_(participant_,
+                          {[this](const auto& message, const auto& sender) { receive(message, sender); }, nullptr}),
       admit_reader_(participant_,
                     {[this](const auto& message, const auto& sender) { receive(message, sender); },
                      [this](const auto& sender, bool alive) { note_server(sender, alive); }},
@@ -181,14 +187,16 @@ void Client::receive(const wire::Admit& admit, const wire::Sender& sender) {
   if (admit.client != id_) return;
   Lock lock(mutex_);
   // Only the latest counts: by writing it the server has given up the one before.
-  offered_ = Offer{admit, sender.writer};
+  offered_ = Offer{admit, sender};
   wake(std::move(lock));
 }
 
-void Client::receive(const wire::RobotDescription& description) {
+void Client::receive(const wire::RobotDescription& description, const wire::Sender& sender) {
   Lock lock(mutex_);
-  std::erase_if(descriptions_, [&](const auto& known) { return known.description == description.description; });
-  descriptions_.push_back(description);
+  std::erase_if(descriptions_, [&](const Description& known) {
+    return known.server == sender.participant && known.description.description == description.description;
+  });
+  descriptions_.push_back({description, sender.participant});
   wake(std::move(lock));
 }
 
@@ -235,7 +243,7 @@ void Client::wake(Lock lock) {
 void Client::drive(Lock& lock) {
   try {
     for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
-    if (offered_ && is_described(offered_->admit)) heed(*std::exchange(offered_, std::nullopt), lock);
+    if (offered_ && is_described(*offered_)) heed(*std::exchange(offered_, std::nullopt), lock);
     exchange_states(lock);
     answer_frames(lock);
   } catch (const LeaveRun&) {
@@ -279,13 +287,17 @@ void Client::heed(Offer offer, Lock& lock) {
     end_ = ClientEnd::refused;
     return;
   }
-  const bool begun_already = current_ && current_->sender == offer.sender && current_->admit.run == admit.run &&
-                             current_->admit.epoch == admit.epoch;
+  const bool begun_already = current_ && current_->sender.writer == offer.sender.writer &&
+                             current_->admit.run == admit.run && current_->admit.epoch == admit.epoch;
   if (begun_already) return;
+  // The epochs of another server may be lower, if its clock is behind.
+  if (current_ && current_->sender.participant != offer.sender.participant) frames_ = {};
   current_ = std::move(offer);
   tick_ = current_->admit.tick;
   frames_.begin(current_->admit);
-  const std::vector<wire::RobotDescription> descriptions = descriptions_;
+  std::erase_if(descriptions_, [&](const Description& known) { return known.server != current_->sender.participant; });
+  std::vector<wire::RobotDescription> descriptions;
+  for (const Description& known : descriptions_) descriptions.push_back(known.description);
   const Unlocked unlocked(lock);
   host_.start(current_->admit, descriptions);
   states_.begin(current_->admit);
@@ -325,10 +337,11 @@ void Client::answer_frames(Lock& lock) {
   }
 }
 
-bool Client::is_described(const wire::Admit& admit) const {
-  return std::all_of(admit.robots.begin(), admit.robots.end(), [&](const wire::AdmittedRobot& robot) {
-    return std::any_of(descriptions_.begin(), descriptions_.end(),
-                       [&](const auto& known) { return known.description == robot.description; });
+bool Client::is_described(const Offer& offer) const {
+  return std::ranges::all_of(offer.admit.robots, [&](const wire::AdmittedRobot& robot) {
+    return std::ranges::any_of(descriptions_, [&](const Description& known) {
+      return known.server == offer.sender.participant && known.description.description == robot.description;
+    });
   });
 }
 

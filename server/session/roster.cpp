@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "server/core/hash.hpp"
 #include "server/core/random.hpp"
 
 namespace cohort::session {
@@ -21,7 +22,30 @@ wire::Team to_wire(const description::Team& team) {
   return result;
 }
 
+void add(StateHash& hash, std::string_view text) {
+  hash.add(std::uint64_t{text.size()});
+  for (const char each : text) hash.add(std::uint64_t{static_cast<unsigned char>(each)});
+}
+
+void add(StateHash& hash, const std::vector<wire::Channel>& channels) {
+  hash.add(std::uint64_t{channels.size()});
+  for (const wire::Channel& channel : channels) {
+    add(hash, channel.name);
+    add(hash, channel.unit);
+    hash.add(std::uint64_t{channel.size});
+    for (const double value : {channel.lower, channel.upper, channel.neutral}) hash.add(value);
+  }
+}
+
 }  // namespace
+
+std::uint32_t number_of(const wire::RobotDescription& kind) {
+  StateHash hash;
+  add(hash, kind.model);
+  add(hash, kind.observation);
+  add(hash, kind.command);
+  return static_cast<std::uint32_t>(hash.value());
+}
 
 std::vector<wire::RobotDescription> describe_kinds(const Simulation& simulation) {
   std::vector<wire::RobotDescription> descriptions;

@@ -44,11 +44,12 @@ End Client::run() {
     take_reports();
     if (end_) break;
     while (auto description = wire_.take_description()) {
-      descriptions_[description->description()] = std::move(*description);
+      descriptions_[description->from][description->message.description()] = std::move(description->message);
     }
     take_admits();
     try {
       begin_when_described();
+      take_states();
       take_frames();
       if (!end_) answer_frames();
     } catch (const std::exception& error) {
@@ -68,7 +69,7 @@ void Client::join_every_second() {
   ::gethostname(host.data(), host.size() - 1);
   message::Join join;
   join.client(id_);
-  join.minor(0);
+  join.minor(1);
   join.controller("Fast DDS");
   join.host(host.data());
   join.process(static_cast<std::uint32_t>(::getpid()));
@@ -91,27 +92,35 @@ void Client::take_reports() {
 
 void Client::take_admits() {
   while (auto admit = wire_.take_admit()) {
-    if (admit->client() != id_) continue;
-    if (admit->status() == 1) {
-      say("refused: " + admit->reason());
+    if (admit->message.client() != id_) continue;
+    if (admit->message.status() == 1) {
+      say("refused: " + admit->message.reason());
       end_ = End::refused;
       return;
     }
-    if (!admitted_ || admit->epoch() > admitted_->epoch()) offered_ = std::move(admit);
+    const bool is_another_server = admit->from != server_;
+    if (!admitted_ || is_another_server || admit->message.epoch() > admitted_->epoch()) offered_ = std::move(admit);
   }
 }
 
 void Client::begin_when_described() {
   if (!offered_ || end_) return;
-  const bool described = std::ranges::all_of(offered_->robots(), [&](const message::AdmittedRobot& robot) {
-    return descriptions_.contains(robot.description());
+  const auto& descriptions = descriptions_[offered_->from];
+  const bool described = std::ranges::all_of(offered_->message.robots(), [&](const message::AdmittedRobot& robot) {
+    return descriptions.contains(robot.description());
   });
   if (!described) return;
-  admitted_ = std::exchange(offered_, std::nullopt);
+  if (std::exchange(server_, offered_->from) != offered_->from) early_.clear();
+  admitted_ = std::move(offered_->message);
+  offered_.reset();
   say("admitted to " + std::to_string(admitted_->robots().size()) + " robots from tick " +
       std::to_string(admitted_->tick()) + ", reason " + std::to_string(admitted_->start_reason()));
-  robots_.start(*admitted_, descriptions_);
+  robots_.start(*admitted_, descriptions);
   frames_.emplace(*admitted_);
+  answered_up_to_ = admitted_->tick();
+  saved_tick_.reset();
+  fetched_.reset();
+  if (admitted_->start_reason() == 4) fetched_.emplace(*admitted_);
   for (message::Observation& frame : std::exchange(early_, {})) take_frame(std::move(frame));
 }
 
@@ -137,11 +146,34 @@ void Client::take_frame(message::Observation frame) {
   }
 }
 
+// Gives state that the server wants for a snapshot, and fetches what a snapshot has.
+void Client::take_states() {
+  while (const auto state = wire_.take_state()) {
+    if (state->client() != id_ || !admitted_) continue;
+    if (state->kind() == 1 && fetched_) fetched_->take(*state);
+    const bool is_mine = state->run() == admitted_->run() && state->epoch() == admitted_->epoch();
+    if (state->kind() != 0 || !is_mine || fetched_ || answered_up_to_ > state->tick()) continue;
+    if (saved_tick_ != state->tick()) saved_ = pack(robots_.save());
+    saved_tick_ = state->tick();
+    wire_.write(part_of(saved_, *state));
+    say("gave state of tick " + std::to_string(state->tick()) + " from " + std::to_string(state->offset()) + " on");
+  }
+  if (!fetched_) return;
+  if (fetched_->is_complete()) {
+    robots_.load(unpack(fetched_->bytes()));
+    say("loaded " + std::to_string(fetched_->bytes().size()) + " bytes of state");
+    fetched_.reset();
+  } else if (auto question = fetched_->question(Clock::now())) {
+    wire_.write(std::move(*question));
+  }
+}
+
 void Client::answer_frames() {
-  if (!frames_) return;
+  if (!frames_ || fetched_) return;
   while (const auto frame = frames_->next()) {
     const message::Command answer = robots_.answer(*frame);
     frames_->keep(answer);
+    answered_up_to_ = frame->tick() + 1;
     if (++answers_given_ % 100 == 0) say("answered " + std::to_string(answers_given_) + " frames");
     const bool lost = options_.loses_every != 0 && (answers_given_ + 3) % options_.loses_every == 0;
     if (!lost) wire_.write(answer);

@@ -9,6 +9,7 @@
 
 #include "tests/conformance/frames.hpp"
 #include "tests/conformance/robots.hpp"
+#include "tests/conformance/states.hpp"
 #include "tests/conformance/wire.hpp"
 
 namespace cohort::conformance {
@@ -38,6 +39,7 @@ class Client {
   void take_frames();
   void take_frame(message::Observation frame);
   void answer_frames();
+  void take_states();
   void look_for_server();
   void fail(const std::string& why);
 
@@ -45,9 +47,15 @@ class Client {
   std::uint64_t id_;
   Wire wire_;
   Robots robots_;
-  std::map<std::uint32_t, message::RobotDescription> descriptions_;
-  std::optional<message::Admit> offered_;  // waits for its descriptions
+  // Of each server: one that is started in another's place is another participant.
+  std::map<Participant, std::map<std::uint32_t, message::RobotDescription>> descriptions_;
+  std::optional<Received<message::Admit>> offered_;  // waits for its descriptions
   std::optional<message::Admit> admitted_;
+  Participant server_{};                 // that has admitted it
+  std::optional<FetchedState> fetched_;  // without which no frame is answered
+  std::uint64_t answered_up_to_ = 0;     // ticks of the lease before it
+  std::vector<std::uint8_t> saved_;
+  std::optional<std::uint64_t> saved_tick_;
   std::optional<Frames> frames_;
   std::vector<message::Observation> early_;  // frames whose Admit has not come
   std::optional<std::chrono::steady_clock::time_point> joined_at_;

@@ -18,10 +18,12 @@ constexpr const char* obstacles = COHORT_SOURCE_DIR "/worlds/arenas/obstacles.sd
 // A server, and clients of it on Fast DDS.
 class Conformance : public ::testing::Test {
  protected:
-  std::unique_ptr<Process> serve(const std::string& experiment, std::vector<std::string> more = {}) {
+  std::unique_ptr<Process> serve(const std::string& experiment, std::vector<std::string> more = {},
+                                 Process::Environment environment = {}) {
     std::vector<std::string> command = {cohort_program(), "serve", experiment, "--domain", domain.text()};
     command.insert(command.end(), more.begin(), more.end());
-    return std::make_unique<Process>(command, Process::Environment{{"COHORT_LOG", "info"}});
+    environment.emplace("COHORT_LOG", "info");
+    return std::make_unique<Process>(command, environment);
   }
   std::unique_ptr<Process> start_foreign(const std::string& robots, const std::string& plugin = avoidance,
                                          const std::string& loses_every = "0") {
@@ -30,9 +32,9 @@ class Conformance : public ::testing::Test {
         std::vector<std::string>{COHORT_BUILD_DIR "/bin/fastdds_client", plugin, domain.text(), robots, loses_every},
         Process::Environment{{"ASAN_OPTIONS", "new_delete_type_mismatch=0"}});
   }
-  std::unique_ptr<Process> start_own(const std::string& robots) {
-    return std::make_unique<Process>(std::vector<std::string>{cohort_program(), "host", "obstacle_avoidance",
-                                                              "--robots", robots, "--domain", domain.text()});
+  std::unique_ptr<Process> start_own(const std::string& robots, const std::string& controller = "obstacle_avoidance") {
+    return std::make_unique<Process>(
+        std::vector<std::string>{cohort_program(), "host", controller, "--robots", robots, "--domain", domain.text()});
   }
   // The demo's robots, by a controller for which every frame counts.
   std::string experiment_with(const std::string& timing) {
@@ -165,6 +167,73 @@ TEST_F(Conformance, AClientGoesOnWithAServerThatIsStartedInTheOthersPlace) {
   const auto second = serve(demo_experiment(), {"--duration", "5"});
   expect_end(*second, reference_hash(5));
   expect_finished(*client);
+}
+
+// Its epochs are lower than those of the first one's leases.
+TEST_F(Conformance, AClientGoesOnWithAServerWhoseClockIsAMinuteBehind) {
+  for (const bool is_own : {false, true}) {
+    const auto first = serve(demo_experiment(), {"--paused"});
+    const auto client = is_own ? start_own("all") : start_foreign("all");
+    control(domain, {"step", "100"});
+    first->signal(SIGKILL);
+    first->wait_for_exit();
+    const auto second =
+        serve(demo_experiment(), {"--duration", "5"}, {{"LD_PRELOAD", COHORT_BUILD_DIR "/lib/libclock_behind.so"}});
+    expect_end(*second, reference_hash(5));
+    expect_finished(*client);
+  }
+}
+
+// What controllers remember goes from either client into a snapshot, and from it to either.
+TEST_F(Conformance, StateOfControllersGoesThroughSnapshotsAndGivesTheSameBits) {
+  const std::string experiment = experiment_with("    delay: 1\n");
+  const std::string expected = hash_in_process(experiment);
+  const std::string file = folder / "saved.snap";
+  {
+    const auto server = serve(experiment, {"--paused"});
+    const auto foreign = start_foreign("0..7", remembering);
+    const auto own = start_own("8..15", remembering);
+    control(domain, {"step", "150"});
+    EXPECT_EQ(control(domain, {"save", file}).find("anew"), std::string::npos);
+    control(domain, {"step", "100"});
+    control(domain, {"load", file});
+    control(domain, {"resume"});
+    expect_end(*server, expected);
+    expect_finished(*foreign);
+    expect_finished(*own);
+    EXPECT_NE(foreign->output().find("gave state of tick 150"), std::string::npos) << foreign->output();
+    EXPECT_NE(foreign->output().find("reason 4"), std::string::npos) << foreign->output();
+  }
+  const auto server = serve(experiment, {"--from", file});
+  const auto own = start_own("0..7", remembering);
+  const auto foreign = start_foreign("8..15", remembering);
+  expect_end(*server, expected);
+  expect_finished(*own);
+  expect_finished(*foreign);
+  EXPECT_NE(foreign->output().find("loaded "), std::string::npos) << foreign->output();
+}
+
+TEST_F(Conformance, AClientThatTakesOverAtTheRestoredTickIsGivenTheState) {
+  const std::string experiment = experiment_with("");
+  const std::string file = folder / "saved.snap";
+  {
+    const auto server = serve(experiment, {"--paused"});
+    const auto client = start_foreign("all", remembering);
+    control(domain, {"step", "150"});
+    control(domain, {"save", file});
+    control(domain, {"shutdown"});
+    server->wait_for_exit();
+  }
+  const auto server = serve(experiment, {"--from", file, "--paused"});
+  const auto killed = start_foreign("all", remembering);
+  ASSERT_TRUE(killed->wait_for_output("loaded ")) << killed->output();
+  killed->signal(SIGKILL);
+  const auto again = start_foreign("all", remembering);
+  ASSERT_TRUE(again->wait_for_output("loaded ")) << again->output();
+  control(domain, {"resume"});
+  expect_end(*server, hash_in_process(experiment));
+  expect_finished(*again);
+  EXPECT_NE(again->output().find("from tick 150, reason 4"), std::string::npos) << again->output();
 }
 
 // Larger than a datagram: they go in fragments, both ways.

@@ -13,6 +13,7 @@ class PluginFile {
  public:
   /// Throws std::runtime_error if there is none at `path`.
   explicit PluginFile(const std::string& path);
+  std::string name() const { return plugin_->name; }
   OwnedController create() const { return {plugin_->create(), plugin_->destroy}; }
 
  private:

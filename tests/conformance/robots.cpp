@@ -28,7 +28,8 @@ StartReason reason_of(std::uint32_t number) {
     case 0: return StartReason::first;
     case 1: return StartReason::takeover;
     case 2: return StartReason::reset;
-    case 3: return StartReason::restored;
+    case 3:
+    case 4: return StartReason::restored;
     default: throw std::runtime_error("start_reason " + std::to_string(number) + " is not in the protocol");
   }
 }
@@ -75,6 +76,29 @@ void Robots::start(const message::Admit& admit,
     robot.controller->start(start);
     start.parameters.check_all_were_asked_for();
     robots_.emplace(admitted.robot(), std::move(robot));
+  }
+}
+
+std::vector<RobotState> Robots::save() const {
+  std::vector<RobotState> states;
+  for (const auto& [id, robot] : robots_) {
+    StateWriter writer;
+    robot.controller->save(writer);
+    RobotState& state = states.emplace_back(RobotState{id, !writer.is_left_out()});
+    if (!state.is_saved) continue;
+    state.name = plugin_.name();
+    state.bytes.assign(writer.bytes().begin(), writer.bytes().end());
+  }
+  return states;
+}
+
+void Robots::load(const std::vector<RobotState>& states) {
+  for (const RobotState& state : states) {
+    if (!state.is_saved) continue;
+    if (state.name != plugin_.name()) throw std::runtime_error("the state is of '" + state.name + "'");
+    StateReader reader(state.bytes);
+    robots_.at(state.robot).controller->load(reader);
+    if (!reader.rest().empty()) throw std::runtime_error("a controller left a part of its state unread");
   }
 }
 

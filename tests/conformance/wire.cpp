@@ -3,6 +3,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -75,6 +76,7 @@ constexpr Quality admit_quality{true, 1};
 constexpr Quality description_quality{true, 1};
 constexpr Quality frame_quality{false, 8, false, false};
 constexpr Quality report_quality{true, 16};
+constexpr Quality state_quality{false, 4};
 
 template <class Qos>
 Qos endpoint_qos(Qos qos, const Quality& quality) {
@@ -156,6 +158,9 @@ struct Wire::State final : dds::DataReaderListener {
     admits = make_reader<message::AdmitPubSubType>(to_us, "cohort/v1/admit", admit_quality);
     observations = make_reader<message::ObservationPubSubType>(to_us, "cohort/v1/observation", frame_quality);
     reports = make_reader<message::ReportPubSubType>(to_us, "cohort/v1/report", report_quality);
+    states = make_reader<message::ControllerStatePubSubType>(to_us, "cohort/v1/controller_state", state_quality);
+    own_states =
+        make_writer<message::ControllerStatePubSubType>(publisher, "cohort/v1/controller_state", state_quality);
     joins = make_writer<message::JoinPubSubType>(publisher, "cohort/v1/join", join_quality);
     commands = make_writer<message::CommandPubSubType>(publisher, "cohort/v1/command", frame_quality);
     own_reports = make_writer<message::ReportPubSubType>(publisher, "cohort/v1/report", report_quality);
@@ -168,13 +173,22 @@ struct Wire::State final : dds::DataReaderListener {
   }
 
   template <class Message>
-  static std::optional<Message> take(dds::DataReader* reader) {
-    Message sample;
+  static std::optional<Received<Message>> receive(dds::DataReader* reader) {
+    Received<Message> received;
     dds::SampleInfo info;
-    while (reader->take_next_sample(&sample, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
-      if (info.valid_data) return sample;  // others tell of the end of a writer
+    while (reader->take_next_sample(&received.message, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+      if (!info.valid_data) continue;  // it tells of the end of a writer
+      std::ranges::copy(info.sample_identity.writer_guid().guidPrefix.value, received.from.begin());
+      return received;
     }
     return std::nullopt;
+  }
+
+  template <class Message>
+  static std::optional<Message> take(dds::DataReader* reader) {
+    auto received = receive<Message>(reader);
+    if (!received) return std::nullopt;
+    return std::move(received->message);
   }
 
   std::uint64_t client;
@@ -186,9 +200,11 @@ struct Wire::State final : dds::DataReaderListener {
   dds::DataReader* admits = nullptr;
   dds::DataReader* observations = nullptr;
   dds::DataReader* reports = nullptr;
+  dds::DataReader* states = nullptr;
   dds::DataWriter* joins = nullptr;
   dds::DataWriter* commands = nullptr;
   dds::DataWriter* own_reports = nullptr;
+  dds::DataWriter* own_states = nullptr;
 };
 
 Wire::Wire(std::uint32_t domain, std::uint64_t client) : state_(std::make_unique<State>(domain, client)) {
@@ -203,18 +219,22 @@ void Wire::wait_for_news(std::chrono::milliseconds at_most) {
   state_->news = false;
 }
 
-std::optional<message::Admit> Wire::take_admit() { return State::take<message::Admit>(state_->admits); }
-std::optional<message::RobotDescription> Wire::take_description() {
-  return State::take<message::RobotDescription>(state_->descriptions);
+std::optional<Received<message::Admit>> Wire::take_admit() { return State::receive<message::Admit>(state_->admits); }
+std::optional<Received<message::RobotDescription>> Wire::take_description() {
+  return State::receive<message::RobotDescription>(state_->descriptions);
 }
 std::optional<message::Observation> Wire::take_observation() {
   return State::take<message::Observation>(state_->observations);
 }
 std::optional<message::Report> Wire::take_report() { return State::take<message::Report>(state_->reports); }
+std::optional<message::ControllerState> Wire::take_state() {
+  return State::take<message::ControllerState>(state_->states);
+}
 
 void Wire::write(message::Join join) { state_->joins->write(&join); }
 void Wire::write(message::Command command) { state_->commands->write(&command); }
 void Wire::write(message::Report report) { state_->own_reports->write(&report); }
+void Wire::write(message::ControllerState state) { state_->own_states->write(&state); }
 void Wire::wait_for_reports_to_arrive() { state_->own_reports->wait_for_acknowledgments(Duration_t(0, 500'000'000)); }
 
 bool Wire::sees_server() const {

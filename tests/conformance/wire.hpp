@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -15,6 +16,15 @@ namespace cohort::conformance {
 
 namespace message = ::cohort::v1;
 
+/// The DDS participant that wrote a message, by the prefix of its GUID: a server is one participant for each client.
+using Participant = std::array<std::uint8_t, 12>;
+
+template <class Message>
+struct Received {
+  Message message;
+  Participant from{};
+};
+
 class Wire {
  public:
   /// Makes the readers, then the writers; waits for no server. Throws std::runtime_error if Fast DDS refuses.
@@ -27,15 +37,17 @@ class Wire {
   void wait_for_news(std::chrono::milliseconds at_most);
 
   /// The next message of a kind, if there is one. Call from one thread.
-  std::optional<message::Admit> take_admit();
-  std::optional<message::RobotDescription> take_description();
+  std::optional<Received<message::Admit>> take_admit();
+  std::optional<Received<message::RobotDescription>> take_description();
   std::optional<message::Observation> take_observation();
   std::optional<message::Report> take_report();
+  std::optional<message::ControllerState> take_state();
 
   /// A message that cannot be written in time counts as lost.
   void write(message::Join join);
   void write(message::Command command);
   void write(message::Report report);
+  void write(message::ControllerState state);
   /// Waits until the server has the report, but not for long.
   void wait_for_reports_to_arrive();
 

@@ -42,6 +42,7 @@ class HandWrittenClient {
         reports_(participant_,
                  {[this](const wire::Report& report, const wire::Sender&) {
                     if (report.reason == "detached") is_detached_ = true;
+                    if (report.kind == wire::ReportKind::rejected) rejected_tick_ = report.tick;
                   },
                   {}},
                  wire::partition_of(own_id)) {
@@ -54,9 +55,12 @@ class HandWrittenClient {
   }
   /// It was told so.
   bool is_detached() const { return is_detached_; }
+  /// Of the answer that the last report of a rejection was about; -1 before any.
+  std::int64_t rejected_tick() const { return rejected_tick_; }
 
  private:
   std::atomic<bool> is_detached_ = false;
+  std::atomic<std::int64_t> rejected_tick_ = -1;
   wire::Participant participant_;
   wire::Writer<wire::Command> commands_;
   wire::Writer<wire::Join> join_;
@@ -168,6 +172,7 @@ TEST_P(FaultyHolder, StopsTheRunUnderWaitWithTheChannelAndTheReason) {
   const auto summary = read_json(folder / "summary.json");
   EXPECT_EQ(summary["ticks"], 0);
   EXPECT_EQ(rejections(summary)[reason], 1u) << summary.dump(1);
+  EXPECT_EQ(summary["misses"].size(), 1u) << "as where controllers are in the server's process: " << summary.dump(1);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FaultyHolder,
@@ -195,6 +200,27 @@ TEST_P(FaultyHolderOf, ARobotThatIsHeldOrZeroedMissesWithEachAnswer) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FaultyHolderOf, ::testing::Values("hold", "zero"));
+
+// The frame of tick 1 is out before the answer to tick 0 is given.
+TEST(FaultyHolderUnderHold, IsToldTheTickOfTheAnswerThatWasRejected) {
+  const FieldOfRobots field(1, 0.05, ", delay: 1, deadline: 60, on_late: hold");
+  const ReservedDomain domain;
+  Process server(field.serve(domain));
+  const std::vector<std::uint32_t> robots = {0};
+  const std::vector<double> faulty(sbot_command_size, std::nan(""));
+  const std::vector<double> still(sbot_command_size, 0.0);
+  std::atomic<bool> has_answered_first = false;
+  HandWrittenClient client(domain.number(), "all", [&](auto& commands, const wire::Observation& frame) {
+    const auto answer = [&](std::uint64_t tick, const std::vector<double>& values) {
+      commands.write({own_id, frame.run, frame.epoch, tick, robots, values});
+    };
+    if (frame.tick == 0) return;
+    if (!has_answered_first.exchange(true)) answer(0, faulty);
+    answer(frame.tick, still);
+  });
+  EXPECT_TRUE(eventually([&] { return client.rejected_tick() == 0; })) << client.rejected_tick();
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+}
 
 // Its other robot is free at once for somebody else, at the tick that waits for it.
 TEST(FaultyHolderUnderDetach, LosesItsLeaseAsOneThatIsLate) {

@@ -131,9 +131,10 @@ void Clients::forget(std::uint64_t client) {
   names_.forget(client);
 }
 
-void Clients::tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text) {
-  client.send(client.report, wire::Report{client.id(), run_->number, kind, run_->simulation.tick(), reason, text},
-              run_);
+void Clients::tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text,
+                   std::optional<std::uint64_t> tick) {
+  const std::uint64_t of_tick = tick.value_or(run_->simulation.tick());
+  client.send(client.report, wire::Report{client.id(), run_->number, kind, of_tick, reason, text}, run_);
 }
 
 void Clients::note_rejections(const Inbox::Rejected& rejected) {
@@ -146,7 +147,7 @@ void Clients::note_rejections(const Inbox::Rejected& rejected) {
     client.rejected += rejections.count;
     if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
     if (client.reported_rejections.insert(reason).second)
-      tell(client, wire::ReportKind::rejected, reason, rejections.text);
+      tell(client, wire::ReportKind::rejected, reason, rejections.text, rejections.tick);
   }
 }
 
@@ -244,9 +245,11 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
 
 // Under the lock.
 wire::StartReason Clients::why_it_starts(const std::vector<std::uint32_t>& robots, const AttachedClient& client) const {
+  const auto& from = run_->monitor.options().from;
+  // The state in a snapshot is that of its tick, so it also serves one who takes robots over there.
+  if (from && from->tick == run_->simulation.tick()) return wire::StartReason::restored;
   const bool takes_over = std::ranges::any_of(robots, [&](auto robot) { return run_->was_driven[robot]; });
   if (run_->started && takes_over) return wire::StartReason::takeover;
-  if (!run_->started && run_->monitor.options().from) return wire::StartReason::restored;
   return client.drove ? wire::StartReason::reset : wire::StartReason::first;
 }
 

@@ -76,7 +76,9 @@ class Clients {
   AttachedClient* attach(const Inbox::Arrival& arrival);
   void set_alive(AttachedClient& client, bool alive);
   void forget(std::uint64_t client);
-  void tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text);
+  /// `tick`: the run's, unless it is about a frame.
+  void tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text,
+            std::optional<std::uint64_t> tick = {});
   void claim(AttachedClient& client);
   std::string why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const;
   void admit(const lockstep::Leases::Granted& granted);

@@ -102,9 +102,11 @@ bool Inbox::add_foreign_version(std::uint32_t major) {
   return has_news_ = true;
 }
 
-void Inbox::reject(std::uint64_t who, const char* reason, std::string_view text) {
+void Inbox::reject(std::uint64_t who, const char* reason, std::string_view text, std::optional<std::uint64_t> tick) {
   Rejections& rejections = contents_.rejected[{who, reason}];
-  if (rejections.count++ == 0) rejections.text = text;
+  if (rejections.count++ > 0) return;
+  rejections.text = text;
+  rejections.tick = tick;
 }
 
 Inbox::Contents Inbox::take() {

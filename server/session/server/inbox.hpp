@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -43,7 +44,8 @@ class Inbox {
     bool alive = false;
   };
   struct Rejections {
-    std::string text;  ///< of the first
+    std::string text;                     ///< of the first
+    std::optional<std::uint64_t> tick{};  ///< that the first answers, if it is an answer
     std::uint64_t count = 0;
   };
   /// By who, or what participant, and reason.
@@ -75,7 +77,8 @@ class Inbox {
   bool add_failure(const std::string& error);
   bool add_foreign_version(std::uint32_t major);
   /// Only counted, and told when the thread of the run next looks: a flood must not wake it for each message.
-  void reject(std::uint64_t who, const char* reason, std::string_view text);
+  /// `tick`: of the frame that a rejected answer answers.
+  void reject(std::uint64_t who, const char* reason, std::string_view text, std::optional<std::uint64_t> tick = {});
 
   /// Whether anything but rejections was put aside since `take`.
   bool has_news() const { return has_news_; }

@@ -1,6 +1,7 @@
 #include "server/session/server/server.hpp"
 
 #include <algorithm>
+#include <random>
 #include <set>
 
 #include "server/session/printable.hpp"
@@ -13,9 +14,14 @@ namespace {
 constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by a signal, which wakes nobody
 constexpr std::chrono::seconds farewell{2};
 const std::string view_partition = "view";
-std::uint64_t microseconds_since_1970() {
+
+// Of a server's first lease: its start in microseconds since 1970, the lowest bits at random, since clocks go back and
+// machines without a battery begin at the same time again.
+std::uint64_t first_epoch() {
+  constexpr std::uint64_t random_bits = 1023;
   const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(now).count());
+  const auto start = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+  return (static_cast<std::uint64_t>(start) & ~random_bits) | (std::random_device()() & random_bits);
 }
 
 std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::to_string(tick); }
@@ -23,8 +29,7 @@ std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::t
 }  // namespace
 
 Server::Server(std::span<wire::Participant> participants)
-    : next_epoch_(microseconds_since_1970()),
-      first_description_(static_cast<std::uint32_t>(next_epoch_ / 1'000'000)),
+    : next_epoch_(first_epoch()),
       world_state_(participants.front(), view_partition),
       scenes_(participants.front(), view_partition) {
   for (wire::Participant& participant : participants) endpoints_.emplace_back(participant, callbacks(participant));
@@ -90,7 +95,7 @@ void Server::on_command(const wire::Command& command, const wire::Sender& sender
 // Under the lock. True if the run's thread has to go on.
 bool Server::take_answer(const wire::Command& command, const wire::Sender& sender) {
   const auto reject = [&](std::uint64_t who, const char* reason, std::string_view text) {
-    inbox_.reject(who, reason, text);
+    inbox_.reject(who, reason, text, command.tick);
     return false;
   };
   // By who sent it, not by whose name it has: strangers may have as many names as they like.
@@ -107,7 +112,7 @@ bool Server::take_answer(const wire::Command& command, const wire::Sender& sende
   const lockstep::Time now = Clock::now().time_since_epoch();
   const Exchange::Taken taken = run.exchange.take(lease->robots, command.tick, command.robots, command.values, now);
   if (taken.accepted > 0) run.leases.note_answer(command.client, now, command.tick, command.resent);
-  if (taken.rejection) inbox_.reject(command.client, taken.rejection->reason.c_str(), taken.rejection->text);
+  if (taken.rejection) reject(command.client, taken.rejection->reason.c_str(), taken.rejection->text);
   if (taken.ends_run) run.fail(taken.rejection->text);
   return run.exchange.barrier().complete() || !run.error.empty();
 }
@@ -183,10 +188,13 @@ RunResult Server::end_run(RunResult::End how, const std::string& error) {
 
 RunResult Server::end_early() {
   std::string error;
+  std::vector<lockstep::Barrier::Miss> refused;
   {
     const std::lock_guard lock(mutex_);
     error = run_->error;
+    refused = run_->exchange.barrier().take_refused();
   }
+  note_misses(refused);
   if (!error.empty()) return end_run(RunResult::End::failed, error);
   if (!control_.ending()) return end_run(RunResult::End::interrupted);
   const Control::Ending ending = *control_.ending();
@@ -391,14 +399,16 @@ void Server::report_progress(bool now_anyway) {
 void Server::publish_descriptions() {
   run_->descriptions.clear();
   for (wire::RobotDescription& kind : describe_kinds(run_->simulation)) {
-    const auto known = std::ranges::find_if(descriptions_, [&](const wire::RobotDescription& other) {
+    kind.description = number_of(kind);
+    const auto is_same = [&](const wire::RobotDescription& other) {
       return other.model == kind.model && other.observation == kind.observation && other.command == kind.command;
-    });
-    kind.description = first_description_ + static_cast<std::uint32_t>(known - descriptions_.begin());
+    };
+    auto known = descriptions_.find(kind.description);
+    while (known != descriptions_.end() && !is_same(known->second)) known = descriptions_.find(++kind.description);
     run_->descriptions.push_back(kind.description);
     if (known != descriptions_.end()) continue;
     for (Endpoints& endpoints : endpoints_) endpoints.descriptions.write(kind);
-    descriptions_.push_back(std::move(kind));
+    descriptions_.emplace(kind.description, std::move(kind));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -83,10 +84,7 @@ class Server {
   void fill_status(wire::SimulationStatus& status);
 
   std::uint32_t run_number_ = 0;
-  // Of when this server began, so that no lease and no description is taken for another server's in its place. The
-  // epoch is in microseconds since 1970, the description in seconds.
   std::uint64_t next_epoch_;
-  std::uint32_t first_description_;
   std::unique_ptr<ServedRun> run_;  // set under the lock; null between runs
 
   std::mutex mutex_;
@@ -94,7 +92,7 @@ class Server {
   Inbox inbox_;  // under the lock
 
   Clients clients_{mutex_};
-  std::vector<wire::RobotDescription> descriptions_;  // on the wire so far
+  std::map<std::uint32_t, wire::RobotDescription> descriptions_;  // on the wire so far, by number
   LiveRecordings recordings_;
   Control control_{recordings_};
   WorldStateBroadcast world_state_;

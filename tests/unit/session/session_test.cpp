@@ -135,6 +135,24 @@ TEST(RunMonitor, IsDueAtAnySpeedHoweverSmall) {
   EXPECT_LE(*monitor.due_time(), RunMonitor::Clock::now());
 }
 
+TEST(Roster, ADescriptionsNumberIsMadeFromItsContents) {
+  const auto experiment = experiment_of({{}});
+  wire::RobotDescription kind = describe_kinds(Simulation(experiment, 1)).front();
+  const std::uint32_t number = number_of(kind);
+  kind.description = 7;
+  EXPECT_EQ(number_of(kind), number) << "whichever server says it";
+  const auto expect_another = [&](const auto& change) {
+    wire::RobotDescription other = kind;
+    change(other);
+    EXPECT_NE(number_of(other), number);
+  };
+  expect_another([](auto& other) { other.model += "2"; });
+  expect_another([](auto& other) { std::swap(other.observation, other.command); });
+  expect_another([](auto& other) { other.command.back().upper += 1e-9; });
+  expect_another([](auto& other) { other.command.front().unit = "N"; });
+  expect_another([](auto& other) { other.observation.pop_back(); });
+}
+
 TEST(Roster, SeedsOfControllersDependOnTheExperimentsSeedAndTheRobotsNameOnly) {
   auto experiment = experiment_of({{}, {}});
   const Simulation two(experiment, 1);

@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sstream>
 
 #include "server/parsing/experiment/read_experiment.hpp"
+#include "server/recording/ros_schema.hpp"
 #include "server/viewing/scene_maker.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/shipped_experiment.hpp"
 
 namespace cohort::viewing {
@@ -153,6 +156,34 @@ TEST(SceneOfAWorld, WhatComesLaterNeedsAnotherMaker) {
   EXPECT_TRUE(maker.is_outdated());
   const Scene scene = SceneMaker(simulation, 2).scene();
   EXPECT_EQ(scene.entities.back().name, "another");
+}
+
+// The definition of a message as docs/scenes.md has it, without its comments; empty if the page lacks it.
+std::string definition_on_the_page(const std::string& name) {
+  std::istringstream page(test::read_file(COHORT_SOURCE_DIR "/docs/scenes.md"));
+  std::string line;
+  while (std::getline(page, line) && line != "# " + name) {
+  }
+  std::string text;
+  while (std::getline(page, line) && !line.empty() && line != "```") {
+    line.resize(std::min(line.size(), line.find('#')));
+    line.resize(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+void expect_on_the_page(const recording::RosDefinition& definition) {
+  EXPECT_EQ(definition_on_the_page(definition.name), definition.text) << definition.name;
+  for (const recording::RosDefinition& part : definition.parts) expect_on_the_page(part);
+}
+
+TEST(SceneMessages, AreDefinedOnTheirPageFieldByField) {
+  expect_on_the_page(recording::definition<Scene>());
+  expect_on_the_page(recording::definition<SceneFrame>());
+  expect_on_the_page(recording::definition<SceneSignals>());
+  expect_on_the_page(recording::definition<SceneContacts>());
+  expect_on_the_page(recording::definition<SceneRobots>());
 }
 
 }  // namespace

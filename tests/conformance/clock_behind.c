@@ -1,0 +1,11 @@
+// Preloaded: what reads the time of day finds it a minute ago.
+
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+int clock_gettime(clockid_t clock, struct timespec* time) {
+  const long result = syscall(SYS_clock_gettime, clock, time);
+  if (result == 0 && clock == CLOCK_REALTIME) time->tv_sec -= 60;
+  return (int)result;
+}

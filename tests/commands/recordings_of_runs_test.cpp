@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "server/recording/recording.hpp"
+#include "tests/support/control.hpp"
 #include "tests/support/field_of_robots.hpp"
 
 namespace cohort::test {
@@ -72,8 +73,24 @@ TEST_F(Recordings, ThatEndEarlyAreToldAtOnceAndEndTheRunIfThatIsWanted) {
   const Ended whole = run(FieldOfRobots(8, 60.0), "inprocess", {});
   EXPECT_EQ(whole.exit_code, 1) << whole.err;
   EXPECT_EQ(read_json(summary)["ticks"], 6000);
-  EXPECT_EQ(unrecorded().size(), 1u);
-  EXPECT_LT(unrecorded()[0]["tick"], 6000) << "at once, and not at the end";
+  EXPECT_EQ(unrecorded().size(), 1u) << "also if the disk says so when the run is over";
+}
+
+TEST_F(Recordings, ThatEndEarlyAreInTheHistoryWhileTheRunGoesOn) {
+  const FieldOfRobots field(8, 1e5);
+  const ReservedDomain domain;
+  const std::vector<std::string> serve = field.serve(domain, {"--paused", "--record", *this / "run.mcap"});
+  std::vector<std::string> command = {"/bin/sh", "-c", "ulimit -f 200; exec \"$@\"", "sh"};
+  command.insert(command.end(), serve.begin(), serve.end());
+  Process server(command);
+  Process controllers(FieldOfRobots::host(domain, "all"));
+  EXPECT_TRUE(eventually([&] {
+    control(domain, {"step", "1000"});
+    return control(domain, {"history"}).find("ulimit -f") != std::string::npos;
+  })) << server.output();
+  control(domain, {"step", "1"});
+  control(domain, {"shutdown"});
+  EXPECT_EQ(server.wait_for_exit(), 1) << server.output();
 }
 
 TEST_F(Recordings, SayWhereTwoRunsPart) {

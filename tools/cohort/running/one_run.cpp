@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "server/session/run_recorder.hpp"
@@ -49,12 +50,13 @@ session::RunListener OneRun::listener() {
   return listener;
 }
 
-int OneRun::finish(const RunResult& result, double cpu_seconds) {
+int OneRun::finish(RunResult result, double cpu_seconds) {
   using enum RunResult::End;
   terminal_->summary(*experiment_, result, cpu_seconds);
-  const bool is_complete = write_files(result, cpu_seconds);
   const bool was_recorded = !recorder_ || close_recording(result);
-  if (!was_recorded && result.end == failed && result.error == recorder_->error()) return exit_unrecorded;
+  const bool is_complete = write_files(result, cpu_seconds);
+  const bool ended_for_that = result.end == failed && recorder_ && result.error == recorder_->error();
+  if (!was_recorded && (ended_for_that || (command_.record_or_stop && result.end == finished))) return exit_unrecorded;
   if (result.end == failed)
     log_.error(fmt::format("the run ended at tick {}: {}", result.ticks, result.error), {{"tick", result.ticks}});
   if (result.end == interrupted) return exit_interrupted;
@@ -84,7 +86,8 @@ bool OneRun::write_files(const RunResult& result, double cpu_seconds) {
   return written;
 }
 
-bool OneRun::close_recording(const RunResult& result) {
+// A disk may say only now that it is full: then the summary has an event of that too.
+bool OneRun::close_recording(RunResult& result) {
   recorder_->finish(word_of(result.end), result.end == RunResult::End::finished ? result.stop_reason : result.error);
   if (const std::uint64_t dropped = recorder_->dropped(); dropped > 0)
     log_.warning(
@@ -93,8 +96,11 @@ bool OneRun::close_recording(const RunResult& result) {
                     dropped, outputs_.recording.string()),
         {{"dropped", dropped}});
   const std::optional<std::string> error = recorder_->error();
-  if (error) log_.error("the recording ended before its run: " + *error);
-  return !error;
+  if (!error) return true;
+  log_.error("the recording ended before its run: " + *error);
+  if (std::ranges::none_of(result.events, [](const auto& event) { return event.kind == "unrecorded"; }))
+    result.events.push_back({.tick = result.ticks, .kind = "unrecorded", .text = *error, .last_tick = result.ticks});
+  return false;
 }
 
 }  // namespace cohort::tool

@@ -29,11 +29,11 @@ class OneRun {
   session::RunListener listener();
 
   /// Prints and writes what was asked for, and closes the recording. The exit code.
-  int finish(const session::RunResult& result, double cpu_seconds);
+  int finish(session::RunResult result, double cpu_seconds);
 
  private:
   bool write_files(const session::RunResult& result, double cpu_seconds);
-  bool close_recording(const session::RunResult& result);
+  bool close_recording(session::RunResult& result);
 
   const RunCommand& command_;
   Outputs outputs_;

@@ -25,10 +25,11 @@ struct Ended {
   std::string output;
 };
 
+// A build is not waited for in vain, and takes as long as the machine needs: only ctest gives up.
 Ended run(const std::vector<std::string>& command) {
   Process process(command, environment);
-  const auto exit_code = process.wait_for_exit();
-  return {exit_code, process.output()};
+  while (process.running()) process.wait_for_exit();
+  return {process.wait_for_exit(), process.output()};
 }
 
 // Cohort, installed into a prefix, and a project that knows nothing else of it.

@@ -1,12 +1,9 @@
 #include "server/session/control/control_queries.hpp"
 
-#include <regex.h>
-
 #include <algorithm>
-#include <cctype>
 #include <chrono>
-#include <memory>
 
+#include "server/session/control/entity_filter.hpp"
 #include "server/viewing/run_history.hpp"
 
 namespace cohort::session {
@@ -32,41 +29,6 @@ enum Feature : std::uint32_t {
   simulation_state_pause = 26,
   step_simulation_single = 31,
   step_simulation_multiple = 32,
-};
-
-// A POSIX extended regular expression of which the C library's take on strangers is bounded in time and memory:
-// repetition counts and references back are what makes either explode.
-class Filter {
- public:
-  explicit Filter(const std::string& pattern) {
-    constexpr std::size_t longest = 200;
-    if (pattern.size() > longest) throw std::invalid_argument("a filter has at most 200 characters");
-    bool escaped = false;
-    for (const char c : pattern) {
-      if (c == '{' || (escaped && std::isdigit(static_cast<unsigned char>(c)) != 0))
-        throw std::invalid_argument("a filter has neither repetition counts nor references back");
-      escaped = c == '\\' && !escaped;
-    }
-    if (pattern.empty()) return;
-    compiled_ = std::make_unique<regex_t>();
-    const int error = regcomp(compiled_.get(), pattern.c_str(), REG_EXTENDED | REG_NOSUB);
-    if (error == 0) return;
-    char text[200] = {};
-    regerror(error, compiled_.get(), text, sizeof text);
-    compiled_.reset();
-    throw std::invalid_argument("'" + pattern + "' is no filter: " + text);
-  }
-  Filter(const Filter&) = delete;
-  Filter& operator=(const Filter&) = delete;
-  ~Filter() {
-    if (compiled_) regfree(compiled_.get());
-  }
-  bool fits(const std::string& name) const {
-    return compiled_ == nullptr || regexec(compiled_.get(), name.c_str(), 0, nullptr, 0) == 0;
-  }
-
- private:
-  std::unique_ptr<regex_t> compiled_;  // null: everything fits
 };
 
 void put(std::span<const std::byte> bytes, Reply& reply) {
@@ -126,10 +88,11 @@ void ControlQueries::fill_features(Reply& reply) const {
 }
 
 void ControlQueries::fill_entities(Reply& reply, const Request& request) const {
-  const Filter filter(request.filter);
+  const EntityFilter filter(request.filter);
   const Objects& objects = run_->simulation.objects();
   for (std::uint32_t object = 0; object < objects.size(); ++object)
-    if (objects.is_present(object) && filter.fits(objects.name(object))) reply.entities.push_back(objects.name(object));
+    if (objects.is_present(object) && filter.matches(objects.name(object)))
+      reply.entities.push_back(objects.name(object));
 }
 
 std::optional<std::uint32_t> ControlQueries::find_entity(Reply& reply, const std::string& name) const {

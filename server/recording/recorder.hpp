@@ -52,6 +52,8 @@ class Recorder {
 
   /// Why the recording has ended before its run, if it has. Any thread.
   std::optional<std::string> error() const { return file_.error(); }
+  /// Bytes that wait to be written.
+  std::size_t queued() const { return file_.queued(); }
   /// Poses and observations that were dropped since the disk was too slow.
   std::uint64_t dropped() const;
 

@@ -1,9 +1,11 @@
 #include "server/session/control/control.hpp"
 
-#include <exception>
+#include <algorithm>
+#include <set>
 #include <utility>
 
 #include "server/session/control/control_actions.hpp"
+#include "server/session/control/control_texts.hpp"
 #include "server/session/control/request_checks.hpp"
 #include "server/session/printable.hpp"
 
@@ -16,12 +18,22 @@ using wire::Request;
 using wire::ResultCode;
 using wire::SimulationState;
 
-constexpr std::size_t most_requesters = 64;
 constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
-constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;
-constexpr std::uint32_t scope_default = 0;
-constexpr std::uint32_t scope_all = 255;
+constexpr std::size_t most_waiting_of_account = 64;
+constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;        // to go back to
+constexpr std::size_t most_kept_for_clients = std::size_t{256} << 20;  // of snapshots, uploads and recordings
+constexpr std::size_t longest_label = 256;
+constexpr std::size_t longest_message = 4096;
 constexpr std::chrono::milliseconds last_reply{500};
+
+RequestBudget::Time now() { return Control::Clock::now().time_since_epoch(); }
+
+// Whole characters of UTF-8 only.
+void cut_off(std::string& text, std::size_t most) {
+  if (text.size() <= most) return;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;
+  text.resize(most);
+}
 
 SimulationState on_wire(PlaybackState state) {
   switch (state) {
@@ -30,19 +42,6 @@ SimulationState on_wire(PlaybackState state) {
     case PlaybackState::paused: break;
   }
   return SimulationState::paused;
-}
-
-// For people, after what was done.
-std::string left_out_text(const SessionSnapshot& snapshot, const description::Experiment& experiment) {
-  std::string text;
-  for (const std::string& sentence : what_is_left_out(snapshot, experiment)) text += "; " + sentence;
-  return text;
-}
-
-std::string ticks_text(std::uint64_t count) { return std::to_string(count) + (count == 1 ? " tick" : " ticks"); }
-
-std::string speed_text(double speed) {
-  return speed == 0.0 ? "as fast as it goes" : std::to_string(speed) + " simulated seconds per second at the most";
 }
 
 bool may_ask(const wire::Identity& identity, Operation operation) {
@@ -60,10 +59,22 @@ bool ends_the_run(const Request& request) {
   }
 }
 
+// It takes no time, and who wants the run to stop must be able to say so.
+bool takes_no_time(const Request& request) {
+  switch (request.operation) {
+    case Operation::set_simulation_state: return request.state != SimulationState::stopped;
+    case Operation::step_simulation:
+    case Operation::set_speed:
+    case Operation::stop_recording: return true;
+    default: return false;
+  }
+}
+
 }  // namespace
 
 void Control::begin(ControlledRun run) {
   run_.emplace(std::move(run));
+  first_tick_ = run_->simulation.tick();
   ending_.reset();
   playback_ = Playback(run_->monitor.options().state);
   queries_.begin(*run_);
@@ -82,7 +93,8 @@ void Control::begin(ControlledRun run) {
 void Control::end(RunResult::End how) {
   const std::string at = "the run has ended at tick " + std::to_string(run_->simulation.tick());
   answer_steps(playback_.set(PlaybackState::playing), ResultCode::operation_failed, at);
-  for (const Request& request : std::exchange(ledger_.waiting(), {})) answer(request, ResultCode::incorrect_state, at);
+  for (const Request& request : std::exchange(ledger_.waiting(), {}))
+    if (!wire::is_query(request.operation)) answer(request, ResultCode::incorrect_state, at);  // these come again
   const bool goes_on = how == RunResult::End::reset || how == RunResult::End::restored;
   if (!goes_on)  // the server may be gone soon
     for (auto& [id, requester] : requesters_) requester.replies.wait_until_received(last_reply);
@@ -99,17 +111,21 @@ wire::Reply Control::reply_to(const Request& request) {
 
 Control::Requester* Control::requester_of(const ReceivedRequest& received) {
   const std::uint64_t client = received.request.client;
+  const auto& identity = received.participant->identity();
+  const auto admission =
+      slots_.use(client, identity ? identity->name : std::string(), !identity || identity->may_control, now());
+  if (admission.leaves) lose(*admission.leaves);
+  if (!admission.is_in) return nullptr;
   client_of_writer_[received.sender.writer] = client;
   if (const auto known = requesters_.find(client); known != requesters_.end()) {
     known->second.writer = received.sender.writer;
     return &known->second;
   }
-  if (requesters_.size() >= most_requesters) return nullptr;
-  const auto& identity = received.participant->identity();
   return &requesters_
               .emplace(client,
-                       Requester{.label = printable(received.request.label) +
+                       Requester{.label = printable(received.request.label.substr(0, longest_label)) +
                                           (identity ? " ('" + identity->name + "')" : std::string()),
+                                 .account = identity ? identity->name : wire::partition_of(client),
                                  .writer = received.sender.writer,
                                  .replies = wire::Writer<Reply>(*received.participant, wire::partition_of(client))})
               .first->second;
@@ -121,7 +137,7 @@ void Control::take(const ReceivedRequest& received) {
   if (request.client == 0 || !ledger_.is_in_own_name(request.client, received.sender.participant))
     return reject("foreign: a Request comes in another's name, or in nobody's");
   if (requester_of(received) == nullptr)
-    return reject("flood: " + std::to_string(most_requesters) + " clients control this run already");
+    return reject("flood: more clients control this run than may, and none of them is idle");
   if (const auto& identity = received.participant->identity(); identity && !may_ask(*identity, request.operation)) {
     reject("forbidden: " + label_of(request.client) + " may not control the run");
     Reply reply = reply_to(request);
@@ -130,7 +146,9 @@ void Control::take(const ReceivedRequest& received) {
                           "' may not control the run: 'cohort security' gives that right as 'control'";
     return send(std::move(reply), false);
   }
+  const RequestBudget::Time began = now();
   receive(request);
+  charge(request, now() - began);
 }
 
 void Control::receive(const Request& request) {
@@ -144,11 +162,7 @@ void Control::receive(const Request& request) {
   if (const std::string wrong = what_is_wrong(request); !wrong.empty())
     return refuse(wire::name_of(request.operation).empty() ? ResultCode::feature_unsupported : ResultCode::malformed,
                   wrong);
-  if (wire::is_query(request.operation)) {
-    Reply reply = reply_to(request);
-    queries_.answer(reply, request);
-    return send(std::move(reply), false);
-  }
+  if (wire::is_query(request.operation)) return may_be_done(request) ? answer_query(request) : put_off(request);
   switch (ledger_.receive(request.client, request.number)) {
     case RequestLedger::Receipt::under_way: return;  // its reply comes
     case RequestLedger::Receipt::answered: return send(ledger_.remembered(request.client, request.number), false);
@@ -160,9 +174,26 @@ void Control::receive(const Request& request) {
                     "more than " + std::to_string(wire::requests_under_way) + " requests of one client wait already");
     case RequestLedger::Receipt::fresh: break;
   }
+  put_off(request);
+}
+
+// Until a boundary, and until its account's turn. What is not there any more is asked for again, if it is a question.
+void Control::put_off(const Request& request) {
   std::size_t bytes = size_of(request);
-  for (const Request& waiting : ledger_.waiting()) bytes += size_of(waiting);
-  if (bytes > most_waiting_bytes) return answer(request, ResultCode::operation_failed, "too much waits already");
+  std::size_t of_account = 0;
+  for (const Request& waiting : ledger_.waiting()) {
+    if (waiting.client == request.client && waiting.number == request.number) return;
+    bytes += size_of(waiting);
+    if (account_of(waiting.client) == account_of(request.client)) ++of_account;
+  }
+  const bool is_query = wire::is_query(request.operation);
+  if (of_account >= most_waiting_of_account || bytes > most_waiting_bytes) {
+    run_->monitor.add_event("rejected", "flood: more requests of " + label_of(request.client) + " than can be done");
+    if (is_query) return;
+    return answer(
+        request, ResultCode::operation_failed,
+        "too many requests: " + std::to_string(of_account) + " of " + account_of(request.client) + " wait already");
+  }
   ledger_.waiting().push_back(request);
 }
 
@@ -174,7 +205,12 @@ void Control::lose(const wire::Sender& sender) {
   const auto requester = requesters_.find(client);
   // One that was lost and found again has another writer, and the end of the former comes late.
   if (requester == requesters_.end() || requester->second.writer != sender.writer) return;
-  requesters_.erase(requester);
+  lose(client);
+}
+
+void Control::lose(std::uint64_t client) {
+  requesters_.erase(client);
+  slots_.leave(client);
   ledger_.leave(client);
   recordings_.leave(client);
 }
@@ -187,6 +223,7 @@ void Control::send(Reply reply, bool is_kept) {
     reply.tick = run_->simulation.tick();
     reply.time_ns = run_->simulation.time().count();
   }
+  cut_off(reply.error_message, longest_message);
   if (is_kept) ledger_.keep(reply);
   const auto requester = requesters_.find(reply.client);
   if (requester != requesters_.end()) requester->second.replies.write(reply);  // lost: it is asked for again
@@ -219,6 +256,7 @@ void Control::tell(const Request& request, const std::string& text, std::vector<
 }
 
 void Control::reach_boundary() {
+  budget_.note_boundary(run_->simulation.tick() != first_tick_, now());
   queries_.note_progress(Clock::now());
   if (kept_.wants(run_->simulation.tick())) keep_snapshot();
   if (!playback_.has_steps()) return;
@@ -234,178 +272,86 @@ void Control::keep_snapshot() {
   }
 }
 
-bool Control::perform(Moment moment) {
-  saved_.reset();
+const std::string& Control::account_of(std::uint64_t client) const {
+  static const std::string gone = "clients that have gone";
+  const auto found = requesters_.find(client);
+  return found == requesters_.end() ? gone : found->second.account;
+}
+
+// A run that stands still, or is over, loses nothing.
+bool Control::is_unlimited() const { return playback_.holds() || run_->monitor.is_over(); }
+
+bool Control::may_be_done(const Request& request) {
+  if (takes_no_time(request) || is_unlimited()) return true;
+  if (request.operation == Operation::save_snapshot && saved_) return true;
+  const std::string& account = account_of(request.client);
+  return ends_the_run(request) ? budget_.allows_restart(account, now()) : budget_.allows(account, now());
+}
+
+void Control::charge(const Request& request, RequestBudget::Time took) {
+  if (!is_unlimited()) budget_.charge(account_of(request.client), took, now());
+}
+
+bool Control::has_work() {
+  return std::ranges::any_of(ledger_.waiting(), [this](const Request& request) { return may_be_done(request); });
+}
+
+// The next that may be done, and the actions that follow each other after it: these are done together. What one client
+// has asked for is done in its order.
+std::vector<Request> Control::take_next(Moment moment) {
   std::deque<Request>& waiting = ledger_.waiting();
-  for (std::size_t i = 0; i < waiting.size() && !ending_;) {
-    if (moment == Moment::midst && !ends_the_run(waiting[i])) {
+  std::set<std::uint64_t> held_up;
+  std::vector<Request> taken;
+  for (std::size_t i = 0; i < waiting.size();) {
+    const Request& request = waiting[i];
+    const bool is_query = wire::is_query(request.operation);
+    const bool is_now = moment == Moment::boundary || is_query || ends_the_run(request);
+    const bool waits_for_another = moment == Moment::boundary && !is_query && held_up.contains(request.client);
+    if (!taken.empty() && !is_action(request)) break;
+    if (!is_now || waits_for_another || !may_be_done(request)) {
+      if (is_now && !is_query) held_up.insert(request.client);
       ++i;
       continue;
     }
-    // Actions that follow each other are done together.
-    std::vector<Request> now;
-    do {
-      now.push_back(std::move(waiting[i]));
-      waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
-    } while (i < waiting.size() && is_action(now.back()) && is_action(waiting[i]));
-    if (is_action(now.front()))
-      do_actions(now);
+    taken.push_back(std::move(waiting[i]));
+    waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!is_action(taken.back())) break;
+  }
+  return taken;
+}
+
+bool Control::perform(Moment moment) {
+  saved_.reset();
+  drop_what_is_too_much();
+  while (!ending_) {
+    const std::vector<Request> next = take_next(moment);
+    if (next.empty()) break;
+    const RequestBudget::Time began = now();
+    if (is_action(next.front()))
+      do_actions(next);
+    else if (wire::is_query(next.front().operation))
+      answer_query(next.front());
     else
-      do_one(now.front());
+      do_one(next.front());
+    for (const Request& request : next)
+      charge(request, (now() - began) / static_cast<RequestBudget::Time::rep>(next.size()));
   }
   return !ending_;
 }
 
-void Control::do_one(const Request& request) {
-  try {
-    switch (request.operation) {
-      case Operation::set_simulation_state: return set_state(request);
-      case Operation::step_simulation: return step(request);
-      case Operation::reset_simulation: {
-        if (request.scope != scope_default && request.scope != scope_all)
-          return answer(request, ResultCode::feature_unsupported, "only all can be reset: scope 0 or 255");
-        const std::uint64_t seed = request.set_seed ? request.seed : run_->experiment.seed;
-        NextRun next{.seed = seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()};
-        return begin_anew(request, std::move(next), "from the beginning with seed " + std::to_string(seed));
-      }
-      case Operation::set_speed: return set_speed(request);
-      case Operation::save_snapshot: return save(request);
-      case Operation::load_snapshot: return load(request);
-      case Operation::go_back: return go_back(request);
-      case Operation::start_recording: return start_recording(request);
-      default:
-        return answer(request, ResultCode::feature_unsupported, wire::name_of(request.operation) + " is not there yet");
-    }
-  } catch (const std::exception& error) {
-    answer(request, ResultCode::operation_failed, error.what());
-  }
-}
-
-void Control::set_state(const Request& request) {
-  const auto be = [&](PlaybackState state, const std::string& word) {
-    const bool already = playback_.state() == state;
-    if (already && !playback_.has_steps())
-      return answer(request, ResultCode::already_in_target_state, "the run is " + word + " already");
-    const bool was_held = playback_.holds();
-    const std::string at = word + " at tick " + std::to_string(run_->simulation.tick());
-    answer_steps(playback_.set(state), ResultCode::operation_failed, at);
-    if (was_held) run_->monitor.resume();
-    tell(request, at);
-    answer(request, ResultCode::ok, at);
-  };
-  switch (request.state) {
-    case SimulationState::playing: return be(PlaybackState::playing, "playing");
-    case SimulationState::paused: return be(PlaybackState::paused, "paused");
-    case SimulationState::quitting: return quit(request);
-    case SimulationState::stopped: break;
-  }
-  if (playback_.state() == PlaybackState::stopped)
-    return answer(request, ResultCode::already_in_target_state, "the run is stopped already");
-  begin_anew(request, {.seed = run_->experiment.seed, .state = PlaybackState::stopped, .speed = run_->monitor.speed()},
-             "stopped, and from the beginning");
-}
-
-void Control::step(const Request& request) {
-  if (playback_.state_without_steps() == PlaybackState::playing)
-    return answer(request, ResultCode::operation_failed, "the run is not paused, so it makes steps by itself");
-  if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
-  const bool was_held = playback_.holds();
-  playback_.step(run_->simulation.tick(), request.steps, request.client, request.number);
-  if (was_held) run_->monitor.resume();
-  tell(request, ticks_text(request.steps));
-}
-
-void Control::set_speed(const Request& request) {
-  run_->monitor.set_speed(request.speed);
-  tell(request, speed_text(request.speed));
-  answer(request, ResultCode::ok, speed_text(request.speed));
-}
-
-void Control::quit(const Request& request) {
-  tell(request, "the end");
-  ending_ = Ending{};
-  answer(request, ResultCode::ok, "the run ends at tick " + std::to_string(run_->simulation.tick()));
-}
-
-void Control::begin_anew(const Request& request, NextRun next, const std::string& text) {
-  if (!run_->monitor.options().prepare)
-    return answer(request, ResultCode::feature_unsupported, "this server cannot begin another run");
-  run_->monitor.options().prepare(next);
-  tell(request, text);
-  answered_by_next_run_.push_back(request);
-  const RunResult::End how = next.snapshot == nullptr ? RunResult::End::reset : RunResult::End::restored;
-  ending_ = Ending{how, std::move(next)};
-}
-
-void Control::save(const Request& request) {
-  if (!saved_) {
-    const SessionSnapshot snapshot = run_->take_snapshot();
-    saved_ = Saved{"saved at tick " + std::to_string(snapshot.tick) + left_out_text(snapshot, run_->experiment),
-                   std::make_shared<const std::vector<std::byte>>(to_bytes(snapshot))};
-  }
-  if (saved_->bytes->size() > wire::largest_data)
-    return answer(request, ResultCode::operation_failed,
-                  "the snapshot has " + std::to_string(saved_->bytes->size()) + " bytes, and " +
-                      std::to_string(wire::largest_data) + " can be sent at the most");
-  tell(request, saved_->text);
-  Reply reply = reply_to(request);
-  reply.size = saved_->bytes->size();
-  reply.error_message = saved_->text;
-  ledger_.offer(request.client, saved_->bytes);
-  send(std::move(reply), true);
-}
-
-void Control::start_recording(const Request& request) {
-  if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
-  const std::string text = "recorded from tick " + std::to_string(run_->simulation.tick()) + " on";
-  recordings_.start(request.client, request.resource_string);
-  tell(request, text);
-  answer(request, ResultCode::ok, text);
-}
-
-void Control::load(const Request& request) {
-  const auto bytes = ledger_.take_all(request.client);
-  if (!bytes)
-    return answer(request, ResultCode::incorrect_state, "there is no snapshot to load: PutData brings it, whole");
-  auto snapshot = std::make_shared<SessionSnapshot>(snapshot_from_bytes(*bytes));
-  expect_same_experiment(*snapshot, run_->experiment);
-  go_on_from(request, std::move(snapshot));
-}
-
-void Control::go_back(const Request& request) {
-  if (kept_.size() == 0)
-    return answer(request, ResultCode::not_found, "this server keeps no snapshots; --keep-snapshots lets it");
-  const std::int64_t tick = request.duration_ns / run_->experiment.world.step.count();
-  auto snapshot = tick < 0 ? nullptr : kept_.last_until(static_cast<std::uint64_t>(tick));
-  if (snapshot == nullptr)
-    return answer(request, ResultCode::not_found,
-                  "the first snapshot that is kept is of tick " + std::to_string(kept_.first_tick()) +
-                      ", the last of tick " + std::to_string(kept_.last_tick()) + "; none is at or before tick " +
-                      std::to_string(tick));
-  const std::uint64_t at = snapshot->tick;
-  go_on_from(request, std::move(snapshot));
-  if (!ending_) return;
-  kept_.forget_after(at);
-  goes_back_ = true;
-}
-
-void Control::go_on_from(const Request& request, std::shared_ptr<const SessionSnapshot> snapshot) {
-  const std::string text = "from tick " + std::to_string(snapshot->tick) + " on";
-  NextRun next{.seed = snapshot->seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()};
-  if (next.state == PlaybackState::stopped) next.state = PlaybackState::paused;
-  next.snapshot = std::move(snapshot);
-  begin_anew(request, std::move(next), text);
-}
-
-void Control::do_actions(std::span<const Request> requests) {
-  saved_.reset();  // the world is another now
-  for (ActionOutcome& outcome : act(run_->simulation, requests)) {
-    for (ActionOutcome::Done& done : outcome.done) tell(*outcome.request, done.text, std::move(done.action));
-    Reply reply = reply_to(*outcome.request);
-    reply.result = outcome.result;
-    reply.error_message = std::move(outcome.text);
-    reply.entity = std::move(outcome.entity);
-    send(std::move(reply), true);
+void Control::drop_what_is_too_much() {
+  std::vector<KeptForClient> kept;
+  ledger_.list(kept);
+  recordings_.list(kept);
+  for (const KeptForClient& each : what_goes(std::move(kept), most_kept_for_clients)) {
+    const std::string text = name_of(each.kind) + " dropped: more than " +
+                             std::to_string(most_kept_for_clients >> 20U) +
+                             " MiB wait for all clients together, and this was the oldest";
+    run_->monitor.add_event("dropped", text + ", of " + label_of(each.client));
+    if (each.kind == KeptForClient::Kind::recording)
+      recordings_.drop(each.client, text);
+    else
+      ledger_.drop(each, text);
   }
 }
 

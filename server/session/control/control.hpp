@@ -13,7 +13,9 @@
 #include "server/session/control/kept_snapshots.hpp"
 #include "server/session/control/live_recordings.hpp"
 #include "server/session/control/received_request.hpp"
+#include "server/session/control/request_budget.hpp"
 #include "server/session/control/request_ledger.hpp"
+#include "server/session/control/requester_slots.hpp"
 #include "server/session/playback.hpp"
 #include "server/session/run_monitor.hpp"
 
@@ -49,11 +51,13 @@ class Control {
   const std::optional<Ending>& ending() const { return ending_; }
   /// Whether the run stays at this boundary.
   bool holds() const { return playback_.holds(); }
-  bool has_work() const { return !ledger_.waiting().empty(); }
+  /// Whether anything that waits may be done now.
+  bool has_work();
 
  private:
   struct Requester {
-    std::string label;  // for people
+    std::string label;    // for people
+    std::string account;  // that what it asks for is charged to
     std::uint64_t writer = 0;
     wire::Writer<wire::Reply> replies;
   };
@@ -61,13 +65,23 @@ class Control {
   static wire::Reply reply_to(const wire::Request& request);
   Requester* requester_of(const ReceivedRequest& received);
   void receive(const wire::Request& request);
+  void put_off(const wire::Request& request);
+  void lose(std::uint64_t client);
   void send(wire::Reply reply, bool is_kept);
   void answer(const wire::Request& request, wire::ResultCode result, const std::string& text);
   void answer_steps(const std::vector<Playback::Steps>& steps, wire::ResultCode result, const std::string& text);
   void tell(const wire::Request& request, const std::string& text, std::vector<std::byte> action = {});
   std::string label_of(std::uint64_t client) const;
+  // Requests may take a part of the run's time only.
+  const std::string& account_of(std::uint64_t client) const;
+  bool is_unlimited() const;
+  bool may_be_done(const wire::Request& request);
+  void charge(const wire::Request& request, RequestBudget::Time took);
+  std::vector<wire::Request> take_next(Moment moment);
+  void drop_what_is_too_much();
 
   // Operations: done or refused with a reply, or begun.
+  void answer_query(const wire::Request& request);
   void do_one(const wire::Request& request);
   void set_state(const wire::Request& request);
   void step(const wire::Request& request);
@@ -97,6 +111,9 @@ class Control {
   KeptSnapshots kept_{0, 0};
   bool goes_back_ = false;  // the next run is this one's past
   RequestLedger ledger_;
+  RequestBudget budget_;
+  std::uint64_t first_tick_ = 0;  // of this run
+  RequesterSlots slots_;
   std::map<std::uint64_t, Requester> requesters_;            // by client
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of requests
   ControlQueries queries_{ledger_, recordings_, kept_};

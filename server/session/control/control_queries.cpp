@@ -137,7 +137,8 @@ void ControlQueries::fill_data(Reply& reply, const Request& request) const {
   const auto part = ledger_.part(request.client, request.offset);
   if (!part) {
     reply.result = ResultCode::not_found;
-    reply.error_message = "there is no data for this client: it asked for none, or others have pushed it out";
+    const std::string why = ledger_.why_dropped(request.client, KeptForClient::Kind::saved_snapshot);
+    reply.error_message = why.empty() ? "there is no data for this client: it has saved nothing" : why;
     return;
   }
   reply.size = part->size;
@@ -146,7 +147,14 @@ void ControlQueries::fill_data(Reply& reply, const Request& request) const {
 }
 
 void ControlQueries::fill_recording(Reply& reply, const Request& request) {
-  const auto part = recordings_.fetch(request.client, request.offset);
+  std::optional<LiveRecordings::Part> part;
+  try {
+    part = recordings_.fetch(request.client, request.offset);
+  } catch (const std::runtime_error& dropped) {
+    reply.result = ResultCode::not_found;
+    reply.error_message = dropped.what();
+    return;
+  }
   if (!part) {
     reply.result = ResultCode::not_found;
     reply.error_message = "this client records nothing, or has fetched beyond byte " + std::to_string(request.offset);
@@ -186,7 +194,8 @@ void ControlQueries::fill_history(Reply& reply, const Request& request) const {
 void ControlQueries::take_data(Reply& reply, const Request& request) {
   reply.size = request.size;
   reply.offset = request.offset;
-  const auto wrong = ledger_.take_part(request.client, request.size, request.offset, request.data);
+  const auto wrong =
+      ledger_.take_part(request.client, request.size, request.offset, request.data, Clock::now().time_since_epoch());
   if (!wrong) return;
   reply.result = ResultCode::malformed;
   reply.error_message = *wrong;

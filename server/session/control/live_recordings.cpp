@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t most_recordings = 4;
 // Of each: bytes of its file that are not fetched, and what waits to become some.
 constexpr std::size_t spool_size = std::size_t{16} << 20;
-constexpr std::size_t most_display_queued = std::size_t{32} << 20;
-constexpr std::size_t most_queued = std::size_t{256} << 20;
+constexpr std::size_t most_display_queued = std::size_t{16} << 20;
+constexpr std::size_t most_queued = std::size_t{64} << 20;
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void LiveRecordings::start(std::uint64_t client, const std::string& recorded) {
                              " recordings of this run are under way, and no more can be");
   description::Recorded holds =
       recorded.empty() ? experiment_->recorded : parsing::read_recorded(recorded, *experiment_);
-  leave(client);
+  leave(client);  // also with what was dropped of it
   One& one = ones_.emplace_back(client, *experiment_, std::move(holds));
   one.recorder.begin(*experiment_, *simulation_, recording::Beginning::attached);
   telling_.push_back(&one.recorder);
@@ -74,9 +74,24 @@ void LiveRecordings::stop(std::uint64_t client) {
 }
 
 void LiveRecordings::leave(std::uint64_t client) {
+  dropped_.erase(client);
+  forget(client, "its client has gone");
+}
+
+void LiveRecordings::list(std::vector<KeptForClient>& kept) const {
+  for (const One& one : ones_)
+    kept.push_back({KeptForClient::Kind::recording, one.client, one.since, one.spool->size() + one.recorder.queued()});
+}
+
+void LiveRecordings::drop(std::uint64_t client, const std::string& why) {
+  dropped_[client] = why;
+  forget(client, why);
+}
+
+void LiveRecordings::forget(std::uint64_t client, const std::string& why) {
   const auto found = std::ranges::find(ones_, client, &One::client);
   if (found == ones_.end()) return;
-  end(*found, "stopped", "its client has gone");
+  end(*found, "stopped", why);
   found->spool->abandon();
   gone_.splice(gone_.end(), ones_, found);
   forget_the_gone();
@@ -88,6 +103,7 @@ void LiveRecordings::forget_the_gone() {
 }
 
 std::optional<LiveRecordings::Part> LiveRecordings::fetch(std::uint64_t client, std::uint64_t offset) {
+  if (const auto why = dropped_.find(client); why != dropped_.end()) throw std::runtime_error(why->second);
   One* const one = find(client);
   if (one == nullptr) return std::nullopt;
   auto bytes = one->spool->fetch(offset, wire::largest_part);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +12,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/recording/mcap/writing/spool.hpp"
 #include "server/recording/recorder.hpp"
+#include "server/session/control/kept_for_client.hpp"
 #include "server/session/run.hpp"
 
 namespace cohort::session {
@@ -34,11 +37,17 @@ class LiveRecordings {
   /// The client is gone.
   void leave(std::uint64_t client);
 
+  /// Adds what is kept for clients: bytes that are not fetched, and what waits to become some.
+  void list(std::vector<KeptForClient>& kept) const;
+  /// Ends the client's recording and forgets it; the client is told why when it fetches the next part.
+  void drop(std::uint64_t client, const std::string& why);
+
   struct Part {
     recording::Spool::Part bytes;
     std::string problem;  ///< why it is less than was asked for, with the last part
   };
-  /// From `offset` on; nothing if the client has no recording, or none from there on.
+  /// From `offset` on; nothing if the client has no recording, or none from there on. Throws std::runtime_error if it
+  /// was dropped.
   std::optional<Part> fetch(std::uint64_t client, std::uint64_t offset);
   /// Whether every recording that has ended is with its client.
   bool are_fetched() const;
@@ -52,19 +61,22 @@ class LiveRecordings {
     One& operator=(const One&) = delete;
     ~One() { spool->abandon(); }  // its thread may wait for room
     std::uint64_t client;
+    KeptForClient::Time since = std::chrono::steady_clock::now().time_since_epoch();
     std::shared_ptr<recording::Spool> spool;
     recording::Recorder recorder;
     bool has_ended = false;
   };
   One* find(std::uint64_t client);
   void end(One& one, const std::string& word, const std::string& reason);
+  void forget(std::uint64_t client, const std::string& why);
   void forget_the_gone();
 
   const description::Experiment* experiment_ = nullptr;
   const Simulation* simulation_ = nullptr;
   std::list<One> ones_;
-  std::list<One> gone_;                        // whose threads are about to end
-  std::vector<recording::Recorder*> telling_;  // those that have not ended
+  std::list<One> gone_;                           // whose threads are about to end
+  std::map<std::uint64_t, std::string> dropped_;  // why, by client
+  std::vector<recording::Recorder*> telling_;     // those that have not ended
   std::uint64_t fetched_ = 0;
 };
 

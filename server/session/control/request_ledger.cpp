@@ -4,18 +4,6 @@
 
 namespace cohort::session {
 
-template <class Data>
-auto RequestLedger::find(Data& holders, std::uint64_t client) {
-  return std::find_if(holders.begin(), holders.end(), [&](const auto& holder) { return holder.first == client; });
-}
-
-template <class Data>
-Data& RequestLedger::renew(Holders<Data>& holders, std::uint64_t client) {
-  holders.remove_if([&](const auto& holder) { return holder.first == client; });
-  if (holders.size() == most_holders) holders.pop_front();
-  return holders.emplace_back(client, Data{}).second;
-}
-
 bool RequestLedger::is_in_own_name(std::uint64_t client, std::uint64_t who) {
   const auto its_id = client_of_.find(who);
   if (its_id != client_of_.end() && its_id->second != client) return false;
@@ -66,32 +54,35 @@ void RequestLedger::keep(const wire::Reply& reply) {
   if (place != client->second.replies.end()) place->second = reply;
 }
 
-void RequestLedger::offer(std::uint64_t client, std::shared_ptr<const std::vector<std::byte>> data) {
-  renew(outgoing_, client) = std::move(data);
+void RequestLedger::offer(std::uint64_t client, std::shared_ptr<const std::vector<std::byte>> data,
+                          KeptForClient::Time now) {
+  dropped_.erase({client, KeptForClient::Kind::saved_snapshot});
+  outgoing_[client] = {now, std::move(data)};
 }
 
 std::optional<RequestLedger::Part> RequestLedger::part(std::uint64_t client, std::uint64_t offset) const {
-  const auto holder = find(outgoing_, client);
+  const auto holder = outgoing_.find(client);
   if (holder == outgoing_.end()) return std::nullopt;
-  const std::vector<std::byte>& data = *holder->second;
+  const std::vector<std::byte>& data = *holder->second.bytes;
   const std::uint64_t begin = std::min<std::uint64_t>(offset, data.size());
   const std::uint64_t count = std::min<std::uint64_t>(data.size() - begin, wire::largest_part);
   return Part{data.size(), std::span(data).subspan(begin, count)};
 }
 
 std::optional<std::string> RequestLedger::take_part(std::uint64_t client, std::uint64_t size, std::uint64_t offset,
-                                                    std::span<const std::uint8_t> bytes) {
+                                                    std::span<const std::uint8_t> bytes, KeptForClient::Time now) {
   if (size > wire::largest_data)
     return "data of " + std::to_string(size) + " bytes is more than " + std::to_string(wire::largest_data);
   if (bytes.size() > wire::largest_part)
     return "a part of " + std::to_string(bytes.size()) + " bytes is larger than " + std::to_string(wire::largest_part);
   if (offset > size || bytes.size() > size - offset)
     return "the part from " + std::to_string(offset) + " on goes beyond the end at " + std::to_string(size);
-  auto holder = find(incoming_, client);
   if (offset == 0) {
-    renew(incoming_, client).size = size;
-    holder = find(incoming_, client);
+    dropped_.erase({client, KeptForClient::Kind::upload});
+    incoming_[client] = {.since = now, .size = size};
   }
+  const auto holder = incoming_.find(client);
+  if (const std::string why = why_dropped(client, KeptForClient::Kind::upload); !why.empty()) return why;
   if (holder == incoming_.end() || holder->second.size != size)
     return "the part from " + std::to_string(offset) + " on belongs to nothing: parts begin at 0";
   std::vector<std::byte>& data = holder->second.bytes;
@@ -100,21 +91,55 @@ std::optional<std::string> RequestLedger::take_part(std::uint64_t client, std::u
     return "the part from " + std::to_string(offset) + " on comes where one from " + std::to_string(data.size()) +
            " on is expected";
   const auto added = std::as_bytes(bytes);
+  if (data.capacity() < data.size() + added.size())
+    data.reserve(std::min<std::size_t>(size, 2 * (data.size() + added.size())));  // never more than its size
   data.insert(data.end(), added.begin(), added.end());
   return std::nullopt;
 }
 
 std::optional<std::vector<std::byte>> RequestLedger::take_all(std::uint64_t client) {
-  const auto holder = find(incoming_, client);
+  const auto holder = incoming_.find(client);
   if (holder == incoming_.end() || holder->second.bytes.size() != holder->second.size) return std::nullopt;
   std::vector<std::byte> data = std::move(holder->second.bytes);
   incoming_.erase(holder);
   return data;
 }
 
+void RequestLedger::list(std::vector<KeptForClient>& kept) const {
+  std::map<const void*, KeptForClient> snapshots;  // of which each stands for all who share it
+  for (const auto& [client, data] : outgoing_) {
+    KeptForClient& each = snapshots[data.bytes.get()];
+    if (each.since <= data.since) each = {KeptForClient::Kind::saved_snapshot, client, data.since, data.bytes->size()};
+  }
+  for (const auto& [bytes, each] : snapshots) kept.push_back(each);
+  for (const auto& [client, data] : incoming_)
+    kept.push_back({KeptForClient::Kind::upload, client, data.since, data.bytes.capacity()});
+}
+
+void RequestLedger::drop(const KeptForClient& kept, const std::string& why) {
+  if (kept.kind == KeptForClient::Kind::upload) {
+    incoming_.erase(kept.client);
+    dropped_[{kept.client, kept.kind}] = why;
+    return;
+  }
+  const auto bytes = outgoing_.at(kept.client).bytes;
+  std::erase_if(outgoing_, [&](const auto& each) {
+    const bool goes = each.second.bytes == bytes;
+    if (goes) dropped_[{each.first, kept.kind}] = why;
+    return goes;
+  });
+}
+
+std::string RequestLedger::why_dropped(std::uint64_t client, KeptForClient::Kind kind) const {
+  const auto found = dropped_.find({client, kind});
+  return found == dropped_.end() ? std::string() : found->second;
+}
+
 void RequestLedger::leave(std::uint64_t client) {
-  outgoing_.remove_if([&](const auto& holder) { return holder.first == client; });
-  incoming_.remove_if([&](const auto& holder) { return holder.first == client; });
+  outgoing_.erase(client);
+  incoming_.erase(client);
+  for (const auto kind : {KeptForClient::Kind::saved_snapshot, KeptForClient::Kind::upload})
+    dropped_.erase({client, kind});
 }
 
 }  // namespace cohort::session

@@ -105,12 +105,12 @@ std::vector<std::uint8_t> numbered(std::size_t count, std::uint8_t first) {
 
 TEST(RequestLedger, PutsPartsTogetherWhateverIsRepeated) {
   RequestLedger ledger;
-  EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0)));
+  EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0), 0ns));
   EXPECT_FALSE(ledger.take_all(1)) << "not yet";
-  EXPECT_FALSE(ledger.take_part(1, 250, 100, numbered(100, 100)));
-  EXPECT_FALSE(ledger.take_part(1, 250, 100, numbered(100, 100))) << "again";
-  EXPECT_TRUE(ledger.take_part(1, 250, 240, numbered(10, 0))) << "a gap";
-  EXPECT_FALSE(ledger.take_part(1, 250, 200, numbered(50, 200)));
+  EXPECT_FALSE(ledger.take_part(1, 250, 100, numbered(100, 100), 0ns));
+  EXPECT_FALSE(ledger.take_part(1, 250, 100, numbered(100, 100), 0ns)) << "again";
+  EXPECT_TRUE(ledger.take_part(1, 250, 240, numbered(10, 0), 0ns)) << "a gap";
+  EXPECT_FALSE(ledger.take_part(1, 250, 200, numbered(50, 200), 0ns));
   const auto all = ledger.take_all(1);
   ASSERT_TRUE(all);
   const auto expected = numbered(250, 0);
@@ -120,31 +120,69 @@ TEST(RequestLedger, PutsPartsTogetherWhateverIsRepeated) {
 
 TEST(RequestLedger, RefusesPartsThatCannotBe) {
   RequestLedger ledger;
-  EXPECT_TRUE(ledger.take_part(1, wire::largest_data + 1, 0, {}));
-  EXPECT_TRUE(ledger.take_part(1, wire::largest_data, 0, numbered(wire::largest_part + 1, 0)));
-  EXPECT_TRUE(ledger.take_part(1, 10, 0, numbered(11, 0)));
-  EXPECT_TRUE(ledger.take_part(1, 10, 5, numbered(5, 0))) << "it has not begun";
-  EXPECT_TRUE(ledger.take_part(1, 10, ~std::uint64_t{0}, numbered(5, 0)));
-  EXPECT_FALSE(ledger.take_part(1, 10, 0, numbered(5, 0)));
-  EXPECT_TRUE(ledger.take_part(1, 11, 5, numbered(5, 0))) << "another size";
+  EXPECT_TRUE(ledger.take_part(1, wire::largest_data + 1, 0, {}, 0ns));
+  EXPECT_TRUE(ledger.take_part(1, wire::largest_data, 0, numbered(wire::largest_part + 1, 0), 0ns));
+  EXPECT_TRUE(ledger.take_part(1, 10, 0, numbered(11, 0), 0ns));
+  EXPECT_TRUE(ledger.take_part(1, 10, 5, numbered(5, 0), 0ns)) << "it has not begun";
+  EXPECT_TRUE(ledger.take_part(1, 10, ~std::uint64_t{0}, numbered(5, 0), 0ns));
+  EXPECT_FALSE(ledger.take_part(1, 10, 0, numbered(5, 0), 0ns));
+  EXPECT_TRUE(ledger.take_part(1, 11, 5, numbered(5, 0), 0ns)) << "another size";
 }
 
-TEST(RequestLedger, GivesDataInPartsToWhoAskedForItAndKeepsThatOfTwo) {
+TEST(RequestLedger, GivesDataInPartsToWhoAskedForItAndSaysWhyItHasNoMore) {
   RequestLedger ledger;
   const std::vector<std::byte> data(wire::largest_part + 10, std::byte{7});
   const auto shared = [](std::vector<std::byte> bytes) {
     return std::make_shared<const std::vector<std::byte>>(std::move(bytes));
   };
-  ledger.offer(1, shared(data));
-  ledger.offer(2, shared({std::byte{1}}));
+  ledger.offer(1, shared(data), 0ns);
+  ledger.offer(2, shared({std::byte{1}}), 0ns);
   EXPECT_EQ(ledger.part(1, 0)->bytes.size(), wire::largest_part);
   EXPECT_EQ(ledger.part(1, wire::largest_part)->bytes.size(), 10u);
   EXPECT_EQ(ledger.part(1, wire::largest_part)->size, data.size());
   EXPECT_TRUE(ledger.part(1, ~std::uint64_t{0})->bytes.empty());
   EXPECT_FALSE(ledger.part(3, 0));
-  ledger.offer(3, shared({}));
-  EXPECT_FALSE(ledger.part(1, 0)) << "the oldest is gone";
+  const auto both = shared(data);
+  ledger.offer(3, both, 1ns);
+  ledger.offer(4, both, 2ns);
+  std::vector<KeptForClient> kept;
+  ledger.list(kept);
+  ASSERT_EQ(kept.size(), 3u) << "what two share is kept once";
+  ledger.drop(*std::ranges::find(kept, 4u, &KeptForClient::client), "too much");
+  EXPECT_FALSE(ledger.part(3, 0));
+  EXPECT_FALSE(ledger.part(4, 0));
   EXPECT_TRUE(ledger.part(2, 0));
+  EXPECT_EQ(ledger.why_dropped(3, KeptForClient::Kind::saved_snapshot), "too much");
+  EXPECT_EQ(ledger.why_dropped(2, KeptForClient::Kind::saved_snapshot), "");
+  ledger.offer(3, both, 3ns);
+  EXPECT_EQ(ledger.why_dropped(3, KeptForClient::Kind::saved_snapshot), "") << "it is there again";
+}
+
+TEST(RequestLedger, SaysWhyWhatWasHandedOverIsGone) {
+  RequestLedger ledger;
+  EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0), 0ns));
+  std::vector<KeptForClient> kept;
+  ledger.list(kept);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_GE(kept[0].bytes, 100u);
+  EXPECT_LE(kept[0].bytes, 250u);
+  ledger.drop(kept[0], "too much");
+  EXPECT_EQ(ledger.take_part(1, 250, 100, numbered(100, 100), 1ns), "too much");
+  EXPECT_FALSE(ledger.take_part(1, 250, 0, numbered(100, 0), 2ns)) << "it may begin again";
+}
+
+TEST(KeptForClient, TheOldestGoesUntilTheRestFits) {
+  using Kind = KeptForClient::Kind;
+  const std::vector<KeptForClient> kept = {
+      {Kind::recording, 1, 30ns, 50}, {Kind::upload, 2, 10ns, 40}, {Kind::saved_snapshot, 3, 20ns, 30}};
+  EXPECT_TRUE(what_goes(kept, 120).empty());
+  const auto one = what_goes(kept, 119);
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_EQ(one[0].client, 2u);
+  const auto two = what_goes(kept, 50);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[1].client, 3u);
+  EXPECT_EQ(what_goes(kept, 0).size(), 3u);
 }
 
 TEST(AnswerTimes, CountFromTheFirstSendingOfEachFrame) {

@@ -32,6 +32,11 @@ std::optional<Spool::Part> Spool::fetch(std::uint64_t offset, std::size_t most) 
   return part;
 }
 
+std::size_t Spool::size() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_.size();
+}
+
 bool Spool::is_done() const {
   const std::lock_guard lock(mutex_);
   return is_abandoned_ || (is_finished_ && bytes_.empty());

@@ -24,6 +24,8 @@ class Spool : public ByteStore {
   /// At most `most` bytes from `offset` on. Those before it have arrived, and are forgotten. Nothing if bytes from
   /// there on were forgotten before, or are none of it.
   std::optional<Part> fetch(std::uint64_t offset, std::size_t most);
+  /// Bytes that are not fetched.
+  std::size_t size() const;
   /// All of it is there and was fetched, or nobody will.
   bool is_done() const;
   /// Nobody fetches any more: from now on writing fails.

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "client_sdk/src/plugin_file.hpp"
+
 namespace cohort {
 namespace {
 
@@ -35,6 +37,17 @@ std::string names_of_plugins(const std::vector<fs::path>& directories) {
   return names.empty() || names.size() > few ? "" : "; known: " + joined(names);
 }
 
+// What dlopen says, without the path, and what to do about it.
+std::string reason_not_loaded(const fs::path& path) {
+  const char* error = ::dlerror();
+  std::string reason = error != nullptr ? error : "unknown error";
+  if (const std::string prefix = path.string() + ": "; reason.starts_with(prefix)) reason.erase(0, prefix.size());
+  if (reason.starts_with("undefined symbol")) return reason + ". Link what defines it into the plugin";
+  return reason;
+}
+
+}  // namespace
+
 fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path>& directories) {
   std::error_code ignored;
   if (is_path(name_or_path)) {
@@ -52,38 +65,14 @@ fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path
                            ". Tried " + tried + ". Give its path, or put its folder into COHORT_PLUGIN_PATH");
 }
 
-// What dlopen says, without the path, and what to do about it.
-std::string reason_not_loaded(const fs::path& path) {
-  const char* error = ::dlerror();
-  std::string reason = error != nullptr ? error : "unknown error";
-  if (const std::string prefix = path.string() + ": "; reason.starts_with(prefix)) reason.erase(0, prefix.size());
-  if (reason.starts_with("undefined symbol")) return reason + ". Link what defines it into the plugin";
-  if (reason == "file too short" || reason == "invalid ELF header")
-    return reason + ". A plugin is a shared object, as cohort_add_controller builds it";
-  return reason;
-}
-
-}  // namespace
-
 LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs::path>& directories)
-    : path_(find_plugin(name_or_path, directories)),
-      library_(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL), ::dlclose) {
-  if (library_ == nullptr) {
-    throw std::runtime_error("cannot load " + path_.string() + ": " + reason_not_loaded(path_));
-  }
-  plugin_ = static_cast<const Plugin*>(::dlsym(library_.get(), "cohort_plugin"));
-  if (plugin_ == nullptr) {
-    throw std::runtime_error(path_.string() +
-                             " is not a controller plugin: it lacks the symbol cohort_plugin, which "
-                             "COHORT_CONTROLLER(Class) at the end of the controller's source makes");
-  }
+    : path_(find_plugin(name_or_path, directories)), library_(nullptr, ::dlclose) {
+  check_plugin_file(path_);
+  library_.reset(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL));
+  if (library_ != nullptr) plugin_ = static_cast<const Plugin*>(::dlsym(library_.get(), "cohort_plugin"));
+  if (plugin_ == nullptr) throw std::runtime_error("cannot load " + path_.string() + ": " + reason_not_loaded(path_));
   // First in the struct in every version, so it can be read before anything else is trusted.
-  if (plugin_->abi < Plugin::oldest_abi || plugin_->abi > Plugin::current_abi) {
-    throw std::runtime_error(path_.string() + " was built for version " + std::to_string(plugin_->abi) +
-                             " of the controller interface, and this program takes versions " +
-                             std::to_string(Plugin::oldest_abi) + " to " + std::to_string(Plugin::current_abi) +
-                             ". Build it again with the headers of this version");
-  }
+  check_plugin_abi(path_, plugin_->abi);
 }
 
 std::vector<fs::path> default_plugin_directories() {

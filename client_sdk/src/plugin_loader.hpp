@@ -8,12 +8,16 @@
 
 namespace cohort {
 
+/// Returns the path of a plugin. `name_or_path`: a path to a shared object, or a name such as `obstacle_avoidance`,
+/// looked for as `NAME.so` in `directories` in order. Throws std::runtime_error that says what was tried.
+std::filesystem::path find_plugin(const std::string& name_or_path,
+                                  const std::vector<std::filesystem::path>& directories);
+
 /// A controller plugin, loaded as long as this lives. Objects that it made must be gone before.
 class LoadedPlugin {
  public:
-  /// `name_or_path`: a path to a shared object, or a name such as `obstacle_avoidance`, looked for as `NAME.so` in
-  /// `directories` in order. Throws std::runtime_error that says what was tried and what is wrong with it (not found,
-  /// not a controller plugin, built for another version).
+  /// Finds the plugin as `find_plugin` does. Throws std::runtime_error that says what is wrong with it (not found, not
+  /// a controller plugin, built for another version). Only a file that is a plugin is loaded.
   LoadedPlugin(const std::string& name_or_path, const std::vector<std::filesystem::path>& directories);
   LoadedPlugin(LoadedPlugin&&) noexcept = default;
   LoadedPlugin& operator=(LoadedPlugin&&) noexcept = default;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "cohort/controller.hpp"
@@ -18,22 +19,53 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
+// Writes the file COHORT_TEST_LOADED when the plugin is loaded, if the variable is set.
+const bool is_loaded = [] {
+  if (const std::string file = environment("COHORT_TEST_LOADED"); !file.empty()) std::ofstream(file) << "loaded";
+  if (environment("COHORT_TEST_FAULT") == "leave while loaded") std::exit(0);
+  return true;
+}();
+
+// Uses up the stack, whatever the optimizer makes of it.
+// NOLINTNEXTLINE(misc-no-recursion)
+int descend(volatile char* above) {
+  if (above == nullptr) return 0;
+  volatile char here[4096] = {};
+  here[0] = static_cast<char>(above[0] + 1);
+  return descend(here) + here[0];
+}
+
 // Stands still, but for one thing, which COHORT_TEST_FAULT names, at tick 20 of the robot COHORT_TEST_ROBOT (or of
 // all). COHORT_TEST_FILE is for what a test and it have to tell each other.
 class Misbehaving final : public cohort::Controller {
  public:
+  ~Misbehaving() override {
+    if (fault_ == "leave in its destructor" && started_) std::exit(0);
+  }
   void start(const cohort::Start& start) override {
     const std::string robot = environment("COHORT_TEST_ROBOT");
     if (robot.empty() || robot == start.name) fault_ = environment("COHORT_TEST_FAULT");
+    if (fault_ == "leave on trial") std::exit(0);
+    if (fault_ == "crash on trial") std::raise(SIGSEGV);
+    started_ = start.reason != cohort::StartReason::check;
+    if (fault_ == "leave in start" && started_) std::exit(0);
   }
   void step(const cohort::Observation& observation, cohort::Command&) override {
-    if (observation.tick() < 20) return;
+    if (observation.tick() < 20 || fault_ == "leave in its destructor") return;
     const std::string fault = std::exchange(fault_, "");
     const std::filesystem::path file = environment("COHORT_TEST_FILE");
     if (fault == "throw") throw std::runtime_error("a fault on purpose");
     if (fault == "abort") std::abort();
     if (fault == "terminate") std::terminate();
     if (fault == "leave") std::exit(0);
+    if (fault == "leave quickly") std::quick_exit(0);
+    if (fault == "leave on a thread") std::thread([] { std::exit(0); }).join();
+    if (fault == "segfault") *static_cast<volatile int*>(nullptr) = 1;
+    if (fault == "overflow the stack") {
+      volatile char top[1] = {};
+      descend(top);
+    }
+    if (fault == "throw on a thread") std::thread([] { throw std::runtime_error("a fault on purpose"); }).join();
     if (fault == "abort once" && !std::filesystem::exists(file)) {
       std::ofstream(file) << "done";
       std::abort();
@@ -58,6 +90,7 @@ class Misbehaving final : public cohort::Controller {
 
  private:
   std::string fault_;
+  bool started_ = false;  // and not on trial
 };
 
 }  // namespace

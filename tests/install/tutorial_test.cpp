@@ -100,7 +100,8 @@ TEST_F(Tutorial, TheMistakeIsExplainedAsItSays) {
   wrong.replace(wrong.find("distance:"), 8, "distence");
   std::ofstream(*home / "walls/walls.yaml") << wrong;
   const ReservedDomain domain;
-  Process check({"/bin/bash", write_script("check.sh", "cd ~/walls; exec ~/.local/bin/cohort check walls.yaml")},
+  Process check({"/bin/bash",
+                 write_script("check.sh", "cd ~/walls; exec ~/.local/bin/cohort check walls.yaml --load-controllers")},
                 environment(domain));
   EXPECT_EQ(check.wait_for_exit(), 2);
   std::string shown;

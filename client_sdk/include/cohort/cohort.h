@@ -46,7 +46,7 @@ typedef enum CohortStartReason {
   cohort_start_takeover, /* another process drove this robot before; the run goes on from `tick` */
   cohort_start_reset,    /* the world was built anew */
   cohort_start_restored, /* the world was restored from a snapshot */
-  cohort_start_check     /* `cohort check` and `cohort run` look for mistakes: no step will follow */
+  cohort_start_check     /* `cohort check --load-controllers` and `cohort run` look for mistakes: no step */
 } CohortStartReason;
 
 typedef struct CohortStartInfo {

@@ -57,7 +57,7 @@ enum class StartReason {
   takeover,  ///< another process drove this robot before; the run goes on from `Start::tick`
   reset,     ///< the world was built anew
   restored,  ///< the world was restored from a snapshot
-  check,     ///< `cohort check` and `cohort run` look for mistakes before anything runs: no step will follow
+  check,     ///< `cohort check --load-controllers` and `cohort run` look for mistakes first: no step will follow
 };
 
 /// What a controller is told before its first step, and again after each reset, restore and takeover.

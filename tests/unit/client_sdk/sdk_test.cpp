@@ -206,7 +206,8 @@ TEST_F(PluginLoaderTest, APluginThatIsNowhereIsAnsweredWithThePlacesTried) {
 
 TEST_F(PluginLoaderTest, AFileThatIsNoLibraryIsRefused) {
   std::ofstream(folder / "text.so") << "hello";
-  EXPECT_TRUE(contains(message_of<std::runtime_error>([&] { LoadedPlugin("text", {folder}); }), "cannot load"));
+  EXPECT_TRUE(
+      contains(message_of<std::runtime_error>([&] { LoadedPlugin("text", {folder}); }), "is not a shared object"));
 }
 
 TEST_F(PluginLoaderTest, ALibraryThatIsNoPluginIsRefused) {

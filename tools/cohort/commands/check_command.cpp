@@ -21,7 +21,7 @@ void print_world(const description::World& world) {
             << std::chrono::duration<double, std::milli>(world.step).count() << " ms\n";
 }
 
-int check(const std::filesystem::path& file, Log& log) {
+int check(const std::filesystem::path& file, bool loads_controllers, Log& log) {
   try {
     if (parsing::kind_of_file(file) == parsing::FileKind::sdf) {
       description::Experiment experiment;
@@ -34,11 +34,16 @@ int check(const std::filesystem::path& file, Log& log) {
       const description::Experiment experiment = parsing::read_experiment(file, {}, {}, installed_model_folders());
       log.warnings(experiment.world.warnings);
       const Simulation built(experiment, 1);
-      try_controllers(experiment, built, load_controllers(experiment));
+      if (loads_controllers)
+        try_controllers(experiment, built, load_controllers(experiment));
+      else
+        check_controllers(experiment);
       print_world(experiment.world);
       for (const description::Team& team : experiment.teams)
         std::cout << "team " << team.name << ": " << counted(team.robots.size(), "robot") << ", controller "
                   << team.controller << "\n";
+      if (!loads_controllers && !experiment.teams.empty())
+        std::cout << "controllers were not loaded: --load-controllers also checks parameters and channels\n";
     }
     std::cout << file.string() << ": no mistakes found\n";
     return exit_ok;
@@ -53,12 +58,20 @@ int check(const std::filesystem::path& file, Log& log) {
 }  // namespace
 
 Subcommand add_check(CommandLine app) {
-  const auto file = std::make_shared<std::filesystem::path>();
+  struct CheckCommand {
+    std::filesystem::path file{};
+    bool loads_controllers = false;
+  };
+  const auto command = std::make_shared<CheckCommand>();
   CommandLine line = app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
-  line.add_option("FILE", *file, "Experiment (.yaml) or world (.sdf)").required().type_name("");
+  line.add_option("FILE", command->file, "Experiment (.yaml) or world (.sdf)").required().type_name("");
   add_allow_files_option(line);
+  line.add_flag("--load-controllers", command->loads_controllers,
+                "Also load the plugins of controllers and start them on trial, which runs their code");
   line.footer("Example: cohort check worlds/arenas/obstacles.sdf");
-  return {line, [file](Log& log, const std::atomic<bool>&) { return check(*file, log); }};
+  return {line, [command](Log& log, const std::atomic<bool>&) {
+            return check(command->file, command->loads_controllers, log);
+          }};
 }
 
 }  // namespace cohort::tool

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "client_sdk/src/plugin_file.hpp"
 #include "server/description/input_error.hpp"
 #include "server/session/roster.hpp"
 #include "tools/cohort/running/keyboard.hpp"
@@ -41,6 +42,26 @@ std::optional<Problem> try_controller(const Experiment& experiment, const Team& 
   return std::nullopt;
 }
 
+bool is_plugin(const Team& team) { return team.controller != keyboard_controller && !team.controller.empty(); }
+
+// Calls `use` with each team whose controller is a plugin, and with the plugin's name or path. Collects what it throws.
+template <class Use>
+void for_plugins(const Experiment& experiment, const Use& use) {
+  std::vector<Problem> problems;
+  for (const Team& team : experiment.teams) {
+    if (!is_plugin(team)) continue;
+    std::string name = team.controller;
+    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".so");
+    if (is_path && std::filesystem::path(name).is_relative()) name = experiment.file.parent_path() / name;
+    try {
+      use(team, name);
+    } catch (const std::runtime_error& error) {
+      problems.push_back(problem_of_controller(experiment, team, error.what()));
+    }
+  }
+  if (!problems.empty()) throw description::InputError(std::move(problems));
+}
+
 }  // namespace
 
 ControllerKind TeamController::kind() const {
@@ -52,22 +73,18 @@ bool has_keyboard(const Experiment& experiment) {
   return std::ranges::any_of(experiment.teams, [](const Team& team) { return team.controller == keyboard_controller; });
 }
 
+void check_controllers(const Experiment& experiment) {
+  for_plugins(experiment, [](const Team&, const std::string& name) {
+    check_plugin_file(find_plugin(name, default_plugin_directories()));
+  });
+}
+
 std::vector<TeamController> load_controllers(const Experiment& experiment) {
-  std::vector<TeamController> controllers;
-  std::vector<Problem> problems;
-  for (const Team& team : experiment.teams) {
-    TeamController& controller = controllers.emplace_back();
-    if (team.controller == keyboard_controller || team.controller.empty()) continue;
-    std::string name = team.controller;
-    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".so");
-    if (is_path && std::filesystem::path(name).is_relative()) name = experiment.file.parent_path() / name;
-    try {
-      controller.plugin.emplace(name, default_plugin_directories());
-    } catch (const std::runtime_error& error) {
-      problems.push_back(problem_of_controller(experiment, team, error.what()));
-    }
-  }
-  if (!problems.empty()) throw description::InputError(std::move(problems));
+  std::vector<TeamController> controllers(experiment.teams.size());
+  for_plugins(experiment, [&](const Team& team, const std::string& name) {
+    controllers[static_cast<std::size_t>(&team - experiment.teams.data())].plugin.emplace(name,
+                                                                                          default_plugin_directories());
+  });
   return controllers;
 }
 

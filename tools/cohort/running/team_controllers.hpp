@@ -23,8 +23,12 @@ inline constexpr const char* keyboard_controller = "keyboard";
 
 bool has_keyboard(const description::Experiment& experiment);
 
-/// The controllers of the experiment's teams, in their order. One that is named by a relative path is looked for beside
-/// the experiment. Throws description::InputError.
+/// Checks that the plugins of an experiment are there and can be loaded, without loading them. Throws
+/// description::InputError.
+void check_controllers(const description::Experiment& experiment);
+
+/// Loads the controllers of the experiment's teams. Returns them in their order. One that is named by a relative path
+/// is looked for beside the experiment. Throws description::InputError.
 std::vector<TeamController> load_controllers(const description::Experiment& experiment);
 
 /// Starts a controller of each team for one robot of each kind that the team has, and throws it away: so mistakes in

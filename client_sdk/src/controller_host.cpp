@@ -6,16 +6,20 @@
 #include <string>
 #include <utility>
 
+#include "client_sdk/src/controller_call.hpp"
+
 namespace cohort {
 namespace {
 
 // Runs a controller's code. Whatever it throws becomes a ControllerFailure that says whose, where and why.
 template <class Call>
-decltype(auto) guarded(const std::string& robot, const char* function, std::uint64_t tick, Call call) {
+decltype(auto) guarded(const Callee& callee, const std::string& robot, const char* function, std::uint64_t tick,
+                       Call call) {
   const auto failure = [&](const std::string& why) {
     return ControllerFailure("the controller of robot '" + robot + "' failed in " + function + " at tick " +
                              std::to_string(tick) + ": " + why);
   };
+  const ControllerCall under_way(callee, function, tick);
   try {
     return call();
   } catch (const LeaveRun&) {
@@ -97,6 +101,7 @@ Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
 struct ControllerHost::Robot {
   std::uint32_t id = 0;
   std::string name;
+  std::unique_ptr<const Callee> callee;
   OwnedController controller;
   std::size_t observation_size = 0;
   std::vector<double> neutral;
@@ -104,7 +109,16 @@ struct ControllerHost::Robot {
 };
 
 ControllerHost::ControllerHost(ControllerKind kind) : kind_(std::move(kind)) {}
-ControllerHost::~ControllerHost() = default;
+ControllerHost::~ControllerHost() { drop_controllers(); }
+
+void ControllerHost::drop_controllers() {
+  for (Robot& robot : robots_) {
+    if (robot.controller == nullptr) continue;  // another one of the robot's has it now
+    const ControllerCall under_way(*robot.callee, "its destructor", robot.tick);
+    robot.controller.reset();
+  }
+  robots_.clear();
+}
 
 // Mostly the one after the last that was found: frames have robots in order.
 ControllerHost::Robot* ControllerHost::find(std::uint32_t id) {
@@ -120,15 +134,17 @@ ControllerHost::Robot* ControllerHost::find(std::uint32_t id) {
 void ControllerHost::start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions) {
   const StartReason reason = reason_of(admit.start_reason);
   const bool same_controllers = reason == StartReason::reset || reason == StartReason::restored;
-  if (!same_controllers) robots_.clear();
+  if (!same_controllers) drop_controllers();
   std::vector<Robot> robots;
   for (const wire::AdmittedRobot& admitted : admit.robots) {
     const Start start = start_of(admit, admitted, descriptions);
+    auto callee = std::make_unique<const Callee>(start.controller.empty() ? kind_.name : start.controller,
+                                                 admitted.name, start.team);
     Robot* before = find(admitted.robot);
     OwnedController controller = before != nullptr
                                      ? std::move(before->controller)
-                                     : guarded(admitted.name, "its constructor", admit.tick, kind_.create);
-    guarded(admitted.name, "start", admit.tick, [&] {
+                                     : guarded(*callee, admitted.name, "its constructor", admit.tick, kind_.create);
+    guarded(*callee, admitted.name, "start", admit.tick, [&] {
       controller->start(start);
       start.parameters.check_all_were_asked_for();
     });
@@ -136,10 +152,11 @@ void ControllerHost::start(const wire::Admit& admit, std::span<const wire::Robot
     for (const ChannelInfo& channel : start.command_channels) {
       neutral.insert(neutral.end(), channel.size, channel.neutral);
     }
-    robots.push_back({admitted.robot, admitted.name, std::move(controller), size_of(start.observation_channels),
-                      std::move(neutral), admit.tick});
+    robots.push_back({admitted.robot, admitted.name, std::move(callee), std::move(controller),
+                      size_of(start.observation_channels), std::move(neutral), admit.tick});
   }
   std::sort(robots.begin(), robots.end(), [](const Robot& a, const Robot& b) { return a.id < b.id; });
+  drop_controllers();
   robots_ = std::move(robots);
 }
 
@@ -172,7 +189,7 @@ std::span<const double> ControllerHost::answer(const wire::Observation& frame) {
     std::copy(robot.neutral.begin(), robot.neutral.end(), values.begin());
     Command command(values);
     robot.tick = frame.tick;
-    guarded(robot.name, "step", frame.tick, [&] { robot.controller->step(observation, command); });
+    guarded(*robot.callee, robot.name, "step", frame.tick, [&] { robot.controller->step(observation, command); });
     read += robot.observation_size;
     written += robot.neutral.size();
   }
@@ -185,7 +202,7 @@ std::vector<RobotState> ControllerHost::save() const {
     RobotState& saved = states.emplace_back(RobotState{robot.id});
     if (!kind_.has_state) continue;
     StateWriter writer;
-    guarded(robot.name, "save", robot.tick, [&] {
+    guarded(*robot.callee, robot.name, "save", robot.tick, [&] {
       robot.controller->save(writer);
       if (writer.bytes().size() > largest_state)
         throw StateError("its state has " + std::to_string(writer.bytes().size()) + " bytes, and " +
@@ -205,7 +222,7 @@ std::vector<std::string> ControllerHost::load(std::span<const RobotState> states
       useless.insert(state->controller);
       continue;
     }
-    guarded(robot->name, "load", robot->tick, [&] {
+    guarded(*robot->callee, robot->name, "load", robot->tick, [&] {
       StateReader reader(state->bytes);
       robot->controller->load(reader);
       if (!reader.rest().empty())

@@ -66,6 +66,7 @@ class ControllerHost {
  private:
   struct Robot;
   Robot* find(std::uint32_t id);
+  void drop_controllers();
 
   ControllerKind kind_;
   std::vector<Robot> robots_;  // ascending ids

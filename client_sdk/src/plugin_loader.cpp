@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "client_sdk/src/controller_call.hpp"
 #include "client_sdk/src/plugin_file.hpp"
 
 namespace cohort {
@@ -68,7 +69,11 @@ fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path
 LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs::path>& directories)
     : path_(find_plugin(name_or_path, directories)), library_(nullptr, ::dlclose) {
   check_plugin_file(path_);
-  library_.reset(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL));
+  {
+    const Callee callee("the controller plugin " + path_.string());
+    const ControllerCall under_way(callee, "its static constructors", 0);
+    library_.reset(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL));
+  }
   if (library_ != nullptr) plugin_ = static_cast<const Plugin*>(::dlsym(library_.get(), "cohort_plugin"));
   if (plugin_ == nullptr) throw std::runtime_error("cannot load " + path_.string() + ": " + reason_not_loaded(path_));
   // First in the struct in every version, so it can be read before anything else is trusted.

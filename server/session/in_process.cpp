@@ -56,6 +56,11 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
   if (options.from) restore(*options.from, exchange);
   const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
 
+  const auto fail = [&](const std::string& why) {
+    monitor.add_event("failed", why);
+    return monitor.finish(RunResult::End::failed, why);
+  };
+  if (listener.can_fail) listener.can_fail(fail);
   std::vector<std::unique_ptr<ControllerHost>> hosts;
   const std::vector<description::Team>& teams = simulation.experiment().teams;
   try {
@@ -109,8 +114,7 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
       }
     }
   } catch (const ControllerFailure& failure) {
-    monitor.add_event("failed", failure.what());
-    return monitor.finish(RunResult::End::failed, failure.what());
+    return fail(failure.what());
   }
   return monitor.finish(RunResult::End::finished);
 }

@@ -72,6 +72,8 @@ struct Miss {
   std::chrono::nanoseconds waited{0};  ///< wall time
 };
 
+struct RunResult;
+
 /// Told what happens, on the thread that runs. Each may be empty.
 struct RunListener {
   std::function<void(const Progress&)> progress{};  ///< a few times a second, also while waiting
@@ -84,6 +86,9 @@ struct RunListener {
   std::function<void()> boundary{};
   /// Of a run in one process: at each boundary, before its frames go out. `take` makes a snapshot of the run as it is.
   std::function<void(const std::function<SessionSnapshot()>& take)> can_save{};
+  /// Of a run in one process: once, before it calls its controllers. `fail` ends the run where it is, and makes its
+  /// result: for a controller that ends the process. It is good until the run returns.
+  std::function<void(std::function<RunResult(const std::string& why)> fail)> can_fail{};
   /// A tick has its answers: the wall time since its first frame was sent.
   std::function<void(std::chrono::nanoseconds)> barrier{};
   /// The commands of a tick are with the simulation, which is about to step: those of these robots have changed.

@@ -118,11 +118,12 @@ RunResult RunMonitor::finish(RunResult::End end, std::string error) {
   result_.sim_time = simulation_.time();
   result_.state_hash = simulation_.state_hash();
   result_.robots = simulation_.robot_count();
+  result_.newcomers.clear();
   for (std::uint32_t robot = robots_at_first_; robot < result_.robots; ++robot)
     result_.newcomers.push_back(simulation_.robot_name(robot));
   result_.touches = simulation_.touches();
   result_.events.assign(log_.events().begin(), log_.events().end());
-  return std::move(result_);
+  return result_;
 }
 
 }  // namespace cohort::session

@@ -71,7 +71,7 @@ class RunMonitor {
   void add_resent(std::uint64_t frames) { result_.resent += frames; }
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
   void add_miss(const lockstep::Barrier::Miss& miss);
-  /// The result, which is complete now.
+  /// The result, which is complete now. A second time if what ended the run went wrong.
   RunResult finish(RunResult::End end, std::string error = {});
 
  private:

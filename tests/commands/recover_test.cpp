@@ -83,7 +83,9 @@ TEST(AStuckTick, IsEndedAfterAWhileWithAMessage) {
   EXPECT_TRUE(eventually([&] { return McapReader(file).statistics().message_count > 20; }));
   run.signal(SIGTERM);
   EXPECT_EQ(run.wait_for_exit(), 1) << run.output();
-  EXPECT_NE(run.output().find("tick 20 has not ended 10 s after this process was asked to end"), std::string::npos)
+  EXPECT_NE(run.output().find("tick 20 has not ended 10 s after this process was asked to end: the controller '" +
+                              test_controller("misbehaving") + "' of r0 (team pair) has not returned from step."),
+            std::string::npos)
       << run.output();
   EXPECT_EQ(recover({file}).exit_code, 0);
   EXPECT_TRUE(McapReader(file).is_complete());

@@ -55,7 +55,7 @@ TEST(Restarts, AControllerThatEndsWithoutAnErrorInTheMidstOfARunHasDied) {
   const SmallExperiment experiment(test_controller("misbehaving"), "    restart: never\n");
   const Ended run = run_to_end(experiment.run(), {{"COHORT_TEST_FAULT", "leave"}});
   EXPECT_EQ(run.exit_code, 1) << run.err;
-  EXPECT_NE(run.err.find(" ended with exit code 0, and the experiment says restart: never"), std::string::npos)
+  EXPECT_NE(run.err.find(" ended with exit code 1, and the experiment says restart: never"), std::string::npos)
       << run.err;
 }
 

@@ -10,6 +10,7 @@
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
+#include "tools/cohort/running/controller_ends.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
 
 namespace cohort::tool {
@@ -34,10 +35,12 @@ int check(const std::filesystem::path& file, bool loads_controllers, Log& log) {
       const description::Experiment experiment = parsing::read_experiment(file, {}, {}, installed_model_folders());
       log.warnings(experiment.world.warnings);
       const Simulation built(experiment, 1);
-      if (loads_controllers)
+      if (loads_controllers) {
+        const ControllerEnds ends(log, {.exit_code = exit_usage, .crashes = true});
         try_controllers(experiment, built, load_controllers(experiment));
-      else
+      } else {
         check_controllers(experiment);
+      }
       print_world(experiment.world);
       for (const description::Team& team : experiment.teams)
         std::cout << "team " << team.name << ": " << counted(team.robots.size(), "robot") << ", controller "

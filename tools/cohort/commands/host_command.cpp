@@ -3,6 +3,7 @@
 #include "client_sdk/src/plugin_loader.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
+#include "tools/cohort/running/controller_ends.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -15,6 +16,7 @@ struct HostCommand {
 };
 
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
+  const ControllerEnds ends(log, {.exit_code = exit_failed});
   const LoadedPlugin loaded(command.plugin, default_plugin_directories());
   ClientOptions options;
   options.server = command.client.connection.server;

@@ -21,6 +21,7 @@
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
+#include "tools/cohort/running/controller_ends.hpp"
 #include "tools/cohort/running/one_run.hpp"
 #include "tools/cohort/running/run_recording.hpp"
 #include "tools/cohort/running/seeds.hpp"
@@ -71,9 +72,15 @@ void refuse_keyboard(const description::Experiment& experiment) {
                                       "people drive over DDS: run this without --controllers inprocess"}});
 }
 
+// With its controllers in this process. If one of them ends the process, `finish` is called with the result.
 RunResult run_here(const description::Experiment& experiment, Simulation& simulation,
                    const std::vector<TeamController>& controllers, const session::RunOptions& options,
-                   const session::RunListener& listener, const std::atomic<bool>& stop) {
+                   session::RunListener listener, const std::function<int(const RunResult&)>& finish, Log& log,
+                   const std::atomic<bool>& stop) {
+  ControllerEnds ends(log, {.exit_code = exit_failed, .crashes = true});
+  listener.can_fail = [&](const auto& fail) {
+    ends.finish_with([&finish, fail](const std::string& why) { return finish(fail(why)); });
+  };
   std::vector<ControllerKind> teams;
   teams.reserve(controllers.size());
   for (const TeamController& controller : controllers) teams.push_back(controller.kind());
@@ -188,17 +195,20 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
   using enum recording::Beginning;
   OneRun one(command, numbered(command.outputs, number, count), log, stop);
   one.begin(*world.experiment, *world.simulation, runs.from ? restored : first);
+  const auto finish = [&](const RunResult& result) {
+    const double cpu = cpu_seconds();
+    return one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
+  };
   for (;;) {
     std::optional<World> next;
     options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
-    const RunResult result =
-        runs.serving
-            ? runs.serving->run(*world.experiment, *world.simulation, options, one.listener(), stop, number == count)
-            : run_here(*world.experiment, *world.simulation, runs.controllers, options, one.listener(), stop);
+    const RunResult result = runs.serving ? runs.serving->run(*world.experiment, *world.simulation, options,
+                                                              one.listener(), stop, number == count)
+                                          : run_here(*world.experiment, *world.simulation, runs.controllers, options,
+                                                     one.listener(), finish, log, stop);
     if (!result.next) {
-      const double cpu = cpu_seconds();
       goes_on = result.end == RunResult::End::finished;
-      return one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
+      return finish(result);
     }
     const bool is_reset = result.end == RunResult::End::reset;
     log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}", is_reset ? "reset" : "another snapshot",
@@ -274,9 +284,11 @@ int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
   }
   const description::Experiment& first = *runs.experiments.front();
   if (in_process) refuse_keyboard(first);
+  std::optional<ControllerEnds> ends_on_trial(std::in_place, log, ControllerEnds::Options{exit_usage, true});
   if (command.controllers != Controllers::external) runs.controllers = load_controllers(first);
   runs.first = build_world(command, runs.experiments.front(), runs.from, log);
   if (command.controllers != Controllers::external) try_controllers(first, *runs.first.simulation, runs.controllers);
+  ends_on_trial.reset();
   warn_if_not_portable(log);
 
   if (!in_process) runs.serving.emplace(command, first, log);

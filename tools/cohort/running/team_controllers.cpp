@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "client_sdk/src/controller_call.hpp"
 #include "client_sdk/src/plugin_file.hpp"
 #include "server/description/input_error.hpp"
 #include "server/session/roster.hpp"
@@ -30,6 +31,8 @@ std::optional<Problem> try_controller(const Experiment& experiment, const Team& 
   try {
     Start start = start_of(admit, admit.robots.front(), descriptions);
     start.reason = StartReason::check;
+    const Callee callee(team.controller, start.name, team.name);
+    const ControllerCall under_way(callee, "start", start.tick);
     kind.create()->start(start);
     start.parameters.check_all_were_asked_for();
   } catch (const ParameterError& error) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "client_sdk/src/controller_call.hpp"
 #include "tools/cohort/cli/exit_codes.hpp"
 
 namespace cohort::tool {
@@ -38,9 +39,9 @@ void Watchdog::watch() {
     tick = tick_;
     if (Clock::now() - *since < watchdog_patience) continue;
     log_.error(
-        fmt::format("tick {} has not ended {} s after this process was asked to end: a controller in it loops, or "
-                    "the world takes too long. The run ends here; 'cohort recover' closes its recording",
-                    tick, watchdog_patience.count()),
+        fmt::format("tick {} has not ended {} s after this process was asked to end: {}. The run ends here; 'cohort "
+                    "recover' closes its recording",
+                    tick, watchdog_patience.count(), describe_call().value_or("the world takes too long")),
         {{"tick", tick}});
     std::_Exit(exit_failed);
   }

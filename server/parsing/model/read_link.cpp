@@ -8,8 +8,10 @@
 #include <sdf/Heightmap.hh>
 #include <sdf/Material.hh>
 #include <sdf/Visual.hh>
+#include <stdexcept>
 #include <utility>
 
+#include "server/geometry/shapes/convex_hull.hpp"
 #include "server/parsing/model/mass_properties.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
@@ -37,11 +39,46 @@ std::optional<Eigen::Matrix3d> inertia_of_collisions(const Link& link, double ma
   return mass / whole.mass * whole.inertia;
 }
 
+// Planes and height maps have none; a mesh has that of its convex hull, since meshes that are only shown have gaps.
+std::optional<Shape> solid_of(const Shape& shape) {
+  const Mesh* const mesh = std::get_if<Mesh>(&shape);
+  if (mesh == nullptr || mesh->convex) return shape;
+  try {
+    return Mesh{std::make_shared<const TriangleMesh>(geometry::convex_hull(mesh->triangles->vertices)), true};
+  } catch (const std::invalid_argument&) {  // flat
+    return std::nullopt;
+  }
+}
+
+template <class Part>
+MassProperties mass_of_parts(const std::vector<Part>& parts, Pose Part::*X_LP, double density) {
+  std::vector<MassProperties> solids;
+  for (const Part& part : parts)
+    if (const std::optional<Shape> solid = solid_of(part.shape))
+      solids.push_back(moved(mass_properties(*solid, density), part.*X_LP));
+  return together(solids);
+}
+
+// Of a link that has none: as MuJoCo, from its shapes.
+Inertial inertial_of_shapes(const Link& link) {
+  constexpr double density = 1000.0;        // [kg/m^3]
+  constexpr double mass_of_grain = 1e-3;    // [kg]
+  constexpr double moment_of_grain = 1e-6;  // [kg m^2]
+  const auto is_real = [](const MassProperties& whole) {
+    return whole.mass > 0.0 && std::isfinite(whole.mass) && whole.inertia.allFinite();
+  };
+  MassProperties whole = mass_of_parts(link.collisions, &Collision::X_LC, density);
+  if (!is_real(whole)) whole = mass_of_parts(link.visuals, &Visual::X_LV, density);
+  if (!is_real(whole)) return {mass_of_grain, {}, moment_of_grain * Eigen::Matrix3d::Identity()};
+  return {whole.mass, {whole.centre, Eigen::Quaterniond::Identity()}, whole.inertia};
+}
+
 // Here and below, NaN passes: check_numbers has reported it.
 Inertial read_written_inertial(const sdf::Link& sdf_link, const Link& link, const SdfReport& report) {
   const sdf::ElementPtr element = sdf_link.Element();
   const sdf::ElementPtr mass = find(element, {"inertial", "mass"});
   const sdf::ElementPtr inertia = find(element, {"inertial", "inertia"});
+  if (mass && mass->Get<double>() == 0.0 && report.is_foreign(mass)) return inertial_of_shapes(link);  // told already
   if (!mass) report.warning(element, "has no mass; SDF's default acts, 1 kg");
   if (!inertia) report.warning(element, "has no inertia; SDF's default acts, 1 kg m^2 about each axis");
 

@@ -85,38 +85,37 @@ void SdfMender::take_world_link(XmlNode& model, const std::string& path) {
         if ((end.name == "parent" || end.name == "child") && end.text == "world") end.text = "world_link";
 }
 
-XmlNode inertial_of(const XmlNode& link, double mass, double moment) {
-  XmlNode inertial = element_at(link, "inertial");
-  XmlNode inertia = element_at(link, "inertia");
-  for (const char* const name : {"ixx", "iyy", "izz"})
-    inertia.children.push_back(element_at(link, name, shortest_text(moment)));
-  inertial.children = {element_at(link, "mass", shortest_text(mass)), std::move(inertia)};
-  return inertial;
-}
-
-// A root without mass is how Bullet says that the world holds it. What hangs on a joint and has none is a grain.
+// A root without mass is how Bullet says that the world holds it. What hangs on a joint and has none weighs what its
+// shapes do, once they are read (read_link.cpp).
 void SdfMender::mend_masses(XmlNode& model, const std::string& path) {
-  constexpr double mass_of_grain = 1e-3;    // [kg]
-  constexpr double moment_of_grain = 1e-6;  // [kg m^2]
   std::set<std::string> children;
   for (const XmlNode& joint : model.children)
     if (joint.name == "joint") children.insert(text_of_child(joint, "child"));
   std::vector<XmlNode> held;
+  const XmlNode* first = nullptr;
+  std::string weightless;
   for (XmlNode& link : model.children) {
-    if (link.name != "link") continue;
-    const XmlNode* const inertial = link.child("inertial");
+    XmlNode* const inertial = link.name == "link" ? child_of(link, "inertial") : nullptr;
     if (inertial == nullptr || parse_real(text_of_child(*inertial, "mass")) != 0.0) continue;
     const std::string name = value_of(link, "name");
-    const bool is_root = !children.contains(name);
-    *child_of(link, "inertial") =
-        is_root ? inertial_of(link, 1.0, 1.0) : inertial_of(link, mass_of_grain, moment_of_grain);
-    tell_of(link, path + "/" + step_of(link),
-            is_root ? "a root without mass is held by the world" : "a link without mass has 1 g");
-    if (!is_root) continue;
+    if (children.contains(name)) {
+      if (first == nullptr) first = &link;
+      weightless += (weightless.empty() ? "'" : ", '") + name + "'";
+      continue;
+    }
+    *inertial = element_at(link, "inertial");
+    XmlNode inertia = element_at(link, "inertia");
+    for (const char* const moment : {"ixx", "iyy", "izz"}) inertia.children.push_back(element_at(link, moment, "1"));
+    inertial->children = {element_at(link, "mass", "1"), std::move(inertia)};
+    tell_of(link, path + "/" + step_of(link), "a root without mass is held by the world");
     XmlNode& joint = held.emplace_back(element_at(link, "joint"));
     joint.attributes = {{"name", name + "_to_world"}, {"type", "fixed"}};
     joint.children = {element_at(link, "parent", "world"), element_at(link, "child", name)};
   }
+  if (first != nullptr)
+    tell_of(*first, path,
+            "links without mass: " + weightless +
+                "; each has that of its collisions at 1000 kg/m^3, or else of its visuals, or else 1 g");
   std::ranges::move(held, std::back_inserter(model.children));
 }
 

@@ -10,6 +10,7 @@
 #include "server/core/text.hpp"
 #include "server/parsing/sdf/unknown_names.hpp"
 #include "server/parsing/sdf/urdf_forms.hpp"
+#include "server/parsing/sdf/urdf_masses.hpp"
 #include "server/parsing/sdf/xml_edit.hpp"
 
 namespace cohort::parsing {
@@ -39,7 +40,8 @@ void put(XmlNode& node, const std::vector<const char*>& path, const std::string&
 
 class UrdfMender {
  public:
-  UrdfMender(const std::filesystem::path& file, std::vector<Problem>& warnings) : file_(file), warnings_(warnings) {}
+  UrdfMender(const std::filesystem::path& file, std::vector<Problem>& problems, std::vector<Problem>& warnings)
+      : file_(file), problems_(problems), warnings_(warnings) {}
 
   UrdfRest mend(XmlNode& robot);
 
@@ -65,9 +67,9 @@ class UrdfMender {
   void take_unknown(XmlNode& node, const std::string& path);
   static void mend_mesh(XmlNode& geometry);
   void let_go(XmlNode& robot);
-  void hold_root(XmlNode& robot);
 
   const std::filesystem::path& file_;
+  std::vector<Problem>& problems_;
   std::vector<Problem>& warnings_;
   UnknownNames unknown_;
   UrdfRest rest_;
@@ -87,7 +89,7 @@ UrdfRest UrdfMender::mend(XmlNode& robot) {
     if (child.name == "joint") mend_joint(child);
   }
   let_go(robot);
-  hold_root(robot);
+  keep_links_without_mass(robot, file_, rest_, warnings_);
   unknown_.tell(warnings_);
   return std::move(rest_);
 }
@@ -154,9 +156,13 @@ void UrdfMender::mend_materials(XmlNode& robot) {
   });
 }
 
-// Of Bullet: shapes that the converter does not know. What nobody does is left out.
+// Of Bullet: shapes that the converter does not know. What nobody knows is an error: what moves would go through
+// others.
 void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path,
                             const std::pair<std::string, std::size_t>& place) {
+  if (geometry.children.size() > 1)
+    pass_over(geometry, path, "has more than one shape; only the first counts, as other readers have it");
+  geometry.children.resize(1, geometry.children.front());
   XmlNode& shape = geometry.children.front();
   const XmlNode bullets = shape;
   const auto stand_in = [&](const char* name, const char* size, const char* value) {
@@ -170,9 +176,10 @@ void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path,
     rest_.planes.emplace(place, value_of(bullets, "normal").empty() ? "0 0 1" : value_of(bullets, "normal"));
     stand_in("sphere", "radius", "1");
   } else if (form_of("geometry", shape.name) == nullptr) {
-    pass_over(bullets, path + "/" + bullets.name,
-              "a <" + bullets.name + "> is no shape here; the collision is left out");
-    rest_.left_out.insert(place);
+    problems_.push_back({file_, bullets.line, path + "/" + bullets.name,
+                         "<" + bullets.name +
+                             "> is not supported as a collision; expected box, sphere, cylinder, "
+                             "capsule, mesh or plane"});
     stand_in("sphere", "radius", "1");
   }
   mend_mesh(geometry);
@@ -194,8 +201,8 @@ void UrdfMender::mend_link(XmlNode& link) {
   std::erase_if(link.children, [&](const XmlNode& child) {
     if (child.name != "collision") return is_without_mass(child);
     const XmlNode* const geometry = child.child("geometry");
-    const bool is_empty = geometry == nullptr || geometry->children.size() != 1;
-    if (is_empty) pass_over(child, path + "/collision", "a <collision> without one shape, which is ignored");
+    const bool is_empty = geometry == nullptr || geometry->children.empty();
+    if (is_empty) pass_over(child, path + "/collision", "a <collision> without a shape, which is ignored");
     return is_empty;
   });
   for (XmlNode& child : link.children) {
@@ -254,6 +261,13 @@ void UrdfMender::mend_visuals(XmlNode& link) {
 }
 
 void UrdfMender::mend_inertial(XmlNode& inertial, const std::string& path) {
+  constexpr double least_mass = 2e-6;  // [kg]: the converter takes less for none
+  XmlNode* const mass = child_of(inertial, "mass");
+  const std::optional<double> value = mass != nullptr ? parse_real(value_of(*mass, "value")) : std::nullopt;
+  if (value && *value > 0.0 && *value < least_mass) {
+    pass_over(*mass, path + "/mass", "is less than 2 mg, which stands in for it");
+    set_attribute(*mass, "value", shortest_text(least_mass));
+  }
   XmlNode* const inertia = child_of(inertial, "inertia");
   if (inertia == nullptr) return;
   for (const char* const product : {"ixy", "ixz", "iyz"}) {
@@ -373,18 +387,6 @@ void UrdfMender::mend_limit(XmlNode& joint, const std::string& path) {
     pass_over(joint, path, "has no <limit>, which a " + type + " joint needs; it moves without one");
 }
 
-std::string urdf_end(const XmlNode& joint, const char* end) {
-  const XmlNode* const node = joint.child(end);
-  return node != nullptr ? value_of(*node, "link") : "";
-}
-
-// What cannot be read counts: it is to be told.
-bool has_mass(const XmlNode& link) {
-  const XmlNode* const inertial = link.child("inertial");
-  const XmlNode* const mass = inertial != nullptr ? inertial->child("mass") : nullptr;
-  return inertial != nullptr && (mass == nullptr || parse_real(value_of(*mass, "value")) != 0.0);
-}
-
 // A floating joint lets go: of a root that has no mass nothing is left, otherwise there are two that are free.
 void UrdfMender::let_go(XmlNode& robot) {
   std::set<std::string> children;
@@ -412,59 +414,11 @@ void UrdfMender::let_go(XmlNode& robot) {
   });
 }
 
-// The converter leaves out what has no mass, with all that hangs on it. A root without mass is how URDF says that the
-// world holds it, as Bullet has it. Mass is of no consequence there.
-void UrdfMender::hold_root(XmlNode& robot) {
-  std::map<std::string, XmlNode*> links;
-  std::set<std::string> children;
-  std::multimap<std::string, std::string> fixed;
-  for (XmlNode& child : robot.children) {
-    if (child.name == "link") links.emplace(value_of(child, "name"), &child);
-    if (child.name != "joint") continue;
-    children.insert(urdf_end(child, "child"));
-    if (value_of(child, "type") == "fixed") fixed.emplace(urdf_end(child, "parent"), urdf_end(child, "child"));
-  }
-  // With what is fixed to it: a loop of joints is somebody else's to tell of.
-  const auto weighs = [&](const std::string& root) {
-    std::set<std::string> met;
-    std::vector<std::string> open{root};
-    while (!open.empty()) {
-      const std::string link = open.back();
-      open.pop_back();
-      if (!met.insert(link).second || !links.contains(link)) continue;
-      if (has_mass(*links[link])) return true;
-      for (auto [at, end] = fixed.equal_range(link); at != end; ++at) open.push_back(at->second);
-    }
-    return false;
-  };
-  const auto give_mass = [&](XmlNode& link) {
-    std::erase_if(link.children, [](const XmlNode& child) { return child.name == "inertial"; });
-    XmlNode inertial = element_at(link, "inertial");
-    XmlNode mass = element_at(link, "mass");
-    mass.attributes = {{"value", "1"}};
-    XmlNode inertia = element_at(link, "inertia");
-    inertia.attributes = {{"ixx", "1"}, {"ixy", "0"}, {"ixz", "0"}, {"iyy", "1"}, {"iyz", "0"}, {"izz", "1"}};
-    inertial.children = {std::move(mass), std::move(inertia)};
-    link.children.push_back(std::move(inertial));
-  };
-  for (auto& [name, link] : links) {
-    if (children.contains(name)) continue;
-    if (name == "world") {  // the converter knows it
-      for (auto [at, end] = fixed.equal_range(name); at != end; ++at)
-        if (links.contains(at->second) && !weighs(at->second)) give_mass(*links[at->second]);
-      continue;
-    }
-    if (weighs(name)) continue;
-    give_mass(*link);
-    rest_.held = name;
-    warn(*link, "robot/" + urdf_step(*link), "has no mass and is the root: the world holds it");
-  }
-}
-
 }  // namespace
 
-UrdfRest mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& warnings) {
-  return UrdfMender(file, warnings).mend(robot);
+UrdfRest mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+                   std::vector<Problem>& warnings) {
+  return UrdfMender(file, problems, warnings).mend(robot);
 }
 
 }  // namespace cohort::parsing

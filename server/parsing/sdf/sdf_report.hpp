@@ -21,6 +21,8 @@ class SdfReport {
   void warning(const sdf::ElementPtr& element, std::string message) const;
   /// Only the first time that it is said of a file.
   void warning_once(const sdf::ElementPtr& element, const std::string& message) const;
+  /// Returns whether the file of the element was not written for Cohort.
+  bool is_foreign(const sdf::ElementPtr& element) const { return files_.is_foreign(element); }
   /// What is wrong in a file of ours, and only told of one that was not written for Cohort, where `remedy` says what is
   /// done instead. True if it is to be remedied.
   bool flaw(const sdf::ElementPtr& element, const std::string& message, const std::string& remedy) const;

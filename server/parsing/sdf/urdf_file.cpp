@@ -102,8 +102,7 @@ const XmlNode* joint_above(const XmlNode& robot, const std::string& link) {
   return nullptr;
 }
 
-// The converter makes one of links that a fixed joint connects. It leaves out a link without mass that moves against
-// its parent, and all below it.
+// The converter makes one of links that a fixed joint connects. It leaves out what it cannot use.
 bool is_kept(const XmlNode& robot, const std::string& link, const std::set<std::string>& names) {
   if (names.contains(link)) return true;
   const XmlNode* const joint = joint_above(robot, link);
@@ -138,7 +137,7 @@ void collect_names(const XmlNode& node, std::set<std::string>& names) {
 std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& file, const sdf::ParserConfig& config,
                                    std::vector<Problem>& problems, std::vector<Problem>& warnings) {
   const std::size_t before = problems.size();
-  const UrdfRest rest = mend_urdf(robot, file, warnings);
+  const UrdfRest rest = mend_urdf(robot, file, problems, warnings);
   check_urdf(robot, file, problems, warnings);
   if (problems.size() > before) return std::nullopt;
 
@@ -172,10 +171,17 @@ std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& f
     if (model.name == "model") add_rest(rest, model);
   std::set<std::string> names;
   collect_names(tree, names);
-  for (const XmlNode& link : robot.children)
-    if (link.name == "link" && !is_kept(robot, *link.attribute("name"), names))
-      warnings.push_back({file, link.line, "robot/link[" + *link.attribute("name") + "]",
-                          "is left out, with its joint: it has no mass, or the link above it is left out"});
+  for (const XmlNode& link : robot.children) {
+    if (link.name != "link" || is_kept(robot, *link.attribute("name"), names)) continue;
+    const std::string path = "robot/link[" + *link.attribute("name") + "]";
+    if (*link.attribute("name") != "world")
+      problems.push_back(
+          {file, link.line, path, "libsdformat's converter of URDF leaves this link out, with its joint"});
+    else if (link.child("collision") != nullptr)
+      warnings.push_back(
+          {file, link.line, path, "'world' is the world itself; the collisions of this link are ignored"});
+  }
+  if (problems.size() > before) return std::nullopt;
   return tree;
 }
 

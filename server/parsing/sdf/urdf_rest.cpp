@@ -55,9 +55,9 @@ void add_rest(const UrdfRest& rest, XmlNode& model) {
         geometry->children = {std::move(shape)};
       }
     }
-    std::erase_if(link.children, [&](const XmlNode& child) {
-      return child.name == "collision" && rest.left_out.contains(source_of_collision(value_of(child, "name")));
-    });
+    if (XmlNode* const inertial = child_of(link, "inertial");
+        inertial != nullptr && rest.weightless.contains(value_of(link, "name")))
+      inertial->children = {element_at(*inertial, "mass", "0")};
   }
   for (XmlNode& joint : model.children)
     if (joint.name == "joint" && rest.balls.contains(value_of(joint, "name"))) {

@@ -15,7 +15,7 @@ struct UrdfRest {
   std::map<std::string, XmlNode> surfaces;                            ///< as SDF has them, of all collisions of a link
   std::set<std::pair<std::string, std::size_t>> capsules;             ///< a link, and which of its collisions is one
   std::map<std::pair<std::string, std::size_t>, std::string> planes;  ///< likewise, and its normal
-  std::set<std::pair<std::string, std::size_t>> left_out;             ///< likewise: collisions that are none
+  std::set<std::string> weightless;                                   ///< links that have mass only for the converter
   std::set<std::string> balls;                                        ///< joints of Bullet's type `spherical`
   std::set<std::string> let_go;                                       ///< joints that hold nothing: `floating`
   std::string held;  ///< the link that the world holds; empty if there is none

@@ -202,17 +202,19 @@ TEST_F(Formats, WhatOfAUrdfIsLeftOutIsSaidWithItsLine) {
   EXPECT_EQ(world.models[0].joints[world.models[0].couplings[0].leader].name, "j");
   EXPECT_EQ(world.models[0].couplings[0].multiplier, -0.5);
   EXPECT_NE(warnings.find("r.urdf:4: robot/transmission[t]"), std::string::npos) << warnings;
-  EXPECT_NE(warnings.find("r.urdf:5: robot/link[ghost]: is left out"), std::string::npos) << warnings;
-  EXPECT_EQ(world.models[0].links.size(), 3u);
+  EXPECT_NE(warnings.find("r.urdf:5: model[r]: links without mass: 'ghost'"), std::string::npos) << warnings;
+  EXPECT_EQ(world.models[0].links.size(), 4u);
 }
 
-TEST_F(Formats, WarningsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
-  const World world = read_urdf(
-      urdf_link("a") + "\n" +
-      urdf_link("b", "\n<collision><geometry>\n<mesh filename=\"package://r/none.stl\"/></geometry></collision>") +
-      urdf_joint("j", "continuous", "a", "b"));
-  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
-  EXPECT_EQ(world.warnings[0].line, 5) << world.warnings[0].text();
+TEST_F(Formats, ProblemsOfAConvertedUrdfHaveTheLinesOfTheUrdf) {
+  const auto problems = problems_of([&] {
+    read_urdf(
+        urdf_link("a") + "\n" +
+        urdf_link("b", "\n<collision><geometry>\n<mesh filename=\"package://r/none.stl\"/></geometry></collision>") +
+        urdf_joint("j", "continuous", "a", "b"));
+  });
+  ASSERT_EQ(problems.size(), 1u) << texts_of(problems);
+  EXPECT_EQ(problems[0].line, 5) << problems[0].text();
 }
 
 TEST_F(Formats, OfAnElementThatIsGivenTwiceTheFirstCountsWithAWarning) {

@@ -40,6 +40,7 @@ std::string folders_of_environment() {
        {"GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH", "GAZEBO_MODEL_PATH", "ROS_PACKAGE_PATH"})
     add(variable(name), "");
   add(variable("AMENT_PREFIX_PATH"), "/share");
+  add(variable("COHORT_ALLOW_FILES"), "");
   const std::string home = variable("HOME");
   for (const char* const cache : {"/.gz/fuel", "/.ignition/fuel"})
     if (std::error_code none; !home.empty() && fs::is_directory(home + cache, none)) add(home + cache, "");
@@ -66,11 +67,9 @@ InputFiles::InputFiles() {
   std::error_code removed_meanwhile;
   working_folder_ = fs::current_path(removed_meanwhile);
   model_path_ = folders_of_environment();
-  for (const std::string& folders : {model_path_, variable("COHORT_ALLOW_FILES")}) {
-    std::istringstream stream(folders);
-    for (std::string folder; std::getline(stream, folder, ':');)
-      if (!folder.empty()) trusted_.add(absolute(folder));
-  }
+  std::istringstream stream(model_path_);
+  for (std::string folder; std::getline(stream, folder, ':');)
+    if (!folder.empty()) trusted_.add(absolute(folder));
 }
 
 InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)

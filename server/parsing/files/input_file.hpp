@@ -19,8 +19,7 @@ std::optional<std::string> why_unreadable(const std::filesystem::path& file);
 
 /// The one way to the files of a world: from the disk, keeping what it has read, or from what was kept, without looking
 /// at the disk at all. Each file is read once, so that all readers see the same content. From the disk only what is in
-/// trusted folders is read: those of `model_path()`, those of the environment variable COHORT_ALLOW_FILES, and what
-/// `trust` adds. One thread uses it.
+/// trusted folders is read: those of `model_path()` and what `trust` adds. One thread uses it.
 class InputFiles {
  public:
   /// From the disk.
@@ -49,8 +48,8 @@ class InputFiles {
 
   /// Without "." and "..".
   std::filesystem::path absolute(const std::filesystem::path& path) const;
-  /// Folders of models, separated by colons: those of COHORT_MODEL_PATH, an empty one, and those where Gazebo and ROS
-  /// look and keep what they have fetched.
+  /// Folders of models, separated by colons: those of COHORT_MODEL_PATH, an empty one, those where Gazebo and ROS look,
+  /// those of COHORT_ALLOW_FILES, and those where Gazebo keeps what it has fetched.
   const std::string& model_path() const { return model_path_; }
 
   /// What reading has taken so far; `experiment` and `last_model_folders` are for those to fill in who know them.

@@ -85,19 +85,46 @@ fs::path ModelSearch::sdf_file_of(const fs::path& folder) const {
   return folder / file;
 }
 
-std::optional<fs::path> ModelSearch::look_for(const std::string& name, const fs::path& folder) const {
+// The first folder of this name that has `inside`, or else the first one.
+std::optional<fs::path> ModelSearch::look_for(const std::string& name, const fs::path& folder,
+                                              const fs::path& inside) const {
   if (name.empty()) return std::nullopt;
+  std::optional<fs::path> first;
+  const auto has_it = [&](const fs::path& place) {
+    if (!first) first = place;
+    return inside.empty() || input_.is_file(place / inside) || input_.is_folder(place / inside);
+  };
   for (const auto* const folders : {&folders_, &others_})
-    for (const fs::path& each : *folders)
-      if (input_.is_folder(each / name)) return each / name;
-  return find_above(name, folder);
+    for (const fs::path& each : *folders) {
+      if (input_.is_folder(each / name) && has_it(each / name)) return each / name;
+      if (each.filename() == name && input_.is_folder(each) && has_it(each)) return each;
+    }
+  for (fs::path above = folder; above != above.parent_path(); above = above.parent_path()) {
+    if ((above.filename() == name || is_package(above, name)) && has_it(above)) return above;
+    for (const fs::path& place : {above / name, above / "models" / name})
+      if (is_signed(place) ? has_it(place) : !inside.empty() && input_.is_file(place / inside)) return place;
+  }
+  return first;
 }
 
-void ModelSearch::fail_to_find(const std::string& name) const {
+std::string ModelSearch::searched_folders() const {
   std::string searched;
   for (const auto* const folders : {&folders_, &others_})
     for (const fs::path& each : *folders)
       if (input_.is_folder(each)) searched += (searched.empty() ? "" : ", ") + each.string();
+  return searched;
+}
+
+void ModelSearch::fail_to_find_file(const std::string& file, const fs::path& folder) const {
+  const std::string name = file.substr(0, file.find('/'));
+  const std::string searched = searched_folders();
+  throw std::runtime_error("there is no '" + file + "' in a folder above or beside " + folder.string() +
+                           (searched.empty() ? "" : ", nor in " + searched) + ", and no package.xml above names '" +
+                           name + "'; --allow-files DIR, where DIR has '" + name + "', makes it known");
+}
+
+void ModelSearch::fail_to_find(const std::string& name) const {
+  const std::string searched = searched_folders();
   if (searched.empty())
     throw std::runtime_error("there is no model '" + name +
                              "': no folder 'robots' or 'objects' is beside the world file or up to " +
@@ -105,19 +132,14 @@ void ModelSearch::fail_to_find(const std::string& name) const {
   throw std::runtime_error("there is no model '" + name + "' in " + searched + "; COHORT_MODEL_PATH may name more");
 }
 
-// A file of a package or of a collection of models names it, or its neighbours.
-std::optional<fs::path> ModelSearch::find_above(const std::string& name, fs::path folder) const {
-  if (name.empty()) return std::nullopt;
-  for (; folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (folder.filename() == name || is_package(folder, name)) return folder;
-    for (const fs::path& place : {folder / name, folder / "models" / name})
-      for (const char* const sign : {"model.config", "package.xml"})
-        if (input_.is_folder(place) && input_.is_file(place / sign)) {
-          input_.read(place / sign);  // so that it is among what is kept
-          return place;
-        }
+// Whether a folder says that it is a model or a package.
+bool ModelSearch::is_signed(const fs::path& folder) const {
+  for (const char* const sign : {"model.config", "package.xml"}) {
+    if (!input_.is_folder(folder) || !input_.is_file(folder / sign)) continue;
+    if (!input_.why_unreadable(folder / sign)) input_.read(folder / sign);  // so that it is among what is kept
+    return true;
   }
-  return std::nullopt;
+  return false;
 }
 
 // A path without its package, as PyBullet takes it.
@@ -129,7 +151,7 @@ std::optional<fs::path> ModelSearch::find_file_above(const std::string& path, fs
 
 bool ModelSearch::is_package(const fs::path& folder, const std::string& name) const {
   const fs::path package = folder / "package.xml";
-  if (!input_.is_file(package)) return false;
+  if (!input_.is_file(package) || input_.why_unreadable(package)) return false;
   const XmlOutline outline = outline_xml(input_.read(package));
   const XmlNode* const written = outline.root.child("name");
   return written != nullptr && written->text == name;
@@ -171,17 +193,19 @@ std::string ModelSearch::newest_version(const fs::path& model) const {
   return "1";
 }
 
-fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder) const {
+fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder, bool is_model) const {
   fs::path path;
   if (uri.starts_with(model_scheme) || uri.starts_with(package_scheme)) {
-    const std::string inside = uri.substr(uri.find("://") + 3);
+    const std::string inside = fs::path(uri.substr(uri.find("://") + 3)).relative_path();  // also of package:///NAME
     const std::size_t slash = std::min(inside.find('/'), inside.size());
-    if (const auto found = look_for(inside.substr(0, slash), folder))
-      path = *found / fs::path(inside.substr(slash)).relative_path();
+    const std::string name = inside.substr(0, slash);
+    const fs::path rest = fs::path(inside.substr(slash)).relative_path();
+    if (const auto found = look_for(name, folder, rest))
+      path = *found / rest;
     else if (const auto beside = find_file_above(inside, folder))
       path = *beside;
     else
-      fail_to_find(inside.substr(0, slash));
+      is_model ? fail_to_find(name) : fail_to_find_file(inside, folder);
   } else if (uri.starts_with(file_scheme)) {
     path = uri.substr(file_scheme.size());
   } else if (uri.find("://") != std::string::npos) {
@@ -190,22 +214,23 @@ fs::path ModelSearch::path_of(const std::string& uri, const fs::path& folder) co
     path = folder / uri;
     const std::size_t slash = std::min(uri.find('/'), uri.size());
     if (uri.find_first_not_of('.') < slash && !input_.is_file(path) && !input_.is_folder(path))
-      if (const auto found = look_for(uri.substr(0, slash), folder))
-        path = *found / fs::path(uri.substr(slash)).relative_path();
+      if (const fs::path rest = fs::path(uri.substr(slash)).relative_path();
+          const auto found = look_for(uri.substr(0, slash), folder, rest))
+        path = *found / rest;
   }
   path = path.lexically_normal();
   return path.has_filename() ? path : path.parent_path();  // it ended in a slash
 }
 
 FoundModel ModelSearch::find(const std::string& uri, const fs::path& folder) const {
-  const fs::path path = path_of(uri, folder);
+  const fs::path path = path_of(uri, folder, true);
   if (input_.is_folder(path)) return {sdf_file_of(path)};
   if (input_.is_file(path)) return {path};
   throw std::runtime_error("there is no '" + path.string() + "'");
 }
 
 fs::path ModelSearch::find_file(const std::string& uri, const fs::path& folder) const {
-  fs::path path = path_of(uri, folder);
+  fs::path path = path_of(uri, folder, false);
   if (const auto reason = input_.why_unreadable(path)) throw std::runtime_error(*reason + ": '" + path.string() + "'");
   return path;
 }

@@ -17,9 +17,9 @@ struct FoundModel {
 /// Finds the models that a world includes (docs/worlds.md). `model://NAME` is the folder NAME in the first of these
 /// that has one (`package://` means the same): the folders of the environment variable COHORT_MODEL_PATH (separated by
 /// colons), `robots` and `objects` in the folder of the world file and in its parents, four levels up, the
-/// `last_folders`, the folders of Gazebo and ROS, and those above the file that names it, of which one may be NAME
-/// itself. Any other URI is a path, to a model's folder or to an SDF file, or a name; an address of Gazebo Fuel is what
-/// Gazebo has fetched from there.
+/// `last_folders`, the folders of Gazebo and ROS, those that a person allows, and those above the file that names it.
+/// One of these may be NAME itself. Any other URI is a path, to a model's folder or to an SDF file, or a name; an
+/// address of Gazebo Fuel is what Gazebo has fetched from there.
 class ModelSearch {
  public:
   /// `input` must outlive this.
@@ -34,11 +34,14 @@ class ModelSearch {
   std::filesystem::path find_file(const std::string& uri, const std::filesystem::path& folder) const;
 
  private:
-  std::filesystem::path path_of(const std::string& uri, const std::filesystem::path& folder) const;
+  std::filesystem::path path_of(const std::string& uri, const std::filesystem::path& folder, bool is_model) const;
   [[noreturn]] void fail_to_find(const std::string& name) const;
+  [[noreturn]] void fail_to_find_file(const std::string& file, const std::filesystem::path& folder) const;
+  std::string searched_folders() const;
   /// `folder` is that of the file that names it.
-  std::optional<std::filesystem::path> look_for(const std::string& name, const std::filesystem::path& folder) const;
-  std::optional<std::filesystem::path> find_above(const std::string& name, std::filesystem::path folder) const;
+  std::optional<std::filesystem::path> look_for(const std::string& name, const std::filesystem::path& folder,
+                                                const std::filesystem::path& inside) const;
+  bool is_signed(const std::filesystem::path& folder) const;
   std::optional<std::filesystem::path> find_file_above(const std::string& path, std::filesystem::path folder) const;
   bool is_package(const std::filesystem::path& folder, const std::string& name) const;
   std::filesystem::path find_fetched(const std::string& uri) const;

@@ -23,6 +23,15 @@ constexpr const char* geometries = "box, sphere, cylinder, capsule, ellipsoid, m
 
 constexpr const char* left_out = "the collision is left out";
 
+// A collision that cannot be read. What moves would go through others without it, so it is an error there, in files of
+// others too.
+void report_lost(const sdf::ElementPtr& element, const std::string& message, const ModelReading& reading) {
+  if (reading.is_static)
+    reading.report.flaw(element, message, left_out);
+  else
+    reading.report.problem(element, message);
+}
+
 // NaN passes: check_numbers has reported it. False if the shape is left out.
 bool check_size(const sdf::ElementPtr& geometry, std::initializer_list<const char*> path, double least,
                 const SdfReport& report) {
@@ -44,7 +53,7 @@ std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& 
   try {
     return Mesh{reading.shape_files.mesh(uri, scale, convex), convex};
   } catch (const std::runtime_error& error) {
-    reading.report.flaw(uri, error.what(), left_out);
+    report_lost(uri, error.what(), reading);
     return std::nullopt;
   }
 }
@@ -80,9 +89,7 @@ std::optional<Shape> read_terrain(const sdf::ElementPtr& element, const Eigen::V
 std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReading& reading) {
   const sdf::ElementPtr element = map.Element();
   const Eigen::Vector3d size = to_eigen(map.Size());
-  if (!reading.is_static &&
-      reading.report.flaw(element, "a heightmap needs <static>true</static> in its model", left_out))
-    return std::nullopt;
+  if (!reading.is_static) report_lost(element, "a heightmap needs <static>true</static> in its model", reading);
   if (!check_size(element, {"size"}, size.minCoeff(), reading.report)) return std::nullopt;
   const sdf::ElementPtr terrain = find(element, {"cohort:terrain"});
   if (terrain && size.minCoeff() > 0.0 && size.allFinite()) return read_terrain(terrain, size, reading.report);
@@ -91,7 +98,7 @@ std::optional<Shape> read_heightmap(const sdf::Heightmap& map, const ModelReadin
   try {
     return Heightmap{reading.shape_files.height_grid(uri, size)};
   } catch (const std::runtime_error& error) {
-    reading.report.flaw(uri, error.what(), left_out);
+    report_lost(uri, error.what(), reading);
     return std::nullopt;
   }
 }
@@ -129,17 +136,16 @@ std::optional<Shape> read_shape(const sdf::Geometry& geometry, const ModelReadin
   }
   if (const sdf::Plane* const plane = geometry.PlaneShape()) {
     const Eigen::Vector3d normal = to_eigen(plane->Normal());
-    if (!reading.is_static && report.flaw(element, "a plane needs <static>true</static> in its model", left_out))
-      return std::nullopt;
+    if (!reading.is_static) report_lost(element, "a plane needs <static>true</static> in its model", reading);
     if (normal.isZero()) report.problem(element, "expected a normal that is not zero");
     return Plane{written_unit_vector(find(element, {"plane", "normal"})).value_or(normal.normalized())};
   }
   if (const sdf::Mesh* const mesh = geometry.MeshShape()) return read_mesh_shape(*mesh, reading);
   if (const sdf::Heightmap* const map = geometry.HeightmapShape()) return read_heightmap(*map, reading);
   const sdf::ElementPtr kind = element->GetFirstElement();
-  report.flaw(element,
+  report_lost(element,
               (kind ? "<" + kind->GetName() + "> is not supported; expected " : "expected ") + std::string(geometries),
-              left_out);
+              reading);
   return std::nullopt;
 }
 

@@ -1,5 +1,7 @@
 #include "server/parsing/model/shape_files.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -10,10 +12,34 @@
 namespace cohort::parsing {
 namespace {
 
-TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file) {
+// Points that have a volume: a plate or a rod is as thick as others take it at least.
+std::vector<Eigen::Vector3d> thickened(const std::vector<Eigen::Vector3d>& points) {
+  constexpr double thickness = 1e-3;  // [m]
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) centre += point / static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& point : points) spread += (point - centre) * (point - centre).transpose();
+  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  std::vector<Eigen::Vector3d> thick = points;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = axes.col(i);
+    const auto along = [&](const Eigen::Vector3d& point) { return axis.dot(point); };
+    const auto [least, most] = std::ranges::minmax(points, {}, along);
+    if (along(most) - along(least) >= thickness) continue;
+    const std::size_t count = thick.size();
+    for (std::size_t point = 0; point < count; ++point) {
+      thick.push_back(thick[point] + 0.5 * thickness * axis);
+      thick[point] -= 0.5 * thickness * axis;
+    }
+  }
+  return thick;
+}
+
+TriangleMesh hull_of(const TriangleMesh& mesh, const std::filesystem::path& file, bool may_be_flat) {
   try {
     return geometry::convex_hull(mesh.vertices);
   } catch (const std::invalid_argument&) {
+    if (may_be_flat && !mesh.vertices.empty()) return geometry::convex_hull(thickened(mesh.vertices));
     throw std::runtime_error("the mesh of '" + file.string() +
                              "' is flat; in a model that moves, its convex hull is solid, and needs a volume");
   }
@@ -27,7 +53,7 @@ std::shared_ptr<const TriangleMesh> ShapeFiles::mesh(const sdf::ElementPtr& uri,
   std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z(), convex}];
   if (mesh) return mesh;
   TriangleMesh read = read_mesh(files_.input(), file, scale);
-  if (convex) read = hull_of(read, file);
+  if (convex) read = hull_of(read, file, files_.is_foreign(uri));
   read.file = file;
   read.scale = scale;
   mesh = std::make_shared<const TriangleMesh>(std::move(read));

@@ -19,7 +19,8 @@ class ShapeFiles {
   /// `files` must outlive this.
   explicit ShapeFiles(const SdfFiles& files) : files_(files) {}
 
-  /// The mesh that `uri` names, or its convex hull. Throws std::runtime_error that says what is wrong.
+  /// The mesh that `uri` names, or its convex hull; a flat one in a file of others is 1 mm thick then. Throws
+  /// std::runtime_error that says what is wrong.
   std::shared_ptr<const TriangleMesh> mesh(const sdf::ElementPtr& uri, const Eigen::Vector3d& scale, bool convex);
 
   /// The height map of the image that `uri` names. Throws std::runtime_error that says what is wrong.

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tests/support/written_worlds.hpp"
+
+// A collision of what moves is read, or an error says why it is not and what to do.
+namespace cohort::description {
+namespace {
+
+class LostCollisions : public Description {
+ protected:
+  std::filesystem::path write_urdf(const std::string& mesh, const std::string& name = "urdf/r.urdf") const {
+    return write(name,
+                 "<robot name=\"r\">\n<link name=\"a\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" "
+                 "izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>\n<collision><geometry>\n<mesh filename=\"" +
+                     mesh + "\"/></geometry></collision></link></robot>\n");
+  }
+  void write_tip(const std::string& name) const {
+    write(name, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  }
+  static void expect_one_collision(const std::filesystem::path& file) {
+    const World world = parsing::read_world_or_model(file, 1);
+    EXPECT_EQ(world.models[0].links[0].collisions.size(), 1u);
+    EXPECT_TRUE(world.warnings.empty()) << texts_of(world.warnings);
+  }
+  static void expect_error(const std::filesystem::path& file, int line, const std::vector<std::string>& parts) {
+    const auto problems = problems_of([&] { parsing::read_world_or_model(file, 1); });
+    ASSERT_EQ(problems.size(), 1u) << texts_of(problems);
+    EXPECT_EQ(problems[0].line, line);
+    EXPECT_EQ(problems[0].file, file);
+    for (const std::string& part : parts)
+      EXPECT_NE(problems[0].message.find(part), std::string::npos) << part << "\nnot in\n" << problems[0].text();
+  }
+};
+
+TEST_F(LostCollisions, SlashesBeforeAPackageMeanNothing) {
+  write("arm/package.xml", "<package><name>arm</name></package>");
+  write_tip("arm/parts/tip.obj");
+  for (const char* const uri : {"package://arm/parts/tip.obj", "package:///arm/parts/tip.obj",
+                                "package:////arm/parts/tip.obj", "model:///arm/parts/tip.obj"})
+    expect_one_collision(write_urdf(uri, "arm/urdf/r.urdf"));
+}
+
+TEST_F(LostCollisions, APackageIsAFolderOfItsNameAboveTheFile) {
+  write_tip("arm/meshes/tip.obj");
+  expect_one_collision(write_urdf("package://arm/meshes/tip.obj", "arm/urdf/r.urdf"));
+  expect_one_collision(write_urdf("package://arm/meshes/tip.obj", "arm/models/one/r.urdf"));
+  write_tip("models/hand/tip.obj");
+  expect_one_collision(write_urdf("package://hand/tip.obj", "arm/urdf/r.urdf"));
+}
+
+TEST_F(LostCollisions, TheFirstFolderOfThePackagesNameThatHasTheFileCounts) {
+  write("arm/arm/model.config", "<model/>");
+  write_tip("arm/meshes/tip.obj");
+  expect_one_collision(write_urdf("package://arm/meshes/tip.obj", "arm/arm/urdf/r.urdf"));
+}
+
+TEST_F(LostCollisions, AMeshThatIsNotThereIsAnErrorWithWhatToDo) {
+  expect_error(write_urdf("package://pkg/meshes/tip.stl"), 4,
+               {"there is no 'pkg/meshes/tip.stl'", (folder_ / "urdf").string(), "--allow-files DIR"});
+  expect_error(write_urdf("meshes/tip.stl"), 4, {"there is no such file", (folder_ / "urdf/meshes/tip.stl").string()});
+}
+
+TEST_F(LostCollisions, AMeshInNoTrustedFolderIsAnErrorThatNamesTheFolder) {
+  write_tip("arm/parts/tip.obj");
+  const std::string parts = (folder_ / "arm/parts").string();
+  const auto file = write_urdf("package://arm/parts/tip.obj", "arm/urdf/r.urdf");
+  expect_error(file, 4, {"--allow-files " + parts, parts + "/tip.obj"});
+  setenv("COHORT_ALLOW_FILES", (folder_ / "arm").c_str(), 1);
+  expect_one_collision(file);
+  unsetenv("COHORT_ALLOW_FILES");
+}
+
+TEST_F(LostCollisions, PackagesAreFoundInAllowedFolders) {
+  write_tip("elsewhere/arm/parts/tip.obj");
+  const auto file = write_urdf("package://arm/parts/tip.obj");
+  for (const char* const allowed : {"elsewhere", "elsewhere/arm"}) {
+    setenv("COHORT_ALLOW_FILES", (folder_ / allowed).c_str(), 1);
+    expect_one_collision(file);
+  }
+  unsetenv("COHORT_ALLOW_FILES");
+}
+
+TEST_F(LostCollisions, AShapeThatIsNotSupportedIsAnError) {
+  const auto file = write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">\n<model name=\"m\">" + links("a") +
+                                       joint("j", "a", "l") + collision("<plane/>") + "</model></world></sdf>");
+  expect_error(file, 2, {"a plane needs <static>true</static>"});
+}
+
+TEST_F(LostCollisions, AFlatMeshIsAMillimetreThick) {
+  write("meshes/plate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n");
+  expect_one_collision(write_urdf("package://meshes/plate.obj"));
+}
+
+TEST_F(LostCollisions, ThoseOfAStaticModelAreLeftOutWithAWarning) {
+  const World world = parsing::read_world(
+      write("w.sdf", "<sdf version=\"1.9\"><world name=\"w\">\n<model name=\"m\"><static>1</static>" +
+                         collision("<mesh><uri>meshes/none.stl</uri></mesh>") + "</model></world></sdf>"),
+      1);
+  EXPECT_EQ(world.warnings.size(), 1u);
+}
+
+TEST_F(LostCollisions, OfTwoShapesInOneTheFirstCounts) {
+  const auto file = write(
+      "r.urdf",
+      "<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" "
+      "ixy=\"0\" "
+      "ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"1 1 1\"/><sphere radius=\"1\"/></geometry>"
+      "</collision></link></robot>");
+  const World world = parsing::read_world_or_model(file, 1);
+  ASSERT_EQ(world.models[0].links[0].collisions.size(), 1u);
+  EXPECT_TRUE(std::holds_alternative<Box>(world.models[0].links[0].collisions[0].shape));
+  EXPECT_EQ(world.warnings.size(), 1u);
+}
+
+}  // namespace
+}  // namespace cohort::description

@@ -1,28 +1,114 @@
 #include "server/parsing/files/mesh_file.hpp"
 
-#include <assimp/config.h>
-#include <assimp/material.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
 #include <array>
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
-#include <assimp/Importer.hpp>
 #include <cctype>
-#include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "server/parsing/files/limited_child.hpp"
+#include "server/parsing/files/mesh_import.hpp"
+
 namespace cohort::parsing {
 namespace {
+
+// What the importer, in its process, sends. A question is followed by the name of a file, and answered with a byte, or
+// with the content.
+enum class Message : std::uint8_t { asks_whether_file, asks_for_content, mesh, error };
+
+constexpr std::uint64_t longest_text = 1u << 16;  // [bytes]
+constexpr std::uint64_t no_content = ~std::uint64_t{0};
+
+// What the importer sent is none of these messages: its memory is broken.
+struct Garbled : std::runtime_error {
+  Garbled() : std::runtime_error("sent something that is no mesh") {}
+};
+
+void send_text(ChildStream& stream, const std::string& text) {
+  const std::uint64_t size = std::min<std::uint64_t>(text.size(), longest_text);
+  stream.send(size);
+  stream.send(text.data(), size);
+}
+
+std::string receive_text(ChildStream& stream) {
+  const auto size = stream.receive<std::uint64_t>();
+  if (size > longest_text) throw Garbled();
+  std::string text(size, '\0');
+  stream.receive(text.data(), size);
+  return text;
+}
+
+template <class Item>
+void send_items(ChildStream& stream, const std::vector<Item>& items) {
+  stream.send(std::uint64_t{items.size()});
+  stream.send(items.data(), items.size() * sizeof(Item));
+}
+
+template <class Item>
+std::vector<Item> receive_items(ChildStream& stream) {
+  const auto count = stream.receive<std::uint64_t>();
+  if (count > ChildLimits().memory / sizeof(Item)) throw Garbled();  // it cannot have had so many
+  std::vector<Item> items(count);
+  stream.receive(items.data(), count * sizeof(Item));
+  return items;
+}
+
+// ---- In the importer's process ----
+
+// The mesh's own file is in the memory that the two processes share; for all others, the parent is asked, which keeps
+// what it reads.
+class SourcesOfParent : public MeshSources {
+ public:
+  SourcesOfParent(ChildStream& stream, std::string file, const std::string& content)
+      : stream_(stream), file_(std::move(file)), content_(content) {}
+
+  bool is_file(const std::string& file) override {
+    if (file == file_) return true;
+    ask(Message::asks_whether_file, file);
+    return stream_.receive<bool>();
+  }
+  const std::string* read(const std::string& file) override {
+    if (file == file_) return &content_;
+    ask(Message::asks_for_content, file);
+    const auto size = stream_.receive<std::uint64_t>();
+    if (size == no_content) return nullptr;
+    std::string content(size, '\0');
+    stream_.receive(content.data(), size);
+    return &others_.insert_or_assign(file, std::move(content)).first->second;
+  }
+
+ private:
+  void ask(Message question, const std::string& file) {
+    stream_.send(question);
+    send_text(stream_, file);
+  }
+
+  ChildStream& stream_;
+  std::string file_;
+  const std::string& content_;
+  std::map<std::string, std::string> others_;
+};
+
+void import_and_send(ChildStream& stream, MeshSources& sources, const std::filesystem::path& file,
+                     const Eigen::Vector3d& scale) {
+  try {
+    const TriangleMesh mesh = import_mesh(sources, file, scale);
+    stream.send(Message::mesh);
+    send_items(stream, mesh.vertices);
+    send_items(stream, mesh.triangles);
+    send_items(stream, mesh.colors);
+  } catch (const std::runtime_error& error) {
+    stream.send(Message::error);
+    send_text(stream, error.what());
+  }
+}
+
+// ---- In ours ----
 
 void check_format(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -33,161 +119,67 @@ void check_format(const std::filesystem::path& file) {
   throw std::runtime_error("'" + file.string() + "' is in no format that is read: expected .stl, .obj or .dae");
 }
 
-Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
-  Eigen::Matrix4d matrix;
-  matrix << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
-  return matrix;
+TriangleMesh receive_mesh(ChildStream& stream) {
+  TriangleMesh mesh;
+  mesh.vertices = receive_items<Eigen::Vector3d>(stream);
+  mesh.triangles = receive_items<std::array<std::uint32_t, 3>>(stream);
+  mesh.colors = receive_items<std::array<std::uint8_t, 3>>(stream);
+  const auto is_finite = [](const Eigen::Vector3d& vertex) { return vertex.allFinite(); };
+  const auto has_vertices = [&](const std::array<std::uint32_t, 3>& triangle) {
+    return std::ranges::all_of(triangle, [&](std::uint32_t vertex) { return vertex < mesh.vertices.size(); });
+  };
+  if (mesh.triangles.empty() || !std::ranges::all_of(mesh.vertices, is_finite) ||
+      !std::ranges::all_of(mesh.triangles, has_vertices) ||
+      (!mesh.colors.empty() && mesh.colors.size() != mesh.triangles.size()))
+    throw Garbled();
+  return mesh;
 }
 
-// What assimp reads, of the mesh and of what the mesh names, such as the .mtl of an .obj.
-class AssimpStream : public Assimp::IOStream {
- public:
-  explicit AssimpStream(const std::string& bytes) : bytes_(bytes) {}
-
-  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
-    if (size == 0) return 0;
-    const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
-    std::memcpy(buffer, bytes_.data() + at_, whole * size);
-    at_ += whole * size;
-    return whole;
-  }
-  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
-  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
-    const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
-    const std::size_t to = from + offset;  // backwards, it wraps around
-    if (to > bytes_.size()) return aiReturn_FAILURE;
-    at_ = to;
-    return aiReturn_SUCCESS;
-  }
-  std::size_t Tell() const override { return at_; }
-  std::size_t FileSize() const override { return bytes_.size(); }
-  void Flush() override {}
-
- private:
-  const std::string& bytes_;
-  std::size_t at_ = 0;
-};
-
-class AssimpFiles : public Assimp::IOSystem {
- public:
-  explicit AssimpFiles(InputFiles& input) : input_(input) {}
-
-  bool Exists(const char* file) const override { return input_.is_file(file); }
-  char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos || input_.why_unreadable(file))
-      return nullptr;
-    return new AssimpStream(input_.read(file));
-  }
-  void Close(Assimp::IOStream* stream) override { delete stream; }
-
- private:
-  InputFiles& input_;
-};
-
-using Color = std::array<std::uint8_t, 3>;
-
-std::uint8_t byte_of(float part) {
-  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(static_cast<double>(part), 0.0, 1.0)));
+void send_content(ChildStream& stream, InputFiles& input, const std::string& file) {
+  if (input.why_unreadable(file)) return stream.send(no_content);
+  const std::string& content = input.read(file);
+  stream.send(std::uint64_t{content.size()});
+  stream.send(content.data(), content.size());
 }
 
-// The colour of a part by its material; nothing if the file gives it none. (assimp gives such a part a material of its
-// own.)
-std::optional<Color> color_of(const aiScene& scene, const aiMesh& part) {
-  if (part.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
-  const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];
-  aiString name;
-  if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name == aiString(AI_DEFAULT_MATERIAL_NAME))
-    return std::nullopt;
-  aiColor3D color;
-  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return std::nullopt;
-  return Color{byte_of(color.r), byte_of(color.g), byte_of(color.b)};
-}
-
-// Adds triangles to a mesh. Formats such as STL repeat a vertex for each triangle that has it.
-class MeshBuilder {
- public:
-  void add(const aiMesh& part, const Eigen::Matrix4d& transform, const std::optional<Color>& color) {
-    has_colors_ = has_colors_ || color;
-    std::vector<std::uint32_t> places(part.mNumVertices);
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-      const aiVector3D& v = part.mVertices[i];
-      places[i] = place_of((transform * Eigen::Vector4d(v.x, v.y, v.z, 1.0)).head<3>());
-    }
-    const bool mirrors = transform.topLeftCorner<3, 3>().determinant() < 0.0;
-    for (unsigned i = 0; i < part.mNumFaces; ++i) {
-      const aiFace& face = part.mFaces[i];
-      if (face.mNumIndices != 3) continue;  // a point or a line
-      std::array<std::uint32_t, 3> triangle{};
-      for (unsigned corner = 0; corner < 3; ++corner) {
-        if (face.mIndices[corner] >= part.mNumVertices) throw std::runtime_error("a triangle has no such vertex");
-        triangle[corner] = places[face.mIndices[corner]];
-      }
-      if (mirrors) std::swap(triangle[1], triangle[2]);
-      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
-      mesh_.triangles.push_back(triangle);
-      mesh_.colors.push_back(color.value_or(plain));
+// Answers the importer until it has the mesh, or knows why there is none.
+TriangleMesh answer_until_mesh(ChildStream& stream, InputFiles& input) {
+  while (true) {
+    switch (stream.receive<Message>()) {
+      case Message::asks_whether_file: stream.send(input.is_file(receive_text(stream))); break;
+      case Message::asks_for_content: send_content(stream, input, receive_text(stream)); break;
+      case Message::mesh: return receive_mesh(stream);
+      case Message::error: throw std::runtime_error(receive_text(stream));
+      default: throw Garbled();
     }
   }
+}
 
-  TriangleMesh take() {
-    if (!has_colors_) mesh_.colors.clear();
-    return std::move(mesh_);
-  }
-
- private:
-  std::uint32_t place_of(const Eigen::Vector3d& vertex) {
-    if (!vertex.allFinite()) throw std::runtime_error("a vertex is not finite");
-    const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
-    const auto [entry, is_new] = places_.emplace(std::array{vertex.x(), vertex.y(), vertex.z()}, next);
-    if (is_new) mesh_.vertices.push_back(vertex);
-    return entry->second;
-  }
-
-  static constexpr Color plain{128, 128, 128};
-
-  TriangleMesh mesh_;
-  bool has_colors_ = false;
-  std::map<std::array<double, 3>, std::uint32_t> places_;
-};
+const std::string& content_of(InputFiles& input, const std::filesystem::path& file) {
+  if (const std::optional<std::string> reason = input.why_unreadable(file))
+    throw std::runtime_error("'" + file.string() + "' cannot be read: " + *reason);
+  return input.read(file);
+}
 
 }  // namespace
 
 TriangleMesh read_mesh(InputFiles& input, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
   check_format(file);
-  Assimp::Importer importer;
-  importer.SetIOHandler(new AssimpFiles(input));  // which it owns
-  // Otherwise a file whose z axis points upwards would be turned.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    throw std::runtime_error("'" + file.string() + "' cannot be read: " + importer.GetErrorString());
-
-  MeshBuilder builder;
-  struct Placed {
-    const aiNode* node;
-    Eigen::Matrix4d transform;
+  const std::string& content = content_of(input, file);
+  LimitedChild importer({}, [&](ChildStream& stream) {
+    SourcesOfParent sources(stream, file.string(), content);
+    import_and_send(stream, sources, file, scale);
+  });
+  const auto failed = [&](const std::string& why) {
+    return ImporterFailed("'" + file.string() + "' cannot be imported: the importer " + why);
   };
-  Eigen::Matrix4d scaling = Eigen::Matrix4d::Identity();
-  scaling.diagonal().head<3>() = scale;
-  std::vector<Placed> waiting{{scene->mRootNode, scaling}};
   try {
-    while (!waiting.empty()) {
-      const auto [node, parent] = waiting.back();
-      waiting.pop_back();
-      const Eigen::Matrix4d transform = parent * matrix_of(node->mTransformation);
-      for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-        const aiMesh& part = *scene->mMeshes[node->mMeshes[i]];
-        builder.add(part, transform, color_of(*scene, part));
-      }
-      for (unsigned i = node->mNumChildren; i-- > 0;) waiting.push_back({node->mChildren[i], transform});
-    }
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error("'" + file.string() + "' cannot be used: " + error.what());
+    return answer_until_mesh(importer.stream(), input);
+  } catch (const ChildStream::Lost&) {
+    throw failed(importer.end());
+  } catch (const Garbled& error) {
+    throw failed(error.what());
   }
-  TriangleMesh mesh = builder.take();
-  if (mesh.triangles.empty()) throw std::runtime_error("'" + file.string() + "' has no triangles");
-  return mesh;
 }
 
 }  // namespace cohort::parsing

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "server/parsing/files/mesh_file.hpp"
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/model/terrain.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
@@ -52,6 +53,8 @@ std::optional<Shape> read_mesh_shape(const sdf::Mesh& mesh, const ModelReading& 
   if (!uri || !scale.allFinite()) return std::nullopt;  // has been reported
   try {
     return Mesh{reading.shape_files.mesh(uri, scale, convex), convex};
+  } catch (const ImporterFailed& error) {
+    reading.report.stop(uri, error.what());
   } catch (const std::runtime_error& error) {
     report_lost(uri, error.what(), reading);
     return std::nullopt;
@@ -64,6 +67,8 @@ std::optional<Shape> read_visual_mesh(const sdf::Mesh& mesh, const ModelReading&
   if (!uri || !scale.allFinite() || (scale.array() == 0.0).any()) return std::nullopt;
   try {
     return Mesh{reading.shape_files.mesh(uri, scale, false), false};
+  } catch (const ImporterFailed& error) {
+    reading.report.stop(uri, error.what());
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }

@@ -16,6 +16,11 @@ void SdfReport::problem(const sdf::ElementPtr& element, std::string message, std
   problem.message = std::move(message);
 }
 
+void SdfReport::stop(const sdf::ElementPtr& element, std::string message) const {
+  problem(element, std::move(message));
+  throw InputError(problems_);
+}
+
 void SdfReport::warning(const sdf::ElementPtr& element, std::string message) const {
   warnings_.push_back(place_of(element));
   warnings_.back().message = std::move(message);

@@ -18,6 +18,8 @@ class SdfReport {
 
   /// `child` is added to the path of the element, for a child that is not there.
   void problem(const sdf::ElementPtr& element, std::string message, std::string_view child = {}) const;
+  /// As `problem`, and throws InputError with all problems so far: for what costs too much to go on after.
+  [[noreturn]] void stop(const sdf::ElementPtr& element, std::string message) const;
   void warning(const sdf::ElementPtr& element, std::string message) const;
   /// Only the first time that it is said of a file.
   void warning_once(const sdf::ElementPtr& element, const std::string& message) const;

@@ -1,0 +1,182 @@
+#include "server/parsing/files/mesh_import.hpp"
+
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace cohort::parsing {
+namespace {
+
+Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
+  Eigen::Matrix4d matrix;
+  matrix << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return matrix;
+}
+
+// What assimp reads, of the mesh and of what the mesh names, such as the .mtl of an .obj.
+class AssimpStream : public Assimp::IOStream {
+ public:
+  explicit AssimpStream(const std::string& bytes) : bytes_(bytes) {}
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    if (size == 0) return 0;
+    const std::size_t whole = std::min(count, (bytes_.size() - at_) / size);
+    std::memcpy(buffer, bytes_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
+    const std::size_t to = from + offset;  // backwards, it wraps around
+    if (to > bytes_.size()) return aiReturn_FAILURE;
+    at_ = to;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return at_; }
+  std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_ = 0;
+};
+
+class AssimpFiles : public Assimp::IOSystem {
+ public:
+  explicit AssimpFiles(MeshSources& sources) : sources_(sources) {}
+
+  bool Exists(const char* file) const override { return sources_.is_file(file); }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
+    const std::string* const bytes = sources_.read(file);
+    return bytes == nullptr ? nullptr : new AssimpStream(*bytes);
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  MeshSources& sources_;
+};
+
+using Color = std::array<std::uint8_t, 3>;
+
+std::uint8_t byte_of(float part) {
+  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(static_cast<double>(part), 0.0, 1.0)));
+}
+
+// The colour of a part by its material; nothing if the file gives it none. (assimp gives such a part a material of its
+// own.)
+std::optional<Color> color_of(const aiScene& scene, const aiMesh& part) {
+  if (part.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
+  const aiMaterial& material = *scene.mMaterials[part.mMaterialIndex];
+  aiString name;
+  if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name == aiString(AI_DEFAULT_MATERIAL_NAME))
+    return std::nullopt;
+  aiColor3D color;
+  if (material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != aiReturn_SUCCESS) return std::nullopt;
+  return Color{byte_of(color.r), byte_of(color.g), byte_of(color.b)};
+}
+
+// Adds triangles to a mesh. Formats such as STL repeat a vertex for each triangle that has it.
+class MeshBuilder {
+ public:
+  void add(const aiMesh& part, const Eigen::Matrix4d& transform, const std::optional<Color>& color) {
+    has_colors_ = has_colors_ || color;
+    std::vector<std::uint32_t> places(part.mNumVertices);
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      const aiVector3D& v = part.mVertices[i];
+      places[i] = place_of((transform * Eigen::Vector4d(v.x, v.y, v.z, 1.0)).head<3>());
+    }
+    const bool mirrors = transform.topLeftCorner<3, 3>().determinant() < 0.0;
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+      const aiFace& face = part.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // a point or a line
+      std::array<std::uint32_t, 3> triangle{};
+      for (unsigned corner = 0; corner < 3; ++corner) {
+        if (face.mIndices[corner] >= part.mNumVertices) throw std::runtime_error("a triangle has no such vertex");
+        triangle[corner] = places[face.mIndices[corner]];
+      }
+      if (mirrors) std::swap(triangle[1], triangle[2]);
+      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+      mesh_.triangles.push_back(triangle);
+      mesh_.colors.push_back(color.value_or(plain));
+    }
+  }
+
+  TriangleMesh take() {
+    if (!has_colors_) mesh_.colors.clear();
+    return std::move(mesh_);
+  }
+
+ private:
+  std::uint32_t place_of(const Eigen::Vector3d& vertex) {
+    if (!vertex.allFinite()) throw std::runtime_error("a vertex is not finite");
+    const auto next = static_cast<std::uint32_t>(mesh_.vertices.size());
+    const auto [entry, is_new] = places_.emplace(std::array{vertex.x(), vertex.y(), vertex.z()}, next);
+    if (is_new) mesh_.vertices.push_back(vertex);
+    return entry->second;
+  }
+
+  static constexpr Color plain{128, 128, 128};
+
+  TriangleMesh mesh_;
+  bool has_colors_ = false;
+  std::map<std::array<double, 3>, std::uint32_t> places_;
+};
+
+}  // namespace
+
+TriangleMesh import_mesh(MeshSources& sources, const std::filesystem::path& file, const Eigen::Vector3d& scale) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new AssimpFiles(sources));  // which it owns
+  // Otherwise a file whose z axis points upwards would be turned.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* const scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw std::runtime_error("'" + file.string() + "' cannot be read: " + importer.GetErrorString());
+
+  MeshBuilder builder;
+  struct Placed {
+    const aiNode* node;
+    Eigen::Matrix4d transform;
+  };
+  Eigen::Matrix4d scaling = Eigen::Matrix4d::Identity();
+  scaling.diagonal().head<3>() = scale;
+  std::vector<Placed> waiting{{scene->mRootNode, scaling}};
+  try {
+    while (!waiting.empty()) {
+      const auto [node, parent] = waiting.back();
+      waiting.pop_back();
+      const Eigen::Matrix4d transform = parent * matrix_of(node->mTransformation);
+      for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+        const aiMesh& part = *scene->mMeshes[node->mMeshes[i]];
+        builder.add(part, transform, color_of(*scene, part));
+      }
+      for (unsigned i = node->mNumChildren; i-- > 0;) waiting.push_back({node->mChildren[i], transform});
+    }
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error("'" + file.string() + "' cannot be used: " + error.what());
+  }
+  TriangleMesh mesh = builder.take();
+  if (mesh.triangles.empty()) throw std::runtime_error("'" + file.string() + "' has no triangles");
+  return mesh;
+}
+
+}  // namespace cohort::parsing

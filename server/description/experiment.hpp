@@ -33,6 +33,12 @@ enum class Mode {
   free,      ///< never waited for; the newest answer acts from the tick after which it came
 };
 
+/// What happens when another process takes a robot over whose controller is lost.
+enum class OnLost {
+  go_on,   ///< the new controller starts without what the former one remembered
+  rewind,  ///< the run goes back to its last snapshot, where the state of controllers is known
+};
+
 /// When a robot's controller is asked, and what happens when it does not answer (docs/semantics.md).
 struct Policy {
   std::uint32_t period = 1;  ///< asked every `period` ticks, >= 1
@@ -43,6 +49,7 @@ struct Policy {
   std::chrono::nanoseconds deadline{0};
   Mode mode = Mode::lockstep;
   bool required = true;  ///< the run does not start, or go on, without a controller
+  OnLost on_lost = OnLost::go_on;
 };
 
 /// What to do about a controller process that dies.

@@ -25,6 +25,7 @@ struct NextRun {
   std::shared_ptr<const SessionSnapshot> snapshot{};  ///< where it goes on from; none: from the beginning
   PlaybackState state = PlaybackState::playing;
   double speed = 0.0;
+  std::string rewound{};  ///< why the server itself went back to the snapshot; empty: somebody asked for this run
 };
 
 struct RunOptions {
@@ -36,6 +37,7 @@ struct RunOptions {
   std::chrono::nanoseconds keep_interval{0};
   /// Whether it ends with an error when its recording does.
   bool needs_recording = false;
+  std::string rewound{};  ///< as in NextRun
   /// Makes the world of a reset or of a snapshot, before this run is ended for it. What it throws is the answer to
   /// whoever asked, and the run goes on. Empty: there are neither resets nor snapshots to load.
   std::function<void(const NextRun&)> prepare{};

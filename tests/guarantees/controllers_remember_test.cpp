@@ -232,6 +232,47 @@ TEST_F(ServedMemory, OfAControllerThatIsStoppedIsNotWaitedForForEver) {
   EXPECT_EQ(run.finish()["state_hash"], expected_) << "and the run goes on as it would have";
 }
 
+// The snapshots of ticks 0, 100 … have the state of all controllers; those that stay load it too.
+TEST_F(ServedMemory, ThatIsLostWithAProcessBringsTheRunBackToWhereItIsKnown) {
+  const FieldOfRobots field(4, 20.0, std::string(policy) + ", on_lost: rewind", plugin_);
+  ControlledRun run(field, {"--paused", "--keep-snapshots", "1"}, false);
+  attach(run);
+  run.done({"step", "1234"});
+  hosts_[1]->signal(SIGKILL);
+  run.done({"resume"});
+  ASSERT_TRUE(run.server().wait_for_output("waiting for swarm/sbot_2 and 1 more")) << run.server().output();
+  hosts_.push_back(std::make_unique<Process>(FieldOfRobots::host(run.domain(), "2..3", plugin_)));
+  const auto summary = run.finish();
+  EXPECT_EQ(summary["state_hash"], expected_) << "the hash of the undisturbed run";
+  const auto rewound = events_of(summary, "rewound");
+  ASSERT_EQ(rewound.size(), 1u) << summary["events"].dump(1);
+  EXPECT_NE(rewound[0]["text"].get<std::string>().find("to tick 1200"), std::string::npos) << rewound[0];
+  EXPECT_TRUE(events_of(summary, "unsaved").empty()) << summary["events"].dump(1);
+}
+
+TEST_F(ServedMemory, ThatIsLostWithAProcessIsNamedWhereTheRunGoesOn) {
+  ControlledRun run(field_, {"--paused"}, false);
+  attach(run);
+  run.done({"step", "100"});
+  hosts_[1]->signal(SIGKILL);
+  run.done({"resume"});
+  ASSERT_TRUE(run.server().wait_for_output("waiting for swarm/sbot_2 and 1 more")) << run.server().output();
+  hosts_.push_back(std::make_unique<Process>(FieldOfRobots::host(run.domain(), "2..3", plugin_)));
+  const auto summary = run.finish();
+  EXPECT_NE(summary["state_hash"], expected_) << "it is another run";
+  const auto forgotten = events_of(summary, "forgotten");
+  ASSERT_EQ(forgotten.size(), 1u) << summary["events"].dump(1);
+  EXPECT_NE(forgotten[0]["text"].get<std::string>().find("swarm/sbot_2"), std::string::npos) << forgotten[0];
+}
+
+TEST_F(ServedMemory, CannotBeRewoundWithoutSnapshots) {
+  const FieldOfRobots field(1, 1.0, ", on_lost: rewind");
+  const Ended ended = run_to_end({cohort_program(), "run", field.file()});
+  EXPECT_EQ(ended.exit_code, 2) << ended.err;
+  EXPECT_NE(ended.err.find("add --keep-snapshots"), std::string::npos) << ended.err;
+  EXPECT_EQ(run_to_end({cohort_program(), "run", field.file(), "--controllers", "inprocess"}).exit_code, 0);
+}
+
 // A client written from docs/protocol.md that drives robot 0 as it should, and gives as its state whatever it is told
 // to.
 class Liar {

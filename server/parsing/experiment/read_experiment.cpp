@@ -98,6 +98,20 @@ Policy read_policy(const YamlMap& team) {
   return policy;
 }
 
+OnLost read_on_lost(const YamlMap& team, const Policy& policy) {
+  const std::string on_lost = team.text("on_lost").value_or("go_on");
+  if (on_lost != "rewind") {
+    if (on_lost != "go_on")
+      team.problem("on_lost", "unknown value '" + on_lost + "'" + suggestion(on_lost, {"go_on", "rewind"}));
+    return OnLost::go_on;
+  }
+  if (policy.on_late != OnLate::wait)
+    team.problem("on_lost",
+                 "'rewind' needs on_late: wait; the wall clock decides under other policies, so a run that "
+                 "is repeated may be another one");
+  return OnLost::rewind;
+}
+
 Restart read_restart(const YamlMap& team) {
   const std::string restart = team.text("restart").value_or("on_failure");
   if (restart == "never") return Restart::never;
@@ -251,6 +265,7 @@ void ExperimentReader::read_team(const YamlNode& node, const std::string& path) 
       map.problem("parameters", "expected 'NAME: VALUE' lines, not " + shown(map.where("parameters")));
   }
   team.policy = read_policy(map);
+  team.policy.on_lost = read_on_lost(map, team.policy);
   team.restart = read_restart(map);
   for (const Team& other : experiment_.teams)
     if (!team.name.empty() && other.name == team.name)

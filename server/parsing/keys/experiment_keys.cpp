@@ -30,6 +30,7 @@ constexpr ExtensionKey experiment[] = {
 
 constexpr std::string_view modes[] = {"lockstep", "free"};
 constexpr std::string_view restarts[] = {"on_failure", "never"};
+constexpr std::string_view losses[] = {"go_on", "rewind"};
 
 constexpr ExtensionKey team[] = {
     {"name", name, "", "", "unique"},
@@ -48,6 +49,11 @@ constexpr ExtensionKey team[] = {
      "answer"},
     {"required", flag, "", "true",
      "whether the run waits for a controller to begin, and for a new one when it is lost; `false` by default if free"},
+    {"on_lost", choice, "", "go_on",
+     "when a new process takes over from a controller that is lost: the run goes on with a controller that starts "
+     "without state (`go_on`), or goes back to its last snapshot and has the bits of an undisturbed run (`rewind`, "
+     "with `--keep-snapshots`)",
+     false, losses},
     {"restart", choice, "", "on_failure",
      "a controller process of `cohort run` that dies is started again, up to three times (`on_failure`), or ends the "
      "run (`never`)",

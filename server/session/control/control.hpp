@@ -49,6 +49,10 @@ class Control {
     std::optional<NextRun> next{};
   };
   const std::optional<Ending>& ending() const { return ending_; }
+  /// Whether the run can go back to where the state of all controllers is known.
+  bool can_rewind() const { return run_->monitor.options().prepare && last_whole_snapshot() != nullptr; }
+  /// Ends the run for that, as `ending` says; `why` becomes an event of the next one. Any moment of a tick.
+  void rewind(const std::string& why);
   /// Whether the run stays at this boundary.
   bool holds() const { return playback_.holds(); }
   /// Whether anything that waits may be done now.
@@ -90,6 +94,8 @@ class Control {
   // What begins a run anew, and what is kept of one.
   void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
   void keep_snapshot();
+  std::shared_ptr<const SessionSnapshot> last_whole_snapshot() const;
+  NextRun run_from(std::shared_ptr<const SessionSnapshot> snapshot) const;
   void save(const wire::Request& request);
   void load(const wire::Request& request);
   void go_back(const wire::Request& request);

@@ -167,10 +167,32 @@ void Control::go_back(const Request& request) {
 
 void Control::go_on_from(const Request& request, std::shared_ptr<const SessionSnapshot> snapshot) {
   const std::string text = "from tick " + std::to_string(snapshot->tick) + " on";
+  begin_anew(request, run_from(std::move(snapshot)), text);
+}
+
+NextRun Control::run_from(std::shared_ptr<const SessionSnapshot> snapshot) const {
   NextRun next{.seed = snapshot->seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()};
   if (next.state == PlaybackState::stopped) next.state = PlaybackState::paused;
   next.snapshot = std::move(snapshot);
-  begin_anew(request, std::move(next), text);
+  return next;
+}
+
+std::shared_ptr<const SessionSnapshot> Control::last_whole_snapshot() const {
+  auto snapshot = kept_.last_until(run_->simulation.tick());
+  while (snapshot != nullptr && !what_is_left_out(*snapshot, run_->experiment).empty())
+    snapshot = snapshot->tick == 0 ? nullptr : kept_.last_until(snapshot->tick - 1);
+  return snapshot;
+}
+
+void Control::rewind(const std::string& why) {
+  NextRun next = run_from(last_whole_snapshot());
+  const std::uint64_t at = next.snapshot->tick;
+  next.rewound = why + ", so the run has gone back from tick " + std::to_string(run_->simulation.tick()) + " to tick " +
+                 std::to_string(at) + ", where the state of all controllers is known";
+  run_->monitor.options().prepare(next);
+  kept_.forget_after(at);
+  goes_back_ = true;
+  ending_ = Ending{RunResult::End::restored, std::move(next)};
 }
 
 void Control::do_actions(std::span<const Request> requests) {

@@ -228,6 +228,7 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
     answer.run = run_->number;
     answer.epoch = lease.epoch;
     answer.start_reason = why_it_starts(lease.robots, client);
+    if (answer.start_reason == wire::StartReason::takeover && note_lost_state(client, lease.robots)) return;
     if (answer.start_reason == wire::StartReason::restored && give_state(client, lease.robots))
       answer.start_reason = wire::StartReason::restored_with_state;
     for (const std::uint32_t robot : lease.robots) run_->was_driven[robot] = true;
@@ -251,6 +252,21 @@ wire::StartReason Clients::why_it_starts(const std::vector<std::uint32_t>& robot
   const bool takes_over = std::ranges::any_of(robots, [&](auto robot) { return run_->was_driven[robot]; });
   if (run_->started && takes_over) return wire::StartReason::takeover;
   return client.drove ? wire::StartReason::reset : wire::StartReason::first;
+}
+
+// Whether the run goes back for it. Under the lock.
+bool Clients::note_lost_state(const AttachedClient& client, const std::vector<std::uint32_t>& robots) {
+  const bool is_unwanted = std::ranges::any_of(
+      robots, [&](auto robot) { return run_->simulation.policy(robot).on_lost == description::OnLost::rewind; });
+  const std::string lost =
+      "the state of the controllers of " + run_->robots_text(robots) + " was lost with their process";
+  if (is_unwanted && run_->can_rewind && run_->can_rewind()) {
+    run_->rewinds_for = lost;
+    return true;
+  }
+  run_->monitor.add_event("forgotten", lost + "; " + client.label + " starts them without it" +
+                                           (is_unwanted ? ", as there is no snapshot to go back to" : ""));
+  return false;
 }
 
 // Whether the snapshot that the run goes on from has something for it. Under the lock.

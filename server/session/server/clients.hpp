@@ -36,6 +36,7 @@ class Clients {
   void note_rejections(const Inbox::Rejected& rejected);
 
   /// Claims are granted at boundaries, and in the midst of a tick to whoever takes over a robot that it waits for.
+  /// If a claim calls for the run to go back, `ServedRun::rewinds_for` says why, and it counts again in the next run.
   void decide_claims();
   /// The frames of the current tick.
   void send_frames();
@@ -82,6 +83,7 @@ class Clients {
   void claim(AttachedClient& client);
   std::string why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const;
   void admit(const lockstep::Leases::Granted& granted);
+  bool note_lost_state(const AttachedClient& client, const std::vector<std::uint32_t>& robots);
   wire::StartReason why_it_starts(const std::vector<std::uint32_t>& robots, const AttachedClient& client) const;
   bool give_state(AttachedClient& client, std::span<const std::uint32_t> robots);
   void send_frame(AttachedClient& client, std::uint64_t tick, bool resent);

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct ServedRun {
   std::vector<bool> was_driven;             // by robot, whether somebody drove it in this run
   std::vector<std::uint32_t> descriptions;  // on the wire, by kind
   std::uint32_t robots_at_first;            // of the experiment: those beyond have come in mid-run
+  std::function<bool()> can_rewind{};       // to where the state of all controllers is known
+  std::string rewinds_for{};                // whose state is lost, where a team wants the run to go back for that
 
   void fail(const std::string& why) {
     if (error.empty()) error = why;

@@ -162,7 +162,9 @@ void Server::begin_run(const description::Experiment& experiment, Simulation& si
   control_.begin({experiment, simulation, run_->monitor, run_number_,
                   [this](wire::SimulationStatus& status) { fill_status(status); },
                   [this, &stop] { return take_snapshot(stop); }});
+  run_->can_rewind = [this] { return control_.can_rewind(); };
   if (options.from) run_->monitor.note_left_out(*options.from);
+  if (!options.rewound.empty()) run_->monitor.add_event("rewound", options.rewound);
   publish_descriptions();
   clients_.begin(*run_);
 }
@@ -257,7 +259,7 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
       if (!was_held || had_work) publish_world_state();  // no tick is about to
       publish_scene(was_held && !had_work ? SceneBroadcast::When::for_newcomers : SceneBroadcast::When::at_once);
       was_held = true;
-      clients_.decide_claims();
+      if (!decide_claims()) return false;
       report_progress(false);
     }
     std::unique_lock lock(mutex_);
@@ -269,7 +271,7 @@ bool Server::stand_at_boundary(const std::atomic<bool>& stop) {
 
 // From boundary k to the complete set of commands for it. False if the run has to end.
 bool Server::run_tick(const std::atomic<bool>& stop) {
-  clients_.decide_claims();
+  if (!decide_claims()) return false;
   const Clock::time_point opened_at = Clock::now();
   {
     const std::lock_guard lock(mutex_);
@@ -295,8 +297,7 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
     }
     const Clock::time_point now = Clock::now();
     handle_inbox();
-    if (!control_.perform(Control::Moment::midst)) return false;
-    clients_.decide_claims();
+    if (!control_.perform(Control::Moment::midst) || !decide_claims()) return false;
     if (!give_up_on_late(now)) return false;
     clients_.resend_frames(now);
     report_progress(false);
@@ -310,6 +311,14 @@ bool Server::run_tick(const std::atomic<bool>& stop) {
   run_->monitor.commanded(changed);
   report_progress(false);
   return true;
+}
+
+// False if the run goes back, since the state of a controller is lost.
+bool Server::decide_claims() {
+  clients_.decide_claims();
+  if (run_->rewinds_for.empty()) return true;
+  control_.rewind(run_->rewinds_for);
+  return false;
 }
 
 // Under the lock.

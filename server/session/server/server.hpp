@@ -69,6 +69,7 @@ class Server {
   bool welcome_newcomers();
   bool stand_at_boundary(const std::atomic<bool>& stop);
   bool run_tick(const std::atomic<bool>& stop);
+  bool decide_claims();
   void handle_inbox();
   bool give_up_on_late(Clock::time_point now);
   bool note_misses(std::span<const lockstep::Barrier::Miss> misses);

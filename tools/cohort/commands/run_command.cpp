@@ -104,6 +104,15 @@ void refuse_what_needs_a_server(const RunCommand& command) {
   if (command.view) refuse("--view");
 }
 
+void refuse_rewind_without_snapshots(const RunCommand& command, const description::Experiment& experiment) {
+  if (command.keep_interval > 0.0) return;
+  for (const description::Team& team : experiment.teams)
+    if (team.policy.on_lost == description::OnLost::rewind)
+      throw description::InputError(
+          {{experiment.file, 0, "team " + team.name,
+            "on_lost: rewind needs snapshots to go back to; add --keep-snapshots 10, for one every 10 s"}});
+}
+
 description::Experiment read(const RunCommand& command, const std::filesystem::path& file, Log& log) {
   std::optional<std::chrono::nanoseconds> duration;
   if (command.duration) duration = nanoseconds(*command.duration);
@@ -220,7 +229,8 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
                .state = result.next->state,
                .from = result.next->snapshot,
                .keep_interval = options.keep_interval,
-               .needs_recording = options.needs_recording};
+               .needs_recording = options.needs_recording,
+               .rewound = result.next->rewound};
   }
 }
 
@@ -280,6 +290,7 @@ int run(RunCommand command, Log& log, const std::atomic<bool>& stop) {
   runs.from = snapshot_of(command);
   for (const std::filesystem::path& file : command.files) {
     runs.experiments.push_back(std::make_shared<description::Experiment>(read(command, file, log)));
+    if (!in_process) refuse_rewind_without_snapshots(command, *runs.experiments.back());
     if (runs.from) session::expect_same_experiment(*runs.from, *runs.experiments.back());
   }
   const description::Experiment& first = *runs.experiments.front();

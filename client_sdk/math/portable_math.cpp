@@ -1,7 +1,7 @@
 // sin, cos, tan, asin, acos, atan, atan2, exp and log in + - * / and sqrt. Algorithms and coefficients are those of
 // fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, e_rem_pio2.c, e_asin.c, s_atan.c, e_exp.c, e_log.c). Within 2 ulp
-// of the C library's for |x| < 10^6, which covers every angle of a simulation. pow and fmod are left to the C library:
-// fmod is exact in any correct implementation, and pow is called on no path of a step.
+// of the C library's for |x| < 10^6, which covers every angle of a simulation. The functions of float are these,
+// rounded. What is exact in any correct implementation, as sqrt and fmod, is left to the C library.
 
 #include "client_sdk/math/portable_math.hpp"
 
@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+
+#include "client_sdk/math/portable_power.hpp"
 
 namespace {
 
@@ -266,6 +268,28 @@ double asin(double x) noexcept { return portable_asin(x); }
 double acos(double x) noexcept { return portable_acos(x); }
 double exp(double x) noexcept { return portable_exp(x); }
 double log(double x) noexcept { return portable_log(x); }
+double log2(double x) noexcept { return cohort::portable_log2(x); }
+double log10(double x) noexcept { return cohort::portable_log10(x); }
+double exp2(double x) noexcept { return cohort::portable_pow(2.0, x); }
+double pow(double x, double y) noexcept { return cohort::portable_pow(x, y); }
+
+float sinf(float x) noexcept { return static_cast<float>(portable_sin(x)); }
+float cosf(float x) noexcept { return static_cast<float>(portable_cos(x)); }
+void sincosf(float x, float* sine, float* cosine) noexcept {
+  *sine = static_cast<float>(portable_sin(x));
+  *cosine = static_cast<float>(portable_cos(x));
+}
+float tanf(float x) noexcept { return static_cast<float>(portable_sin(x) / portable_cos(x)); }
+float atanf(float x) noexcept { return static_cast<float>(portable_atan(x)); }
+float atan2f(float y, float x) noexcept { return static_cast<float>(portable_atan2(y, x)); }
+float asinf(float x) noexcept { return static_cast<float>(portable_asin(x)); }
+float acosf(float x) noexcept { return static_cast<float>(portable_acos(x)); }
+float expf(float x) noexcept { return static_cast<float>(portable_exp(x)); }
+float logf(float x) noexcept { return static_cast<float>(portable_log(x)); }
+float log2f(float x) noexcept { return static_cast<float>(cohort::portable_log2(x)); }
+float log10f(float x) noexcept { return static_cast<float>(cohort::portable_log10(x)); }
+float exp2f(float x) noexcept { return static_cast<float>(cohort::portable_pow(2.0, x)); }
+float powf(float x, float y) noexcept { return static_cast<float>(cohort::portable_pow(x, y)); }
 
 // What the linker is told to look for (the CMakeLists.txt beside), so that it takes this object file before the C
 // library.
@@ -273,6 +297,15 @@ extern const char cohort_portable_math = 1;
 }
 
 namespace cohort {
+namespace {
+
+// Of the functions of one name, that of double, or of float.
+void* unary(double (*function)(double)) { return reinterpret_cast<void*>(function); }
+void* binary(double (*function)(double, double)) { return reinterpret_cast<void*>(function); }
+void* unary_of_float(float (*function)(float)) { return reinterpret_cast<void*>(function); }
+void* binary_of_float(float (*function)(float, float)) { return reinterpret_cast<void*>(function); }
+
+}  // namespace
 
 std::vector<std::string> functions_not_portable() {
   struct Function {
@@ -280,16 +313,34 @@ std::vector<std::string> functions_not_portable() {
     void* ours;
   };
   const Function functions[] = {
-      {"sin", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::sin))},
-      {"cos", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::cos))},
+      {"sin", unary(::sin)},
+      {"cos", unary(::cos)},
       {"sincos", reinterpret_cast<void*>(&::sincos)},
-      {"tan", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::tan))},
-      {"atan", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::atan))},
-      {"atan2", reinterpret_cast<void*>(static_cast<double (*)(double, double)>(&::atan2))},
-      {"asin", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::asin))},
-      {"acos", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::acos))},
-      {"exp", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::exp))},
-      {"log", reinterpret_cast<void*>(static_cast<double (*)(double)>(&::log))},
+      {"tan", unary(::tan)},
+      {"atan", unary(::atan)},
+      {"atan2", binary(::atan2)},
+      {"asin", unary(::asin)},
+      {"acos", unary(::acos)},
+      {"exp", unary(::exp)},
+      {"log", unary(::log)},
+      {"log2", unary(::log2)},
+      {"log10", unary(::log10)},
+      {"exp2", unary(::exp2)},
+      {"pow", binary(::pow)},
+      {"sinf", unary_of_float(::sinf)},
+      {"cosf", unary_of_float(::cosf)},
+      {"sincosf", reinterpret_cast<void*>(&::sincosf)},
+      {"tanf", unary_of_float(::tanf)},
+      {"atanf", unary_of_float(::atanf)},
+      {"atan2f", binary_of_float(::atan2f)},
+      {"asinf", unary_of_float(::asinf)},
+      {"acosf", unary_of_float(::acosf)},
+      {"expf", unary_of_float(::expf)},
+      {"logf", unary_of_float(::logf)},
+      {"log2f", unary_of_float(::log2f)},
+      {"log10f", unary_of_float(::log10f)},
+      {"exp2f", unary_of_float(::exp2f)},
+      {"powf", binary_of_float(::powf)},
   };
   // What the dynamic linker finds first is what it bound the libraries' calls to.
   std::vector<std::string> missing;

@@ -5,9 +5,11 @@
 
 /// The C library picks its sin, cos, atan2 … at run time by what the CPU can do, and the variants differ in the last
 /// bit: one binary would give two trajectories on two machines. portable_math.cpp therefore defines sin, cos, sincos,
-/// tan, atan, atan2, asin, acos, exp and log itself, from + - * / and sqrt only. They are in every program that steps a
-/// world, which exports them so that Bullet's calls bind to them; and in every controller, program and plugin alike, so
-/// that it answers the same wherever it runs.
+/// tan, atan, atan2, asin, acos, exp, log, log2, log10, exp2
+/// and pow itself, and those of float, from + - * / and sqrt only.
+/// They are in every program that steps a world, which exports them so that the calls of Bullet and of every other
+/// library bind to them; and in every controller, program and plugin alike, so that it answers the same wherever it
+/// runs.
 namespace cohort {
 
 /// The functions that the shared libraries of this process would not get from portable_math.cpp, by name. Empty in our

@@ -207,7 +207,8 @@ void thruster(ModelPlugin& plugin) {
   const double coefficient = plugin.number_or(1.0, {"thrust_coefficient"});
   const double greatest = plugin.number_or(1000.0, {"max_thrust_cmd"});
   const double least = plugin.number_or(-1000.0, {"min_thrust_cmd"}, ExtensionValue::real);
-  const double motor_constant = density * coefficient * std::pow(diameter, 4);
+  const double squared = diameter * diameter;
+  const double motor_constant = density * coefficient * squared * squared;
   for (const auto& [joint, parameter] : plugin.joints(joint_names)) {
     const auto carrier = carrier_of(plugin, *joint, parameter);
     if (!carrier) continue;

@@ -143,7 +143,9 @@ INSTANTIATE_TEST_SUITE_P(All, PortableUnary,
                                            UnaryCase{"tan", &::tan, -1.5, 1.5}, UnaryCase{"atan", &::atan, -20, 20},
                                            UnaryCase{"asin", &::asin, -1, 1}, UnaryCase{"acos", &::acos, -1, 1},
                                            UnaryCase{"exp", &::exp, -700, 700}, UnaryCase{"exp", &::exp, -1, 1},
-                                           UnaryCase{"log", &::log, 0, 1e-3}, UnaryCase{"log", &::log, 0.5, 2}),
+                                           UnaryCase{"log", &::log, 0, 1e-3}, UnaryCase{"log", &::log, 0.5, 2},
+                                           UnaryCase{"log2", &::log2, 0, 10}, UnaryCase{"log10", &::log10, 0, 10},
+                                           UnaryCase{"exp2", &::exp2, -1000, 1000}),
                          [](const auto& unary) { return std::string(unary.param.name) + std::to_string(unary.index); });
 
 TEST(PortableMath, Atan2AgreesWithTheCLibraryInEveryQuadrantAndCorner) {
@@ -160,6 +162,72 @@ TEST(PortableMath, Atan2AgreesWithTheCLibraryInEveryQuadrantAndCorner) {
       EXPECT_DOUBLE_EQ(::atan2(y, x), theirs(y, x)) << y << ", " << x;
       EXPECT_EQ(std::signbit(::atan2(y, x)), std::signbit(theirs(y, x))) << y << ", " << x;
     }
+}
+
+TEST(PortableMath, PowAgreesWithTheCLibraryWithinAnUlpAndInEveryCorner) {
+  const auto theirs = of_c_library<double (*)(double, double)>("pow");
+  const RandomStream random(3, "core_test", "pow");
+  for (std::uint64_t i = 0; i < 100'000; ++i) {
+    const double x = ::exp(20.0 * random.uniform(i, 0) - 10.0), y = 60.0 * random.uniform(i, 1) - 30.0;
+    const double expected = theirs(x, y);
+    ASSERT_NEAR(::pow(x, y), expected, 1.01 * (std::nextafter(expected, HUGE_VAL) - expected)) << x << ", " << y;
+  }
+  const double corners[] = {0.0,   -0.0, 0.5,  -0.5,   1.0,    -1.0,   2.0,   -2.0,     3.0,       -3.0,        1e-300,
+                            1e300, -1e3, 1e19, 5e-324, -1e300, 1074.0, -1e-3, HUGE_VAL, -HUGE_VAL, std::nan("")};
+  for (const double x : corners)
+    for (const double y : corners) {
+      const double expected = theirs(x, y);
+      if (std::isnan(expected)) {
+        EXPECT_TRUE(std::isnan(::pow(x, y))) << x << ", " << y;
+      } else {
+        EXPECT_DOUBLE_EQ(::pow(x, y), expected) << x << ", " << y;
+        EXPECT_EQ(std::signbit(::pow(x, y)), std::signbit(expected)) << x << ", " << y;
+      }
+    }
+}
+
+TEST(PortableMath, WholePowersThatADoubleHoldsAreExact) {
+  for (int base = 1; base <= 100; ++base) {
+    double power = 1.0;
+    for (int exponent = 0; power < 0x1p53; ++exponent, power *= base) {
+      EXPECT_EQ(::pow(base, exponent), power) << base << ", " << exponent;
+      if (base == 1) break;
+      if (base == 10) {
+        EXPECT_EQ(::log10(power), exponent);
+      }
+      if (base == 2) {
+        EXPECT_EQ(::log2(power), exponent);
+      }
+    }
+  }
+}
+
+TEST(PortableMath, FunctionsOfFloatAreThoseOfDoubleRounded) {
+  using OfFloat = float (*)(float);
+  const std::tuple<const char*, OfFloat, float, float> functions[] = {
+      {"sinf", &::sinf, -100.0f, 100.0f}, {"cosf", &::cosf, -100.0f, 100.0f},  {"tanf", &::tanf, -1.5f, 1.5f},
+      {"atanf", &::atanf, -20.0f, 20.0f}, {"asinf", &::asinf, -1.0f, 1.0f},    {"acosf", &::acosf, -1.0f, 1.0f},
+      {"expf", &::expf, -80.0f, 80.0f},   {"logf", &::logf, 0.0f, 2.0f},       {"log2f", &::log2f, 0.0f, 2.0f},
+      {"log10f", &::log10f, 0.0f, 2.0f},  {"exp2f", &::exp2f, -100.0f, 100.0f}};
+  const RandomStream random(3, "core_test", "float");
+  std::uint64_t draw = 0;
+  const auto expect_near = [](const char* name, float ours, float theirs) {
+    EXPECT_NEAR(ours, theirs, 2.01f * (std::nextafter(std::fabs(theirs), HUGE_VALF) - std::fabs(theirs))) << name;
+  };
+  for (const auto& [name, ours, from, to] : functions)
+    for (int i = 0; i < 1000; ++i) {
+      const float x = from + (to - from) * static_cast<float>(random.uniform(draw++, 0));
+      expect_near(name, ours(x), of_c_library<OfFloat>(name)(x));
+    }
+  for (const char* const name : {"atan2f", "powf"}) {
+    const auto ours = name == std::string("powf") ? &::powf : &::atan2f;
+    const auto theirs = of_c_library<float (*)(float, float)>(name);
+    for (int i = 0; i < 1000; ++i) {
+      const auto x = static_cast<float>(random.uniform(draw, 0)), y = static_cast<float>(random.uniform(draw, 1));
+      ++draw;
+      expect_near(name, ours(x, y), theirs(x, y));
+    }
+  }
 }
 
 }  // namespace

@@ -1,0 +1,11 @@
+#pragma once
+
+/// Powers and logarithms to other bases than e, for portable_math.cpp. They are computed with twice the digits of a
+/// double and rounded once, so that exact results, as of 10^3, are exact.
+namespace cohort {
+
+double portable_pow(double x, double y);
+double portable_log2(double x);
+double portable_log10(double x);
+
+}  // namespace cohort

@@ -49,6 +49,18 @@ class Cells {
     return range > few * edge_ ? std::min(range, extent.last_along(origin, direction)) : range;
   }
 
+  /// Whether to look at so many items one by one takes no longer than to look into all cells of a rectangle. So a
+  /// search has a bound, however small the cells are and wherever it leads.
+  bool are_more_than(std::size_t items, const Bounds& rectangle) const {
+    const Eigen::Vector2d size = (rectangle.upper - rectangle.lower).head<2>().cwiseMax(0.0);
+    return !((size.x() * inverse_ + 2.0) * (size.y() * inverse_ + 2.0) <= most_cells_of(items));
+  }
+  /// The same of the cells along a ray that ends at `end`.
+  bool along_are_more_than(std::size_t items, const Eigen::Vector3d& direction, double end) const {
+    const double across = std::abs(direction.x()) + std::abs(direction.y());
+    return across != 0.0 && !(end * across * inverse_ <= most_cells_of(items));
+  }
+
   /// Calls `visit(column, row)` for the cells along a ray of unit direction, near ones first. `visit` returns how far
   /// along the ray the search may end, which may shrink from call to call.
   template <class Visit>
@@ -80,6 +92,11 @@ class Cells {
   }
 
  private:
+  static double most_cells_of(std::size_t items) {
+    constexpr double few = 64.0;
+    return few + static_cast<double>(items);
+  }
+
   double edge_ = 1.0;
   double inverse_ = 1.0;
   std::uint64_t mask_ = 0;  // of the tiles

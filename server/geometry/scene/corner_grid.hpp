@@ -27,10 +27,16 @@ class CornerGrid {
   template <class Visit>
   void for_each_overlap(const Bounds& query, Visit&& visit) const {
     if (entries_.empty()) return;
-    const std::int64_t first = cells_.index_of(std::max(query.lower.x(), extent_.lower.x())) - 1;
-    const std::int64_t last = cells_.index_of(std::min(query.upper.x(), extent_.upper.x()));
-    const std::int64_t last_row = cells_.index_of(std::min(query.upper.y(), extent_.upper.y()));
-    for (std::int64_t row = cells_.index_of(std::max(query.lower.y(), extent_.lower.y())) - 1; row <= last_row; ++row) {
+    const Bounds within{query.lower.cwiseMax(extent_.lower), query.upper.cwiseMin(extent_.upper)};
+    if (cells_.are_more_than(entries_.size(), within)) {
+      for (const Entry& entry : entries_)
+        if (query.overlaps(entry.bounds)) visit(entry.item);
+      return;
+    }
+    const std::int64_t first = cells_.index_of(within.lower.x()) - 1;
+    const std::int64_t last = cells_.index_of(within.upper.x());
+    const std::int64_t last_row = cells_.index_of(within.upper.y());
+    for (std::int64_t row = cells_.index_of(within.lower.y()) - 1; row <= last_row; ++row) {
       for_each_in_row(first, last, row, [&](const Entry& entry) {
         if (!query.overlaps(entry.bounds)) return;
         // Another cell of the query may share the bucket.
@@ -40,14 +46,18 @@ class CornerGrid {
     }
   }
 
-  /// Calls `visit(item)` for all items that may be on a ray of unit direction, near ones first, some more than once.
-  /// `visit` returns how far along the ray the search may end, which may shrink from call to call. `range` may be
-  /// infinite.
+  /// Calls `visit(item)` for all items that may be on a ray of unit direction, near ones first, some more than once;
+  /// for all items if the ray is long for cells of this size. `visit` returns how far along the ray the search may end,
+  /// which may shrink from call to call. `range` may be infinite.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
     if (entries_.empty()) return;
     double end = cells_.end_of(origin, direction, range, extent_);
+    if (cells_.along_are_more_than(entries_.size(), direction, end)) {
+      for (const Entry& entry : entries_) visit(entry.item);
+      return;
+    }
     cells_.for_each_along(origin, direction, [&](std::int64_t column, std::int64_t row) {
       for (const std::int64_t of_corners : {row - 1, row})
         for_each_in_row(column - 1, column, of_corners,

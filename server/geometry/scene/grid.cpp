@@ -19,6 +19,7 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
         act(cells_.bucket_of(column, row));
   };
 
+  items_.assign(items.begin(), items.end());
   if (!items.empty()) extent_ = bounds[items[0]];
   for (const std::uint32_t item : items) extent_.include(bounds[item]);
 

@@ -27,6 +27,11 @@ class Grid {
   template <class Visit>
   void for_each_overlap(const Bounds& query, const std::vector<Bounds>& bounds, Visit&& visit) const {
     if (entries_.empty()) return;
+    if (cells_.are_more_than(items_.size(), query)) {
+      for (const std::uint32_t item : items_)
+        if (query.overlaps(bounds[item])) visit(item);
+      return;
+    }
     const std::int64_t first = cells_.index_of(query.lower.x());
     const std::int64_t last = cells_.index_of(query.upper.x());
     const std::int64_t first_row = cells_.index_of(query.lower.y());
@@ -47,14 +52,18 @@ class Grid {
       }
   }
 
-  /// Calls `visit(item)` for the items of the cells along a ray, near cells first, some items more than once.
-  /// `visit` returns how far along the ray the search may end, which may shrink from call to call. `range` may be
-  /// infinite.
+  /// Calls `visit(item)` for the items of the cells along a ray, near cells first, some items more than once; all items
+  /// if the ray is long for cells of this size. `visit` returns how far along the ray the search may end, which may
+  /// shrink from call to call. `range` may be infinite.
   template <class Visit>
   void for_each_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double range,
                       Visit&& visit) const {
     if (entries_.empty()) return;
     double end = cells_.end_of(origin, direction, range, extent_);
+    if (cells_.along_are_more_than(items_.size(), direction, end)) {
+      for (const std::uint32_t item : items_) visit(item);
+      return;
+    }
     cells_.for_each_along(origin, direction, [&](std::int64_t column, std::int64_t row) {
       for (const std::uint32_t item : bucket(column, row)) end = std::min(end, visit(item));
       return end;
@@ -70,6 +79,7 @@ class Grid {
   Cells cells_;
   std::vector<std::uint32_t> begin_;    // of each bucket in entries_, and one past the last
   std::vector<std::uint32_t> entries_;  // items, ascending within a bucket
+  std::vector<std::uint32_t> items_;    // each once
   Bounds extent_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // of all items
 };
 

@@ -31,16 +31,23 @@ std::shared_ptr<const MeshSurface> Scene::surface_of(const description::Mesh& me
   return surface;
 }
 
-// As wide as the widest thing that moves, but for the few that are much wider than the others.
+// As wide as the widest body that moves, but for the few that are much wider than the others. Not much narrower than
+// what a search is for, which looks some millimetres around things, however small they are.
 double Scene::choose_cell_size() const {
   constexpr double much_wider = 4.0;
+  constexpr double narrowest = 0.02;          // [m]
+  std::map<std::uint32_t, double> widest_of;  // of each body
+  for (std::uint32_t index = 0; index < solids_.size(); ++index) {
+    if (!solids_[index].moves) continue;
+    double& widest = widest_of[solids_[index].body];
+    widest = std::max(widest, 2.0 * balls_[index].radius);
+  }
+  if (widest_of.empty()) return 1.0;
   std::vector<double> widths;
-  for (std::uint32_t index = 0; index < solids_.size(); ++index)
-    if (solids_[index].moves) widths.push_back(2.0 * balls_[index].radius);
-  if (widths.empty()) return 1.0;
+  for (const auto& [body, width] : widest_of) widths.push_back(width);
   std::sort(widths.begin(), widths.end());
   const double most = much_wider * widths[widths.size() / 2];
-  return *std::prev(std::upper_bound(widths.begin(), widths.end(), most));
+  return std::max(narrowest, *std::prev(std::upper_bound(widths.begin(), widths.end(), most)));
 }
 
 void Scene::build() {

@@ -143,6 +143,53 @@ TEST(Bounds, OfCapsulesAndEllipsoidsTouchThemOnEverySide) {
     }
 }
 
+// A metre is 10^9 cells of the smallest: a search of them all would not end.
+TEST(Grids, FindWhatIsThereWithCellsOfAnySize) {
+  const RandomStream random(17, "geometry_test", "grids");
+  for (int decade = -9; decade <= 3; ++decade) {
+    const double edge = std::pow(10.0, decade);
+    std::vector<Bounds> bounds;
+    std::vector<std::uint32_t> items;
+    for (std::uint32_t n = 0; n < 200; ++n) {
+      const Vector3d corner = random_vector(random, n, 0.5);
+      bounds.push_back({corner, corner + Vector3d::Constant(0.5 * edge)});
+      items.push_back(n);
+    }
+    Grid grid;
+    CornerGrid corner_grid;
+    grid.set_cell_size(edge);
+    corner_grid.set_cell_size(edge);
+    grid.build(items, bounds);
+    corner_grid.build(items, bounds);
+    for (std::uint64_t n = 0; n < 50; ++n) {
+      const Vector3d centre = random_vector(random, n + 1000, 0.7);
+      const Bounds query = Bounds{centre, centre}.grown_by(0.2);
+      std::multiset<std::uint32_t> expected, found, found_by_corners, along, along_corners;
+      for (const std::uint32_t item : items)
+        if (query.overlaps(bounds[item])) expected.insert(item);
+      grid.for_each_overlap(query, bounds, [&](std::uint32_t item) { found.insert(item); });
+      corner_grid.for_each_overlap(query, [&](std::uint32_t item) { found_by_corners.insert(item); });
+      EXPECT_EQ(found, expected) << edge;
+      EXPECT_EQ(found_by_corners, expected) << edge;
+
+      const auto target = static_cast<std::uint32_t>(n);
+      const Vector3d direction = (bounds[target].lower + Vector3d::Constant(0.25 * edge) - centre).normalized();
+      for (const double range : {100.0, infinity}) {
+        grid.for_each_along(centre, direction, range, [&](std::uint32_t item) {
+          along.insert(item);
+          return range;
+        });
+        corner_grid.for_each_along(centre, direction, range, [&](std::uint32_t item) {
+          along_corners.insert(item);
+          return range;
+        });
+      }
+      EXPECT_TRUE(along.contains(target)) << edge;
+      EXPECT_TRUE(along_corners.contains(target)) << edge;
+    }
+  }
+}
+
 class RandomScene : public ::testing::Test {
  protected:
   RandomScene() {

@@ -369,9 +369,10 @@ std::string ExperimentReader::listed(const std::vector<std::uint32_t>& robots) c
 
 Experiment read_experiment(const fs::path& file, std::optional<std::uint64_t> seed,
                            std::optional<std::chrono::nanoseconds> duration,
-                           const std::vector<fs::path>& last_model_folders) {
+                           const std::vector<fs::path>& last_model_folders, Xacro xacro) {
   InputFiles disk;
   disk.trust(file, last_model_folders);
+  if (xacro == Xacro::run) expand_named(disk, file);
   Experiment experiment = ExperimentReader(disk, file, last_model_folders).read(seed, duration);
   KeptFiles kept = disk.kept();
   kept.experiment = file.string();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/description/experiment.hpp"
+#include "server/parsing/files/xacro.hpp"
 #include "server/parsing/parsing.hpp"
 
 namespace cohort::parsing {
@@ -10,10 +11,12 @@ inline constexpr std::chrono::nanoseconds duration_without_experiment = std::chr
 
 /// Reads an experiment (YAML) and its world. Of a world or a model, an experiment without controllers: its robots are
 /// in one team, which needs none, and a model stands on a plane. `seed` and `duration`, if given, stand in for the
-/// file's; `last_model_folders` are those of `read_world`. Throws InputError with every problem found.
+/// file's; `last_model_folders` are those of `read_world`. `xacro`: whether `file` itself may be expanded. Throws
+/// InputError with every problem found.
 Experiment read_experiment(const std::filesystem::path& file, std::optional<std::uint64_t> seed = {},
                            std::optional<std::chrono::nanoseconds> duration = {},
-                           const std::vector<std::filesystem::path>& last_model_folders = {});
+                           const std::vector<std::filesystem::path>& last_model_folders = {},
+                           Xacro xacro = Xacro::refused);
 
 /// Reads an experiment again from what was kept when it was read first, on whatever machine and without looking at any
 /// file: the same experiment bit for bit, if `seed` and `duration` are those that it had.

@@ -85,6 +85,11 @@ void InputFiles::trust(const fs::path& file, const std::vector<fs::path>& last_m
 
 void InputFiles::add(const fs::path& file, std::string bytes) { files_[key_of(file)] = std::move(bytes); }
 
+void InputFiles::add_expanded(const fs::path& file, std::string bytes) {
+  add(file, std::move(bytes));
+  expanded_.insert(key_of(file));
+}
+
 fs::path InputFiles::absolute(const fs::path& path) const { return (working_folder_ / path).lexically_normal(); }
 
 // Not normalised: through a symbolic link, ".." leads elsewhere than its text says.

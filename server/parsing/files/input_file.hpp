@@ -35,6 +35,9 @@ class InputFiles {
 
   /// Answers for `file` with `bytes` from now on.
   void add(const std::filesystem::path& file, std::string bytes);
+  /// The same of what `xacro` has made of the file.
+  void add_expanded(const std::filesystem::path& file, std::string bytes);
+  bool is_expanded(const std::filesystem::path& file) const { return expanded_.contains(key_of(file)); }
 
   /// As the function above.
   std::optional<std::string> why_unreadable(const std::filesystem::path& file) const;
@@ -65,6 +68,7 @@ class InputFiles {
   TrustedFolders trusted_;
   std::map<std::string, std::string> files_;  // by absolute path
   std::set<std::string> folders_;
+  std::set<std::string> expanded_;
 };
 
 }  // namespace cohort::parsing

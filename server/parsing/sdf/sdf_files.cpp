@@ -95,16 +95,6 @@ const XmlNode* nth_child(const XmlNode& node, std::string_view name, std::size_t
 
 bool is_ours(const XmlNode& root) { return root.attribute("xmlns:" + std::string(extension_prefix)) != nullptr; }
 
-// The first element that the program `xacro` expands; nullptr if there is none.
-const XmlNode* find_macro(const XmlNode& node, bool may_have_expressions) {
-  const auto has_expression = [](const auto& attribute) { return attribute.second.find("${") != std::string::npos; };
-  if (node.name.starts_with("xacro:") || (may_have_expressions && std::ranges::any_of(node.attributes, has_expression)))
-    return &node;
-  for (const XmlNode& child : node.children)
-    if (const XmlNode* const found = find_macro(child, may_have_expressions)) return found;
-  return nullptr;
-}
-
 }  // namespace
 
 std::string name_of(const XmlNode& node) {
@@ -210,18 +200,8 @@ std::optional<XmlNode> SdfFiles::read_xml(const std::string& text, SdfFile& file
   }
   if (outline.error) return fail(outline.error->line, outline.error->message);
   const XmlNode& root = outline.root;
-  const XmlNode* const macro =
-      root.name == "robot" && input_.is_disk() ? find_macro(root, root.attribute("xmlns:xacro") != nullptr) : nullptr;
-  if (macro != nullptr) {
-    const int line = macro->line;
-    try {
-      input_.add(file.path, expand_xacro(file.path));
-    } catch (const std::runtime_error& error) {
-      return fail(line, error.what());
-    }
-    outline = outline_xml(input_.read(file.path));
-    if (outline.error) return fail(line, "what xacro makes of it is not XML: " + outline.error->message);
-  }
+  if (input_.is_disk() && !input_.is_expanded(file.path))
+    if (const XmlNode* const macro = find_macro(root, file.path)) return fail(macro->line, why_not_expanded(file.path));
   file.is_foreign = root.name == "robot" || !is_ours(root);
   if (root.name == "robot") {
     auto sdf = sdf_of_urdf(std::move(outline.root), file.shown, libsdformat_.config(), problems_, warnings_);

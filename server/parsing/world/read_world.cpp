@@ -432,9 +432,10 @@ World read_world(InputFiles& input, const std::filesystem::path& file, std::uint
 }
 
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
-                          const std::vector<std::filesystem::path>& last_model_folders) {
+                          const std::vector<std::filesystem::path>& last_model_folders, Xacro xacro) {
   InputFiles disk;
   disk.trust(file, last_model_folders);
+  if (xacro == Xacro::run) expand_named(disk, file);
   return WorldReader(disk, file, seed, last_model_folders).read(LoneModel::at_origin, {});
 }
 

@@ -2,6 +2,7 @@
 
 #include "server/description/world.hpp"
 #include "server/parsing/files/input_file.hpp"
+#include "server/parsing/files/xacro.hpp"
 
 namespace cohort::parsing {
 
@@ -28,9 +29,11 @@ World read_world(InputFiles& input, const std::filesystem::path& file, std::uint
                  const std::vector<std::filesystem::path>& last_model_folders = {},
                  const std::vector<LaterObject>& later = {});
 
-/// The same; a file with a model alone is a world with nothing but this model, at the origin.
+/// The same; a file with a model alone is a world with nothing but this model, at the origin. `xacro`: whether `file`
+/// itself may be expanded.
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
-                          const std::vector<std::filesystem::path>& last_model_folders = {});
+                          const std::vector<std::filesystem::path>& last_model_folders = {},
+                          Xacro xacro = Xacro::refused);
 
 /// The same; a model alone stands on a plane (`stand_on_plane`).
 World read_world_or_standing_model(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,

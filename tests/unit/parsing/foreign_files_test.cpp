@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/written_worlds.hpp"
 
@@ -188,19 +189,76 @@ TEST_F(ForeignFiles, APackageIsAFolderWithAPackageXmlAboveTheFile) {
   }
 }
 
-TEST_F(ForeignFiles, AXacroFileIsWhatXacroMakesOfIt) {
-  const auto program =
-      write("env/bin/xacro", "#!/bin/sh\necho '<robot name=\"made\">'\ngrep '<link' \"$1\"\necho '</robot>'\n");
-  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-  setenv("VIRTUAL_ENV", (folder_ / "env").c_str(), 1);
-  const auto file = write("r.urdf.xacro", "<robot name=\"r\">\n<xacro:property name=\"m\" value=\"1\"/>\n" +
-                                              weighing("a") + "\n</robot>\n");
-  EXPECT_EQ(parsing::read_world_or_model(file, 1).models[0].name, "made");
-  test::write_file(program, "#!/bin/sh\nexit 2\n");
-  const auto problems = problems_of([&] { parsing::read_world_or_model(file, 1); });
-  unsetenv("VIRTUAL_ENV");
+/// With a program `xacro` that leaves a trace when it runs.
+class XacroFiles : public ForeignFiles {
+ protected:
+  XacroFiles() {
+    write_program("#!/bin/sh\ntouch '" + trace_.string() +
+                  "'\necho '<robot name=\"made\">'\ngrep '<link' \"$1\"\necho '</robot>'\n");
+    setenv("VIRTUAL_ENV", (folder_ / "env").c_str(), 1);
+  }
+  ~XacroFiles() override { unsetenv("VIRTUAL_ENV"); }
+
+  void write_program(const std::string& text) const {
+    std::filesystem::permissions(write("env/bin/xacro", text), std::filesystem::perms::owner_all);
+  }
+  bool has_run() const { return std::filesystem::exists(trace_); }
+  std::filesystem::path write_macros(const std::string& name) const {
+    return write(name,
+                 "<robot name=\"r\">\n<xacro:property name=\"m\" value=\"1\"/>\n" + weighing("a") + "\n</robot>\n");
+  }
+  static World read_expanded(const std::filesystem::path& file) {
+    return parsing::read_world_or_model(file, 1, {}, parsing::Xacro::run);
+  }
+
+  std::filesystem::path trace_ = folder_ / "trace";
+};
+
+TEST_F(XacroFiles, AreExpandedWhereAPersonNamesThemAndSaysSo) {
+  EXPECT_EQ(read_expanded(write_macros("r.urdf.xacro")).models[0].name, "made");
+  EXPECT_TRUE(has_run());
+}
+
+TEST_F(XacroFiles, AreRefusedOtherwiseWithTheLineAndWhatToDo) {
+  for (const char* const name : {"r.urdf.xacro", "r.urdf"}) {
+    const auto file = write_macros(name);
+    const auto problems = problems_of([&] { parsing::read_world_or_model(file, 1); });
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].line, 2);
+    EXPECT_NE(problems[0].message.find("`xacro " + std::string(name) + " > robot.urdf`"), std::string::npos)
+        << problems[0].text();
+    EXPECT_NE(problems[0].message.find("--xacro"), std::string::npos) << problems[0].text();
+  }
+  EXPECT_FALSE(has_run());
+}
+
+TEST_F(XacroFiles, AreNeverExpandedWhereAWorldIncludesThem) {
+  write_macros("robots/evil/evil.urdf");
+  write("robots/evil/model.config", "<model><name>evil</name><sdf version=\"1.9\">evil.urdf</sdf></model>");
+  const auto in_yaml = write("world.yaml", "world:\n  name: w\n  include: {uri: robots/evil/evil.urdf}\n");
+  const auto in_sdf = write_world("<include><uri>model://evil</uri></include>");
+  const auto experiment =
+      write("e.yaml", "world: robots/evil/evil.urdf\nduration: 1\nteams: [{name: t, robots: all, controller: c}]\n");
+  for (const auto& file : {in_yaml, in_sdf, experiment}) {
+    const auto problems = problems_of([&] { parsing::read_experiment(file, {}, {}, {}, parsing::Xacro::run); });
+    ASSERT_EQ(problems.size(), 1u) << file;
+    EXPECT_EQ(problems[0].file.filename(), "evil.urdf");
+    EXPECT_EQ(problems[0].line, 2);
+  }
+  EXPECT_FALSE(has_run());
+}
+
+TEST_F(XacroFiles, WhatXacroComplainsOfIsInOurError) {
+  const auto file = write_macros("r.urdf.xacro");
+  write_program("#!/bin/sh\nprintf 'no such \\033[1mproperty:\\n  size\\n' >&2\nexit 2\n");
+  const auto problems = problems_of([&] { read_expanded(file); });
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_NE(problems[0].message.find("says why"), std::string::npos) << problems[0].text();
+  EXPECT_EQ(problems[0].message, "xacro cannot expand this file: no such ?[1mproperty: size");
+  write_program("#!/bin/sh\nyes 'on and on' | head -c 9000000 >&2\necho the end >&2\nexit 2\n");
+  const auto long_ones = problems_of([&] { read_expanded(file); });
+  ASSERT_EQ(long_ones.size(), 1u);
+  EXPECT_LT(long_ones[0].message.size(), 1100u);
+  EXPECT_TRUE(long_ones[0].message.ends_with("the end")) << long_ones[0].text();
 }
 
 TEST_F(ForeignFiles, ABareNameIsAModel) {

@@ -22,12 +22,12 @@ void print_world(const description::World& world) {
             << std::chrono::duration<double, std::milli>(world.step).count() << " ms\n";
 }
 
-int check(const std::filesystem::path& file, bool loads_controllers, Log& log) {
+int check(const std::filesystem::path& file, parsing::Xacro xacro, bool loads_controllers, Log& log) {
   try {
     if (parsing::kind_of_file(file) == parsing::FileKind::sdf) {
       description::Experiment experiment;
       experiment.file = file;
-      experiment.world = parsing::read_world_or_model(file, experiment.seed, installed_model_folders());
+      experiment.world = parsing::read_world_or_model(file, experiment.seed, installed_model_folders(), xacro);
       log.warnings(experiment.world.warnings);
       const Simulation built(experiment, 1);  // some mistakes only show when physics takes the world
       print_world(experiment.world);
@@ -64,16 +64,17 @@ Subcommand add_check(CommandLine app) {
   struct CheckCommand {
     std::filesystem::path file{};
     bool loads_controllers = false;
+    bool runs_xacro = false;
   };
   const auto command = std::make_shared<CheckCommand>();
   CommandLine line = app.add_subcommand("check", "Read a world or an experiment, run nothing, explain what is wrong");
   line.add_option("FILE", command->file, "Experiment (.yaml) or world (.sdf)").required().type_name("");
-  add_allow_files_option(line);
+  add_reading_options(line, command->runs_xacro);
   line.add_flag("--load-controllers", command->loads_controllers,
                 "Also load the plugins of controllers and start them on trial, which runs their code");
   line.footer("Example: cohort check worlds/arenas/obstacles.sdf");
   return {line, [command](Log& log, const std::atomic<bool>&) {
-            return check(command->file, command->loads_controllers, log);
+            return check(command->file, xacro_of(command->runs_xacro), command->loads_controllers, log);
           }};
 }
 

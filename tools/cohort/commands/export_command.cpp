@@ -17,11 +17,13 @@ struct ExportCommand {
   std::filesystem::path file;
   std::filesystem::path output;         ///< .sdf or .yaml
   std::optional<std::uint64_t> seed{};  ///< of the populations; none: the experiment's, or 1
+  bool runs_xacro = false;
 };
 
 description::World read(const ExportCommand& command) {
   if (parsing::kind_of_file(command.file) == parsing::FileKind::sdf)
-    return parsing::read_world_or_model(command.file, command.seed.value_or(1), installed_model_folders());
+    return parsing::read_world_or_model(command.file, command.seed.value_or(1), installed_model_folders(),
+                                        xacro_of(command.runs_xacro));
   return parsing::read_experiment(command.file, command.seed, {}, installed_model_folders()).world;
 }
 
@@ -49,7 +51,7 @@ Subcommand add_export(CommandLine app) {
   line.add_option("--seed", command->seed, "Seed of the populations, instead of the experiment's")
       .check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       .type_name("N");
-  add_allow_files_option(line);
+  add_reading_options(line, command->runs_xacro);
   line.footer("Example: cohort export worlds/arenas/obstacles.sdf -o placed.sdf");
   return {line, [command](Log& log, const std::atomic<bool>&) { return export_world(*command, log); }};
 }

@@ -16,11 +16,12 @@ struct ShowCommand {
   std::filesystem::path file;
   double seconds = 0.0;  ///< simulated before it is shown
   bool as_json = false;
+  bool runs_xacro = false;
 };
 
 int show(const ShowCommand& command, Log& log, const std::atomic<bool>& stop) {
-  const description::Experiment experiment =
-      parsing::read_experiment(model_called(command.file), {}, {}, installed_model_folders());
+  const description::Experiment experiment = parsing::read_experiment(
+      model_called(command.file), {}, {}, installed_model_folders(), xacro_of(command.runs_xacro));
   if (!command.as_json) log.warnings(experiment.world.warnings);
   Simulation simulation(experiment, 1);
   const std::chrono::nanoseconds end = nanoseconds(command.seconds);
@@ -47,7 +48,7 @@ Subcommand add_models(CommandLine app) {
   of.add_option("--after", command->seconds, "Simulated seconds before that; a model alone stands on a plane")
       .check(number_from_zero(most_seconds))
       .type_name("SECONDS");
-  add_allow_files_option(of);
+  add_reading_options(of, command->runs_xacro);
   of.footer("Example: cohort models show sbot --json --after 5");
   line.footer("Example: cohort models show sbot");
   return {line, [command](Log& log, const std::atomic<bool>& stop) { return show(*command, log, stop); }};

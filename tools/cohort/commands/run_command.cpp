@@ -118,7 +118,7 @@ description::Experiment read(const RunCommand& command, const std::filesystem::p
   if (command.duration) duration = nanoseconds(*command.duration);
   const Stopwatch reading;
   description::Experiment experiment =
-      parsing::read_experiment(file, command.seed, duration, installed_model_folders());
+      parsing::read_experiment(file, command.seed, duration, installed_model_folders(), xacro_of(command.runs_xacro));
   set_recorded(experiment, command.record);
   log.warnings(experiment.world.warnings);
   log.info(
@@ -370,7 +370,7 @@ void add_run_options(CommandLine line, RunCommand& command, LogFlags& flags) {
   line.add_option("--from", command.from, "Go on from this snapshot of 'cohort ctl save'")
       .excludes(seeds)
       .type_name("FILE");
-  add_allow_files_option(line);
+  add_reading_options(line, command.runs_xacro);
   add_domain_option(line, command.domains,
                     "DDS domains to serve (default: free ones, or 0 if others start controllers)");
   add_secure_option(line, command.secure, "Folder of 'cohort security': nobody else gets in (default: $COHORT_SECURE)");

@@ -17,6 +17,7 @@ struct SamplesCommand {
   std::string device{};        ///< name of a proximity ring
   std::filesystem::path output;
   sensing::SampleGrid grid{};
+  bool runs_xacro = false;
 };
 
 // The model and the device that are meant: of the first robot of the file.
@@ -39,7 +40,8 @@ std::size_t ring_of(const description::Model& model, const std::string& name) {
 
 int take_samples(const SamplesCommand& command) {
   check_writable("samples", command.output);
-  const description::World world = parsing::read_world_or_model(command.file, 1, installed_model_folders());
+  const description::World world =
+      parsing::read_world_or_model(command.file, 1, installed_model_folders(), xacro_of(command.runs_xacro));
   const description::Model& model = robot_of(world, command);
   const description::Samples samples = sensing::take_samples(model, ring_of(model, command.device), command.grid);
   write_file("samples", command.output, parsing::samples_as_text(samples));
@@ -71,7 +73,7 @@ Subcommand add_samples(CommandLine app) {
       .check(whole_number(1, 10'000))
       .capture_default_str()
       .type_name("N");
-  add_allow_files_option(line);
+  add_reading_options(line, command->runs_xacro);
   line.footer("Example: cohort samples worlds/robots/sbot/model.sdf proximity -o proximity.csv");
   return {line, [command](Log&, const std::atomic<bool>&) { return take_samples(*command); }};
 }

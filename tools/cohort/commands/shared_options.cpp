@@ -36,7 +36,7 @@ void add_client_options(CommandLine line, ClientSide& client) {
   add_secure_option(line, client.connection.secure, "Folder of this client's identity (default: $COHORT_SECURE)");
 }
 
-void add_allow_files_option(CommandLine line) {
+void add_reading_options(CommandLine line, bool& runs_xacro) {
   line.add_option_function<std::string>(
           "--allow-files",
           [](const std::string& folders) {
@@ -44,6 +44,8 @@ void add_allow_files_option(CommandLine line) {
           },  // who reads looks there
           "More folders that the world may read files of, with colons between them (default: $COHORT_ALLOW_FILES)")
       .type_name("DIR[:DIR...]");
+  line.add_flag("--xacro", runs_xacro,
+                "Expand FILE itself with the program xacro, which runs what FILE says: only for one that you trust");
 }
 
 void add_robots_of_recording(CommandLine line, std::vector<std::string>& robots) {

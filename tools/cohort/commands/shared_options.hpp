@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/parsing/files/xacro.hpp"
 #include "tools/cohort/cli/command_line.hpp"
 #include "tools/cohort/running/run_options.hpp"
 
@@ -32,8 +33,10 @@ void add_server_option(CommandLine line, std::string& server);
 void add_domain_option(CommandLine line, std::vector<std::uint32_t>& domains, const std::string& text);
 void add_secure_option(CommandLine line, std::filesystem::path& folder, const std::string& text);
 
-/// Folders that worlds may read beside their own.
-void add_allow_files_option(CommandLine line);
+/// What files are read and how: folders that worlds may read beside their own, and whether the program `xacro` expands
+/// the file that the command line names.
+void add_reading_options(CommandLine line, bool& runs_xacro);
+inline parsing::Xacro xacro_of(bool runs_xacro) { return runs_xacro ? parsing::Xacro::run : parsing::Xacro::refused; }
 
 /// Where robots of a server are driven from.
 struct ClientSide {

@@ -28,6 +28,7 @@ struct RecordOptions {
 
 struct RunCommand {
   std::vector<std::filesystem::path> files;  ///< experiments, one after the other
+  bool runs_xacro = false;                   ///< to expand those of them that are xacro files
   std::uint64_t repeat = 1;                  ///< how often all of them are run
   unsigned threads = 0;                      ///< 0: one for each core
   std::optional<double> duration;

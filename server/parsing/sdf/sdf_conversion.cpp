@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "server/parsing/files/sdf_version.hpp"
+#include "server/parsing/sdf/libsdformat_failure.hpp"
+#include "server/parsing/sdf/scoped_names.hpp"
 #include "server/parsing/sdf/sdf_errors.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
@@ -121,7 +123,9 @@ XmlNode tree_of(const sdf::ElementPtr& element, const XmlNode& parent, const std
 
 std::optional<XmlNode> SdfFiles::converted(XmlNode tree, SdfFile& file) {
   file.version = *tree.attribute("version");
-  if (version_of(file.version) >= std::pair{1, 8} && !names_are_simple(tree, "")) return std::nullopt;
+  const bool may_be_scoped = version_of(file.version) < std::pair{1, 8};
+  if (may_be_scoped || file.is_foreign) join_scoped_names(tree, file.shown, may_be_scoped ? nullptr : &warnings_);
+  if (!names_are_simple(tree, "")) return std::nullopt;
   if (file.version == sdf::SDF::Version()) return tree;
   std::vector<XmlNode> taken;
   take_includes(tree, taken);
@@ -154,13 +158,12 @@ std::optional<XmlNode> SdfFiles::convert(const XmlNode& tree, const std::vector<
   sdf->SetFilePath(file.path.string());
   bool is_read = false;
   std::vector<Problem> found;
-  try {
+  const auto failure = libsdformat_failure([&] {
     is_read = sdf::readString(written.text, libsdformat_.config(), sdf->Root(), errors);
     if (file.is_foreign) take_unknown_names(errors, file, warnings_);
     found = problems_of(errors, file, tree);
-  } catch (const std::exception& error) {
-    found.push_back({file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()});
-  }
+  });
+  if (failure) found.push_back({file.shown, 0, "", "libsdformat cannot read this file: " + *failure});
   if (!is_read && found.empty()) found.push_back({file.shown, 0, "", "libsdformat cannot read this file"});
   for (Problem& problem : found) name_what_is_aside(problem, aside);
   problems_.insert(problems_.end(), found.begin(), found.end());

@@ -13,6 +13,7 @@
 #include "server/parsing/files/sdf_version.hpp"
 #include "server/parsing/files/xacro.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
+#include "server/parsing/sdf/libsdformat_failure.hpp"
 #include "server/parsing/sdf/mend_sdf.hpp"
 #include "server/parsing/sdf/newer_sdf.hpp"
 #include "server/parsing/sdf/sdf_errors.hpp"
@@ -276,7 +277,7 @@ std::vector<Problem> SdfFiles::try_to_load(SdfFile& file) {
   XmlText written = xml_text_of(file.tree);
   file.nodes = std::move(written.nodes);
   sdf::Errors errors;
-  try {
+  const auto failure = libsdformat_failure([&] {
     std::set<std::string> names;
     add_names(file.tree, names);
     if (names != last_definition_.first || !last_definition_.second)
@@ -291,9 +292,10 @@ std::vector<Problem> SdfFiles::try_to_load(SdfFile& file) {
       const sdf::Errors more = file.root.Load(sdf, libsdformat_.config());
       if (file.complete) errors.insert(errors.end(), more.begin(), more.end());  // otherwise they follow from that
     }
-  } catch (const std::exception& error) {
+  });
+  if (failure) {
     file.loaded = false;
-    return {{file.shown, 0, "", std::string("libsdformat cannot read this file: ") + error.what()}};
+    return {{file.shown, 0, "", "libsdformat cannot read this file: " + *failure}};
   }
   return problems_of(errors, file, file.tree);
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/parsing/sdf/libsdformat_failure.hpp"
 #include "server/parsing/sdf/mend_urdf.hpp"
 #include "server/parsing/sdf/sdf_schema.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
@@ -148,12 +149,10 @@ std::optional<XmlNode> sdf_of_urdf(XmlNode robot, const std::filesystem::path& f
   sdf::Errors errors;
   const sdf::SDFPtr sdf = empty_sdf();
   bool is_read = false;
-  std::string why;
-  try {
-    is_read = sdf::readString(xml_text_of(robot).text, tolerant, sdf, errors);
-  } catch (const std::exception& error) {  // of what <gazebo> holds, for example
-    why = error.what();
-  }
+  // What <gazebo> holds may stop it, for example.
+  std::string why = libsdformat_failure([&] {
+                      is_read = sdf::readString(xml_text_of(robot).text, tolerant, sdf, errors);
+                    }).value_or("");
   if (!is_read || !sdf->Root()->HasElement("model")) {
     why += console.errors();
     for (const sdf::Error& error : errors) why += (why.empty() ? "" : "; ") + error.Message();

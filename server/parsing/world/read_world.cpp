@@ -18,6 +18,7 @@
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
+#include "server/parsing/sdf/libsdformat_failure.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
 #include "server/parsing/world/check_detachable_joints.hpp"
@@ -417,6 +418,23 @@ bool WorldReader::add_instance(const std::string& name, std::size_t model, const
   return true;
 }
 
+// Whatever else a library throws is wrong with the file.
+template <class Read>
+World read_or_input_error(const std::filesystem::path& file, Read&& read) {
+  std::optional<World> world;
+  std::optional<InputError> wrong;
+  const auto failure = libsdformat_failure([&] {
+    try {
+      world = read();
+    } catch (const InputError& error) {
+      wrong = error;
+    }
+  });
+  if (wrong) throw *wrong;
+  if (failure) throw InputError({{file, 0, "", "cannot be read: " + *failure}});
+  return *std::move(world);
+}
+
 }  // namespace
 
 World read_world(const std::filesystem::path& file, std::uint64_t seed,
@@ -428,7 +446,8 @@ World read_world(const std::filesystem::path& file, std::uint64_t seed,
 
 World read_world(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
-  return WorldReader(input, file, seed, last_model_folders).read(LoneModel::none, later);
+  return read_or_input_error(
+      file, [&] { return WorldReader(input, file, seed, last_model_folders).read(LoneModel::none, later); });
 }
 
 World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
@@ -436,12 +455,14 @@ World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
   InputFiles disk;
   disk.trust(file, last_model_folders);
   if (xacro == Xacro::run) expand_named(disk, file);
-  return WorldReader(disk, file, seed, last_model_folders).read(LoneModel::at_origin, {});
+  return read_or_input_error(
+      file, [&] { return WorldReader(disk, file, seed, last_model_folders).read(LoneModel::at_origin, {}); });
 }
 
 World read_world_or_standing_model(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
                                    const std::vector<std::filesystem::path>& last_model_folders) {
-  return WorldReader(input, file, seed, last_model_folders).read(LoneModel::on_plane, {});
+  return read_or_input_error(
+      file, [&] { return WorldReader(input, file, seed, last_model_folders).read(LoneModel::on_plane, {}); });
 }
 
 std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world) {
@@ -451,8 +472,9 @@ std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptF
       world.file.parent_path() / (trimmed(text).starts_with('<') ? "(model).sdf" : "(model).yaml");
   input.add(file, text);
   constexpr std::uint64_t no_seed = 0;  // nothing is drawn
-  World alone = WorldReader(input, file, no_seed, {kept->last_model_folders.begin(), kept->last_model_folders.end()})
-                    .read_model_file(world.materials);
+  const std::vector<std::filesystem::path> folders(kept->last_model_folders.begin(), kept->last_model_folders.end());
+  World alone = read_or_input_error(
+      file, [&] { return WorldReader(input, file, no_seed, folders).read_model_file(world.materials); });
   if (alone.models.size() > 1)
     throw InputError({{file, 0, "", "the model has several roots, which are bodies of their own; expected one"}});
   world.materials = std::move(alone.materials);

@@ -161,6 +161,10 @@ YamlDocument parse_yaml(std::string_view text) {
     document.error = {refused.line, refused.message};
   } catch (const YAML::Exception& error) {
     document.error = {error.mark.is_null() ? 0 : error.mark.line + 1, "not YAML: " + error.msg};
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    document.error = {0, std::string("cannot be read: ") + error.what()};
   }
   return document;
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -259,6 +260,35 @@ TEST_F(XacroFiles, WhatXacroComplainsOfIsInOurError) {
   ASSERT_EQ(long_ones.size(), 1u);
   EXPECT_LT(long_ones[0].message.size(), 1100u);
   EXPECT_TRUE(long_ones[0].message.ends_with("the end")) << long_ones[0].text();
+}
+
+TEST_F(ForeignFiles, NamesWithColonsOfOldFilesMayReferToWhatIsOutsideOfTheirModel) {
+  const std::string parts = "<model name=\"m\">" + links("c") + "<link name=\"a\"/><link name=\"a::b\"/>" +
+                            joint("a::j", "c", "a::b") + joint("a::k", "a", "a::b") +
+                            "<frame name=\"a::f\" attached_to=\"c\"/></model>";
+  for (const char* const version : {"1.4", "1.6", "1.7"}) {
+    const World world = read_foreign(parts, version);
+    EXPECT_EQ(world.models[0].links.size(), 3u) << version;
+    EXPECT_TRUE(std::ranges::any_of(world.models[0].links, [](const Link& link) { return link.name == "a.b"; }));
+    EXPECT_EQ(world.models[0].joints[0].name, "a.j");
+  }
+}
+
+TEST_F(ForeignFiles, NamesWithColonsOfNewFilesAreToldOnceAndHavePointsInstead) {
+  const World world = read_foreign("<model name=\"m\">" + links("a") + "<link name=\"x::b\"/><link name=\"x::c\"/>" +
+                                   joint("j", "a", "x::b") + joint("k", "a", "x::c") +
+                                   "<frame name=\"f\" attached_to=\"x::c\"/></model>");
+  EXPECT_EQ(world.models[0].links.size(), 3u);
+  expect_warning(world, "world.sdf:2: world/model[m]/link[x::b]: a name cannot have '::' in it");
+  expect_warning(world, "2 times");
+}
+
+TEST_F(ForeignFiles, NamesInASensorThatNobodyKnowsMayBeAnything) {
+  const World world = read_foreign(
+      "<model name=\"m\"><link name=\"l\"><sensor name=\"s\" type=\"smell\"><nose name=\"a::b\"/></sensor>"
+      "<sensor name=\"c\" type=\"custom\"><foo:nose name=\"a::b\" xmlns:foo=\"x\"/><nose name=\"a::b\"/></sensor>"
+      "</link></model>");
+  EXPECT_EQ(world.models.size(), 1u);
 }
 
 TEST_F(ForeignFiles, ABareNameIsAModel) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -28,6 +29,14 @@ std::string whole_microseconds(std::chrono::nanoseconds duration) {
 
 double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+// Models without devices are no robots, but they are what there is to see.
+std::string counted_objects(const description::World& world, std::uint32_t robots) {
+  if (robots > 0) return counted(robots, "robot");
+  const auto moving = static_cast<std::size_t>(std::ranges::count_if(
+      world.instances, [&](const description::Instance& object) { return !world.models[object.model].is_static; }));
+  return moving > 0 ? counted(moving, "model") : counted(world.instances.size(), "static model");
 }
 
 }  // namespace
@@ -93,21 +102,23 @@ void Terminal::summary(const description::Experiment& experiment, const session:
   std::printf("experiment        %s, seed %lu (Cohort %s)\n", experiment.name.c_str(),
               static_cast<unsigned long>(experiment.seed), COHORT_VERSION);
   std::printf("ticks             %lu (%.2f s simulated, %s)\n", static_cast<unsigned long>(result.ticks),
-              seconds(result.sim_time), counted(result.robots, "robot").c_str());
+              seconds(result.sim_time), counted_objects(experiment.world, result.robots).c_str());
   if (!result.stop_reason.empty()) std::printf("stopped           by %s\n", result.stop_reason.c_str());
   std::printf("real-time factor  %.1f (%.2f s wall, %.2f s CPU)\n", wall > 0.0 ? seconds(result.sim_time) / wall : 0.0,
               wall, cpu_seconds);
-  std::printf(
-      "barrier latency   p50 %s us, p99 %s us, max %s us\n", whole_microseconds(result.barrier.quantile(0.5)).c_str(),
-      whole_microseconds(result.barrier.quantile(0.99)).c_str(), whole_microseconds(result.barrier.max()).c_str());
+  if (result.robots > 0)
+    std::printf(
+        "barrier latency   p50 %s us, p99 %s us, max %s us\n", whole_microseconds(result.barrier.quantile(0.5)).c_str(),
+        whole_microseconds(result.barrier.quantile(0.99)).c_str(), whole_microseconds(result.barrier.max()).c_str());
   if (result.lateness.count() > 0)
     std::printf("tick lateness     p50 %s us, p99 %s us, max %s us\n",
                 whole_microseconds(result.lateness.quantile(0.5)).c_str(),
                 whole_microseconds(result.lateness.quantile(0.99)).c_str(),
                 whole_microseconds(result.lateness.max()).c_str());
-  std::printf("contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
-              percent(result.touches.obstacles, result.touches.robot_ticks),
-              percent(result.touches.robots, result.touches.robot_ticks));
+  if (result.robots > 0)
+    std::printf("contacts          obstacles in %.2f %% of robot-ticks, other robots in %.2f %%\n",
+                percent(result.touches.obstacles, result.touches.robot_ticks),
+                percent(result.touches.robots, result.touches.robot_ticks));
   if (result.late > 0) std::printf("late answers      %lu\n", static_cast<unsigned long>(result.late));
   std::printf("state hash        %016lx\n", static_cast<unsigned long>(result.state_hash));
   std::fflush(stdout);

@@ -186,7 +186,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
 
 Experiment ExperimentReader::read_without_experiment(std::optional<std::uint64_t> seed,
                                                      std::optional<std::chrono::nanoseconds> duration) {
-  if (auto reason = input_.why_unreadable(experiment_.file))
+  if (auto reason = input_.why_unreadable(input_.absolute(experiment_.file)))  // as it is read, and kept
     throw InputError({{experiment_.file, 0, "", std::move(*reason)}});
   experiment_.name = experiment_.file.stem().string();
   experiment_.seed = seed.value_or(experiment_.seed);

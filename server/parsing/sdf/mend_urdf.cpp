@@ -191,6 +191,16 @@ bool is_without_mass(const XmlNode& node) {
   return mass != nullptr && parse_real(value_of(*mass, "value")) == 0.0;
 }
 
+// A box, a sphere or a cylinder that is flat, thin or a point, which others take for one that is not there.
+bool has_no_size(const XmlNode& shape) {
+  const UrdfForm* const form = form_of("geometry", shape.name);
+  return form != nullptr && std::ranges::any_of(form->attributes, [&](const UrdfAttribute& attribute) {
+           const std::string value = value_of(shape, attribute.name);
+           return attribute.positive &&
+                  std::ranges::any_of(words(value), [](auto word) { return parse_real(word) == 0.0; });
+         });
+}
+
 void UrdfMender::mend_link(XmlNode& link) {
   const std::string path = "robot/" + urdf_step(link);
   const std::string name = value_of(link, "name");
@@ -203,7 +213,9 @@ void UrdfMender::mend_link(XmlNode& link) {
     const XmlNode* const geometry = child.child("geometry");
     const bool is_empty = geometry == nullptr || geometry->children.empty();
     if (is_empty) pass_over(child, path + "/collision", "a <collision> without a shape, which is ignored");
-    return is_empty;
+    if (is_empty || !has_no_size(geometry->children.front())) return is_empty;
+    pass_over(geometry->children.front(), path + "/collision/geometry", "a collision of size 0, which is left out");
+    return true;
   });
   for (XmlNode& child : link.children) {
     if (child.name == "inertial") mend_inertial(child, path + "/inertial");

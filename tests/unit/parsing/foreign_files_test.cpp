@@ -125,6 +125,33 @@ TEST_F(ForeignFiles, BulletsContactIsTheSurfaceOfALink) {
   expect_warning(world, "inertia_scaling");
 }
 
+TEST_F(ForeignFiles, ACollisionOfNoSizeInAUrdfIsLeftOutAndToldOnce) {
+  const auto shaped = [](const std::string& shape) {
+    return "<collision><geometry>" + shape + "</geometry></collision>";
+  };
+  const World world =
+      read_urdf(weighing("a", shaped("<box size=\"0 0 0\"/>") + shaped("<sphere radius=\"0.0\"/>") +
+                                  shaped("<box size=\"1 2 3\"/>") + shaped("<cylinder radius=\"1\" length=\"0\"/>")));
+  ASSERT_EQ(world.models[0].links[0].collisions.size(), 1u);
+  EXPECT_EQ(std::get<Box>(world.models[0].links[0].collisions[0].shape).size, Eigen::Vector3d(1, 2, 3));
+  ASSERT_EQ(world.warnings.size(), 1u) << texts_of(world.warnings);
+  expect_warning(world,
+                 "r.urdf:2: robot/link[a]/collision/geometry: a collision of size 0, which is left out; it stands 3");
+}
+
+TEST_F(ForeignFiles, TheSunAndTheGroundOfGazeboComeWithCohort) {
+  const auto file = write("world.sdf",
+                          "<sdf version=\"1.6\"><world name=\"w\"><include><uri>model://sun</uri></include>\n"
+                          "<include><uri>model://ground_plane</uri></include></world></sdf>");
+  const std::vector<std::filesystem::path> shipped = {source / "worlds/robots", source / "worlds/objects"};
+  const Experiment experiment = parsing::read_experiment(file, {}, {}, shipped);
+  ASSERT_EQ(experiment.world.instances.size(), 1u);
+  EXPECT_EQ(experiment.world.instances[0].name, "ground_plane");
+  EXPECT_TRUE(experiment.world.warnings.empty()) << texts_of(experiment.world.warnings);
+  const Experiment again = parsing::read_experiment(experiment.inputs, {}, {});
+  EXPECT_EQ(again.world.instances.size(), 1u);
+}
+
 TEST_F(ForeignFiles, ACapsuleOfAUrdfIsOne) {
   const World world =
       read_urdf(weighing("a",

@@ -132,6 +132,41 @@ TEST(Run, TakesAModelOrAWorldWithoutAnExperiment) {
         2);
 }
 
+TEST(Worlds, WithoutRobotsSayHowManyModelsTheyHave) {
+  const ScratchFolder folder;
+  const std::string ball = (folder / "ball.urdf").string();
+  write_file(ball,
+             "<robot name=\"ball\"><link name=\"l\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" "
+             "izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"0.1\"/>"
+             "</geometry></collision></link></robot>");
+  const Ended run = run_to_end({cohort_program(), "run", ball, "--duration", "0.1"});
+  EXPECT_NE(run.out.find("(0.10 s simulated, 1 model)"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find("robot"), std::string::npos) << run.out;
+}
+
+TEST(Worlds, RunNoXacroUnlessThePersonWhoNamesTheFileSaysSo) {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder / "bin");
+  write_file(folder / "bin/xacro", "#!/bin/sh\ntouch \"$(dirname \"$0\")/trace\"\nexit 3\n");
+  std::filesystem::permissions(folder / "bin/xacro", std::filesystem::perms::owner_all);
+  const std::string model = (folder / "r.urdf").string();
+  write_file(model, "<robot name=\"r\"><xacro:macro/></robot>");
+  const auto call = [&](std::vector<std::string> line, bool expands) {
+    line.insert(line.begin(), cohort_program());
+    if (expands) line.emplace_back("--xacro");
+    const Ended ended = run_to_end(line, {{"VIRTUAL_ENV", folder.path().string()}});
+    EXPECT_EQ(ended.exit_code, 2) << ended.err;
+    EXPECT_EQ(std::filesystem::remove(folder / "bin/trace"), expands) << line[1] << ended.err;
+  };
+  const std::string output = (folder / "o.sdf").string();
+  for (const bool expands : {false, true}) {
+    for (const char* const command : {"check", "run", "serve"}) call({command, model}, expands);
+    call({"models", "show", model}, expands);
+    call({"export", model, "-o", output}, expands);
+    call({"samples", model, "ring", "-o", output}, expands);
+  }
+}
+
 TEST(Models, ShowWhatAModelIsMadeOfAndWhereItRests) {
   const ScratchFolder folder;
   const std::string model = (folder / "cart.urdf").string();

@@ -125,7 +125,7 @@ class Cohort:
         self.objects = [each for each in self.facts["objects"] if not each["static"]]
 
     def run(self, seconds):
-        command = [self.program, "models", "show", str(self.file), "--json", "--after", str(seconds)]
+        command = [self.program, "models", "show", str(self.file), "--xacro", "--json", "--after", str(seconds)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise Unreadable(done.stderr.strip().split("\n")[-1])

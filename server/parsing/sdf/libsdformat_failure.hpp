@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "server/parsing/parsing.hpp"
-
 namespace cohort::parsing {
 
 /// Calls what uses libsdformat, and returns why it ended, or nothing if it did what it should. What libsdformat throws

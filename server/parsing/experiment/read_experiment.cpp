@@ -367,9 +367,10 @@ std::string ExperimentReader::listed(const std::vector<std::uint32_t>& robots) c
 
 }  // namespace
 
-Experiment read_experiment(const fs::path& file, std::optional<std::uint64_t> seed,
+Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> seed,
                            std::optional<std::chrono::nanoseconds> duration,
                            const std::vector<fs::path>& last_model_folders, Xacro xacro) {
+  const fs::path file = without_links(named);
   InputFiles disk;
   disk.trust(file, last_model_folders);
   if (xacro == Xacro::run) expand_named(disk, file);

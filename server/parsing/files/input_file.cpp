@@ -63,6 +63,13 @@ std::optional<std::string> why_unreadable(const fs::path& file) {
   return std::nullopt;
 }
 
+fs::path without_links(const fs::path& file) {
+  std::error_code none;
+  const fs::path folder = fs::absolute(file, none).parent_path();
+  const fs::path real = fs::canonical(folder, none);
+  return none || real / "" == (folder / "").lexically_normal() ? file : real / file.filename();
+}
+
 InputFiles::InputFiles() {
   std::error_code removed_meanwhile;
   working_folder_ = fs::current_path(removed_meanwhile);
@@ -73,10 +80,13 @@ InputFiles::InputFiles() {
 }
 
 InputFiles::InputFiles(std::shared_ptr<const KeptFiles> kept)
-    : source_(std::move(kept)),
-      working_folder_(source_->working_folder),
-      model_path_(source_->model_path),
-      folders_(source_->folders.begin(), source_->folders.end()) {}
+    : source_(std::move(kept)), working_folder_(source_->working_folder), model_path_(source_->model_path) {
+  for (const std::string& folder : source_->folders) folders_.insert(key_of(folder));
+  // Recordings from before keys were normal have paths with "..". A path that is its own key comes first.
+  for (const bool is_key : {true, false})
+    for (const KeptFile& file : source_->files)
+      if (std::string key = key_of(file.path); (key == file.path) == is_key) kept_.emplace(std::move(key), &file.bytes);
+}
 
 void InputFiles::trust(const fs::path& file, const std::vector<fs::path>& last_model_folders) {
   trusted_.add_around(absolute(file));
@@ -92,15 +102,15 @@ void InputFiles::add_expanded(const fs::path& file, std::string bytes) {
 
 fs::path InputFiles::absolute(const fs::path& path) const { return (working_folder_ / path).lexically_normal(); }
 
-// Not normalised: through a symbolic link, ".." leads elsewhere than its text says.
-std::string InputFiles::key_of(const fs::path& path) const { return (working_folder_ / path).string(); }
+std::string InputFiles::key_of(const fs::path& path) const {
+  const fs::path key = absolute(path);
+  return (key.has_filename() || key == key.root_path() ? key : key.parent_path()).string();
+}
 
 const std::string* InputFiles::find(const std::string& key) const {
   if (const auto added = files_.find(key); added != files_.end()) return &added->second;
-  if (!source_) return nullptr;
-  const auto found = std::find_if(source_->files.begin(), source_->files.end(),
-                                  [&](const KeptFile& file) { return file.path == key; });
-  return found == source_->files.end() ? nullptr : &found->bytes;
+  const auto found = kept_.find(key);
+  return found == kept_.end() ? nullptr : found->second;
 }
 
 std::optional<std::string> InputFiles::why_unreadable(const fs::path& file) const {

@@ -17,9 +17,14 @@ namespace cohort::parsing {
 /// Why a file that a person named cannot be read, such as "there is no such file"; nothing if it can.
 std::optional<std::string> why_unreadable(const std::filesystem::path& file);
 
+/// Returns `file` as it was named, or, if a symbolic link leads to its folder, in the folder that the link leads to.
+/// From there the text of a path alone says what it means: ".." in a file means what it means to the system.
+std::filesystem::path without_links(const std::filesystem::path& file);
+
 /// The one way to the files of a world: from the disk, keeping what it has read, or from what was kept, without looking
-/// at the disk at all. Each file is read once, so that all readers see the same content. From the disk only what is in
-/// trusted folders is read: those of `model_path()` and what `trust` adds. One thread uses it.
+/// at the disk at all. Each file is read once, so that all readers see the same content; paths that differ only in "."
+/// and ".." are one file, on the disk and among what was kept. From the disk only what is in trusted folders is read:
+/// those of `model_path()` and what `trust` adds. One thread uses it.
 class InputFiles {
  public:
   /// From the disk.
@@ -59,15 +64,17 @@ class InputFiles {
   KeptFiles kept() const;
 
  private:
+  // Absolute, without ".", ".." and a slash at its end.
   std::string key_of(const std::filesystem::path& path) const;
   const std::string* find(const std::string& key) const;
 
-  std::shared_ptr<const KeptFiles> source_;  // null: the disk
+  std::shared_ptr<const KeptFiles> source_;         // null: the disk
+  std::map<std::string, const std::string*> kept_;  // content of `source_` by key
   std::filesystem::path working_folder_;
   std::string model_path_;
   TrustedFolders trusted_;
-  std::map<std::string, std::string> files_;  // by absolute path
-  std::set<std::string> folders_;
+  std::map<std::string, std::string> files_;  // by key
+  std::set<std::string> folders_;             // keys, as the next
   std::set<std::string> expanded_;
 };
 

@@ -172,7 +172,8 @@ class SampleReader {
 
 }  // namespace
 
-Samples read_samples(const std::filesystem::path& file) {
+Samples read_samples(const std::filesystem::path& named) {
+  const std::filesystem::path file = without_links(named);
   InputFiles disk;
   disk.trust(file);
   return read_samples(disk, file);

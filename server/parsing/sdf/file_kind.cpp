@@ -27,7 +27,8 @@ bool starts_like_sdf(const std::string& text) {
 
 bool is_yaml(const std::filesystem::path& file) { return file.extension() == ".yaml" || file.extension() == ".yml"; }
 
-FileKind kind_of_file(const std::filesystem::path& file) {
+FileKind kind_of_file(const std::filesystem::path& named) {
+  const std::filesystem::path file = without_links(named);
   InputFiles disk;
   disk.trust(file);
   return kind_of_file(disk, file);

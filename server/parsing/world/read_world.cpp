@@ -437,8 +437,9 @@ World read_or_input_error(const std::filesystem::path& file, Read&& read) {
 
 }  // namespace
 
-World read_world(const std::filesystem::path& file, std::uint64_t seed,
+World read_world(const std::filesystem::path& named, std::uint64_t seed,
                  const std::vector<std::filesystem::path>& last_model_folders, const std::vector<LaterObject>& later) {
+  const std::filesystem::path file = without_links(named);
   InputFiles disk;
   disk.trust(file, last_model_folders);
   return read_world(disk, file, seed, last_model_folders, later);
@@ -450,8 +451,9 @@ World read_world(InputFiles& input, const std::filesystem::path& file, std::uint
       file, [&] { return WorldReader(input, file, seed, last_model_folders).read(LoneModel::none, later); });
 }
 
-World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
+World read_world_or_model(const std::filesystem::path& named, std::uint64_t seed,
                           const std::vector<std::filesystem::path>& last_model_folders, Xacro xacro) {
+  const std::filesystem::path file = without_links(named);
   InputFiles disk;
   disk.trust(file, last_model_folders);
   if (xacro == Xacro::run) expand_named(disk, file);

@@ -54,6 +54,68 @@ TEST_P(KeptExperiment, IsTheSameWhenItsFilesAreGone) {
   EXPECT_EQ(again.inputs, first.inputs);
 }
 
+/// A copy of the shipped worlds, from whose folder of experiments files are named; gone with this.
+class CopyOfWorlds {
+ public:
+  explicit CopyOfWorlds(const std::string& name)
+      : folder_(fs::temp_directory_path() / ("cohort_named_" + name + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+    fs::copy(description::source / "worlds", folder_ / "worlds", fs::copy_options::recursive);
+    fs::create_directory(folder_ / "links");
+    fs::create_directory_symlink(folder_ / "worlds", folder_ / "links/worlds");
+    fs::create_directory_symlink(folder_ / "worlds/experiments", folder_ / "links/experiments");
+    fs::current_path(folder_ / "worlds/experiments");
+  }
+  CopyOfWorlds(const CopyOfWorlds&) = delete;
+  CopyOfWorlds& operator=(const CopyOfWorlds&) = delete;
+  ~CopyOfWorlds() {
+    fs::current_path(before_);
+    fs::remove_all(folder_);
+  }
+
+  /// Every way to name one of its experiments.
+  std::vector<fs::path> ways_to_name(const std::string& file) const {
+    fs::create_symlink(file, folder_ / "worlds/experiments" / ("link_to_" + file));
+    return {file,
+            "./" + file,
+            "../experiments/" + file,
+            "..//experiments/./" + file,
+            folder_ / "worlds/experiments" / file,
+            folder_ / "worlds/arenas/../experiments" / file,
+            folder_ / "links/worlds/experiments" / file,
+            folder_ / "links/experiments" / file,
+            "../../links/experiments/" + file,
+            folder_ / "links/experiments/../experiments" / file,
+            "link_to_" + file};
+  }
+
+ private:
+  fs::path before_ = fs::current_path();
+  fs::path folder_;
+};
+
+TEST_P(KeptExperiment, IsTheSameHoweverItsFileIsNamed) {
+  std::vector<Experiment> experiments;
+  {
+    const CopyOfWorlds copy(GetParam());
+    for (const fs::path& named : copy.ways_to_name(GetParam() + ".yaml")) {
+      SCOPED_TRACE(named);
+      ASSERT_NO_THROW(experiments.push_back(read_experiment(named, 7)));
+    }
+  }
+  const std::uint64_t hash = Simulation(experiments.front(), 2).state_hash();
+  for (const Experiment& first : experiments) {
+    SCOPED_TRACE(first.file);
+    for (const KeptFile& file : first.inputs->files)
+      EXPECT_EQ(file.path, fs::path(file.path).lexically_normal()) << "a file has several names";
+    EXPECT_EQ(first.inputs->files.size(), experiments.front().inputs->files.size());
+    ASSERT_NO_THROW({
+      const Experiment again = read_experiment(first.inputs, first.seed, first.duration);
+      EXPECT_EQ(Simulation(again, 2).state_hash(), hash);
+    });
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Shipped, KeptExperiment, ::testing::ValuesIn(shipped_experiments()),
                          [](const auto& each) { return each.param; });
 
@@ -166,6 +228,38 @@ TEST_F(KeptFilesOfAllKinds, ARelativeNameMeansTheFolderThatItMeantFirst) {
   const Experiment again = read_experiment(first.inputs, first.seed, first.duration);
   EXPECT_EQ(again.file, "run.yaml");
   EXPECT_EQ(hashes_at_0_and_100(again), hashes);
+}
+
+TEST_F(KeptFilesOfAllKinds, AWorldAndAModelMayBeNamedInAnyWayToo) {
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "link");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_ / "installed");
+  std::vector<Experiment> experiments;
+  for (const char* const named : {"./post/post.urdf", "../installed/post/post.urdf", "../arena.yaml", ".././arena.yaml",
+                                  "../link/rock/rock.sdf", "../link/../arena.yaml"})
+    experiments.push_back(read_experiment(named, 3, {}, {folder_ / "installed"}));
+  fs::current_path(before);
+  fs::remove_all(folder_);
+  for (const Experiment& first : experiments) {
+    SCOPED_TRACE(first.file);
+    const Experiment again = read_experiment(first.inputs, first.seed, first.duration);
+    EXPECT_EQ(Simulation(again, 2).state_hash(), Simulation(first, 2).state_hash());
+  }
+}
+
+// As recordings have them that were made before the paths of what they keep were normal.
+TEST_F(KeptFilesOfAllKinds, AreFoundUnderPathsThatAreNotNormal) {
+  const Experiment first = read();
+  KeptFiles other = *first.inputs;
+  other.experiment = "./elsewhere/../run.yaml";
+  for (KeptFile& file : other.files)
+    file.path = (fs::path(file.path).parent_path() / "./a/.." / fs::path(file.path).filename()).string();
+  for (std::string& folder : other.folders) folder += "/.";
+  other.working_folder = folder_ / "nowhere/..";
+  const auto kept = std::make_shared<const KeptFiles>(other);
+  fs::remove_all(folder_);
+  const Experiment again = read_experiment(kept, first.seed, first.duration);
+  EXPECT_EQ(hashes_at_0_and_100(again), hashes_at_0_and_100(first));
 }
 
 TEST_F(KeptFilesOfAllKinds, WhatIsNotKeptDoesNotExistThoughItIsOnTheDisk) {

@@ -14,12 +14,13 @@ Replay::~Replay() = default;
 
 void Replay::begin_world(const WorldBegins& begins) {
   simulation_.reset();
+  experiment_.reset();
   experiment_ = std::make_unique<description::Experiment>(recording_.experiment({begins, {}}));
   simulation_ = std::make_unique<Simulation>(*experiment_, threads_);
 }
 
 bool Replay::advance() {
-  if (recorded_) apply_commands();
+  if (recorded_ && simulation_) apply_commands();
   const std::optional<RecordedTick> before = std::exchange(recorded_, ticks_.next());
   if (!recorded_) return false;
   const auto fail = [&](const std::string& problem) { throw McapError(recording_.file(), 0, problem); };
@@ -86,6 +87,7 @@ bool Replay::seek(std::chrono::nanoseconds log_time) {
   if (after != snapshots.begin()) start = std::max(start, *std::prev(after));
 
   recorded_.reset();
+  simulation_.reset();
   ticks_ = recording_.ticks(start);
   if (start > world->log_time) {
     recorded_ = ticks_.next();

@@ -26,7 +26,8 @@ class Replay {
   /// from here on, and what Simulation throws.
   bool advance();
 
-  /// What is recorded of this boundary, and the world as it is there.
+  /// What is recorded of this boundary, and the world as it is there. To be asked only where `seek` or `advance` has
+  /// returned true: after an exception there may be no world, and `seek` is the way back.
   const RecordedTick& recorded() const { return *recorded_; }
   const Simulation& simulation() const { return *simulation_; }
   const description::Experiment& experiment() const { return *experiment_; }

@@ -67,7 +67,9 @@ Answer RecordingSource::take(const ViewRequest& request) {
     constexpr double most_steps = 1e6;
     if (!(std::abs(request.number) <= most_steps)) return {false, "a step is of at most a million ticks"};
     wanted_.is_playing = false;
-    wanted_.steps += static_cast<std::int64_t>(std::trunc(request.number));
+    constexpr auto most_waiting = static_cast<std::int64_t>(most_steps);
+    wanted_.steps =
+        std::clamp(wanted_.steps + static_cast<std::int64_t>(std::trunc(request.number)), -most_waiting, most_waiting);
     return done("stepped");
   }
   if (request.operation == "speed") {
@@ -163,6 +165,7 @@ void RecordingSource::go_to(Nanoseconds log_time) {
       if (is_at_end_) return;
       is_new_world_ = true;
       log_time_ = replay_.recorded().log_time;
+      step_ = replay_.experiment().world.step;
       state_hash_ = replay_.simulation().state_hash();
     }
     while (log_time_ < target && !is_interrupted())
@@ -173,10 +176,8 @@ void RecordingSource::go_to(Nanoseconds log_time) {
   }
 }
 
-void RecordingSource::step_back(std::int64_t ticks) {
-  const Nanoseconds step = replay_.experiment().world.step;
-  go_to(std::max(Nanoseconds(0), log_time_ - step * ticks));
-}
+// Of a recording whose world cannot be built, `step_` is zero: then it is tried again where it is.
+void RecordingSource::step_back(std::int64_t ticks) { go_to(std::max(Nanoseconds(0), log_time_ - step_ * ticks)); }
 
 void RecordingSource::play(const Wanted& wanted) {
   const Clock::time_point begin = Clock::now();
@@ -212,6 +213,7 @@ bool RecordingSource::advance() {
   const recording::RecordedTick& recorded = replay_.recorded();
   if (recorded.begins) {
     is_new_world_ = true;
+    step_ = replay_.experiment().world.step;
     run_ = recorded.begins->run;
   }
   log_time_ = recorded.log_time;

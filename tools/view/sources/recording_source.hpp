@@ -75,6 +75,7 @@ class RecordingSource final : public Source {
   bool is_at_end_ = false;
   std::string problem_;
   Nanoseconds log_time_{0};
+  Nanoseconds step_{0};  // of the last world that could be built; the replay may have none
   std::uint64_t state_hash_ = 0;
   std::uint32_t run_ = 0;
   Nanoseconds end_{0};

@@ -57,6 +57,12 @@ std::string why_not_written(int error) {
   }
 }
 
+void refuse_to_write(const std::string& message, int error) {
+  const std::string text = message + ": " + why_not_written(error);
+  if (error == ENOSPC || error == EDQUOT || error == EIO) throw WriteError(text);
+  throw std::runtime_error(text);
+}
+
 int sync_folder_of(const std::filesystem::path& file) {
   const int descriptor = open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return 0;  // one that may be written to and not read

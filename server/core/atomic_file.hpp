@@ -16,6 +16,10 @@ class WriteError : public std::runtime_error {
 /// What this number of an error means for a file that is written, and what to do.
 std::string why_not_written(int error);
 
+/// Throws WriteError with this message where a disk is full or broken; otherwise std::runtime_error, since another file
+/// could be named.
+[[noreturn]] void refuse_to_write(const std::string& message, int error);
+
 /// Returns when the names in the folder of `file` are safe from a power cut: 0, or the number of the error.
 int sync_folder_of(const std::filesystem::path& file);
 

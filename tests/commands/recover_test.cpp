@@ -73,6 +73,25 @@ TEST(RecoverCommand, RefusesWhatItCannotReadOrWrite) {
   expect_refused({file}, "another process is recording to it");
 }
 
+// Header and attachments are there, and the only chunk is cut.
+TEST(RecoverCommand, RefusesToReplaceAFileByOneWithoutMessages) {
+  const ScratchFolder folder;
+  const std::string file = folder / "run.mcap";
+  const Bytes bytes = test::small_recording(4);
+  test::write_bytes(file, bytes);
+  const std::uint64_t chunk = McapReader(file).blocks().front().offset;
+  for (const std::uint64_t size : {std::uint64_t{41}, chunk - 1, chunk + 30}) {
+    SCOPED_TRACE(size);
+    const Bytes part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    test::write_bytes(file, part);
+    expect_refused({file}, "no message in the file can be read");
+    EXPECT_EQ(test::read_bytes(file), part);
+  }
+  expect_refused({file}, "only 1 attachment and 0 records of metadata, which -o writes to another file");
+  EXPECT_EQ(recover({file, "-o", folder / "rest.mcap"}).exit_code, 0);
+  EXPECT_EQ(McapReader(folder / "rest.mcap").attachments().size(), 1U);
+}
+
 // What is recorded is in the file, though nobody closes it.
 TEST(AStuckTick, IsEndedAfterAWhileWithAMessage) {
   const ScratchFolder folder;

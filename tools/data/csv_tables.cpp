@@ -1,7 +1,6 @@
 #include "tools/data/csv_tables.hpp"
 
 #include <charconv>
-#include <stdexcept>
 #include <system_error>
 
 #include "server/core/atomic_file.hpp"
@@ -70,7 +69,7 @@ class CsvTables final : public TableSink {
   explicit CsvTables(std::filesystem::path folder) : folder_(std::move(folder)) {
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    if (error) throw std::runtime_error("the folder " + folder_.string() + " cannot be made: " + error.message());
+    if (error) refuse_to_write("the folder " + folder_.string() + " cannot be made", error.value());
   }
   std::unique_ptr<TableWriter> begin(const std::string& name, const std::vector<Column>& columns) override {
     return std::make_unique<CsvTable>(folder_ / (name + ".csv"), columns);

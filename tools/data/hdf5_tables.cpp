@@ -5,7 +5,8 @@
 #include <array>
 #include <cstring>
 #include <optional>
-#include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "server/core/atomic_file.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr hsize_t rows_a_chunk = 4096;
 constexpr unsigned compression_level = 4;
 
-// The innermost reason that the library gives.
+// The innermost reason that the library gives; of the system's if there is one, among details of the library's.
 std::string last_error() {
   std::string text;
   H5Ewalk2(
@@ -26,7 +27,11 @@ std::string last_error() {
         return 0;
       },
       &text);
-  return text;
+  constexpr std::string_view before = "error message = '";
+  const std::size_t of_system = text.find(before);
+  if (of_system == std::string::npos) return text;
+  const std::size_t begin = of_system + before.size();
+  return text.substr(begin, text.find('\'', begin) - begin);
 }
 
 // A handle of the library, closed as its kind wants it.
@@ -38,7 +43,10 @@ class Handle {
   }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
-  ~Handle() { close_(id_); }
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  herr_t close() { return close_(std::exchange(id_, -1)); }
   hid_t id() const { return id_; }
 
  private:
@@ -151,7 +159,8 @@ class Hdf5Tables final : public TableSink {
       : path_(path),
         beside_("the tables", path),
         file_(std::in_place,
-              (H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr),  // errors are ours to tell
+              // What a full disk has kept from being closed crashes the library when it ends.
+              (H5dont_atexit(), H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr),  // errors are ours to tell
                H5Fcreate(beside_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)),
               H5Fclose, path) {}
 
@@ -160,7 +169,7 @@ class Hdf5Tables final : public TableSink {
   }
   void finish() override {
     check(H5Fflush(file_->id(), H5F_SCOPE_GLOBAL), path_);
-    file_.reset();
+    check(file_->close(), path_);
     beside_.commit();
   }
 

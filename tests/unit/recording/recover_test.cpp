@@ -217,7 +217,8 @@ void expect_readable_or_error(const Bytes& bytes, const std::string& what) {
     EXPECT_TRUE(reader.is_complete()) << what << ": " << reader.damage();
     messages_of(reader);
   } catch (const McapError& error) {
-    EXPECT_TRUE(error.offset() == 0) << what << ": " << error.what();  // it does not even begin as such a file
+    const bool has_nothing = std::string(error.what()).find("no message in the file can be read") != std::string::npos;
+    EXPECT_TRUE(has_nothing || error.offset() == 0) << what << ": " << error.what();  // or it begins as no such file
   }
 }
 
@@ -250,6 +251,11 @@ TEST(DamagedFile, CutOffAtEvery1000thByteOfALongOneIsReadAsFarAsItGoes) {
     const auto count = static_cast<std::size_t>(reader.statistics().message_count);
     EXPECT_GE(count, before);
     EXPECT_EQ(count % 1000, 0U);
+    if (count == 0) {
+      EXPECT_THROW(recover(file.path(), file.path()), McapError);
+      EXPECT_EQ(std::filesystem::file_size(file.path()), size);
+      continue;
+    }
     const Recovery recovery = recover(file.path(), file.path());
     EXPECT_EQ(recovery.kept.message_count, count);
     EXPECT_EQ(McapReader(file.path()).is_complete(), true);

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <stdexcept>
 #include <system_error>
 
 #include "server/core/atomic_file.hpp"
@@ -14,8 +13,7 @@ namespace cohort::tool {
 namespace {
 
 [[noreturn]] void refuse(std::string_view what, const std::filesystem::path& file, int error) {
-  throw std::runtime_error(
-      fmt::format("{} cannot be written to {}: {}", what, file.string(), std::generic_category().message(error)));
+  refuse_to_write(fmt::format("{} cannot be written to {}", what, file.string()), error);
 }
 
 }  // namespace

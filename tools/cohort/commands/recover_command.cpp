@@ -23,6 +23,9 @@ int recover(const RecoverCommand& command, Log& log) {
     const recording::Recovery recovery = recording::recover(command.file, target);
     std::cout << target.string() << ": " << recovery.text();
     return exit_ok;
+  } catch (const recording::McapError& error) {
+    log.error(text_of(error));
+    return exit_usage;
   } catch (const std::exception& error) {
     log.error(text_of(error));
   }

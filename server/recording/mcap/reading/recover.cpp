@@ -113,6 +113,20 @@ Statistics write(const FileBytes& source, Scan& scan, const std::filesystem::pat
   return writer.statistics();
 }
 
+// What has messages to keep may be replaced; another file is worth writing for attachments too.
+void expect_something_to_keep(const FileBytes& file, const Scan& scan, bool is_in_place) {
+  const Contents& contents = scan.contents;
+  const bool has_rest = !contents.attachments.empty() || !contents.metadata.empty();
+  if (scan.damages.empty() || contents.statistics.message_count > 0 || (!is_in_place && has_rest)) return;
+  std::string found = "no message in the file can be read";
+  if (has_rest)
+    found += ", only " + count(contents.attachments.size(), "attachment") + " and " +
+             count(contents.metadata.size(), "record") + " of metadata, which -o writes to another file";
+  file.at(scan.damages.front().offset)
+      .fail(scan.damages.front().problem + "; " + found + "; it has " + count(file.size(), "byte") +
+            " and is left as it is");
+}
+
 }  // namespace
 
 Recovery recover(const std::filesystem::path& source, const std::filesystem::path& target, const ReadLimits& limits) {
@@ -121,14 +135,10 @@ Recovery recover(const std::filesystem::path& source, const std::filesystem::pat
   Scan scan = scan_file(file, limits);
   std::error_code ignored;
   const bool is_in_place = std::filesystem::equivalent(source, target, ignored);
-  const Contents& contents = scan.contents;
-  if (is_in_place && !scan.damages.empty() && contents.statistics.message_count == 0 && contents.attachments.empty() &&
-      contents.metadata.empty())
-    file.at(scan.damages.front().offset)
-        .fail(scan.damages.front().problem + "; nothing in the file can be read, and it is left as it is");
+  expect_something_to_keep(file, scan, is_in_place);
 
   Recovery recovery;
-  recovery.kept = is_in_place && scan.damages.empty() ? contents.statistics : write(file, scan, target, limits);
+  recovery.kept = is_in_place && scan.damages.empty() ? scan.contents.statistics : write(file, scan, target, limits);
   recovery.damages = std::move(scan.damages);
   recovery.lost_messages = scan.lost_messages;
   for (const Damage& damage : recovery.damages) {

@@ -19,9 +19,9 @@ struct Recovery {
 
 /// Writes a closed file of everything in `source` that can be read: messages with their channels in the order of the
 /// file, attachments and metadata. It is written beside `target` and takes its place when it is whole; `target` may be
-/// `source`. Then a file that is whole is left as it is, and one of which nothing can be read too (McapError).
-/// Throws FileError if a file cannot be opened or written, or is being recorded to; McapError if `source` is no MCAP
-/// file.
+/// `source`. Then a file that is whole is left as it is. Throws FileError if a file cannot be opened or written, or is
+/// being recorded to; McapError, with `target` as it was, if `source` is no MCAP file, or damaged and without a message
+/// that can be read. To another file it also writes attachments and metadata alone.
 Recovery recover(const std::filesystem::path& source, const std::filesystem::path& target,
                  const ReadLimits& limits = {});
 

@@ -8,6 +8,7 @@
 
 #include "client_sdk/math/portable_math.hpp"
 #include "server/recording/mcap/format/mcap_error.hpp"
+#include "server/simulation/build_identity.hpp"
 
 namespace cohort::recording {
 namespace {
@@ -70,7 +71,9 @@ StringMap facts_of(const description::Experiment& experiment) {
   utsname machine{};
   uname(&machine);
   return {
-      {"version", COHORT_VERSION},
+      {"version", this_build().version},
+      {"commit", this_build().commit},
+      {"arithmetic", this_build().arithmetic},
       {"experiment", experiment.name},
       {"world", experiment.world.name},
       {"seed", std::to_string(experiment.seed)},

@@ -63,8 +63,11 @@ class RunMonitor {
     result_.barrier.add(latency);
     if (listener_.barrier) listener_.barrier(latency);
   }
-  /// What a snapshot that is taken, or that the run goes on from, has not of its controllers.
+  /// What a snapshot that is taken, or that the run goes on from, has not of its controllers; and that it is of a build
+  /// with other results.
   void note_left_out(const SessionSnapshot& snapshot) {
+    if (const std::string why = why_results_differ(snapshot.build); !why.empty())
+      add_event("other_build", "the snapshot: " + why);
     for (const std::string& sentence : what_is_left_out(snapshot, simulation_.experiment()))
       add_event("unsaved", sentence);
   }

@@ -15,7 +15,8 @@ namespace cohort::session {
 namespace {
 
 constexpr std::uint64_t mark = 0x544f485354524843;  // "CHRTSHOT"
-constexpr std::uint32_t format = 3;
+constexpr std::uint32_t format = 4;
+constexpr std::uint32_t format_without_commit = 3;  // is read too
 constexpr std::size_t hash_size = sizeof(std::uint64_t);
 
 std::uint64_t hash_of(std::span<const std::byte> bytes) {
@@ -75,8 +76,12 @@ SessionSnapshot take_snapshot(const description::Experiment& experiment, const S
                               const Exchange& exchange, ControllerStates controllers) {
   SnapshotWriter writer;
   exchange.save(writer);
-  return {experiment.name,   experiment.seed, simulation.tick(),
-          simulation.save(), writer.bytes(),  std::move(controllers)};
+  return {.experiment = experiment.name,
+          .seed = experiment.seed,
+          .tick = simulation.tick(),
+          .simulation = simulation.save(),
+          .exchange = writer.bytes(),
+          .controllers = std::move(controllers)};
 }
 
 std::vector<RobotState> states_of(const SessionSnapshot& snapshot, std::span<const std::uint32_t> robots) {
@@ -101,7 +106,9 @@ std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot) {
   SnapshotWriter writer;
   writer.add(mark);
   writer.add(format);
-  add_bytes(writer, std::string(COHORT_VERSION));
+  add_bytes(writer, snapshot.build.version);
+  add_bytes(writer, snapshot.build.commit);
+  add_bytes(writer, snapshot.build.arithmetic);
   add_bytes(writer, snapshot.experiment);
   writer.add(snapshot.seed);
   writer.add(snapshot.tick);
@@ -123,10 +130,12 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
     throw SnapshotError("this is no snapshot of a session: it has only " + std::to_string(bytes.size()) + " bytes");
   }
   if (its_mark != mark) throw SnapshotError("this is no snapshot of a session: it begins otherwise");
-  if (its_format != format)
+  if (its_format != format && its_format != format_without_commit)
     throw SnapshotError("the snapshot has format " + std::to_string(its_format) + ", and this program reads format " +
                         std::to_string(format));
-  const auto version = read_bytes<std::string>(reader);
+  SessionSnapshot snapshot;
+  snapshot.build = {read_bytes<std::string>(reader), "", ""};
+  const std::string& version = snapshot.build.version;
   if (version != COHORT_VERSION)
     throw SnapshotError("the snapshot is of version '" + version.substr(0, 20) + "' of Cohort, and this is version " +
                         COHORT_VERSION);
@@ -134,7 +143,10 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + hashed.size(), sizeof hash);
   if (hash != hash_of(hashed)) throw SnapshotError("the snapshot is damaged or cut short: its hash does not fit");
-  SessionSnapshot snapshot;
+  if (its_format == format) {
+    snapshot.build.commit = read_bytes<std::string>(reader);
+    snapshot.build.arithmetic = read_bytes<std::string>(reader);
+  }
   snapshot.experiment = read_bytes<std::string>(reader);
   reader.read(snapshot.seed);
   reader.read(snapshot.tick);

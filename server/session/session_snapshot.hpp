@@ -11,6 +11,7 @@
 #include "client_sdk/src/controller_state.hpp"
 #include "server/core/snapshot.hpp"
 #include "server/description/experiment.hpp"
+#include "server/simulation/build_identity.hpp"
 
 namespace cohort {
 class Simulation;
@@ -32,12 +33,14 @@ struct SessionSnapshot {
   std::vector<std::byte> simulation;  ///< Simulation::save
   std::vector<std::byte> exchange;    ///< Exchange::save
   ControllerStates controllers{};     ///< after their answers to the last frame before `tick`; none if nobody was asked
+  BuildIdentity build = this_build();  ///< that took it
 };
 
 SessionSnapshot take_snapshot(const description::Experiment& experiment, const Simulation& simulation,
                               const Exchange& exchange, ControllerStates controllers = {});
 
-/// As they are kept in a file: a mark, the format's version, that of Cohort, the above, and a hash of it all.
+/// As they are kept in a file: a mark, the format's version, that of Cohort, its commit and arithmetic, the above, and
+/// a hash of it all.
 std::vector<std::byte> to_bytes(const SessionSnapshot& snapshot);
 /// Throws SnapshotError if they are no snapshot, of another version of Cohort, damaged or cut short.
 SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes);

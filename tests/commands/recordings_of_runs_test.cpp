@@ -3,6 +3,7 @@
 #include "server/recording/recording.hpp"
 #include "tests/support/control.hpp"
 #include "tests/support/field_of_robots.hpp"
+#include "tests/support/recordings.hpp"
 
 namespace cohort::test {
 namespace {
@@ -177,6 +178,69 @@ TEST_F(Recordings, BecomeTables) {
 
   ASSERT_EQ(cohort({"export-data", file, "--hdf5", *this / "run.h5"}).exit_code, 0);
   EXPECT_TRUE(read_file(*this / "run.h5").starts_with("\x89HDF\r\n"));
+}
+
+// The same recording as another build would have made it.
+void claim_other_build(const std::string& file, const std::string& key, const std::string& value) {
+  recording::Bytes bytes;
+  {
+    const recording::McapReader reader(file);
+    recording::McapWriter writer(
+        [&](recording::ByteView part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    for (const auto& [id, schema] : reader.schemas()) writer.add(schema);
+    for (const auto& [id, channel] : reader.channels()) writer.add(channel);
+    for (const auto& index : reader.attachments()) writer.add_attachment(reader.attachment(index));
+    for (const auto& index : reader.metadata()) {
+      recording::Metadata metadata = reader.metadata(index);
+      if (metadata.entries.contains(key)) metadata.entries[key] = value;
+      writer.add_metadata(metadata);
+    }
+    recording::MessageStream messages = reader.messages({.order = recording::Order::file});
+    while (const auto message = messages.next())
+      writer.write_message(message->channel, message->sequence, message->log_time, message->publish_time,
+                           message->data);
+    writer.close();
+  }
+  write_bytes(file, bytes);
+}
+
+TEST_F(Recordings, SayWhichBuildMadeThemAndReplaysWarnOfOtherArithmetic) {
+  const std::string file = record("run.mcap");
+  const std::string listed = cohort({"recordings", "list", file}).out;
+  for (const char* const fact : {"\n  arithmetic             ", "\n  commit                 "})
+    EXPECT_NE(listed.find(fact), std::string::npos) << listed;
+  EXPECT_EQ(cohort({"replay", file, "--verify"}).err, "");
+
+  claim_other_build(file, "commit", "0123456789ab");
+  EXPECT_EQ(cohort({"replay", file, "--verify"}).err, "") << "the arithmetic is the same";
+  EXPECT_NE(cohort({"replay", file, "--verify", "--verbose"}).err.find("another commit of Cohort (0123456789ab)"),
+            std::string::npos);
+
+  claim_other_build(file, "arithmetic", "0123456789abcdef");
+  const Ended warned = cohort({"replay", file, "--verify"});
+  EXPECT_EQ(warned.exit_code, 0);
+  EXPECT_NE(warned.err.find("its arithmetic is another one, and results will differ"), std::string::npos) << warned.err;
+}
+
+// As on a full disk, where files are cut off. HDF5 fails again when it is ended.
+TEST_F(Recordings, EndWithOneIfTheirTablesCannotBeWritten) {
+  const std::string file = record("run.mcap", {"--record-observations", "10"});
+  for (const std::vector<std::string>& target :
+       {std::vector<std::string>{"--csv", *this / "tables"}, std::vector<std::string>{"--hdf5", *this / "run.h5"}})
+    for (const char* const blocks : {"1", "8"}) {
+      std::vector<std::string> command = {"/bin/sh",
+                                          "-c",
+                                          "trap '' XFSZ; ulimit -f " + std::string(blocks) + "; exec \"$@\"",
+                                          "sh",
+                                          cohort_program(),
+                                          "export-data",
+                                          file};
+      command.insert(command.end(), target.begin(), target.end());
+      const Ended ended = run_to_end(command);
+      EXPECT_EQ(ended.exit_code, 1) << target[0] << " " << blocks << ended.err;
+      EXPECT_NE(ended.err.find("cannot be written"), std::string::npos) << ended.err;
+      EXPECT_FALSE(std::filesystem::exists(*this / "run.h5"));
+    }
 }
 
 // What was commanded before the part, and stands in it, is in its rows.

@@ -11,6 +11,7 @@ namespace cohort::session {
 /// What of its controllers a snapshot has not, after a sentence that says what was done.
 inline std::string left_out_text(const SessionSnapshot& snapshot, const description::Experiment& experiment) {
   std::string text;
+  if (const std::string why = why_results_differ(snapshot.build); !why.empty()) text += "; " + why;
   for (const std::string& sentence : what_is_left_out(snapshot, experiment)) text += "; " + sentence;
   return text;
 }

@@ -341,6 +341,19 @@ TEST(SessionSnapshot, HasWhatControllersRememberAndNamesTheTeamsThatAreLeftOut) 
   EXPECT_TRUE(what_is_left_out(early, experiment).empty()) << "there is nothing to remember yet";
 }
 
+TEST(SessionSnapshot, SaysWhichBuildTookIt) {
+  const auto experiment = experiment_with_delays();
+  Simulation simulation(experiment, 1);
+  const Exchange exchange(simulation);
+  SessionSnapshot snapshot = take_snapshot(experiment, simulation, exchange);
+  EXPECT_EQ(snapshot_from_bytes(to_bytes(snapshot)).build.arithmetic, this_build().arithmetic);
+  snapshot.build.commit = "0123456789ab";
+  snapshot.build.arithmetic = "0123456789abcdef";
+  const SessionSnapshot of_other_build = snapshot_from_bytes(to_bytes(snapshot));
+  EXPECT_EQ(of_other_build.build.commit, "0123456789ab");
+  EXPECT_NE(why_results_differ(of_other_build.build), "");
+}
+
 TEST(SessionSnapshot, RefusesStateThatCannotBe) {
   const auto experiment = experiment_with_delays();
   Simulation simulation(experiment, 1);

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cohort_build/commit.hpp>
 #include <cohort_build/facts.hpp>
 
 #include "client_sdk/math/portable_math.hpp"
 #include "idl/survey.hpp"
+#include "server/simulation/build_identity.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -26,9 +26,10 @@ std::string version_text() {
       "flags         {}\n"
       "architecture  {}\n"
       "libraries     Cyclone DDS {}, {}\n"
-      "mathematics   {}",
-      COHORT_VERSION, build::commit, build::compiler, build::flags, build::architecture, wire::dds_version(),
-      build::libraries, mathematics());
+      "mathematics   {}\n"
+      "arithmetic    {}",
+      this_build().version, this_build().commit, build::compiler, build::flags, build::architecture,
+      wire::dds_version(), build::libraries, mathematics(), this_build().arithmetic);
 }
 
 }  // namespace cohort::tool

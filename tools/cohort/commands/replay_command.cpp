@@ -6,6 +6,7 @@
 
 #include "server/core/processors.hpp"
 #include "server/recording/replay.hpp"
+#include "server/simulation/build_identity.hpp"
 #include "tools/cohort/cli/replay_progress.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
@@ -28,23 +29,36 @@ void say(bool quiet, const std::string& line) {
   if (!quiet) std::fputs((line + "\n").c_str(), stdout);
 }
 
-// What may explain that a replay differs.
-void warn_of_other_build(const recording::Recording& recording, Log& log) {
-  const auto& facts = recording.facts();
-  const auto fact = [&](const char* name) {
-    const auto found = facts.find(name);
-    return found == facts.end() ? std::string() : found->second;
-  };
-  if (fact("version") != COHORT_VERSION)
-    log.warning(fmt::format("{} was recorded by version {} of Cohort, and this is " COHORT_VERSION
-                            ": its runs may have other bits",
-                            recording.file().string(), fact("version")));
-  if (!fact("functions_not_portable").empty())
-    log.warning(fmt::format("{} was recorded with the C library's {}: on another CPU its run may have other bits",
-                            recording.file().string(), fact("functions_not_portable")));
+std::string fact_of(const recording::Recording& recording, const char* name) {
+  const auto found = recording.facts().find(name);
+  return found == recording.facts().end() ? std::string() : found->second;
 }
 
-int report(const recording::Verification& found, const ReplayCommand& command, Log& log) {
+BuildIdentity build_of(const recording::Recording& recording) {
+  return {fact_of(recording, "version"), fact_of(recording, "commit"), fact_of(recording, "arithmetic")};
+}
+
+// What may explain that a replay differs.
+void warn_of_other_build(const recording::Recording& recording, Log& log) {
+  if (const std::string why = why_results_differ(build_of(recording)); !why.empty())
+    log.warning(fmt::format("{}: {}", recording.file().string(), why));
+  if (const std::string functions = fact_of(recording, "functions_not_portable"); !functions.empty())
+    log.warning(fmt::format("{} was recorded with the C library's {}: on another CPU its run may have other bits",
+                            recording.file().string(), functions));
+}
+
+// Only where it is asked why a replay differs: with the same arithmetic other commits have the same results, as a rule.
+void tell_other_commit(const recording::Recording& recording, LogLevel level, Log& log) {
+  const BuildIdentity recorded = build_of(recording);
+  if (recorded.commit == this_build().commit || !why_results_differ(recorded).empty()) return;
+  log.write(level,
+            fmt::format("{} was recorded by another commit of Cohort ({}), and this is {}", recording.file().string(),
+                        recorded.commit.empty() ? "unknown" : recorded.commit, this_build().commit));
+}
+
+int report(const recording::Verification& found, const recording::Recording& recording, const ReplayCommand& command,
+           Log& log) {
+  if (found.difference || !found.problem.empty()) tell_other_commit(recording, LogLevel::warning, log);
   if (found.difference) {
     const auto& difference = *found.difference;
     log.clear_progress();
@@ -63,7 +77,8 @@ int report(const recording::Verification& found, const ReplayCommand& command, L
   return exit_ok;
 }
 
-int verify(recording::Replay& replay, const ReplayCommand& command, Log& log, const std::atomic<bool>& stop) {
+int verify(const recording::Recording& recording, recording::Replay& replay, const ReplayCommand& command, Log& log,
+           const std::atomic<bool>& stop) {
   ReplayProgress progress(log);
   const recording::Verification found = recording::verify(
       replay, start_of_part(command.part), end_of_part(command.part), [&](std::chrono::nanoseconds log_time) {
@@ -73,7 +88,7 @@ int verify(recording::Replay& replay, const ReplayCommand& command, Log& log, co
   log.clear_progress();
   if (found.boundaries == 0 && !found.difference && found.problem.empty() && !stop)
     throw std::invalid_argument(nothing_in_part);
-  return stop ? exit_interrupted : report(found, command, log);
+  return stop ? exit_interrupted : report(found, recording, command, log);
 }
 
 // Without looking at what was recorded of the states.
@@ -89,10 +104,12 @@ int replay(const ReplayCommand& command, Log& log, const std::atomic<bool>& stop
   const recording::Recording recording(command.file);
   if (!recording.damage().empty()) log.warning(recording.damage());
   warn_of_other_build(recording, log);
+  tell_other_commit(recording, LogLevel::info, log);
   recording::Replay replay(recording, command.threads == 0 ? available_processors() : command.threads);
 
   const auto start = std::chrono::steady_clock::now();
-  const int code = command.verify ? verify(replay, command, log, stop) : run_again(replay, command, log, stop);
+  const int code =
+      command.verify ? verify(recording, replay, command, log, stop) : run_again(replay, command, log, stop);
   const double wall = Seconds(std::chrono::steady_clock::now() - start).count();
   log.info(fmt::format("replayed in {:.2f} s", wall), {{"wall_s", wall}});
   return stop ? exit_interrupted : code;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "server/simulation/build_identity.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/cli/wording.hpp"
 
@@ -38,7 +39,8 @@ void write_summary(const std::filesystem::path& file, const description::Experim
   const nlohmann::ordered_json summary = {
       {"experiment", experiment.name},
       {"seed", experiment.seed},
-      {"version", COHORT_VERSION},
+      {"version", this_build().version},
+      {"commit", this_build().commit},
       {"ticks", result.ticks},
       {"sim_time_ns", result.sim_time.count()},
       {"wall_s", wall},

@@ -1,0 +1,7 @@
+#include "server/core/commit.hpp"
+
+namespace cohort {
+
+[[gnu::weak, gnu::noinline]] const char* commit_of_program() { return "unknown"; }
+
+}  // namespace cohort

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "client_sdk/text/printable.hpp"
 #include "idl/dds.hpp"
 
 namespace cohort::wire {
@@ -32,7 +33,7 @@ void print_log(std::string_view message, DdsLogKind kind) noexcept {
     return level != nullptr && std::string_view(level) == "debug";
   }();
   if (shown || kind != DdsLogKind::detail)
-    std::fprintf(stderr, "dds: %.*s\n", static_cast<int>(message.size()), message.data());
+    std::fprintf(stderr, "dds: %s\n", printable(message, std::string::npos, Lines::kept).c_str());
 }
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): Cyclone has one log for the process.
@@ -173,8 +174,8 @@ in_addr own_address_towards(in_addr server, std::uint16_t port) {
 std::string configuration(std::uint32_t domain, in_addr own_address, const std::string& discovery) {
   std::string xml = R"(<CycloneDDS><Domain Id="any"><General><AllowMulticast>false</AllowMulticast>)";
   xml += R"(<Interfaces><NetworkInterface address=")" + to_text(own_address) + R"("/></Interfaces>)";
-  // Large datagrams are good on the loopback only. On a network they fit into a packet each: the kernel keeps the rest of
-  // one that lost a part for 30 s, and once it has kept too much takes no more of any.
+  // Large datagrams are good on the loopback only. On a network they fit into a packet each: the kernel keeps the rest
+  // of one that lost a part for 30 s, and once it has kept too much takes no more of any.
   xml += is_loopback(own_address) ? "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>60000B</FragmentSize>"
                                   : "<MaxMessageSize>1472B</MaxMessageSize><FragmentSize>1344B</FragmentSize>";
   xml += "</General><Discovery><LeaseDuration>5s</LeaseDuration>" + discovery;

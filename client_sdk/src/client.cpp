@@ -14,6 +14,7 @@
 #include "client_sdk/src/client_states.hpp"
 #include "client_sdk/src/frame_queue.hpp"
 #include "client_sdk/src/this_process.hpp"
+#include "client_sdk/text/printable.hpp"
 #include "idl/wire.hpp"
 
 namespace cohort {
@@ -386,7 +387,8 @@ ClientEnd Client::fail(Lock& lock) {
   return ClientEnd::failed;
 }
 
-void Client::tell(Severity severity, const std::string& text) const {
+void Client::tell(Severity severity, const std::string& said) const {
+  const std::string text = printable(said, std::string::npos, Lines::kept);
   if (options_.tell)
     options_.tell(severity, text);
   else

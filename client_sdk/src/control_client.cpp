@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "client_sdk/src/this_process.hpp"
+#include "client_sdk/text/printable.hpp"
 
 namespace cohort {
 namespace {
@@ -31,6 +32,20 @@ std::optional<wire::Identity> identity_of(const ControlOptions& options) {
   return identity;
 }
 
+// Makes what a server says fit to be shown.
+wire::Reply cleaned(wire::Reply reply) {
+  reply.error_message = printable(reply.error_message, std::string::npos, Lines::kept);
+  reply.entity = printable(reply.entity);
+  for (std::string& entity : reply.entities) entity = printable(entity);
+  for (wire::EntityState& state : reply.states) state.entity = printable(state.entity);
+  for (wire::SimulationStatus& status : reply.status) {
+    status.experiment = printable(status.experiment);
+    for (std::string& robot : status.awaited) robot = printable(robot);
+    for (wire::ControllerStatus& controller : status.controllers) controller.label = printable(controller.label);
+  }
+  return reply;
+}
+
 }  // namespace
 
 struct ControlClient::State {
@@ -47,7 +62,7 @@ struct ControlClient::State {
     {
       const std::lock_guard lock(mutex);
       if (awaited != reply.number) return;  // a repetition
-      received = reply;
+      received = cleaned(reply);
     }
     wake.notify_one();
   }

@@ -1,17 +1,14 @@
 #include "client_sdk/src/controller_state.hpp"
 
+#include "client_sdk/text/printable.hpp"
+
 namespace cohort {
-namespace {
-
-constexpr std::size_t longest_name = 256;
-
-}  // namespace
 
 std::vector<std::byte> pack(std::span<const RobotState> states) {
   StateWriter writer;
   for (const auto& [robot, state] : states) {
     writer.write(robot, state.has_value());
-    if (state) writer.write(std::string_view(state->controller).substr(0, longest_name), state->bytes);
+    if (state) writer.write(printable(state->controller, longest_controller_name), state->bytes);
   }
   return {writer.bytes().begin(), writer.bytes().end()};
 }
@@ -26,7 +23,7 @@ std::vector<RobotState> unpack(std::span<const std::byte> bytes) {
     if (is_saved) {
       ControllerState& state = each.state.emplace();
       reader.read(state.controller, state.bytes);
-      if (state.controller.size() > longest_name || state.bytes.size() > largest_state)
+      if (state.controller.size() > longest_controller_name || state.bytes.size() > largest_state)
         throw StateError("the state of a robot is larger than it may be");
     }
     states.push_back(std::move(each));
@@ -36,7 +33,7 @@ std::vector<RobotState> unpack(std::span<const std::byte> bytes) {
 
 std::size_t largest_packed(std::size_t robots) {
   constexpr std::size_t besides = 32;  // id, flag and two sizes
-  return robots * (besides + longest_name + largest_state);
+  return robots * (besides + longest_controller_name + largest_state);
 }
 
 }  // namespace cohort

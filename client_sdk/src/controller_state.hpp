@@ -25,6 +25,9 @@ struct RobotState {
   bool operator==(const RobotState&) const = default;
 };
 
+/// Of a controller's kind [bytes].
+inline constexpr std::size_t longest_controller_name = 256;
+
 /// As they travel: docs/protocol.md, "State of controllers".
 std::vector<std::byte> pack(std::span<const RobotState> states);
 /// Throws StateError if they are not just that: robots ascending, and nothing larger than it may be.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "client_sdk/text/printable.hpp"
+
 namespace cohort::session {
 
 RunMonitor::RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
@@ -92,10 +94,17 @@ Progress RunMonitor::progress_at(Clock::time_point now) {
 }
 
 void RunMonitor::add_event(const std::string& kind, const std::string& text, std::uint64_t count) {
-  const RunEvent event{simulation_.tick(), kind, text, count};
-  const bool is_news = log_.add(event.tick, kind, text, count);
+  constexpr std::size_t longest = 4096;
+  const RunEvent event{simulation_.tick(), kind, printable(text, longest), count};
+  const bool is_news = log_.add(event.tick, kind, event.text, count);
   if (listener_.event) listener_.event(event);
   if (is_news && listener_.news) listener_.news(event);
+}
+
+void RunMonitor::controlled(ControlEvent event) {
+  event.text = printable(event.text);
+  add_event("control", event.operation + ": " + event.text);
+  if (listener_.control) listener_.control(event);
 }
 
 void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
@@ -108,12 +117,12 @@ void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
                           (miss.refused ? " gave an answer that cannot act" : " did not answer in time"));
 }
 
-RunResult RunMonitor::finish(RunResult::End end, std::string error) {
+RunResult RunMonitor::finish(RunResult::End end, const std::string& error) {
   stop();
   const bool needs_more = unrecorded_ && options_.needs_recording && end == RunResult::End::finished;
   result_.end = needs_more ? RunResult::End::failed : end;
-  result_.error = needs_more ? *unrecorded_ : std::move(error);
-  result_.stop_reason = simulation_.stop_reason().value_or("");
+  result_.error = printable(needs_more ? *unrecorded_ : error, std::string::npos, Lines::kept);
+  result_.stop_reason = printable(simulation_.stop_reason().value_or(""));
   result_.ticks = simulation_.tick();
   result_.sim_time = simulation_.time();
   result_.state_hash = simulation_.state_hash();

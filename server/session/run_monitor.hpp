@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,10 +54,7 @@ class RunMonitor {
   double speed() const { return options_.speed; }
   const RunOptions& options() const { return options_; }
   std::chrono::nanoseconds duration() const { return step_ * static_cast<std::int64_t>(total_ticks_); }
-  void controlled(const ControlEvent& event) {
-    add_event("control", event.operation + ": " + event.text);
-    if (listener_.control) listener_.control(event);
-  }
+  void controlled(ControlEvent event);
   const EventLog& events() const { return log_; }
   void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
   void add_barrier(std::chrono::nanoseconds latency) {
@@ -75,7 +73,7 @@ class RunMonitor {
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
   void add_miss(const lockstep::Barrier::Miss& miss);
   /// The result, which is complete now. A second time if what ended the run went wrong.
-  RunResult finish(RunResult::End end, std::string error = {});
+  RunResult finish(RunResult::End end, const std::string& error = {});
 
  private:
   static constexpr std::chrono::milliseconds report_interval{200};

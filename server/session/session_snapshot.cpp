@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "client_sdk/text/printable.hpp"
 #include "server/core/hash.hpp"
 #include "server/session/exchange.hpp"
 #include "server/simulation/simulation.hpp"
@@ -137,7 +138,7 @@ SessionSnapshot snapshot_from_bytes(std::span<const std::byte> bytes) {
   snapshot.build = {read_bytes<std::string>(reader), "", ""};
   const std::string& version = snapshot.build.version;
   if (version != COHORT_VERSION)
-    throw SnapshotError("the snapshot is of version '" + version.substr(0, 20) + "' of Cohort, and this is version " +
+    throw SnapshotError("the snapshot is of version '" + printable(version, 20) + "' of Cohort, and this is version " +
                         COHORT_VERSION);
   const std::span<const std::byte> hashed = bytes.first(bytes.size() - hash_size);
   std::uint64_t hash = 0;

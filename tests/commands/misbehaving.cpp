@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "cohort/controller.hpp"
 
@@ -44,17 +45,19 @@ class Misbehaving final : public cohort::Controller {
   }
   void start(const cohort::Start& start) override {
     const std::string robot = environment("COHORT_TEST_ROBOT");
-    if (robot.empty() || robot == start.name) fault_ = environment("COHORT_TEST_FAULT");
+    if (robot.empty() || robot == start.name) saving_fault_ = fault_ = environment("COHORT_TEST_FAULT");
     if (fault_ == "leave on trial") std::exit(0);
     if (fault_ == "crash on trial") std::raise(SIGSEGV);
     started_ = start.reason != cohort::StartReason::check;
     if (fault_ == "leave in start" && started_) std::exit(0);
+    if (fault_ == "throw in start" && started_) throw std::runtime_error("a fault on purpose");
   }
   void step(const cohort::Observation& observation, cohort::Command&) override {
     if (observation.tick() < 20 || fault_ == "leave in its destructor") return;
     const std::string fault = std::exchange(fault_, "");
     const std::filesystem::path file = environment("COHORT_TEST_FILE");
     if (fault == "throw") throw std::runtime_error("a fault on purpose");
+    if (fault == "throw commands") throw std::runtime_error("a fault \x1b]0;owned\x07 \xff \xc2\x9b");
     if (fault == "abort") std::abort();
     if (fault == "terminate") std::terminate();
     if (fault == "leave") std::exit(0);
@@ -87,10 +90,16 @@ class Misbehaving final : public cohort::Controller {
       std::fputs("helped\n", stderr);
     }
   }
+  void save(cohort::StateWriter& state) const override {
+    if (saving_fault_ == "throw in save") throw std::runtime_error("a fault on purpose");
+    if (saving_fault_ == "save too much") return state.write(std::vector<double>(1 << 18));
+    Controller::save(state);
+  }
 
  private:
   std::string fault_;
   bool started_ = false;  // and not on trial
+  std::string saving_fault_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client_sdk/text/printable.hpp"
 #include "server/core/text.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
@@ -160,7 +161,7 @@ Experiment ExperimentReader::read(std::optional<std::uint64_t> seed, std::option
   if (kind_of_file(input_, experiment_.file) == FileKind::sdf) return read_without_experiment(seed, duration);
   const YamlPtr document = load();
   const YamlMap top(*document, "", names_of_keys(experiment_part("experiment", "")), report_);
-  experiment_.name = experiment_.file.stem().string();
+  experiment_.name = printable(experiment_.file.stem().string());
 
   const std::uint64_t written_seed =
       top.whole("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(experiment_.seed);
@@ -188,7 +189,7 @@ Experiment ExperimentReader::read_without_experiment(std::optional<std::uint64_t
                                                      std::optional<std::chrono::nanoseconds> duration) {
   if (auto reason = input_.why_unreadable(input_.absolute(experiment_.file)))  // as it is read, and kept
     throw InputError({{experiment_.file, 0, "", std::move(*reason)}});
-  experiment_.name = experiment_.file.stem().string();
+  experiment_.name = printable(experiment_.file.stem().string());
   experiment_.seed = seed.value_or(experiment_.seed);
   experiment_.duration = duration.value_or(duration_without_experiment);
   experiment_.world = read_world_or_standing_model(input_, experiment_.file, experiment_.seed, last_model_folders_);

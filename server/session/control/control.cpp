@@ -7,7 +7,6 @@
 #include "server/session/control/control_actions.hpp"
 #include "server/session/control/control_texts.hpp"
 #include "server/session/control/request_checks.hpp"
-#include "server/session/printable.hpp"
 
 namespace cohort::session {
 namespace {
@@ -22,7 +21,6 @@ constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
 constexpr std::size_t most_waiting_of_account = 64;
 constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;        // to go back to
 constexpr std::size_t most_kept_for_clients = std::size_t{256} << 20;  // of snapshots, uploads and recordings
-constexpr std::size_t longest_label = 256;
 constexpr std::size_t longest_message = 4096;
 constexpr std::chrono::milliseconds last_reply{500};
 
@@ -123,11 +121,11 @@ Control::Requester* Control::requester_of(const ReceivedRequest& received) {
   }
   return &requesters_
               .emplace(client,
-                       Requester{.label = printable(received.request.label.substr(0, longest_label)) +
-                                          (identity ? " ('" + identity->name + "')" : std::string()),
-                                 .account = identity ? identity->name : wire::partition_of(client),
-                                 .writer = received.sender.writer,
-                                 .replies = wire::Writer<Reply>(*received.participant, wire::partition_of(client))})
+                       Requester{
+                           .label = received.request.label + (identity ? " ('" + identity->name + "')" : std::string()),
+                           .account = identity ? identity->name : wire::partition_of(client),
+                           .writer = received.sender.writer,
+                           .replies = wire::Writer<Reply>(*received.participant, wire::partition_of(client))})
               .first->second;
 }
 

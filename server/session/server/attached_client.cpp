@@ -1,12 +1,10 @@
 #include "server/session/server/attached_client.hpp"
 
-#include "server/session/printable.hpp"
-
 namespace cohort::session {
 namespace {
 
 std::string label_of(const wire::Join& join, const std::optional<wire::Identity>& identity) {
-  return printable(join.controller) + " (process " + std::to_string(join.process) + " on " + printable(join.host) +
+  return join.controller + " (process " + std::to_string(join.process) + " on " + join.host +
          (identity ? ", '" + identity->name + "')" : ")");
 }
 

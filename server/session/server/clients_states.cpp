@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "server/session/printable.hpp"
+#include "client_sdk/text/printable.hpp"
 #include "server/session/server/clients.hpp"
 
 namespace cohort::session {
@@ -96,7 +96,7 @@ ControllerStates Clients::end_states() {
         if (!std::ranges::binary_search(robots, robot))
           throw StateError("robot " + std::to_string(robot) + " is not its own");
       for (auto& [robot, state] : saved) {
-        if (state) state->controller = printable(state->controller);
+        if (state) state->controller = printable(state->controller, longest_controller_name);
         states[robot] = std::move(state);
       }
     } catch (const StateError& error) {

@@ -1,5 +1,7 @@
 #include "server/session/server/inbox.hpp"
 
+#include "client_sdk/text/printable.hpp"
+
 namespace cohort::session {
 namespace {
 
@@ -10,6 +12,26 @@ std::size_t size_of(const wire::Join& join) {
 }
 
 std::size_t size_of(const wire::Report& report) { return sizeof report + report.reason.size() + report.text.size(); }
+
+// Make what a client says fit to be shown. Documents, which are parsed, stay as they are.
+wire::Join cleaned(wire::Join join) {
+  join.controller = printable(join.controller, Inbox::longest_label);
+  join.host = printable(join.host, Inbox::longest_label);
+  for (std::string& selector : join.robots) selector = printable(selector);
+  return join;
+}
+
+wire::Report cleaned(wire::Report report) {
+  report.reason = printable(report.reason, Inbox::longest_label);
+  report.text = printable(report.text, Inbox::longest_text);
+  return report;
+}
+
+wire::Request cleaned(wire::Request request) {
+  request.label = printable(request.label, Inbox::longest_label);
+  for (std::string* text : {&request.filter, &request.entity, &request.uri, &request.link}) *text = printable(*text);
+  return request;
+}
 
 }  // namespace
 
@@ -24,7 +46,7 @@ bool Inbox::add_arrival(const wire::Join& join, const wire::Sender& sender, wire
     return false;
   }
   arrival_bytes_ += bytes;
-  contents_.arrivals.push_back({join, sender, participant});
+  contents_.arrivals.push_back({cleaned(join), sender, participant});
   return has_news_ = true;
 }
 
@@ -44,7 +66,7 @@ bool Inbox::add_report(const wire::Report& report, const wire::Sender& sender) {
     return false;
   }
   report_bytes_ += bytes;
-  contents_.reports.push_back(report);
+  contents_.reports.push_back(cleaned(report));
   return has_news_ = true;
 }
 
@@ -67,7 +89,7 @@ bool Inbox::add_request(const wire::Request& request, const wire::Sender& sender
   }
   ++of_sender;
   request_bytes_ += bytes;
-  contents_.requests.push_back({request, sender, participant});
+  contents_.requests.push_back({cleaned(request), sender, participant});
   return has_news_ = true;
 }
 

@@ -17,7 +17,8 @@
 namespace cohort::session {
 
 /// What DDS's threads leave for the thread of the run. What strangers can fill is bounded: beyond that, messages are
-/// counted as rejected and dropped. Pure logic. Not thread-safe: under the server's lock.
+/// counted as rejected and dropped. This is the door for text: what it holds of clients' is fit to be shown. Pure
+/// logic. Not thread-safe: under the server's lock.
 class Inbox {
  public:
   static constexpr std::size_t most_arrivals = 4096;
@@ -31,6 +32,10 @@ class Inbox {
   static constexpr std::size_t most_requests = 1024;
   static constexpr std::size_t most_request_bytes = std::size_t{64} << 20;
   static constexpr std::size_t largest_request = std::size_t{4} << 20;
+
+  // Of texts for people [bytes].
+  static constexpr std::size_t longest_label = 100;
+  static constexpr std::size_t longest_text = 4096;
 
   static constexpr std::size_t most_state_bytes = std::size_t{64} << 20;
 

@@ -4,7 +4,6 @@
 #include <random>
 #include <set>
 
-#include "server/session/printable.hpp"
 #include "server/session/roster.hpp"
 #include "server/session/run_recorder.hpp"
 
@@ -341,7 +340,7 @@ void Server::handle_inbox() {
   for (const wire::Report& report : inbox.reports) {
     const std::lock_guard lock(mutex_);
     if (run_->leases.lease(report.client) == nullptr) continue;  // it drives nothing: its troubles are its own
-    run_->monitor.add_event("failed", clients_.label_of(report.client) + ": " + printable(report.text));
+    run_->monitor.add_event("failed", clients_.label_of(report.client) + ": " + report.text);
     run_->fail(report.text);
   }
   if (!inbox.failure.empty()) {

@@ -34,6 +34,29 @@ TEST(Inbox, KeepsTheOrderAndIsEmptyOnceTaken) {
   EXPECT_TRUE(inbox.take().requests.empty());
 }
 
+TEST(Inbox, MakesTextsOfClientsFitToBeShown) {
+  Inbox inbox;
+  wire::Join join;
+  join.controller = std::string(99, 'x') + "\u00e9";
+  join.host = "\x1b[2J";
+  join.robots = {"\xff"};
+  inbox.add_arrival(join, sender_of(1), nullptr);
+  inbox.add_report({.kind = wire::ReportKind::failed, .text = "one\ntwo\x7f"}, sender_of(1));
+  wire::Request request = request_of(1);
+  request.label = "\u009b";
+  request.entity = "\x07";
+  request.resource_string = "a document:\n\t\xff";
+  inbox.add_request(request, sender_of(1), nullptr);
+  const Inbox::Contents contents = inbox.take();
+  EXPECT_EQ(contents.arrivals[0].join.controller, std::string(97, 'x') + "\u2026");
+  EXPECT_EQ(contents.arrivals[0].join.host, "\ufffd[2J");
+  EXPECT_EQ(contents.arrivals[0].join.robots, std::vector<std::string>{"\ufffd"});
+  EXPECT_EQ(contents.reports[0].text, "one two\ufffd");
+  EXPECT_EQ(contents.requests[0].request.label, "\ufffd");
+  EXPECT_EQ(contents.requests[0].request.entity, "\ufffd");
+  EXPECT_EQ(contents.requests[0].request.resource_string, request.resource_string) << "which its parser checks";
+}
+
 TEST(Inbox, BoundsJoinsAndReportsInBytes) {
   Inbox inbox;
   wire::Join join;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "client_sdk/src/client.hpp"
+#include "tools/cohort/cli/shown.hpp"
 
 namespace cohort::tool {
 namespace {
@@ -39,7 +40,7 @@ std::shared_ptr<spdlog::logger> make_logger(LogFormat format, const std::string&
 std::string json_members(const std::string& message, const LogFields& fields) {
   nlohmann::ordered_json object = {{"message", message}};
   for (const auto& [name, value] : fields) std::visit([&](const auto& held) { object[name] = held; }, value.get());
-  const std::string text = object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const std::string text = json_text(object);
   return text.substr(1, text.size() - 2);
 }
 
@@ -131,7 +132,7 @@ void Log::echo(const std::string& line, const LogFields& fields) {
   }
   const std::lock_guard lock(mutex_);
   clear_progress_line();
-  std::fprintf(stderr, "%s\n", line.c_str());
+  std::fprintf(stderr, "%s\n", printable(line).c_str());
 }
 
 void Log::progress(const std::string& message, const LogFields& fields) {
@@ -139,7 +140,7 @@ void Log::progress(const std::string& message, const LogFields& fields) {
   if (!rewrites_progress_) return notice(message, fields);
   const std::lock_guard lock(mutex_);
   clear_progress_line();
-  std::fputs(message.c_str(), stderr);
+  std::fputs(printable(message).c_str(), stderr);
   progress_line_open_ = true;
 }
 
@@ -151,7 +152,8 @@ void Log::clear_progress() {
 void Log::print(spdlog::logger& logger, LogLevel level, const std::string& message, const LogFields& fields) {
   const std::lock_guard lock(mutex_);
   clear_progress_line();
-  logger.log(to_spdlog(level), options_.format == LogFormat::json ? json_members(message, fields) : message);
+  logger.log(to_spdlog(level), options_.format == LogFormat::json ? json_members(message, fields)
+                                                                  : printable(message, std::string::npos, Lines::kept));
 }
 
 void Log::clear_progress_line() {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tools/cohort/cli/shown.hpp"
+
 namespace cohort::tool {
 namespace {
 
@@ -128,7 +130,7 @@ void PrintedTable::boundary() {
 void PrintedTable::add_line(const std::string& line) {
   text_ += line + "\n";
   if (!to_stdout_) return;
-  std::printf("%s\n", line.c_str());
+  show(line + "\n");
   std::fflush(stdout);
 }
 

@@ -7,6 +7,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
@@ -43,8 +44,8 @@ int check(const std::filesystem::path& file, parsing::Xacro xacro, bool loads_co
       }
       print_world(experiment.world);
       for (const description::Team& team : experiment.teams)
-        std::cout << "team " << team.name << ": " << counted(team.robots.size(), "robot") << ", controller "
-                  << team.controller << "\n";
+        show("team " + team.name + ": " + counted(team.robots.size(), "robot") + ", controller " + team.controller +
+             "\n");
       if (!loads_controllers && !experiment.teams.empty())
         std::cout << "controllers were not loaded: --load-controllers also checks parameters and channels\n";
     }

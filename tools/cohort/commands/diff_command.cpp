@@ -8,6 +8,7 @@
 #include "server/core/processors.hpp"
 #include "server/recording/difference.hpp"
 #include "tools/cohort/cli/replay_progress.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
@@ -32,10 +33,10 @@ std::string line_of(const recording::QuantityDifference& difference) {
 void print_text(const recording::Comparison& found) {
   if (!found.parting && found.ends.empty()) return fmt::print("identical, {}\n", counted(found.boundaries, "tick"));
   if (!found.parting)
-    return fmt::print("{}; until then they are identical, {}\n", found.ends, counted(found.boundaries, "tick"));
+    return show(fmt::format("{}; until then they are identical, {}\n", found.ends, counted(found.boundaries, "tick")));
   fmt::print("they part at tick {} ({:.3f} s), after {}\n", found.parting->tick,
              Seconds(found.parting->log_time).count(), counted(found.boundaries, "identical tick"));
-  for (const auto& difference : found.parting->differences) fmt::print("{}\n", line_of(difference));
+  for (const auto& difference : found.parting->differences) show(line_of(difference) + "\n");
   if (found.parting->more > 0) fmt::print("  and {} more\n", found.parting->more);
 }
 
@@ -56,7 +57,7 @@ void print_json(const recording::Comparison& found) {
     json["differences"] = list;
     json["more"] = found.parting->more;
   }
-  fmt::print("{}\n", json.dump(2));
+  show(json_text(json, 2) + "\n");
 }
 
 int diff(const DiffCommand& command, Log& log, const std::atomic<bool>& stop) {

@@ -8,6 +8,7 @@
 #include "server/recording/mcap/reading/recover.hpp"
 #include "server/recording/mcap/writing/disk_file.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 
@@ -28,7 +29,7 @@ std::string recorded_text(const RecordOptions& options) {
   if (options.observation_rate) text["observations"] = *options.observation_rate;
   if (options.snapshot_interval) text["snapshots"] = *options.snapshot_interval;
   if (!options.robots.empty()) text["robots"] = options.robots;
-  return text.empty() ? "" : text.dump();
+  return text.empty() ? "" : json_text(text);
 }
 
 struct RecordCommand {

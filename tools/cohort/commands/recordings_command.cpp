@@ -1,20 +1,20 @@
-#include <cstdio>
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <vector>
 
 #include "server/recording/recording.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
 namespace {
 
-void print_fact(const std::string& name, const std::string& value) {
-  std::printf("  %-22s %s\n", name.c_str(), value.c_str());
-}
+void print_fact(const std::string& name, const std::string& value) { show(fmt::format("  {:<22} {}\n", name, value)); }
 
 void list(const std::filesystem::path& file) {
   const recording::Recording recording(file);
-  std::printf("%s\n", file.c_str());
+  show(file.string() + "\n");
   for (const auto& [name, value] : recording.facts()) print_fact(name, value);
   print_fact("end", recording.end().empty() ? "not known" : recording.end());
   if (!recording.damage().empty()) print_fact("damage", recording.damage());

@@ -8,6 +8,7 @@
 #include "server/recording/replay.hpp"
 #include "server/simulation/build_identity.hpp"
 #include "tools/cohort/cli/replay_progress.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/recording_part.hpp"
@@ -26,7 +27,7 @@ struct ReplayCommand {
 using Seconds = std::chrono::duration<double>;
 
 void say(bool quiet, const std::string& line) {
-  if (!quiet) std::fputs((line + "\n").c_str(), stdout);
+  if (!quiet) show(line + "\n");
 }
 
 std::string fact_of(const recording::Recording& recording, const char* name) {

@@ -6,6 +6,7 @@
 
 #include "server/simulation/build_identity.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {
@@ -60,7 +61,7 @@ void write_summary(const std::filesystem::path& file, const description::Experim
         {"obstacles", result.touches.obstacles},
         {"robots", result.touches.robots}}},
   };
-  write_file("the summary", file, summary.dump(2) + "\n");
+  write_file("the summary", file, json_text(summary, 2) + "\n");
 }
 
 }  // namespace cohort::tool

@@ -8,6 +8,7 @@
 #include "tools/bench/lockstep/lockstep.hpp"
 #include "tools/bench/thesis/thesis.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 
 namespace cohort::tool {
@@ -42,7 +43,7 @@ int measure_scenes(const BenchCommand& command, Log& log, const bench::Surroundi
   const auto results = command.what == BenchCommand::What::thesis
                            ? bench::measure_thesis(command.thesis, surroundings, print)
                            : bench::measure_all(command.scenes, surroundings, print);
-  if (!command.json.empty()) write_file(what, command.json, results.dump(2) + "\n");
+  if (!command.json.empty()) write_file(what, command.json, json_text(results, 2) + "\n");
   return exit_ok;
 }
 
@@ -65,7 +66,7 @@ int measure_lockstep(const BenchCommand& command, Log& log, const bench::Surroun
     log.clear_progress();
     std::cout << line << std::flush;
   });
-  if (!command.json.empty()) write_file(what, command.json, results.json.dump(2) + "\n");
+  if (!command.json.empty()) write_file(what, command.json, json_text(results.json, 2) + "\n");
   if (!command.svg.empty()) write_file(graph, command.svg, results.graph);
   return exit_ok;
 }

@@ -4,6 +4,8 @@
 #include <bit>
 #include <nlohmann/json.hpp>
 
+#include "client_sdk/text/printable.hpp"
+
 namespace cohort::view::protocol {
 namespace {
 
@@ -22,6 +24,9 @@ void append(recording::Bytes& to, Number number) {
   const auto bytes = std::bit_cast<std::array<std::byte, sizeof(Number)>>(number);
   to.insert(to.end(), bytes.begin(), bytes.end());
 }
+
+// Whatever names and texts are in it.
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 void append_text(recording::Bytes& to, std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));
@@ -103,7 +108,7 @@ FromClient parse_text(std::string_view text) {
   if (operation == "subscribe") return read_subscribe(message);
   if (operation == "unsubscribe") return read_unsubscribe(message);
   constexpr std::size_t longest_name = 40;
-  return NotOffered{operation.substr(0, longest_name)};
+  return NotOffered{printable(operation, longest_name)};
 }
 
 FromClient parse_binary(std::span<const std::byte> bytes) {
@@ -122,12 +127,11 @@ FromClient parse_binary(std::span<const std::byte> bytes) {
 }
 
 std::string server_info(const std::string& name, const std::string& session) {
-  return Json{{"op", "serverInfo"},
-              {"name", name},
-              {"capabilities", {"services"}},
-              {"supportedEncodings", {"json"}},
-              {"sessionId", session}}
-      .dump();
+  return text_of(Json{{"op", "serverInfo"},
+                      {"name", name},
+                      {"capabilities", {"services"}},
+                      {"supportedEncodings", {"json"}},
+                      {"sessionId", session}});
 }
 
 std::string advertise_channels() {
@@ -141,7 +145,7 @@ std::string advertise_channels() {
                         {"schema", topic.schema},
                         {"schemaEncoding", "ros2msg"}});
   }
-  return Json{{"op", "advertise"}, {"channels", channels}}.dump();
+  return text_of(Json{{"op", "advertise"}, {"channels", channels}});
 }
 
 std::string advertise_services() {
@@ -150,17 +154,16 @@ std::string advertise_services() {
                         {"type", "cohort_msgs/srv/Control"},
                         {"request", schema_of_json("cohort_msgs/srv/Control_Request")},
                         {"response", schema_of_json("cohort_msgs/srv/Control_Response")}};
-  return Json{{"op", "advertiseServices"}, {"services", {control}}}.dump();
+  return text_of(Json{{"op", "advertiseServices"}, {"services", {control}}});
 }
 
 std::string status(StatusLevel level, const std::string& message) {
-  return Json{{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace);
+  return text_of(Json{{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
 }
 
 std::string service_failure(const ServiceCall& call, const std::string& message) {
-  return Json{{"op", "serviceCallFailure"}, {"serviceId", call.service}, {"callId", call.call}, {"message", message}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text_of(
+      Json{{"op", "serviceCallFailure"}, {"serviceId", call.service}, {"callId", call.call}, {"message", message}});
 }
 
 std::array<std::byte, 13> message_head(std::uint32_t subscription, std::chrono::nanoseconds time) {

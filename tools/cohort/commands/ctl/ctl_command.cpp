@@ -9,6 +9,7 @@
 
 #include "client_sdk/src/control_client.hpp"
 #include "tools/cohort/cli/output_file.hpp"
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/ctl/ctl_history.hpp"
 #include "tools/cohort/commands/ctl/ctl_options.hpp"
@@ -180,7 +181,7 @@ class Ctl {
       request.offset = reply.offset;
     }
     const std::chrono::nanoseconds step(status.status.front().step_ns);
-    std::fputs((command_.json ? history_json(all, step) : history_text(all, step)).c_str(), stdout);
+    show(command_.json ? history_json(all, step) : history_text(all, step));
   }
 
   void entities() {

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tools/cohort/cli/shown.hpp"
+
 namespace cohort::tool {
 namespace {
 
@@ -55,7 +57,7 @@ std::string history_json(const viewing::RunHistory& history, std::chrono::nanose
     json["kept"] = {{"first_tick", history.first_kept_tick},
                     {"last_tick", history.last_kept_tick},
                     {"interval", history.keep_interval}};
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace cohort::tool

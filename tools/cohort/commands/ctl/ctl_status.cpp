@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "tools/cohort/cli/shown.hpp"
 #include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {
@@ -77,7 +78,7 @@ std::string status_text(const wire::Reply& reply) {
 std::string status_json(const wire::Reply& reply, int indent) {
   nlohmann::ordered_json json = {
       {"state", word_of(reply.state)}, {"run", reply.run}, {"tick", reply.tick}, {"sim_time_ns", reply.time_ns}};
-  if (reply.status.empty()) return json.dump(indent) + "\n";
+  if (reply.status.empty()) return json_text(json, indent) + "\n";
   const wire::SimulationStatus& status = reply.status.front();
   nlohmann::ordered_json controllers = nlohmann::ordered_json::array();
   for (const wire::ControllerStatus& each : status.controllers)
@@ -108,7 +109,7 @@ std::string status_json(const wire::Reply& reply, int indent) {
                                      {"awaited_count", status.awaited_count},
                                      {"waiting_s", seconds(std::chrono::nanoseconds(status.waiting_ns))},
                                      {"controllers", controllers}});
-  return json.dump(indent) + "\n";
+  return json_text(json, indent) + "\n";
 }
 
 }  // namespace cohort::tool

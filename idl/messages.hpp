@@ -10,7 +10,7 @@
 /// only; when written they must stay valid until `write` returns.
 namespace cohort::wire {
 
-inline constexpr std::uint32_t minor_version = 1;
+inline constexpr std::uint32_t minor_version = 2;
 inline constexpr std::uint32_t first_minor_with_state = 1;  ///< the first that has ControllerState
 
 struct Channel {
@@ -137,7 +137,11 @@ struct Report {
   std::string text{};
 };
 
-enum class StateKind : std::uint32_t { wanted = 0, here = 1 };
+/// The `reason` of a client's report that its controllers have failed before they answered anything.
+inline constexpr const char* failed_in_start = "start";
+
+/// `unsaved`: the controllers cannot save; the data says why.
+enum class StateKind : std::uint32_t { wanted = 0, here = 1, unsaved = 2 };
 /// Of one ControllerState [bytes].
 inline constexpr std::size_t largest_state_part = std::size_t{256} << 10;
 

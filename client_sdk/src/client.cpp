@@ -115,6 +115,7 @@ class Client {
   FrameQueue frames_;
   std::uint64_t tick_ = 0;  // of the frame last begun
   std::optional<std::string> failure_;
+  bool starting_ = false;  // controllers: they are in `start`, or have failed there
   std::optional<ClientEnd> end_;
   std::set<std::uint64_t> servers_;  // live writers of our Admit
   std::optional<Clock::time_point> server_left_;
@@ -300,7 +301,9 @@ void Client::heed(Offer offer, Lock& lock) {
   std::vector<wire::RobotDescription> descriptions;
   for (const Description& known : descriptions_) descriptions.push_back(known.description);
   const Unlocked unlocked(lock);
+  starting_ = true;
   host_.start(current_->admit, descriptions);
+  starting_ = false;
   states_.begin(current_->admit);
 }
 
@@ -375,12 +378,13 @@ std::string Client::waiting_text() const {
 }
 
 ClientEnd Client::fail(Lock& lock) {
+  const bool is_unfit = starting_ && !options_.start_must_succeed;
   tell(Severity::error, *failure_);
   const wire::Report report{.client = id_,
                             .run = current_ ? current_->admit.run : 0,
                             .kind = wire::ReportKind::failed,
                             .tick = tick_,
-                            .reason = "exception",
+                            .reason = is_unfit ? wire::failed_in_start : "exception",
                             .text = *failure_};
   const Unlocked unlocked(lock);
   if (own_reports_.write(report)) own_reports_.wait_until_received(time_for_last_words);

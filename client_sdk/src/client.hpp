@@ -44,6 +44,9 @@ struct ClientOptions {
   /// latency. `step` then runs on either thread, on one at a time. DDS stands still meanwhile: after eight frames in a
   /// row that take more than a millisecond, all further ones are the calling thread's.
   bool inline_step = false;
+  /// Whether a controller that fails in `start` ends the run, as one does that fails later; else the server refuses
+  /// this client, and the run goes on.
+  bool start_must_succeed = false;
   /// Told when the run is over; outlives the client.
   RunWatch* watch = nullptr;
   /// Receives what people should know, one text at a time, on any thread of the client. If empty it goes to standard

@@ -69,5 +69,63 @@ TEST(JoinAndLeaveAtTickBoundariesOnly, AFreeControllerThatIsStoppedHoldsNobodyUp
   EXPECT_GT(summary["lateness_us"]["max"].get<double>(), 0.0);
 }
 
+const Process::Environment fails_in_start = {{"COHORT_TEST_FAULT", "throw in start"}};
+
+std::vector<std::string> unfit_host(const ReservedDomain& domain, const std::string& robots) {
+  return FieldOfRobots::host(domain, robots, test_controller("misbehaving"));
+}
+
+TEST(JoinAndLeaveAtTickBoundariesOnly, AControllerThatFailsInStartIsRefusedAndItsRobotsAreAwaitedAsBefore) {
+  const FieldOfRobots field(4, 3.0);
+  const std::string expected = run_experiment(field.file(), {"--controllers", "inprocess"})["state_hash"];
+  const ReservedDomain domain;
+  Process server(field.serve(domain));
+  Process early(FieldOfRobots::host(domain, "0..1"));
+  for (int times = 0; times < 2; ++times) {
+    Process unfit(unfit_host(domain, "2..3"), fails_in_start);
+    EXPECT_EQ(unfit.wait_for_exit(), 1) << unfit.output();
+    EXPECT_NE(unfit.output().find("'swarm/sbot_2' failed in start at tick 0: a fault on purpose"), std::string::npos)
+        << unfit.output();
+  }
+  Process fit(FieldOfRobots::host(domain, "2..3"));
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_EQ(early.wait_for_exit(), 0) << early.output();
+  EXPECT_EQ(fit.wait_for_exit(), 0) << fit.output();
+  const auto summary = field.summary();
+  EXPECT_EQ(summary["state_hash"], expected);
+  const auto refused = events_of(summary, "refused");
+  ASSERT_EQ(refused.size(), 2u) << summary.dump(1);
+  const std::string text = refused[0]["text"];
+  for (const char* said : {"Misbehaving (process", "team 'swarm'", "'swarm/sbot_2'", "a fault on purpose"})
+    EXPECT_NE(text.find(said), std::string::npos) << text;
+}
+
+TEST(JoinAndLeaveAtTickBoundariesOnly, ATakeoverThatFailsInStartLeavesTheRunItsBits) {
+  const FieldOfRobots field(2, 20.0);
+  const std::string expected = run_experiment(field.file(), {"--controllers", "inprocess"})["state_hash"];
+  const ReservedDomain domain;
+  Process server(field.serve(domain, {"--speed", "8"}), {{"COHORT_LOG", "info"}});
+  {
+    Process first(FieldOfRobots::host(domain, "all"));
+    ASSERT_TRUE(server.wait_for_output("simulated")) << server.output();
+  }
+  Process unfit(unfit_host(domain, "all"), fails_in_start);
+  EXPECT_EQ(unfit.wait_for_exit(), 1) << unfit.output();
+  Process second(FieldOfRobots::host(domain, "all"));
+  EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  const auto summary = field.summary();
+  EXPECT_EQ(summary["state_hash"], expected);
+  EXPECT_EQ(events_of(summary, "refused").size(), 1u) << summary.dump(1);
+}
+
+TEST(JoinAndLeaveAtTickBoundariesOnly, ARunEndsWhenAControllerOfItsOwnFailsInStart) {
+  const FieldOfRobots field(2, 3.0, "", test_controller("misbehaving"));
+  for (const char* where : {"process", "inprocess"}) {
+    const Ended ended = run_to_end({cohort_program(), "run", field.file(), "--controllers", where}, fails_in_start);
+    EXPECT_EQ(ended.exit_code, 1) << where;
+    EXPECT_NE(ended.err.find("failed in start at tick 0: a fault on purpose"), std::string::npos) << ended.err;
+  }
+}
+
 }  // namespace
 }  // namespace cohort::test

@@ -34,8 +34,9 @@ struct AttachedClient {
   bool is_known = false;  // its Join was read
   bool drove = false;     // in the run before, so that a new one is a reset to it
   // Of this run.
-  std::vector<std::uint32_t> robots{};  // that it asked for
-  bool claims = false;                  // and was neither granted nor refused
+  std::vector<std::uint32_t> robots{};        // that it asked for
+  bool claims = false;                        // and was neither granted nor refused
+  std::vector<std::uint32_t> drives_first{};  // robots of its lease that nobody drove before it
   lockstep::ResendTimer resend{};
   std::uint32_t times_resent = 0;
   Exchange::Frame frame{};                      // reused: the last one

@@ -151,6 +151,25 @@ void Clients::note_rejections(const Inbox::Rejected& rejected) {
   }
 }
 
+bool Clients::refuse_unfit(const wire::Report& report) {
+  const auto found = clients_.find(report.client);
+  if (report.reason != wire::failed_in_start || found == clients_.end()) return false;
+  AttachedClient& client = found->second;
+  std::string teams;
+  {
+    const std::lock_guard lock(mutex_);
+    const lockstep::Leases::Lease* lease = run_->leases.lease(report.client);
+    if (lease == nullptr || lease->answer_count > 0) return false;
+    teams = run_->teams_text(lease->robots);
+    for (const std::uint32_t robot : lease->robots)
+      if (!run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);
+    for (const std::uint32_t robot : client.drives_first) run_->was_driven[robot] = false;
+    run_->leases.release(report.client);
+  }
+  client.refuse(*run_, teams + ": " + report.text);
+  return true;
+}
+
 // What a client's selectors select in this run.
 void Clients::claim(AttachedClient& client) {
   std::set<std::uint32_t> robots;
@@ -231,7 +250,11 @@ void Clients::admit(const lockstep::Leases::Granted& granted) {
     if (answer.start_reason == wire::StartReason::takeover && note_lost_state(client, lease.robots)) return;
     if (answer.start_reason == wire::StartReason::restored && give_state(client, lease.robots))
       answer.start_reason = wire::StartReason::restored_with_state;
-    for (const std::uint32_t robot : lease.robots) run_->was_driven[robot] = true;
+    if (!granted.again) client.drives_first.clear();
+    for (const std::uint32_t robot : lease.robots) {
+      if (!run_->was_driven[robot]) client.drives_first.push_back(robot);
+      run_->was_driven[robot] = true;
+    }
     answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
     answer.step_ns = run_->experiment.world.step.count();
     admit_robots(answer, run_->simulation.experiment(), run_->simulation, lease.robots);

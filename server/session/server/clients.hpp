@@ -34,6 +34,9 @@ class Clients {
   void note_liveliness(const Inbox::Liveliness& change);
   void note_process_end(std::uint32_t process);  ///< of this machine
   void note_rejections(const Inbox::Rejected& rejected);
+  /// Refuses a client that reports that its controllers fail in `start`: its robots are free as before it came. False
+  /// if it drives none, has answered in its lease, or reports something else.
+  bool refuse_unfit(const wire::Report& report);
 
   /// Claims are granted at boundaries, and in the midst of a tick to whoever takes over a robot that it waits for.
   /// If a claim calls for the run to go back, `ServedRun::rewinds_for` says why, and it counts again in the next run.

@@ -103,6 +103,14 @@ void ServedRun::see_who_drives() {
   }
 }
 
+std::string ServedRun::teams_text(const std::vector<std::uint32_t>& robots) const {
+  std::string text;
+  for (const description::Team& team : simulation.experiment().teams)
+    if (std::ranges::any_of(robots, [&](auto robot) { return std::ranges::count(team.robots, robot) > 0; }))
+      text += (text.empty() ? "team '" : ", team '") + team.name + "'";
+  return text;
+}
+
 std::string ServedRun::robots_text(const std::vector<std::uint32_t>& robots) const {
   if (robots.empty()) return "no robot";
   std::string text = simulation.robot_name(robots.front());

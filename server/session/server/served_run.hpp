@@ -13,7 +13,8 @@
 namespace cohort::session {
 
 /// One run whose controllers are clients: its robots, who drives them, and who is waited for. `exchange`, `leases`,
-/// `error`, and so all functions but `robots_text`, under the server's lock; else on the thread of the run.
+/// `error`, and so all functions but `robots_text` and `teams_text`, under the server's lock; else on the thread of the
+/// run.
 struct ServedRun {
   /// `first_epoch`: of its leases. Experiment and simulation must outlive it.
   ServedRun(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,
@@ -57,6 +58,8 @@ struct ServedRun {
   std::uint64_t due_tick_of(const std::vector<std::uint32_t>& robots) const;
   /// At a boundary: robots that do not require a controller are asked from now on if they have one.
   void see_who_drives();
+  /// Names of the teams that these robots belong to.
+  std::string teams_text(const std::vector<std::uint32_t>& robots) const;
   std::string robots_text(const std::vector<std::uint32_t>& robots) const;
 };
 

@@ -338,6 +338,7 @@ void Server::handle_inbox() {
   for (const Inbox::Liveliness& change : inbox.liveliness) clients_.note_liveliness(change);
   for (const std::uint32_t process : inbox.ended_processes) clients_.note_process_end(process);
   for (const wire::Report& report : inbox.reports) {
+    if (clients_.refuse_unfit(report)) continue;
     const std::lock_guard lock(mutex_);
     if (run_->leases.lease(report.client) == nullptr) continue;  // it drives nothing: its troubles are its own
     run_->monitor.add_event("failed", clients_.label_of(report.client) + ": " + report.text);

@@ -25,6 +25,7 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
   options.secure = command.client.connection.secure;
   options.robots = command.client.robots;
   options.inline_step = command.inline_step;
+  options.start_must_succeed = command.for_run;  // nobody else would come in its place
   options.tell = [&](Severity severity, const std::string& text) {
     const std::string name = loaded.plugin().name;
     log.write(command.for_run ? LogLevel::debug : level_of(severity), name + ": " + text, {{"controller", name}});

@@ -1,6 +1,7 @@
 #include "client_sdk/src/client_states.hpp"
 
 #include <chrono>
+#include <span>
 #include <utility>
 
 namespace cohort {
@@ -62,16 +63,27 @@ std::vector<std::string> ClientStates::act(ControllerHost& host, std::uint64_t n
     wanted = std::exchange(wanted_, std::nullopt);
   }
   // Where a later frame is answered already, the question is an old one.
-  if (wanted && is_of_this_lease(wanted->head) && next_tick <= wanted->head.tick) give(wanted->head, host);
+  if (wanted && is_of_this_lease(wanted->head) && next_tick <= wanted->head.tick) return give(wanted->head, host);
   return {};
 }
 
-void ClientStates::give(const wire::ControllerState& wanted, const ControllerHost& host) {
-  if (saved_tick_ != wanted.tick) saved_ = pack(host.save());
+std::vector<std::string> ClientStates::give(const wire::ControllerState& wanted, const ControllerHost& host) {
+  if (saved_tick_ != wanted.tick) {
+    unsaved_.clear();
+    try {
+      saved_ = pack(host.save());
+    } catch (const SaveFailure& failure) {
+      unsaved_ = failure.what();
+    }
+  }
   saved_tick_ = wanted.tick;
-  wire::ControllerState part = part_of(saved_, wanted.offset);
+  wire::ControllerState part =
+      unsaved_.empty() ? part_of(saved_, wanted.offset) : part_of(std::as_bytes(std::span(unsaved_)), 0);
+  if (!unsaved_.empty()) part.kind = wire::StateKind::unsaved;
   part.tick = wanted.tick;
   send(part);
+  if (unsaved_.empty() || std::exchange(unsaved_told_, true)) return {};
+  return {unsaved_ + "; there is no snapshot (told once)"};
 }
 
 std::vector<std::string> ClientStates::fetch(ControllerHost& host) {

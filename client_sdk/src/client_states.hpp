@@ -37,7 +37,7 @@ class ClientStates {
  private:
   void receive(const wire::ControllerState& message);
   bool is_of_this_lease(const wire::ControllerState& head) const;
-  void give(const wire::ControllerState& wanted, const ControllerHost& host);
+  std::vector<std::string> give(const wire::ControllerState& wanted, const ControllerHost& host);
   std::vector<std::string> fetch(ControllerHost& host);
   void send(wire::ControllerState message);
 
@@ -46,6 +46,8 @@ class ClientStates {
   std::optional<wire::Admit> admit_;
   std::optional<std::uint64_t> saved_tick_;  // of `saved_`
   std::vector<std::byte> saved_;
+  std::string unsaved_;  // why there is no `saved_`
+  bool unsaved_told_ = false;
   std::optional<StateParts> fetched_;  // while it is
 
   std::atomic<bool> has_news_ = false;

@@ -11,13 +11,13 @@
 namespace cohort {
 namespace {
 
-// Runs a controller's code. Whatever it throws becomes a ControllerFailure that says whose, where and why.
-template <class Call>
+// Runs a controller's code. Whatever it throws becomes a failure that says whose, where and why.
+template <class Failure = ControllerFailure, class Call>
 decltype(auto) guarded(const Callee& callee, const std::string& robot, const char* function, std::uint64_t tick,
                        Call call) {
   const auto failure = [&](const std::string& why) {
-    return ControllerFailure("the controller of robot '" + robot + "' failed in " + function + " at tick " +
-                             std::to_string(tick) + ": " + why);
+    return Failure("the controller of robot '" + robot + "' failed in " + function + " at tick " +
+                   std::to_string(tick) + ": " + why);
   };
   const ControllerCall under_way(callee, function, tick);
   try {
@@ -202,7 +202,7 @@ std::vector<RobotState> ControllerHost::save() const {
     RobotState& saved = states.emplace_back(RobotState{robot.id});
     if (!kind_.has_state) continue;
     StateWriter writer;
-    guarded(*robot.callee, robot.name, "save", robot.tick, [&] {
+    guarded<SaveFailure>(*robot.callee, robot.name, "save", robot.tick, [&] {
       robot.controller->save(writer);
       if (writer.bytes().size() > largest_state)
         throw StateError("its state has " + std::to_string(writer.bytes().size()) + " bytes, and " +

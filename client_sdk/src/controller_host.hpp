@@ -20,6 +20,12 @@ class ControllerFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A controller cannot save its state: which robot's, and why. It goes on as it was.
+class SaveFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// What a controller throws that leaves the run as if its process had died: no failure, and no answer.
 struct LeaveRun {};
 
@@ -55,8 +61,8 @@ class ControllerHost {
   /// also if the frame does not fit the descriptions.
   std::span<const double> answer(const wire::Observation& frame);
 
-  /// What the controllers of all robots remember now, in the order of their ids. Throws as `start` does, also if one
-  /// writes more than `largest_state`.
+  /// What the controllers of all robots remember now, in the order of their ids. Throws SaveFailure, also if one
+  /// writes more than `largest_state`, or LeaveRun if a controller did.
   std::vector<RobotState> save() const;
   /// Right after `start`: lets the controllers go on from `states`, which may be of other robots too. Throws as `start`
   /// does, also if a controller leaves some of its state unread. A sentence for each kind of controllers whose state is

@@ -1,5 +1,6 @@
 #include "server/session/in_process.hpp"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -39,11 +40,29 @@ void ask_again(Exchange& exchange, const description::Experiment& experiment, st
   for (const auto& [tick, unanswered] : robots_of) ask(exchange, frame, experiment, unanswered, tick, host);
 }
 
-ControllerStates states_of(const std::vector<std::unique_ptr<ControllerHost>>& hosts, const Simulation& simulation) {
+// Throws SnapshotError if a controller cannot save.
+ControllerStates states_of(const std::vector<std::unique_ptr<ControllerHost>>& hosts, const Simulation& simulation,
+                           RunMonitor& monitor) {
   ControllerStates states(simulation.robot_count());
-  for (const auto& host : hosts)
-    for (auto& [robot, state] : host->save()) states[robot] = std::move(state);
+  for (std::size_t team = 0; team < hosts.size(); ++team) {
+    try {
+      for (auto& [robot, state] : hosts[team]->save()) states[robot] = std::move(state);
+    } catch (const SaveFailure& failure) {
+      const std::string whose = "team '" + simulation.experiment().teams[team].name + "'";
+      monitor.add_unsaved(whose, whose + ": " + failure.what());
+      throw SnapshotError(whose + ": " + failure.what());
+    }
+  }
   return states;
+}
+
+void offer_snapshot(const RunListener& listener, const std::function<SessionSnapshot()>& take) {
+  if (!listener.can_save) return;
+  try {
+    listener.can_save(take);
+  } catch (const SnapshotError&) {
+    // The run has an event of it, and goes on.
+  }
 }
 
 }  // namespace
@@ -85,9 +104,9 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
     Exchange::Frame frame;  // reused
     while (!monitor.is_over()) {
       if (stop) return monitor.finish(RunResult::End::interrupted);
-      if (listener.can_save)
-        listener.can_save(
-            [&] { return take_snapshot(experiment, simulation, exchange, states_of(hosts, simulation)); });
+      offer_snapshot(listener, [&] {
+        return take_snapshot(experiment, simulation, exchange, states_of(hosts, simulation, monitor));
+      });
       const auto begin = RunMonitor::Clock::now();
       exchange.open(begin.time_since_epoch());
       monitor.at_boundary();

@@ -107,6 +107,10 @@ void RunMonitor::controlled(ControlEvent event) {
   if (listener_.control) listener_.control(event);
 }
 
+void RunMonitor::add_unsaved(const std::string& whose, const std::string& why) {
+  add_event("unsaved", "there is no snapshot: " + unsaved_.try_emplace(whose, why).first->second);
+}
+
 void RunMonitor::add_miss(const lockstep::Barrier::Miss& miss) {
   constexpr std::size_t most_misses = 1'000'000;
   ++result_.late;

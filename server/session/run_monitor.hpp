@@ -69,6 +69,8 @@ class RunMonitor {
     for (const std::string& sentence : what_is_left_out(snapshot, simulation_.experiment()))
       add_event("unsaved", sentence);
   }
+  /// A snapshot cannot be taken. `whose`: controllers that cannot save; each is told with its first reason, once.
+  void add_unsaved(const std::string& whose, const std::string& why);
   void add_resent(std::uint64_t frames) { result_.resent += frames; }
   void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
   void add_miss(const lockstep::Barrier::Miss& miss);
@@ -97,6 +99,7 @@ class RunMonitor {
   Clock::time_point last_report_;
   std::chrono::nanoseconds last_report_time_{0};  // simulated
   EventLog log_;
+  std::map<std::string, std::string> unsaved_;  // why, by whose
   RunResult result_;
 };
 

@@ -219,6 +219,32 @@ TEST_F(ServedMemory, OfAControllerThatDoesNotSaveIsToldToBeMissing) {
   EXPECT_NE(unsaved[0]["text"].get<std::string>().find("misbehaving"), std::string::npos) << unsaved[0].dump();
 }
 
+TEST_F(ServedMemory, ThatCannotBeSavedFailsTheSnapshotByNameAndTheRunGoesOn) {
+  const std::string controller = test_controller("misbehaving");
+  const FieldOfRobots field(2, 3.0, "", controller);
+  const std::string file = (field / "saved.snap").string();
+  const std::map<std::string, std::string> whys = {{"throw in save", "a fault on purpose"},
+                                                   {"save too much", "1048576 are the most"}};
+  for (const auto& [fault, why] : whys) {
+    ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"}, false);
+    Process host(FieldOfRobots::host(run.domain(), "all", controller),
+                 {{"COHORT_TEST_FAULT", fault}, {"COHORT_TEST_ROBOT", "swarm/sbot_1"}});
+    run.done({"step", "10"});
+    const Ended saved = run_to_end(run.ctl({"--timeout", patience_in_seconds, "save", file}));
+    EXPECT_NE(saved.exit_code, 0) << saved.out;
+    for (const std::string& said : {std::string("team 'swarm'"), std::string("'swarm/sbot_1'"), why})
+      EXPECT_NE(saved.err.find(said), std::string::npos) << said << ": " << saved.err;
+    EXPECT_FALSE(std::filesystem::exists(file));
+    run.done({"resume"});
+    const auto summary = run.finish();
+    EXPECT_EQ(summary["ticks"], 300);
+    EXPECT_EQ(host.wait_for_exit(), 0) << host.output();
+    const auto unsaved = events_of(summary, "unsaved");
+    ASSERT_EQ(unsaved.size(), 1u) << "once: " << summary["events"].dump(1);
+    EXPECT_NE(unsaved[0]["text"].get<std::string>().find(why), std::string::npos) << unsaved[0].dump();
+  }
+}
+
 TEST_F(ServedMemory, OfAControllerThatIsStoppedIsNotWaitedForForEver) {
   const std::string file = (field_ / "saved.snap").string();
   ControlledRun run(field_, {"--paused"}, false);

@@ -266,7 +266,7 @@ void Control::keep_snapshot() {
   try {
     kept_.keep(run_->take_snapshot());
   } catch (const SnapshotError&) {
-    // A controller has failed: the run ends by that.
+    // A controller has failed, which ends the run, or cannot save, which the run has an event of.
   }
 }
 

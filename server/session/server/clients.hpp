@@ -53,7 +53,7 @@ class Clients {
   void begin_states();
   /// Asks for what is missing; false if nothing more will come.
   bool gather_states(RunMonitor::Clock::time_point now);
-  /// What came of it, by robot.
+  /// What came of it, by robot. Throws SnapshotError if controllers cannot save.
   ControllerStates end_states();
   /// Parts that were gathered, and questions of those who go on from a snapshot.
   void take_states(const Inbox::States& states);
@@ -91,6 +91,7 @@ class Clients {
   bool give_state(AttachedClient& client, std::span<const std::uint32_t> robots);
   void send_frame(AttachedClient& client, std::uint64_t tick, bool resent);
   void resend_frames(AttachedClient& client, std::span<const std::uint64_t> ticks, lockstep::Time now);
+  std::string note_unsaved();
   void refuse_state(AttachedClient& client, const std::string& why);
 
   std::mutex& mutex_;

@@ -60,7 +60,12 @@ void Clients::take_states(const Inbox::States& states) {
       wire::ControllerState part = part_of(client.state.to_load, message.head.offset);
       part.tick = message.head.tick;
       client.send_state(part, *run_);
-    } else if (message.head.tick == run_->simulation.tick()) {
+    } else if (message.head.tick != run_->simulation.tick()) {
+      continue;
+    } else if (message.head.kind == wire::StateKind::unsaved) {
+      const std::string why(message.data.begin(), message.data.end());
+      client.state.note_unsaved(printable(why, Inbox::longest_text));
+    } else {
       try {
         client.state.take(message, now);
       } catch (const StateError& error) {
@@ -74,6 +79,23 @@ void Clients::refuse_state(AttachedClient& client, const std::string& why) {
   client.state.give_up();
   ++client.rejected;
   run_->monitor.add_event("rejected", "malformed from " + client.label + ": its controllers' state: " + why);
+}
+
+// Of all whose controllers cannot save; empty if there are none.
+std::string Clients::note_unsaved() {
+  std::string all;
+  for (auto& [id, client] : clients_) {
+    if (client.state.phase() != StateTransfer::Phase::unsaved) continue;
+    std::string teams;
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto* lease = run_->leases.lease(id)) teams = run_->teams_text(lease->robots);
+    }
+    const std::string why = teams + ": " + client.state.why_unsaved();
+    run_->monitor.add_unsaved(client.label, why);
+    all += (all.empty() ? "" : "; ") + why;
+  }
+  return all;
 }
 
 ControllerStates Clients::end_states() {
@@ -103,7 +125,9 @@ ControllerStates Clients::end_states() {
       refuse_state(client, error.what());
     }
   }
+  const std::string unsaved = note_unsaved();
   for (auto& [id, client] : clients_) client.state.end();
+  if (!unsaved.empty()) throw SnapshotError(unsaved);
   return states;
 }
 

@@ -94,7 +94,7 @@ bool Inbox::add_request(const wire::Request& request, const wire::Sender& sender
 }
 
 bool Inbox::add_state(const wire::ControllerState& message, const wire::Sender& sender) {
-  if (message.kind > wire::StateKind::here) return false;  // of a later minor version
+  if (message.kind > wire::StateKind::unsaved) return false;  // of a later minor version
   if (message.data.size() > wire::largest_state_part) {
     reject(sender.participant, "malformed", "a ControllerState is larger than 256 KiB");
     return false;

@@ -19,6 +19,12 @@ void StateTransfer::note_answers() {
   if (phase_ == Phase::answers) phase_ = Phase::parts;
 }
 
+void StateTransfer::note_unsaved(const std::string& why) {
+  if (!is_under_way()) return;
+  phase_ = Phase::unsaved;
+  why_unsaved_ = why;
+}
+
 bool StateTransfer::is_silent(Time now) const { return now - parts_.heard_at() > longest_silence; }
 
 std::optional<wire::ControllerState> StateTransfer::question(Time now) {

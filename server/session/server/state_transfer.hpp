@@ -25,6 +25,7 @@ class StateTransfer {
     parts,    ///< it is asked for parts
     done,
     given_up,
+    unsaved,  ///< its controllers cannot save
   };
   Phase phase() const { return phase_; }
   bool is_under_way() const { return phase_ == Phase::answers || phase_ == Phase::parts; }
@@ -33,6 +34,9 @@ class StateTransfer {
   void begin(std::size_t robots, Time now);
   void note_answers();  ///< there are no frames without an answer any more
   void give_up() { phase_ = Phase::given_up; }
+  /// Its controllers cannot save, for this reason.
+  void note_unsaved(const std::string& why);
+  const std::string& why_unsaved() const { return why_unsaved_; }
   void end() { phase_ = Phase::idle; }
   /// Whether it has given nothing for too long.
   bool is_silent(Time now) const;
@@ -48,6 +52,7 @@ class StateTransfer {
  private:
   Phase phase_ = Phase::idle;
   StateParts parts_;
+  std::string why_unsaved_;
 };
 
 }  // namespace cohort::session

@@ -223,7 +223,7 @@ TEST_F(RememberedState, ThatCannotBeLoadedNamesTheRobotAndTheReason) {
   EXPECT_NE(left.find("left 2 of 6 bytes"), std::string::npos) << left;
 }
 
-TEST_F(RememberedState, OfMoreThanItsBoundEndsTheRun) {
+TEST_F(RememberedState, OfMoreThanItsBoundIsNotSavedAndNothingElseFails) {
   class Hoarding final : public RememberingController {
     void save(StateWriter& state) const override { state.write(std::vector<double>(largest_state / 8)); }
   };
@@ -232,10 +232,11 @@ TEST_F(RememberedState, OfMoreThanItsBoundEndsTheRun) {
   try {
     host.save();
     ADD_FAILURE() << "it did not fail";
-  } catch (const ControllerFailure& failure) {
+  } catch (const SaveFailure& failure) {
     EXPECT_NE(std::string(failure.what()).find("'r3' failed in save"), std::string::npos) << failure.what();
     EXPECT_NE(std::string(failure.what()).find("1048576 are the most"), std::string::npos) << failure.what();
   }
+  EXPECT_EQ(steps_of(host, 3), 1.0) << "it goes on";
 }
 
 // In C: a number of each kind.

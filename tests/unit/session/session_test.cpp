@@ -236,6 +236,30 @@ TEST(InProcessRun, EndsWithTheMessageOfAControllerThatThrows) {
   EXPECT_NE(result.error.find("I have had enough"), std::string::npos) << result.error;
 }
 
+class Unsaved final : public Controller {
+ public:
+  void start(const Start&) override {}
+  void step(const Observation&, Command&) override {}
+  void save(StateWriter&) const override { throw std::runtime_error("it cannot be told"); }
+};
+
+TEST(InProcessRun, GoesOnWhenAControllerCannotSave) {
+  const auto experiment = experiment_of({{}});
+  Simulation simulation(experiment, 1);
+  const std::atomic<bool> stop = false;
+  RunListener listener;
+  listener.can_save = [](const auto& take) { take(); };
+  const ControllerKind kind = {"Unsaved",
+                               [] { return OwnedController(new Unsaved, [](Controller* it) { delete it; }); }};
+  const RunResult result = run_in_process(experiment, simulation, {kind}, {}, listener, stop);
+  EXPECT_EQ(result.end, RunResult::End::finished) << result.error;
+  EXPECT_EQ(result.ticks, 10u);
+  ASSERT_EQ(result.events.size(), 1u);
+  EXPECT_EQ(result.events[0].kind, "unsaved");
+  for (const char* said : {"team_0", "robot_0", "it cannot be told"})
+    EXPECT_NE(result.events[0].text.find(said), std::string::npos) << result.events[0].text;
+}
+
 TEST(InProcessRun, StopsWhenAskedTo) {
   const auto experiment = experiment_of({{}});
   Simulation simulation(experiment, 1);

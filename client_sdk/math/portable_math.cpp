@@ -299,7 +299,7 @@ extern const char cohort_portable_math = 1;
 namespace cohort {
 namespace {
 
-// Of the functions of one name, that of double, or of float.
+// The function of double, or that of float, among those of one name.
 void* unary(double (*function)(double)) { return reinterpret_cast<void*>(function); }
 void* binary(double (*function)(double, double)) { return reinterpret_cast<void*>(function); }
 void* unary_of_float(float (*function)(float)) { return reinterpret_cast<void*>(function); }

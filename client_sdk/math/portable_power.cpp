@@ -108,7 +108,7 @@ double exp_of(Wide x) {
 
 double exp_of_product(double y, Wide logarithm) {
   constexpr double beyond = 746.0;  // e^746 is infinite, e^-746 zero
-  // Of a greater y the product of halves would overflow, and any logarithm but 0 is at least 2^-53.
+  // The product of halves would overflow for a greater y, and any logarithm but 0 is at least 2^-53.
   if (__builtin_fabs(y) > 0x1p64 || __builtin_fabs(y * logarithm.high) > beyond)
     return (y > 0.0) == (logarithm.high > 0.0) ? infinite : 0.0;
   return exp_of(Wide{y, 0.0} * logarithm);

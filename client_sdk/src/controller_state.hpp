@@ -25,7 +25,7 @@ struct RobotState {
   bool operator==(const RobotState&) const = default;
 };
 
-/// Of a controller's kind [bytes].
+/// The longest name of a kind of controllers [bytes].
 inline constexpr std::size_t longest_controller_name = 256;
 
 /// As they travel: docs/protocol.md, "State of controllers".

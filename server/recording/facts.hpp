@@ -11,8 +11,8 @@ inline constexpr const char* facts_name = "cohort";
 inline constexpr const char* inputs_name = "cohort_inputs";
 inline constexpr const char* end_name = "cohort_end";
 
-/// Of the run that begins: version, commit and arithmetic of the build, experiment, seed, step, duration, robots;
-/// machine and time of day.
+/// Returns the facts of the run that begins: version, commit and arithmetic of the build, experiment, seed, step,
+/// duration, robots; machine and time of day.
 StringMap facts_of(const description::Experiment& experiment);
 
 /// What an experiment was read from, as metadata and, of each file, an attachment.

@@ -9,7 +9,7 @@ namespace cohort::session {
 
 /// Something that happened in a run and that its record should tell. Kinds: `joined`, `lost`, `back`, `refused`,
 /// `superseded`, `missed`, `rejected`, `quarantined`, `event`, `version`, `control`, `unsent`,
-/// `unsaved`, `unrecorded`, `forgotten`, `rewound`, `dropped`, `failed`, `stopped`.
+/// `unsaved`, `unrecorded`, `forgotten`, `rewound`, `other_build`, `dropped`, `failed`, `stopped`.
 struct RunEvent {
   std::uint64_t tick = 0;  ///< of the first time
   std::string kind;

@@ -50,7 +50,7 @@ void RunMonitor::at_boundary() {
   see_whether_recorded();
 }
 
-// Whoever waits for a result learns at once that there will be none.
+// A person who waits for a recording learns at once that there will be none.
 void RunMonitor::see_whether_recorded() {
   if (unrecorded_ || !listener_.unrecorded) return;
   unrecorded_ = listener_.unrecorded();

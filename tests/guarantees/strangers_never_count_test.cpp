@@ -55,7 +55,7 @@ class HandWrittenClient {
   }
   /// It was told so.
   bool is_detached() const { return is_detached_; }
-  /// Of the answer that the last report of a rejection was about; -1 before any.
+  /// The tick of the answer that was last reported as rejected; -1 before any.
   std::int64_t rejected_tick() const { return rejected_tick_; }
 
  private:

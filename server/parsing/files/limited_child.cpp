@@ -173,7 +173,7 @@ std::string LimitedChild::end() {
   do ended = waitpid(process_, &status, 0);
   while (ended < 0 && errno == EINTR);
   process_ = -1;
-  // Whoever started this process may have it ignore the end of its children.
+  // The parent of this process may have made it ignore the end of its children.
   return ended < 0 ? "crashed" : why_ended(status, limits_);
 }
 

@@ -10,7 +10,7 @@
 namespace cohort::parsing {
 
 /// Whether the program `xacro` may expand the file that a person names. It evaluates Python that the file holds, so
-/// nothing but a person's word for this one file lets it run; what the file includes or names is never expanded.
+/// it runs only for the one file that a person names; what the file includes or names is never expanded.
 enum class Xacro { refused, run };
 
 /// The first element that only `xacro` understands; nullptr if there is none. `file` is what the document stands in.

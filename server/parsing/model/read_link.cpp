@@ -59,7 +59,7 @@ MassProperties mass_of_parts(const std::vector<Part>& parts, Pose Part::*X_LP, d
   return together(solids);
 }
 
-// Of a link that has none: as MuJoCo, from its shapes.
+// Takes the mass of a link that has none from its shapes, as MuJoCo does.
 Inertial inertial_of_shapes(const Link& link) {
   constexpr double density = 1000.0;        // [kg/m^3]
   constexpr double mass_of_grain = 1e-3;    // [kg]

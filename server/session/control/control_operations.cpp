@@ -150,7 +150,7 @@ void Control::load(const Request& request) {
 
 void Control::go_back(const Request& request) {
   if (kept_.size() == 0)
-    return answer(request, ResultCode::not_found, "this server keeps no snapshots; --keep-snapshots lets it");
+    return answer(request, ResultCode::not_found, "this server keeps no snapshots; start it with --keep-snapshots");
   const std::int64_t tick = request.duration_ns / run_->experiment.world.step.count();
   auto snapshot = tick < 0 ? nullptr : kept_.last_until(static_cast<std::uint64_t>(tick));
   if (snapshot == nullptr)

@@ -14,8 +14,8 @@ constexpr std::chrono::milliseconds longest_sleep{200};  // `stop` may be set by
 constexpr std::chrono::seconds farewell{2};
 const std::string view_partition = "view";
 
-// Of a server's first lease: its start in microseconds since 1970, the lowest bits at random, since clocks go back and
-// machines without a battery begin at the same time again.
+// Returns the epoch of a server's first lease: its start in microseconds since 1970. The lowest bits are random, since
+// clocks go back and machines without a battery begin at the same time again.
 std::uint64_t first_epoch() {
   constexpr std::uint64_t random_bits = 1023;
   const auto now = std::chrono::system_clock::now().time_since_epoch();

@@ -176,7 +176,7 @@ void RecordingSource::go_to(Nanoseconds log_time) {
   }
 }
 
-// Of a recording whose world cannot be built, `step_` is zero: then it is tried again where it is.
+// `step_` is zero where the world of a recording cannot be built: then it is tried again where it is.
 void RecordingSource::step_back(std::int64_t ticks) { go_to(std::max(Nanoseconds(0), log_time_ - step_ * ticks)); }
 
 void RecordingSource::play(const Wanted& wanted) {

@@ -70,11 +70,14 @@ TEST(Teleop, APersonDrivesOverDdsOnly) {
 
 TEST(Parameters, MistakesAreFoundBeforeAnythingRunsWithTheirLine) {
   const ScratchFolder folder;
-  for (const char* command : {"run", "check"}) {
-    Process run({cohort_program(), command,
-                 write_experiment(folder,
-                                  "controller: constant\n    parameters:\n      treel/left/velocity: 0.1\n"
-                                  "      treel/right/velocty: 0.1\n")});
+  const std::string experiment = write_experiment(
+      folder,
+      "controller: constant\n    parameters:\n      treel/left/velocity: 0.1\n      treel/right/velocty: 0.1\n");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"run", experiment}, {"check", "--load-controllers", experiment}}) {
+    std::vector<std::string> line = {cohort_program()};
+    line.insert(line.end(), command.begin(), command.end());
+    Process run(line);
     EXPECT_EQ(run.wait_for_exit(), 2);
     EXPECT_NE(run.output().find("experiment.yaml:9: teams[0].parameters: "), std::string::npos) << run.output();
     EXPECT_NE(run.output().find("nearest are treel/right/velocity"), std::string::npos) << run.output();

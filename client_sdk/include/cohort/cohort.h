@@ -280,8 +280,8 @@ typedef struct CohortEvent {
 } CohortEvent;
 
 /* Begins to attach to a server, and returns at once: a server that is not there yet is waited for in cohort_next. All
- * defaults if `options` is NULL, and the domain of $COHORT_DOMAIN; their texts are copied. NULL if it fails. What people should know goes to standard
- * error, after the name. */
+ * defaults if `options` is NULL, and the domain of $COHORT_DOMAIN; their texts are copied. NULL if it fails. What
+ * people should know goes to standard error, after the name. */
 CohortClient* cohort_connect(const CohortOptions* options);
 
 /* Blocks until something is there, fills `event` in and returns its kind. If the event before it was not answered, that

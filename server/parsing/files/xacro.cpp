@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client_sdk/text/printable.hpp"
 #include "server/core/text.hpp"
 #include "server/description/input_error.hpp"
 
@@ -77,13 +78,10 @@ void read_both(int output, int complaint, std::string& text, std::string& compla
   }
 }
 
-// In one line, without control characters.
 std::string in_one_line(std::string_view complaint) {
   std::string line;
   for (const std::string_view word : words(complaint)) line += (line.empty() ? "" : " ") + std::string(word);
-  std::ranges::replace_if(
-      line, [](unsigned char c) { return c < ' ' || c == 127; }, '?');
-  return line;
+  return printable(line);
 }
 
 std::string expanded(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "client_sdk/text/printable.hpp"
 #include "server/session/control/control_actions.hpp"
 #include "server/session/control/control_texts.hpp"
 #include "server/session/control/request_checks.hpp"
@@ -25,13 +26,6 @@ constexpr std::size_t longest_message = 4096;
 constexpr std::chrono::milliseconds last_reply{500};
 
 RequestBudget::Time now() { return Control::Clock::now().time_since_epoch(); }
-
-// Whole characters of UTF-8 only.
-void cut_off(std::string& text, std::size_t most) {
-  if (text.size() <= most) return;
-  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;
-  text.resize(most);
-}
 
 SimulationState on_wire(PlaybackState state) {
   switch (state) {
@@ -221,7 +215,7 @@ void Control::send(Reply reply, bool is_kept) {
     reply.tick = run_->simulation.tick();
     reply.time_ns = run_->simulation.time().count();
   }
-  cut_off(reply.error_message, longest_message);
+  reply.error_message = printable(reply.error_message, longest_message, Lines::kept);
   if (is_kept) ledger_.keep(reply);
   const auto requester = requesters_.find(reply.client);
   if (requester != requesters_.end()) requester->second.replies.write(reply);  // lost: it is asked for again

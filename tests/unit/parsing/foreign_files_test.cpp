@@ -281,7 +281,7 @@ TEST_F(XacroFiles, WhatXacroComplainsOfIsInOurError) {
   write_program("#!/bin/sh\nprintf 'no such \\033[1mproperty:\\n  size\\n' >&2\nexit 2\n");
   const auto problems = problems_of([&] { read_expanded(file); });
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_EQ(problems[0].message, "xacro cannot expand this file: no such ?[1mproperty: size");
+  EXPECT_EQ(problems[0].message, "xacro cannot expand this file: no such \xef\xbf\xbd[1mproperty: size");
   write_program("#!/bin/sh\nyes 'on and on' | head -c 9000000 >&2\necho the end >&2\nexit 2\n");
   const auto long_ones = problems_of([&] { read_expanded(file); });
   ASSERT_EQ(long_ones.size(), 1u);

@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "client_sdk/src/c_handles.hpp"
+#include "client_sdk/hosting/c_handles.hpp"
 #include "client_sdk/src/client.hpp"
 #include "client_sdk/src/environment.hpp"
 
@@ -202,3 +202,7 @@ CohortEventKind cohort_next(CohortClient* client, CohortEvent* event) {
 void cohort_answer(CohortClient* client) { client->hand_over.answer(); }
 
 void cohort_close(CohortClient* client) { delete client; }
+
+int cohort_run_controller(const CohortPlugin* plugin, int argc, char** argv) {
+  return cohort::run_controller(*reinterpret_cast<const cohort::Plugin*>(plugin), argc, argv);
+}

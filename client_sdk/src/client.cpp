@@ -15,7 +15,7 @@
 #include "client_sdk/src/frame_queue.hpp"
 #include "client_sdk/src/this_process.hpp"
 #include "client_sdk/text/printable.hpp"
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 
 namespace cohort {
 namespace {

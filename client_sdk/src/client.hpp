@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client_sdk/src/controller_host.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
 
 namespace cohort {
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "client_sdk/src/controller_host.hpp"
-#include "client_sdk/src/state_parts.hpp"
-#include "idl/wire.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/state_parts.hpp"
+#include "idl/dds/transport.hpp"
 
 namespace cohort {
 

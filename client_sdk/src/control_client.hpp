@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "idl/control_messages.hpp"
+#include "idl/wire/control_messages.hpp"
 
 namespace cohort {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "idl/messages.hpp"
+#include "idl/wire/messages.hpp"
 
 namespace cohort {
 

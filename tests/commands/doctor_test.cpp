@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "idl/survey.hpp"
+#include "idl/dds/survey.hpp"
 #include "tests/support/keys.hpp"
 #include "tests/support/version_2.hpp"
 

@@ -3,8 +3,8 @@
 #include <stdexcept>
 
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/session/exchange.hpp"
-#include "server/session/session_snapshot.hpp"
+#include "server/run/exchange.hpp"
+#include "server/run/session_snapshot.hpp"
 #include "tests/fuzz/edits.hpp"
 
 namespace {

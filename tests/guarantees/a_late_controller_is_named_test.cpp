@@ -4,7 +4,7 @@
 #include <csignal>
 #include <thread>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/control.hpp"
 #include "tests/support/process.hpp"
 

@@ -4,9 +4,9 @@
 #include <map>
 #include <mutex>
 
-#include "client_sdk/src/plugin_loader.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/session/in_process.hpp"
+#include "server/run/in_process.hpp"
 #include "tests/support/controlled_run.hpp"
 #include "tests/support/sbot_layout.hpp"
 

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <random>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/control.hpp"
 #include "tests/support/field_of_robots.hpp"
 

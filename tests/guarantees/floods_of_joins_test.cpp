@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/field_of_robots.hpp"
 
 namespace cohort::test {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "idl/control_messages.hpp"
+#include "idl/wire/control_messages.hpp"
 #include "tests/support/controlled_run.hpp"
 
 namespace cohort::test {

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <memory>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/keys.hpp"
 #include "tests/support/sbot_layout.hpp"
 

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/sbot_layout.hpp"
 
 int main(int argc, char** argv) {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/field_of_robots.hpp"
 
 namespace {

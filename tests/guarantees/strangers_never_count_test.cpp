@@ -6,7 +6,7 @@
 #include <limits>
 #include <thread>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/field_of_robots.hpp"
 #include "tests/support/sbot_layout.hpp"
 

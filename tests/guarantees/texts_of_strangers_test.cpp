@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "client_sdk/text/printable.hpp"
-#include "idl/control_messages.hpp"
+#include "idl/wire/control_messages.hpp"
 #include "tests/support/field_of_robots.hpp"
 
 // What others say of themselves is shown to people, and is never a command to their terminal or the end of a summary.

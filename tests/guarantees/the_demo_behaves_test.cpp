@@ -3,11 +3,11 @@
 #include <cmath>
 #include <set>
 
-#include "client_sdk/src/controller_host.hpp"
-#include "client_sdk/src/plugin_loader.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "server/description/experiment.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/session/roster.hpp"
+#include "server/run/roster.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/process.hpp"
 

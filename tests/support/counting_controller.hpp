@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "client_sdk/include/cohort/controller.hpp"
-#include "idl/messages.hpp"
+#include "idl/wire/messages.hpp"
 
 namespace cohort::test {
 

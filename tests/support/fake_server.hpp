@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/free_domain.hpp"
 
 namespace cohort::test {

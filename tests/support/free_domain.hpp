@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tests/support/file_lock.hpp"
 #include "tests/support/patience.hpp"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "idl/identity.hpp"
+#include "idl/dds/identity.hpp"
 #include "tests/support/process.hpp"
 #include "tools/cohort/commands/security/certificates.hpp"
 

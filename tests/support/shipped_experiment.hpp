@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "client_sdk/src/plugin_loader.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/session/in_process.hpp"
+#include "server/run/in_process.hpp"
 
 namespace cohort::test {
 

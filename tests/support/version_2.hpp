@@ -1,7 +1,7 @@
 #pragma once
 
-#include "idl/codec.hpp"
-#include "idl/dds.hpp"
+#include "idl/dds/codec.hpp"
+#include "idl/dds/dds.hpp"
 
 namespace cohort::test {
 

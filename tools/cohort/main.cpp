@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "client_sdk/src/program.hpp"
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "server/core/atomic_file.hpp"
 #include "server/description/input_error.hpp"
 #include "tools/cohort/cli/build_facts.hpp"

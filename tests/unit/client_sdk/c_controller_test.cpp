@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "client_sdk/hosting/controller_host.hpp"
 #include "client_sdk/include/cohort/cohort.h"
-#include "client_sdk/src/controller_host.hpp"
 #include "tests/support/counting_controller.hpp"
 
 namespace cohort {

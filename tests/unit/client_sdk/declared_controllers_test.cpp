@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client_sdk/src/controller_host.hpp"
-#include "client_sdk/src/plugin_loader.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 
 namespace cohort {
 namespace {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "client_sdk/src/controller_host.hpp"
-#include "client_sdk/src/plugin_loader.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "tests/support/flat_arena.hpp"
 
 namespace cohort {

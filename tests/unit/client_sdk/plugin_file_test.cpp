@@ -1,4 +1,4 @@
-#include "client_sdk/src/plugin_file.hpp"
+#include "client_sdk/hosting/plugin_file.hpp"
 
 #include <elf.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "client_sdk/src/plugin_loader.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "tests/support/files.hpp"
 
 namespace cohort {

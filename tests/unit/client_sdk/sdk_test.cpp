@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "client_sdk/include/cohort/controller.hpp"
-#include "client_sdk/src/controller_host.hpp"
-#include "client_sdk/src/plugin_loader.hpp"
 #include "tests/support/counting_controller.hpp"
 #include "tests/support/files.hpp"
 

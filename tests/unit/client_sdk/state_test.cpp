@@ -2,9 +2,9 @@
 
 #include <random>
 
+#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/state_parts.hpp"
 #include "client_sdk/include/cohort/cohort.h"
-#include "client_sdk/src/controller_host.hpp"
-#include "client_sdk/src/state_parts.hpp"
 #include "tests/support/counting_controller.hpp"
 
 namespace cohort {

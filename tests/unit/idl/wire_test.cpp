@@ -1,5 +1,3 @@
-#include "idl/wire.hpp"
-
 #include <gtest/gtest.h>
 #include <spawn.h>
 #include <sys/prctl.h>
@@ -18,7 +16,8 @@
 #include <thread>
 #include <vector>
 
-#include "idl/control_messages.hpp"
+#include "idl/dds/transport.hpp"
+#include "idl/wire/control_messages.hpp"
 #include "tests/support/free_domain.hpp"
 
 namespace cohort::wire {

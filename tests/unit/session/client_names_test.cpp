@@ -1,4 +1,4 @@
-#include "server/session/server/client_names.hpp"
+#include "server/serving/client_names.hpp"
 
 #include <gtest/gtest.h>
 

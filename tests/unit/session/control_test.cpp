@@ -4,10 +4,10 @@
 #include <map>
 
 #include "server/lockstep/answer_times.hpp"
-#include "server/session/control/request_ledger.hpp"
-#include "server/session/exchange.hpp"
-#include "server/session/playback.hpp"
-#include "server/session/session_snapshot.hpp"
+#include "server/run/exchange.hpp"
+#include "server/run/playback.hpp"
+#include "server/run/session_snapshot.hpp"
+#include "server/serving/control/request_ledger.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::session {

@@ -1,4 +1,4 @@
-#include "server/session/control/entity_filter.hpp"
+#include "server/serving/control/entity_filter.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-#include "server/session/server/inbox.hpp"
+#include "server/serving/inbox.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/session/control/kept_snapshots.hpp"
+#include "server/serving/control/kept_snapshots.hpp"
 
 #include <gtest/gtest.h>
 

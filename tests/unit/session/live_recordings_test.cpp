@@ -1,4 +1,4 @@
-#include "server/session/control/live_recordings.hpp"
+#include "server/serving/control/live_recordings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/session/control/request_budget.hpp"
+#include "server/serving/control/request_budget.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/session/control/requester_slots.hpp"
+#include "server/serving/control/requester_slots.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "server/session/exchange.hpp"
-#include "server/session/in_process.hpp"
-#include "server/session/roster.hpp"
-#include "server/session/run_events.hpp"
-#include "server/session/run_monitor.hpp"
+#include "server/run/exchange.hpp"
+#include "server/run/in_process.hpp"
+#include "server/run/roster.hpp"
+#include "server/run/run_events.hpp"
+#include "server/run/run_monitor.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::session {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/session/server/server.hpp"
+#include "server/serving/server.hpp"
 #include "tools/bench/lockstep/bench_processes.hpp"
 
 namespace cohort::bench {

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "client_sdk/src/controller_host.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
 
 namespace cohort::epuck2 {
 namespace {

@@ -5,7 +5,7 @@
 #include <cohort_build/facts.hpp>
 
 #include "client_sdk/math/portable_math.hpp"
-#include "idl/survey.hpp"
+#include "idl/dds/survey.hpp"
 #include "server/simulation/build_identity.hpp"
 
 namespace cohort::tool {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "server/session/run.hpp"
+#include "server/run/run.hpp"
 #include "tools/cohort/cli/log.hpp"
 
 namespace cohort::tool {

@@ -1,6 +1,6 @@
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "client_sdk/src/client.hpp"
 #include "client_sdk/src/domains.hpp"
-#include "client_sdk/src/plugin_loader.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/cohort/running/controller_ends.hpp"

@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "client_sdk/math/portable_math.hpp"
-#include "server/core/processors.hpp"
 #include "server/core/text.hpp"
 #include "server/description/experiment.hpp"
 #include "server/description/input_error.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/session/exchange.hpp"
-#include "server/session/in_process.hpp"
-#include "server/session/session_snapshot.hpp"
+#include "server/run/in_process.hpp"
+#include "server/run/run_world.hpp"
+#include "server/run/session_snapshot.hpp"
 #include "tools/cohort/cli/installed_files.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/cli/wording.hpp"
@@ -132,50 +131,16 @@ description::Experiment read(const RunCommand& command, const std::filesystem::p
   return experiment;
 }
 
-std::unique_ptr<Simulation> build(const RunCommand& command, const description::Experiment& experiment, Log& log) {
-  const unsigned wanted = command.threads == 0 ? experiment.threads : command.threads;
-  const unsigned threads = wanted == 0 ? available_processors() : wanted;
-  const Stopwatch building;
-  auto simulation = std::make_unique<Simulation>(experiment, threads);
-  log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
-           {{"threads", threads}, {"seconds", building.seconds()}});
-  return simulation;
-}
-
 using Snapshot = std::shared_ptr<const session::SessionSnapshot>;
-
-struct World {
-  std::shared_ptr<const description::Experiment> experiment;
-  std::unique_ptr<Simulation> simulation;
-};
-
-// A reset is a world that is built anew.
-World build_world(const RunCommand& command, std::shared_ptr<const description::Experiment> experiment,
-                  const Snapshot& from, Log& log) {
-  World world{std::move(experiment), nullptr};
-  world.simulation = build(command, *world.experiment, log);
-  if (from) session::restore(*from, *world.simulation);
-  return world;
-}
-
 using ExperimentPtr = std::shared_ptr<const description::Experiment>;
 
-// The same with another seed, and so perhaps with other places. Throws if it cannot be placed.
-ExperimentPtr with_seed(const ExperimentPtr& experiment, std::uint64_t seed) {
-  if (seed == experiment->seed) return experiment;
-  auto other = std::make_shared<description::Experiment>(
-      parsing::read_experiment(experiment->inputs, seed, experiment->duration));
-  other->recorded = experiment->recorded;
-  return other;
-}
-
-// What a run is to be followed by. Throws if there is anything wrong with it.
-World world_of(const session::NextRun& next, const RunCommand& command, const World& now, Log& log) {
-  World world = build_world(command, with_seed(now.experiment, next.seed), next.snapshot, log);
-  if (next.snapshot) {
-    session::Exchange tried(*world.simulation);
-    session::restore(*next.snapshot, tried);
-  }
+session::RunWorld build_world(const RunCommand& command, const ExperimentPtr& experiment, const Snapshot& from,
+                              Log& log) {
+  const unsigned threads = session::threads_for(*experiment, command.threads);
+  const Stopwatch building;
+  session::RunWorld world = session::build_world(experiment, threads, from.get());
+  log.info(fmt::format("built the world for {} in {:.2f} s", counted(threads, "thread"), building.seconds()),
+           {{"threads", threads}, {"seconds", building.seconds()}});
   return world;
 }
 
@@ -185,17 +150,17 @@ struct Runs {
   std::vector<ExperimentPtr> experiments{};
   std::vector<TeamController> controllers{};
   Snapshot from{};
-  World first{};
+  session::RunWorld first{};
   std::optional<Serving> serving{};
   double cpu_before = 0.0;
 };
 
-// One, and those that whoever controls it puts in its place. The exit code; `goes_on` is false if no further one is to
+// Runs a world, and those that take its place. Returns the exit code; `goes_on` is false if no further run is to
 // follow.
-int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log& log, const std::atomic<bool>& stop,
-            bool& goes_on) {
+int run_one(Runs& runs, std::size_t number, std::size_t count, session::RunWorld world, Log& log,
+            const std::atomic<bool>& stop, bool& goes_on) {
   const RunCommand& command = runs.command;
-  session::RunOptions options = {
+  const session::RunOptions options = {
       .speed = speed_of(command, *world.experiment),
       .state = command.paused || command.view_opens ? session::PlaybackState::paused : session::PlaybackState::playing,
       .from = runs.from,
@@ -208,30 +173,23 @@ int run_one(Runs& runs, std::size_t number, std::size_t count, World world, Log&
     const double cpu = cpu_seconds();
     return one.finish(result, cpu - std::exchange(runs.cpu_before, cpu));
   };
-  for (;;) {
-    std::optional<World> next;
-    options.prepare = [&](const session::NextRun& wanted) { next = world_of(wanted, command, world, log); };
-    const RunResult result = runs.serving ? runs.serving->run(*world.experiment, *world.simulation, options,
-                                                              one.listener(), stop, number == count)
-                                          : run_here(*world.experiment, *world.simulation, runs.controllers, options,
-                                                     one.listener(), finish, log, stop);
-    if (!result.next) {
-      goes_on = result.end == RunResult::End::finished;
-      return finish(result);
-    }
-    const bool is_reset = result.end == RunResult::End::reset;
-    log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}", is_reset ? "reset" : "another snapshot",
-                           result.ticks, next->simulation->tick(), next->experiment->seed));
-    one.begin(*next->experiment, *next->simulation, is_reset ? reset : restored);
-    world.simulation.reset();
-    world = std::move(*next);
-    options = {.speed = result.next->speed,
-               .state = result.next->state,
-               .from = result.next->snapshot,
-               .keep_interval = options.keep_interval,
-               .needs_recording = options.needs_recording,
-               .rewound = result.next->rewound};
-  }
+  const RunResult result = session::run_with_resets(
+      world, options, session::threads_for(*world.experiment, command.threads),
+      [&](const session::RunWorld& now, const session::RunOptions& with) {
+        return runs.serving
+                   ? runs.serving->run(*now.experiment, *now.simulation, with, one.listener(), stop, number == count)
+                   : run_here(*now.experiment, *now.simulation, runs.controllers, with, one.listener(), finish, log,
+                              stop);
+      },
+      [&](const RunResult& ended, const session::RunWorld& next) {
+        const bool is_reset = ended.end == RunResult::End::reset;
+        log.notice(fmt::format("{} at tick {}: goes on from tick {} with seed {}",
+                               is_reset ? "reset" : "another snapshot", ended.ticks, next.simulation->tick(),
+                               next.experiment->seed));
+        one.begin(*next.experiment, *next.simulation, is_reset ? reset : restored);
+      });
+  goes_on = result.end == RunResult::End::finished;
+  return finish(result);
 }
 
 std::size_t count_of_runs(const RunCommand& command) {
@@ -243,7 +201,7 @@ ExperimentPtr experiment_of_run(const Runs& runs, std::size_t number) {
   const ExperimentPtr& experiment = runs.experiments[(number - 1) % runs.experiments.size()];
   const std::vector<std::uint64_t>& seeds = runs.command.seeds;
   if (seeds.empty()) return experiment;
-  return with_seed(experiment, seeds[(number - 1) / runs.experiments.size() % seeds.size()]);
+  return session::with_seed(experiment, seeds[(number - 1) / runs.experiments.size() % seeds.size()]);
 }
 
 // One after the other, each as often as asked for, until one does not finish. The exit code.
@@ -256,8 +214,9 @@ int run_each(Runs& runs, Log& log, const std::atomic<bool>& stop) {
       const ExperimentPtr experiment = experiment_of_run(runs, number);
       if (count > 1)
         log.notice(fmt::format("run {} of {}: {}, seed {}", number, count, experiment->name, experiment->seed));
-      World world = runs.first.simulation != nullptr ? std::exchange(runs.first, {})
-                                                     : build_world(runs.command, experiment, runs.from, log);
+      session::RunWorld world = runs.first.simulation != nullptr
+                                    ? std::exchange(runs.first, {})
+                                    : build_world(runs.command, experiment, runs.from, log);
       code = run_one(runs, number, count, std::move(world), log, stop, goes_on);
     }
   } catch (const std::exception& error) {

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "client_sdk/src/controller_call.hpp"
+#include "client_sdk/hosting/controller_call.hpp"
 
 namespace cohort::tool {
 namespace {

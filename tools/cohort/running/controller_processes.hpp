@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "server/session/server/server.hpp"
+#include "server/serving/server.hpp"
 #include "tools/cohort/cli/log.hpp"
 #include "tools/cohort/running/team_controllers.hpp"
 #include "tools/processes/children.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "client_sdk/src/controller_host.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
 
 namespace cohort::tool {
 

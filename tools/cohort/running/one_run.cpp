@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/session/run_recorder.hpp"
+#include "server/run/run_recorder.hpp"
 #include "tools/cohort/cli/exit_codes.hpp"
 #include "tools/cohort/cli/output_file.hpp"
 #include "tools/cohort/running/summary_file.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "server/recording/recorder.hpp"
-#include "server/session/run.hpp"
+#include "server/run/run.hpp"
 #include "tools/cohort/cli/printed_table.hpp"
 #include "tools/cohort/cli/terminal.hpp"
 #include "tools/cohort/running/run_options.hpp"

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "server/session/server/server.hpp"
+#include "server/serving/server.hpp"
 #include "tools/cohort/cli/log.hpp"
 #include "tools/cohort/running/run_options.hpp"
 #include "tools/cohort/running/team_controllers.hpp"

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "server/session/run.hpp"
+#include "server/run/run.hpp"
 
 namespace cohort::tool {
 

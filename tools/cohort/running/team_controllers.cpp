@@ -4,10 +4,10 @@
 #include <set>
 #include <utility>
 
-#include "client_sdk/src/controller_call.hpp"
-#include "client_sdk/src/plugin_file.hpp"
+#include "client_sdk/hosting/controller_call.hpp"
+#include "client_sdk/hosting/plugin_file.hpp"
 #include "server/description/input_error.hpp"
-#include "server/session/roster.hpp"
+#include "server/run/roster.hpp"
 #include "tools/cohort/running/keyboard.hpp"
 
 namespace cohort::tool {

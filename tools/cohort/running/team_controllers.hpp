@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "client_sdk/src/controller_host.hpp"
-#include "client_sdk/src/plugin_loader.hpp"
+#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/plugin_loader.hpp"
 #include "server/description/experiment.hpp"
 #include "server/simulation/simulation.hpp"
 

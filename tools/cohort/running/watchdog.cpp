@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "client_sdk/src/controller_call.hpp"
+#include "client_sdk/hosting/controller_call.hpp"
 #include "tools/cohort/cli/exit_codes.hpp"
 
 namespace cohort::tool {

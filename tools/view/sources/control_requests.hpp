@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "idl/control_messages.hpp"
+#include "idl/wire/control_messages.hpp"
 #include "tools/view/source.hpp"
 
 namespace cohort::view {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 
-#include "idl/control_messages.hpp"
+#include "idl/wire/control_messages.hpp"
 #include "server/viewing/run_history.hpp"
 #include "tools/view/messages/view_messages.hpp"
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "client_sdk/src/control_client.hpp"
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tools/view/driving/drivers.hpp"
 #include "tools/view/messages/scene_publisher.hpp"
 #include "tools/view/source.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "idl/control_messages.hpp"
+#include "idl/wire/control_messages.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {

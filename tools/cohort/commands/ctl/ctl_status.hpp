@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "idl/control_messages.hpp"
+#include "idl/wire/control_messages.hpp"
 
 /// How `cohort ctl status` shows the reply to GetStatus.
 namespace cohort::tool {

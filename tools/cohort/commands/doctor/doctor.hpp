@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "idl/identity.hpp"
+#include "idl/dds/identity.hpp"
 
 /// What `cohort doctor` looks at, each check by itself.
 namespace cohort::tool {

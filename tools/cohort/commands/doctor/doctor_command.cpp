@@ -5,7 +5,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/doctor/doctor.hpp"
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <thread>
 
-#include "idl/survey.hpp"
+#include "idl/dds/survey.hpp"
 #include "server/core/processors.hpp"
 #include "tools/cohort/commands/doctor/doctor.hpp"
 

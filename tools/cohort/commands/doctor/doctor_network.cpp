@@ -14,7 +14,7 @@
 #include <memory>
 #include <sstream>
 
-#include "idl/survey.hpp"
+#include "idl/dds/survey.hpp"
 #include "tools/cohort/commands/doctor/doctor.hpp"
 
 namespace cohort::tool {

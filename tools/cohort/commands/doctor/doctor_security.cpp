@@ -3,7 +3,7 @@
 
 #include <ctime>
 
-#include "idl/wire.hpp"
+#include "idl/dds/transport.hpp"
 #include "tools/cohort/commands/doctor/doctor.hpp"
 #include "tools/cohort/commands/security/certificates.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "idl/identity.hpp"
+#include "idl/dds/identity.hpp"
 
 /// The files of DDS Security, made with the openssl program.
 namespace cohort::tool {

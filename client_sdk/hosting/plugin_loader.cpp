@@ -1,0 +1,102 @@
+#include "client_sdk/hosting/plugin_loader.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include "client_sdk/hosting/controller_call.hpp"
+#include "client_sdk/hosting/plugin_file.hpp"
+
+namespace cohort {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A name is looked for, a path is taken as it is.
+bool is_path(const std::string& name_or_path) {
+  return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".so");
+}
+
+std::string joined(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string names_of_plugins(const std::vector<fs::path>& directories) {
+  constexpr std::size_t few = 16;
+  std::set<std::string> names;
+  for (const fs::path& directory : directories) {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, ignored))
+      if (entry.path().extension() == ".so") names.insert(entry.path().stem().string());
+  }
+  return names.empty() || names.size() > few ? "" : "; known: " + joined(names);
+}
+
+// What dlopen says, without the path, and what to do about it.
+std::string reason_not_loaded(const fs::path& path) {
+  const char* error = ::dlerror();
+  std::string reason = error != nullptr ? error : "unknown error";
+  if (const std::string prefix = path.string() + ": "; reason.starts_with(prefix)) reason.erase(0, prefix.size());
+  if (reason.starts_with("undefined symbol")) return reason + ". Link what defines it into the plugin";
+  return reason;
+}
+
+}  // namespace
+
+fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path>& directories) {
+  std::error_code ignored;
+  if (is_path(name_or_path)) {
+    fs::path path = fs::absolute(name_or_path).lexically_normal();
+    if (fs::is_regular_file(path, ignored)) return path;
+    throw std::runtime_error("there is no controller plugin " + path.string());
+  }
+  std::string tried;
+  for (const fs::path& directory : directories) {
+    fs::path path = (directory / (name_or_path + ".so")).lexically_normal();
+    if (fs::is_regular_file(path, ignored)) return path;
+    tried += (tried.empty() ? "" : ", ") + path.string();
+  }
+  throw std::runtime_error("there is no controller plugin '" + name_or_path + "'" + names_of_plugins(directories) +
+                           ". Tried " + tried + ". Give its path, or put its folder into COHORT_PLUGIN_PATH");
+}
+
+LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs::path>& directories)
+    : path_(find_plugin(name_or_path, directories)), library_(nullptr, ::dlclose) {
+  check_plugin_file(path_);
+  {
+    const Callee callee("the controller plugin " + path_.string());
+    const ControllerCall under_way(callee, "its static constructors", 0);
+    library_.reset(::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL));
+  }
+  if (library_ != nullptr) plugin_ = static_cast<const Plugin*>(::dlsym(library_.get(), "cohort_plugin"));
+  if (plugin_ == nullptr) throw std::runtime_error("cannot load " + path_.string() + ": " + reason_not_loaded(path_));
+  // First in the struct in every version, so it can be read before anything else is trusted.
+  check_plugin_abi(path_, plugin_->abi);
+}
+
+std::vector<fs::path> default_plugin_directories() {
+  std::vector<fs::path> directories;
+  if (const char* listed = std::getenv("COHORT_PLUGIN_PATH"); listed != nullptr) {
+    std::string_view rest = listed;
+    while (!rest.empty()) {
+      const std::string_view directory = rest.substr(0, rest.find(':'));
+      if (!directory.empty()) directories.emplace_back(directory);
+      rest.remove_prefix(std::min(rest.size(), directory.size() + 1));
+    }
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return directories;
+  const fs::path bin = program.parent_path();
+  directories.push_back((bin / "../lib/controllers").lexically_normal());  // in a build tree
+  directories.push_back((bin / COHORT_LIB_FROM_BIN / "cohort/controllers").lexically_normal());
+  return directories;
+}
+
+}  // namespace cohort

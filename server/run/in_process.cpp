@@ -1,0 +1,141 @@
+#include "server/run/in_process.hpp"
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "server/run/exchange.hpp"
+#include "server/run/roster.hpp"
+#include "server/run/run_monitor.hpp"
+
+namespace cohort::session {
+
+namespace {
+
+// Those of `robots` that are due at `tick`.
+Exchange::Taken ask(Exchange& exchange, Exchange::Frame& frame, const description::Experiment& experiment,
+                    std::span<const std::uint32_t> robots, std::uint64_t tick, ControllerHost& host) {
+  exchange.fill_frame(frame, robots, tick);
+  if (frame.robots.empty()) return {};
+  wire::Observation observation;
+  observation.tick = tick;
+  observation.time_ns = (experiment.world.step * static_cast<std::int64_t>(tick)).count();
+  observation.robots = frame.robots;
+  observation.values = frame.values;
+  const std::span<const double> answer = host.answer(observation);
+  return exchange.take(robots, tick, frame.robots, answer, RunMonitor::Clock::now().time_since_epoch());
+}
+
+// What a snapshot has of frames without an answer: others were asked, and had not answered when it was taken.
+void ask_again(Exchange& exchange, const description::Experiment& experiment, std::span<const std::uint32_t> robots,
+               std::uint64_t now, ControllerHost& host) {
+  std::map<std::uint64_t, std::vector<std::uint32_t>> robots_of;  // by tick
+  for (const std::uint32_t robot : robots)
+    for (const std::uint64_t tick : exchange.barrier().unanswered(robot))
+      if (tick < now) robots_of[tick].push_back(robot);
+  Exchange::Frame frame;
+  for (const auto& [tick, unanswered] : robots_of) ask(exchange, frame, experiment, unanswered, tick, host);
+}
+
+// Throws SnapshotError if a controller cannot save.
+ControllerStates states_of(const std::vector<std::unique_ptr<ControllerHost>>& hosts, const Simulation& simulation,
+                           RunMonitor& monitor) {
+  ControllerStates states(simulation.robot_count());
+  for (std::size_t team = 0; team < hosts.size(); ++team) {
+    try {
+      for (auto& [robot, state] : hosts[team]->save()) states[robot] = std::move(state);
+    } catch (const SaveFailure& failure) {
+      const std::string whose = "team '" + simulation.experiment().teams[team].name + "'";
+      monitor.add_unsaved(whose, whose + ": " + failure.what());
+      throw SnapshotError(whose + ": " + failure.what());
+    }
+  }
+  return states;
+}
+
+void offer_snapshot(const RunListener& listener, const std::function<SessionSnapshot()>& take) {
+  if (!listener.can_save) return;
+  try {
+    listener.can_save(take);
+  } catch (const SnapshotError&) {
+    // The run has an event of it, and goes on.
+  }
+}
+
+}  // namespace
+
+RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
+                         const std::vector<ControllerKind>& controllers, const RunOptions& options,
+                         const RunListener& listener, const std::atomic<bool>& stop) {
+  RunMonitor monitor(experiment, simulation, options, listener);
+  Exchange exchange(simulation);
+  if (options.from) restore(*options.from, exchange);
+  const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
+
+  const auto fail = [&](const std::string& why) {
+    monitor.add_event("failed", why);
+    return monitor.finish(RunResult::End::failed, why);
+  };
+  if (listener.can_fail) listener.can_fail(fail);
+  std::vector<std::unique_ptr<ControllerHost>> hosts;
+  const std::vector<description::Team>& teams = simulation.experiment().teams;
+  try {
+    for (std::size_t team = 0; team < teams.size(); ++team) {
+      wire::Admit admit;
+      admit.client = team;
+      admit.step_ns = experiment.world.step.count();
+      admit.tick = simulation.tick();
+      admit_robots(admit, simulation.experiment(), simulation, teams[team].robots);
+      hosts.push_back(std::make_unique<ControllerHost>(controllers[team]));
+      if (options.from) admit.start_reason = wire::StartReason::restored;
+      hosts.back()->start(admit, descriptions);
+      if (!options.from) continue;
+      const auto& robots = teams[team].robots;
+      for (const std::string& notice : hosts.back()->load(states_of(*options.from, robots)))
+        monitor.add_event("unsaved", "team '" + teams[team].name + "': " + notice);
+      ask_again(exchange, experiment, robots, simulation.tick(), *hosts.back());
+    }
+    if (options.from) monitor.note_left_out(*options.from);
+
+    monitor.start();
+    Exchange::Frame frame;  // reused
+    while (!monitor.is_over()) {
+      if (stop) return monitor.finish(RunResult::End::interrupted);
+      offer_snapshot(listener, [&] {
+        return take_snapshot(experiment, simulation, exchange, states_of(hosts, simulation, monitor));
+      });
+      const auto begin = RunMonitor::Clock::now();
+      exchange.open(begin.time_since_epoch());
+      monitor.at_boundary();
+      for (std::size_t team = 0; team < hosts.size(); ++team) {
+        const auto taken = ask(exchange, frame, experiment, teams[team].robots, simulation.tick(), *hosts[team]);
+        if (!taken.is_fault) continue;
+        monitor.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
+        for (const lockstep::Barrier::Miss& miss : exchange.barrier().take_refused()) monitor.add_miss(miss);
+        if (taken.ends_run) return monitor.finish(RunResult::End::failed, taken.rejection->text);
+      }
+      monitor.add_barrier(RunMonitor::Clock::now() - begin);
+      monitor.commanded(exchange.apply());
+      try {
+        simulation.step();
+      } catch (const std::runtime_error& error) {
+        monitor.add_event("stopped", error.what());
+        return monitor.finish(RunResult::End::failed, error.what());
+      }
+      monitor.stepped();
+      monitor.report(false, [](Progress&) {});
+      if (const auto due = monitor.due_time()) {
+        std::this_thread::sleep_until(*due);
+        monitor.add_lateness(RunMonitor::Clock::now() - *due);
+      }
+    }
+  } catch (const ControllerFailure& failure) {
+    return fail(failure.what());
+  }
+  return monitor.finish(RunResult::End::finished);
+}
+
+}  // namespace cohort::session

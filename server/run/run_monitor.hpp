@@ -1,0 +1,106 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "server/lockstep/barrier.hpp"
+#include "server/run/run.hpp"
+
+namespace cohort::session {
+
+/// Watches one run and makes its result: wall time, pace, progress reports, events. Not thread-safe.
+class RunMonitor {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  RunMonitor(const description::Experiment& experiment, const Simulation& simulation, RunOptions options,
+             RunListener listener);
+
+  /// The whole duration is simulated, a stop condition holds, or the recording that it needs has ended.
+  bool is_over() const {
+    return simulation_.tick() >= total_ticks_ || simulation_.stop_reason() || (unrecorded_ && options_.needs_recording);
+  }
+  void start();  ///< the first frame is about to go out
+  void stop();   ///< the last step is done, or there will be none
+  /// A step is done.
+  void stepped();
+  /// The frames of this tick are out.
+  void at_boundary();
+  void commanded(std::span<const std::uint32_t> changed) const {
+    if (listener_.commands) listener_.commands(changed);
+  }
+  /// Reports if the last report is long enough ago, or `now_anyway`. `complete` fills in who is awaited.
+  template <class Complete>
+  void report(bool now_anyway, Complete&& complete) {
+    const Clock::time_point now = Clock::now();
+    if (now - last_report_ >= report_interval) see_whether_recorded();
+    if (!listener_.progress || (!now_anyway && now - last_report_ < report_interval)) return;
+    Progress progress = progress_at(now);
+    complete(progress);
+    listener_.progress(progress);
+  }
+  Clock::time_point next_report() const { return last_report_ + report_interval; }
+  /// When the next tick may begin at the asked speed; nothing if none is asked. From the run's beginning or its last
+  /// change of pace, so that simulated and wall time never drift apart.
+  std::optional<Clock::time_point> due_time() const;
+  /// A change of pace, without a gap where the run was at its pace before.
+  void set_speed(double speed);
+  /// The wall time until now does not count for the pace.
+  void resume();
+  double speed() const { return options_.speed; }
+  const RunOptions& options() const { return options_; }
+  std::chrono::nanoseconds duration() const { return step_ * static_cast<std::int64_t>(total_ticks_); }
+  void controlled(ControlEvent event);
+  const EventLog& events() const { return log_; }
+  void add_event(const std::string& kind, const std::string& text, std::uint64_t count = 1);
+  void add_barrier(std::chrono::nanoseconds latency) {
+    result_.barrier.add(latency);
+    if (listener_.barrier) listener_.barrier(latency);
+  }
+  /// What a snapshot that is taken, or that the run goes on from, has not of its controllers; and that it is of a build
+  /// with other results.
+  void note_left_out(const SessionSnapshot& snapshot) {
+    if (const std::string why = why_results_differ(snapshot.build); !why.empty())
+      add_event("other_build", "the snapshot: " + why);
+    for (const std::string& sentence : what_is_left_out(snapshot, simulation_.experiment()))
+      add_event("unsaved", sentence);
+  }
+  /// A snapshot cannot be taken. `whose`: controllers that cannot save; each is told with its first reason, once.
+  void add_unsaved(const std::string& whose, const std::string& why);
+  void add_resent(std::uint64_t frames) { result_.resent += frames; }
+  void add_lateness(std::chrono::nanoseconds lateness) { result_.lateness.add(lateness); }
+  void add_miss(const lockstep::Barrier::Miss& miss);
+  /// The result, which is complete now. A second time if what ended the run went wrong.
+  RunResult finish(RunResult::End end, const std::string& error = {});
+
+ private:
+  static constexpr std::chrono::milliseconds report_interval{200};
+  Progress progress_at(Clock::time_point now);
+  void see_whether_recorded();
+
+  const Simulation& simulation_;
+  RunOptions options_;
+  RunListener listener_;
+  std::uint32_t robots_at_first_;
+  std::chrono::nanoseconds step_;
+  std::uint64_t total_ticks_;
+  bool started_ = false;
+  bool stopped_ = false;
+  std::optional<std::string> unrecorded_;       // why not
+  std::optional<std::uint64_t> last_boundary_;  // that the listener was told of
+  Clock::time_point start_;
+  // The pace is counted from here.
+  Clock::time_point pace_start_;
+  std::chrono::nanoseconds pace_start_time_{0};  // simulated
+  Clock::time_point last_report_;
+  std::chrono::nanoseconds last_report_time_{0};  // simulated
+  EventLog log_;
+  std::map<std::string, std::string> unsaved_;  // why, by whose
+  RunResult result_;
+};
+
+}  // namespace cohort::session

@@ -1,0 +1,374 @@
+#include "server/serving/clients.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "client_sdk/src/this_process.hpp"
+#include "server/description/select_robots.hpp"
+#include "server/run/roster.hpp"
+
+namespace cohort::session {
+namespace {
+
+// What a client may ask for, so that no stranger costs a tick's time.
+constexpr std::size_t most_selectors = 4096;
+
+}  // namespace
+
+void Clients::begin(ServedRun& run) {
+  run_ = &run;
+  std::vector<AttachedClient*> staying;
+  std::vector<std::uint64_t> gone;
+  for (auto& [id, client] : clients_) {
+    if (!client.alive)
+      gone.push_back(id);
+    else if (client.drove || client.claims)
+      staying.push_back(&client);
+    client.begin_run();
+  }
+  for (const std::uint64_t id : gone) forget(id);
+  std::ranges::sort(staying, {}, &AttachedClient::place);
+  for (AttachedClient* client : staying) claim(*client);
+}
+
+void Clients::end() {
+  for (auto& [id, client] : clients_) client.drove = run_->leases.lease(id) != nullptr;
+  run_ = nullptr;
+}
+
+std::set<std::uint64_t> Clients::dismiss(const RunResult& last, std::uint32_t run) {
+  const bool failed = last.end == RunResult::End::failed;
+  const wire::ReportKind kind = failed ? wire::ReportKind::failed : wire::ReportKind::finished;
+  const std::string reason = failed ? "failed" : last.end == RunResult::End::finished ? "complete" : "interrupted";
+  std::set<std::uint64_t> hearing;
+  for (auto& [id, client] : clients_) {
+    if (!client.drove) continue;
+    client.send(client.report, wire::Report{id, run, kind, last.ticks, reason, last.error}, nullptr);
+    if (client.alive) hearing.insert(id);
+  }
+  return hearing;
+}
+
+void Clients::join(const Inbox::Arrival& arrival) {
+  AttachedClient* client = attach(arrival);
+  if (client == nullptr) return;
+  const bool is_news = !client->is_known || client->join.robots != arrival.join.robots;
+  client->is_known = true;
+  client->join = arrival.join;
+  set_alive(*client, true);
+  // Clients join once a second, which only says that they live.
+  if (is_news) claim(*client);
+}
+
+// The client of this Join, with its writers. Null if it may not be attached, or cannot.
+AttachedClient* Clients::attach(const Inbox::Arrival& arrival) {
+  const std::uint64_t id = arrival.join.client;
+  std::string refusal;
+  {
+    const std::lock_guard lock(mutex_);
+    refusal = names_.enter(id, arrival.sender, arrival.participant->identity());
+  }
+  if (refusal.empty()) {
+    if (const auto known = clients_.find(id); known != clients_.end()) return &known->second;
+    try {
+      return &clients_.try_emplace(id, arrival, ++arrivals_).first->second;
+    } catch (const wire::WireError& error) {
+      refusal = std::string("flood: a client cannot be attached: ") + error.what();
+      forget(id);
+    }
+  }
+  run_->monitor.add_event("rejected", refusal);
+  return nullptr;
+}
+
+void Clients::note_liveliness(const Inbox::Liveliness& change) {
+  std::optional<std::uint64_t> id;
+  {
+    const std::lock_guard lock(mutex_);
+    id = client_of(change.sender);
+  }
+  // Of the writer of its last Join: one that was lost and found again has another, and the end of the former comes
+  // late.
+  if (id) set_alive(clients_.at(*id), change.alive);
+}
+
+void Clients::note_process_end(std::uint32_t process) {
+  static const std::string here = host_name();
+  for (auto next = clients_.begin(); next != clients_.end();) {
+    AttachedClient& client = (next++)->second;  // which may be forgotten
+    if (client.join.process == process && client.join.host == here) set_alive(client, false);
+  }
+}
+
+void Clients::set_alive(AttachedClient& client, bool alive) {
+  client.alive = alive;
+  {
+    const std::lock_guard lock(mutex_);
+    names_.set_gone(client.id(), !alive);
+    if (const lockstep::Leases::Lease* lease = run_->leases.lease(client.id())) {
+      if (lease->alive == alive) return;
+      run_->leases.set_alive(client.id(), alive);
+      run_->monitor.add_event(alive ? "back" : "lost", client.label + " with " + run_->robots_text(lease->robots) +
+                                                           (alive ? " is back" : " is gone or does not respond"));
+      // Nobody waits for a robot that does not need its controller.
+      for (const std::uint32_t robot : lease->robots)
+        if (!alive && !run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);
+      return;
+    }
+    if (client.claims) {
+      // A claim counts only while its client lives; a stopped process that goes on has it back.
+      if (alive) run_->leases.claim(client.id(), client.robots);
+      if (!alive) run_->leases.release(client.id());
+      return;
+    }
+  }
+  if (!alive) forget(client.id());
+}
+
+void Clients::forget(std::uint64_t client) {
+  clients_.erase(client);
+  const std::lock_guard lock(mutex_);
+  names_.forget(client);
+}
+
+void Clients::tell(AttachedClient& client, wire::ReportKind kind, const std::string& reason, const std::string& text,
+                   std::optional<std::uint64_t> tick) {
+  const std::uint64_t of_tick = tick.value_or(run_->simulation.tick());
+  client.send(client.report, wire::Report{client.id(), run_->number, kind, of_tick, reason, text}, run_);
+}
+
+void Clients::note_rejections(const Inbox::Rejected& rejected) {
+  for (const auto& [key, rejections] : rejected) {
+    const auto& [id, reason] = key;
+    run_->monitor.add_event("rejected", reason + " from " + label_of(id) + ": " + rejections.text, rejections.count);
+    const auto found = clients_.find(id);
+    if (found == clients_.end()) continue;
+    AttachedClient& client = found->second;
+    client.rejected += rejections.count;
+    if (reason == "repeated" || reason == "stale") continue;  // what a resent frame may bring about is no news to it
+    if (client.reported_rejections.insert(reason).second)
+      tell(client, wire::ReportKind::rejected, reason, rejections.text, rejections.tick);
+  }
+}
+
+bool Clients::refuse_unfit(const wire::Report& report) {
+  const auto found = clients_.find(report.client);
+  if (report.reason != wire::failed_in_start || found == clients_.end()) return false;
+  AttachedClient& client = found->second;
+  std::string teams;
+  {
+    const std::lock_guard lock(mutex_);
+    const lockstep::Leases::Lease* lease = run_->leases.lease(report.client);
+    if (lease == nullptr || lease->answer_count > 0) return false;
+    teams = run_->teams_text(lease->robots);
+    for (const std::uint32_t robot : lease->robots)
+      if (!run_->simulation.policy(robot).required) run_->exchange.barrier().set_driven(robot, false);
+    for (const std::uint32_t robot : client.drives_first) run_->was_driven[robot] = false;
+    run_->leases.release(report.client);
+  }
+  client.refuse(*run_, teams + ": " + report.text);
+  return true;
+}
+
+// What a client's selectors select in this run.
+void Clients::claim(AttachedClient& client) {
+  std::set<std::uint32_t> robots;
+  std::string refusal;
+  if (client.join.robots.size() > most_selectors)
+    refusal = "it asks with more than " + std::to_string(most_selectors) + " selectors: ranges say more in one";
+  for (const std::string& selector : client.join.robots) {
+    if (!refusal.empty()) break;
+    try {
+      const auto selected = description::select_robots(run_->simulation.description(), selector);
+      robots.insert(selected.begin(), selected.end());
+    } catch (const std::invalid_argument& error) {
+      refusal = error.what();
+    }
+  }
+  if (robots.empty() && refusal.empty()) refusal = "it asks for no robot";
+  if (refusal.empty()) refusal = why_forbidden(client, robots);
+  if (!refusal.empty()) return client.refuse(*run_, refusal);
+  client.robots.assign(robots.begin(), robots.end());
+  client.claims = true;
+  const std::lock_guard lock(mutex_);
+  run_->leases.claim(client.id(), client.robots);
+}
+
+// Empty if its identity may drive them all, or if there is no security.
+std::string Clients::why_forbidden(const AttachedClient& client, const std::set<std::uint32_t>& robots) const {
+  if (!client.identity) return {};
+  const std::vector<std::string>& selectors = client.identity->robots;
+  const std::string who = "its identity '" + client.identity->name + "' may ";
+  if (selectors.empty()) return who + "look on, and drive no robot";
+  // The same identities may serve several experiments, of which this one need not have all their robots.
+  const auto allowed = description::select_robots_of_any(run_->simulation.description(), selectors);
+  const auto forbidden =
+      std::ranges::find_if(robots, [&](std::uint32_t robot) { return !std::ranges::binary_search(allowed, robot); });
+  if (forbidden == robots.end()) return {};
+  std::string list;
+  for (const std::string& selector : selectors) list += (list.empty() ? "" : ",") + selector;
+  return who + "drive " + list + ", not " + run_->simulation.robot_name(*forbidden);
+}
+
+void Clients::decide_claims() {
+  lockstep::Leases::Decisions decisions;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!run_->leases.has_claims()) return;
+    const lockstep::Barrier& barrier = run_->exchange.barrier();
+    const bool at_boundary = barrier.complete();
+    decisions =
+        run_->leases.decide(RunMonitor::Clock::now().time_since_epoch(), [&](const std::vector<std::uint32_t>& robots) {
+          return at_boundary || std::ranges::any_of(robots, [&](auto robot) { return barrier.is_awaited(robot); });
+        });
+  }
+  for (const auto& refused : decisions.refused)
+    clients_.at(refused.client)
+        .refuse(*run_, run_->simulation.robot_name(refused.robot) + " is driven by " + label_of(refused.holder));
+  for (const auto& granted : decisions.granted) admit(granted);
+}
+
+void Clients::admit(const lockstep::Leases::Granted& granted) {
+  AttachedClient& client = clients_.at(granted.client);
+  for (const std::uint64_t loser : granted.superseded) {
+    const std::string text = client.label + " has taken its robots over";
+    tell(clients_.at(loser), wire::ReportKind::superseded, "superseded", text);
+    run_->monitor.add_event("superseded", label_of(loser) + ": " + text);
+  }
+
+  std::vector<std::uint64_t> frames;  // under way: asked of whoever had the robots before, and not answered
+  wire::Admit answer;
+  {
+    const std::lock_guard lock(mutex_);
+    const lockstep::Leases::Lease& lease = *run_->leases.lease(granted.client);
+    // Of a restored run there are some before its first tick.
+    if (run_->started || run_->monitor.options().from) frames = run_->frames_under_way(lease.robots);
+    answer.client = granted.client;
+    answer.run = run_->number;
+    answer.epoch = lease.epoch;
+    answer.start_reason = why_it_starts(lease.robots, client);
+    if (answer.start_reason == wire::StartReason::takeover && note_lost_state(client, lease.robots)) return;
+    if (answer.start_reason == wire::StartReason::restored && give_state(client, lease.robots))
+      answer.start_reason = wire::StartReason::restored_with_state;
+    if (!granted.again) client.drives_first.clear();
+    for (const std::uint32_t robot : lease.robots) {
+      if (!run_->was_driven[robot]) client.drives_first.push_back(robot);
+      run_->was_driven[robot] = true;
+    }
+    answer.tick = frames.empty() ? run_->simulation.tick() : frames.front();
+    answer.step_ns = run_->experiment.world.step.count();
+    admit_robots(answer, run_->simulation.experiment(), run_->simulation, lease.robots);
+    for (wire::AdmittedRobot& robot : answer.robots) robot.description = run_->descriptions[robot.description];
+    if (!granted.again) run_->monitor.add_event("joined", client.label + " drives " + run_->robots_text(lease.robots));
+  }
+  client.claims = false;
+  client.send(client.admit, answer, run_);
+  for (const std::uint64_t tick : frames) send_frame(client, tick, false);
+  client.times_resent = 0;
+}
+
+// Under the lock.
+wire::StartReason Clients::why_it_starts(const std::vector<std::uint32_t>& robots, const AttachedClient& client) const {
+  const auto& from = run_->monitor.options().from;
+  // The state in a snapshot is that of its tick, so it also serves one who takes robots over there.
+  if (from && from->tick == run_->simulation.tick()) return wire::StartReason::restored;
+  const bool takes_over = std::ranges::any_of(robots, [&](auto robot) { return run_->was_driven[robot]; });
+  if (run_->started && takes_over) return wire::StartReason::takeover;
+  return client.drove ? wire::StartReason::reset : wire::StartReason::first;
+}
+
+// Whether the run goes back for it. Under the lock.
+bool Clients::note_lost_state(const AttachedClient& client, const std::vector<std::uint32_t>& robots) {
+  const bool is_unwanted = std::ranges::any_of(
+      robots, [&](auto robot) { return run_->simulation.policy(robot).on_lost == description::OnLost::rewind; });
+  const std::string lost =
+      "the state of the controllers of " + run_->robots_text(robots) + " was lost with their process";
+  if (is_unwanted && run_->can_rewind && run_->can_rewind()) {
+    run_->rewinds_for = lost;
+    return true;
+  }
+  run_->monitor.add_event("forgotten", lost + "; " + client.label + " starts them without it" +
+                                           (is_unwanted ? ", as there is no snapshot to go back to" : ""));
+  return false;
+}
+
+// Whether the snapshot that the run goes on from has something for it. Under the lock.
+bool Clients::give_state(AttachedClient& client, std::span<const std::uint32_t> robots) {
+  const std::vector<RobotState> states = states_of(*run_->monitor.options().from, robots);
+  if (states.empty()) return false;
+  if (client.has_state()) {
+    client.state.to_load = pack(states);
+    return true;
+  }
+  run_->monitor.add_event("unsaved", client.label + " begins anew: it does not take what its controllers remembered, " +
+                                         "which is in the snapshot");
+  return false;
+}
+
+// All are filled before the first is sent, so that nobody who takes its answers has to wait for the lock.
+void Clients::send_frames() {
+  const std::uint64_t tick = run_->simulation.tick();
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, client] : clients_) client.fill_frame(*run_, tick, false);
+  }
+  for (auto& [id, client] : clients_) {
+    if (client.frame.robots.empty()) continue;
+    client.write_frame(*run_, tick, false);
+    client.times_resent = 0;
+  }
+}
+
+void Clients::send_frame(AttachedClient& client, std::uint64_t tick, bool resent) {
+  {
+    const std::lock_guard lock(mutex_);
+    client.fill_frame(*run_, tick, resent);
+  }
+  if (!client.frame.robots.empty()) client.write_frame(*run_, tick, resent);
+}
+
+void Clients::resend_frames(RunMonitor::Clock::time_point now) {
+  for (auto& [id, client] : clients_) {
+    if (!client.resend.is_due(now.time_since_epoch())) continue;
+    std::vector<std::uint64_t> ticks;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!run_->is_awaited(id)) continue;
+      ticks = run_->frames_under_way(run_->leases.lease(id)->robots);
+    }
+    resend_frames(client, ticks, now.time_since_epoch());
+  }
+}
+
+void Clients::resend_frames(AttachedClient& client, std::span<const std::uint64_t> ticks, lockstep::Time now) {
+  ++client.times_resent;
+  for (const std::uint64_t tick : ticks) send_frame(client, tick, true);
+  run_->monitor.add_resent(ticks.size());
+  client.resent_count += ticks.size();
+  client.resend.resent(now);
+}
+
+RunMonitor::Clock::time_point Clients::next_resend(RunMonitor::Clock::time_point latest) const {
+  for (const auto& [id, client] : clients_)
+    if (run_->is_awaited(id)) latest = std::min(latest, RunMonitor::Clock::time_point(client.resend.due()));
+  return latest;
+}
+
+void Clients::tell_detached(std::uint64_t client) {
+  tell(clients_.at(client), wire::ReportKind::superseded, "detached",
+       "it missed a deadline or gave an answer that cannot act, and its policy is to detach it");
+}
+
+std::vector<wire::ControllerStatus> Clients::status() {
+  std::vector<wire::ControllerStatus> all;
+  for (auto& [id, client] : clients_)
+    if (run_->leases.lease(id) != nullptr) all.push_back(client.status(*run_));
+  return all;
+}
+
+std::string Clients::label_of(std::uint64_t client) const {
+  const auto found = clients_.find(client);
+  return found == clients_.end() ? "an unknown client" : found->second.label;
+}
+
+}  // namespace cohort::session

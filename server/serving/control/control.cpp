@@ -1,0 +1,350 @@
+#include "server/serving/control/control.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "client_sdk/text/printable.hpp"
+#include "server/serving/control/control_actions.hpp"
+#include "server/serving/control/control_texts.hpp"
+#include "server/serving/control/request_checks.hpp"
+
+namespace cohort::session {
+namespace {
+
+using wire::Operation;
+using wire::Reply;
+using wire::Request;
+using wire::ResultCode;
+using wire::SimulationState;
+
+constexpr std::size_t most_waiting_bytes = std::size_t{64} << 20;
+constexpr std::size_t most_waiting_of_account = 64;
+constexpr std::size_t most_kept_bytes = std::size_t{256} << 20;        // to go back to
+constexpr std::size_t most_kept_for_clients = std::size_t{256} << 20;  // of snapshots, uploads and recordings
+constexpr std::size_t longest_message = 4096;
+constexpr std::chrono::milliseconds last_reply{500};
+
+RequestBudget::Time now() { return Control::Clock::now().time_since_epoch(); }
+
+SimulationState on_wire(PlaybackState state) {
+  switch (state) {
+    case PlaybackState::stopped: return SimulationState::stopped;
+    case PlaybackState::playing: return SimulationState::playing;
+    case PlaybackState::paused: break;
+  }
+  return SimulationState::paused;
+}
+
+bool may_ask(const wire::Identity& identity, Operation operation) {
+  return identity.may_control || (identity.door == wire::observers_door && wire::is_looking_on(operation));
+}
+
+bool ends_the_run(const Request& request) {
+  switch (request.operation) {
+    case Operation::reset_simulation:
+    case Operation::load_snapshot:
+    case Operation::go_back: return true;
+    case Operation::set_simulation_state:
+      return request.state == SimulationState::stopped || request.state == SimulationState::quitting;
+    default: return false;
+  }
+}
+
+// It takes no time, and who wants the run to stop must be able to say so.
+bool takes_no_time(const Request& request) {
+  switch (request.operation) {
+    case Operation::set_simulation_state: return request.state != SimulationState::stopped;
+    case Operation::step_simulation:
+    case Operation::set_speed:
+    case Operation::stop_recording: return true;
+    default: return false;
+  }
+}
+
+}  // namespace
+
+void Control::begin(ControlledRun run) {
+  run_.emplace(std::move(run));
+  first_tick_ = run_->simulation.tick();
+  ending_.reset();
+  playback_ = Playback(run_->monitor.options().state);
+  queries_.begin(*run_);
+  if (!std::exchange(goes_back_, false))
+    kept_ =
+        KeptSnapshots(static_cast<std::uint64_t>(run_->monitor.options().keep_interval / run_->experiment.world.step),
+                      most_kept_bytes);
+  const auto& from = run_->monitor.options().from;
+  for (const Request& request : std::exchange(answered_by_next_run_, {}))
+    answer(request, ResultCode::ok,
+           "run " + std::to_string(run_->number) + " stands at tick " + std::to_string(run_->simulation.tick()) +
+               ", with seed " + std::to_string(run_->experiment.seed) +
+               (from ? left_out_text(*from, run_->experiment) : std::string()));
+}
+
+void Control::end(RunResult::End how) {
+  const std::string at = "the run has ended at tick " + std::to_string(run_->simulation.tick());
+  answer_steps(playback_.set(PlaybackState::playing), ResultCode::operation_failed, at);
+  for (const Request& request : std::exchange(ledger_.waiting(), {}))
+    if (!wire::is_query(request.operation)) answer(request, ResultCode::incorrect_state, at);  // these come again
+  const bool goes_on = how == RunResult::End::reset || how == RunResult::End::restored;
+  if (!goes_on)  // the server may be gone soon
+    for (auto& [id, requester] : requesters_) requester.replies.wait_until_received(last_reply);
+  run_.reset();
+}
+
+wire::Reply Control::reply_to(const Request& request) {
+  Reply reply;
+  reply.client = request.client;
+  reply.number = request.number;
+  reply.operation = request.operation;
+  return reply;
+}
+
+Control::Requester* Control::requester_of(const ReceivedRequest& received) {
+  const std::uint64_t client = received.request.client;
+  const auto& identity = received.participant->identity();
+  const auto admission =
+      slots_.use(client, identity ? identity->name : std::string(), !identity || identity->may_control, now());
+  if (admission.leaves) lose(*admission.leaves);
+  if (!admission.is_in) return nullptr;
+  client_of_writer_[received.sender.writer] = client;
+  if (const auto known = requesters_.find(client); known != requesters_.end()) {
+    known->second.writer = received.sender.writer;
+    return &known->second;
+  }
+  return &requesters_
+              .emplace(client,
+                       Requester{
+                           .label = received.request.label + (identity ? " ('" + identity->name + "')" : std::string()),
+                           .account = identity ? identity->name : wire::partition_of(client),
+                           .writer = received.sender.writer,
+                           .replies = wire::Writer<Reply>(*received.participant, wire::partition_of(client))})
+              .first->second;
+}
+
+void Control::take(const ReceivedRequest& received) {
+  const Request& request = received.request;
+  const auto reject = [&](const std::string& text) { run_->monitor.add_event("rejected", text); };
+  if (request.client == 0 || !ledger_.is_in_own_name(request.client, received.sender.participant))
+    return reject("foreign: a Request comes in another's name, or in nobody's");
+  if (requester_of(received) == nullptr)
+    return reject("flood: more clients control this run than may, and none of them is idle");
+  if (const auto& identity = received.participant->identity(); identity && !may_ask(*identity, request.operation)) {
+    reject("forbidden: " + label_of(request.client) + " may not control the run");
+    Reply reply = reply_to(request);
+    reply.result = ResultCode::not_permitted;
+    reply.error_message = "the identity '" + identity->name +
+                          "' may not control the run: 'cohort security' gives that right as 'control'";
+    return send(std::move(reply), false);
+  }
+  const RequestBudget::Time began = now();
+  receive(request);
+  charge(request, now() - began);
+}
+
+void Control::receive(const Request& request) {
+  const auto refuse = [&](ResultCode result, const std::string& text) {
+    Reply reply = reply_to(request);
+    reply.result = result;
+    reply.error_message = text;
+    send(std::move(reply), false);
+  };
+  if (request.number == 0) return refuse(ResultCode::malformed, "requests are numbered from 1");
+  if (const std::string wrong = what_is_wrong(request); !wrong.empty())
+    return refuse(wire::name_of(request.operation).empty() ? ResultCode::feature_unsupported : ResultCode::malformed,
+                  wrong);
+  if (wire::is_query(request.operation)) return may_be_done(request) ? answer_query(request) : put_off(request);
+  switch (ledger_.receive(request.client, request.number)) {
+    case RequestLedger::Receipt::under_way: return;  // its reply comes
+    case RequestLedger::Receipt::answered: return send(ledger_.remembered(request.client, request.number), false);
+    case RequestLedger::Receipt::forgotten:
+      return refuse(ResultCode::forgotten, "request " + std::to_string(request.number) +
+                                               " is older than what is remembered: numbers have to ascend");
+    case RequestLedger::Receipt::too_many:
+      return refuse(ResultCode::operation_failed,
+                    "more than " + std::to_string(wire::requests_under_way) + " requests of one client wait already");
+    case RequestLedger::Receipt::fresh: break;
+  }
+  put_off(request);
+}
+
+// Until a boundary, and until its account's turn. What is not there any more is asked for again, if it is a question.
+void Control::put_off(const Request& request) {
+  std::size_t bytes = size_of(request);
+  std::size_t of_account = 0;
+  for (const Request& waiting : ledger_.waiting()) {
+    if (waiting.client == request.client && waiting.number == request.number) return;
+    bytes += size_of(waiting);
+    if (account_of(waiting.client) == account_of(request.client)) ++of_account;
+  }
+  const bool is_query = wire::is_query(request.operation);
+  if (of_account >= most_waiting_of_account || bytes > most_waiting_bytes) {
+    run_->monitor.add_event("rejected", "flood: more requests of " + label_of(request.client) + " than can be done");
+    if (is_query) return;
+    return answer(
+        request, ResultCode::operation_failed,
+        "too many requests: " + std::to_string(of_account) + " of " + account_of(request.client) + " wait already");
+  }
+  ledger_.waiting().push_back(request);
+}
+
+void Control::lose(const wire::Sender& sender) {
+  const auto found = client_of_writer_.find(sender.writer);
+  if (found == client_of_writer_.end()) return;
+  const std::uint64_t client = found->second;
+  client_of_writer_.erase(found);
+  const auto requester = requesters_.find(client);
+  // One that was lost and found again has another writer, and the end of the former comes late.
+  if (requester == requesters_.end() || requester->second.writer != sender.writer) return;
+  lose(client);
+}
+
+void Control::lose(std::uint64_t client) {
+  requesters_.erase(client);
+  slots_.leave(client);
+  ledger_.leave(client);
+  recordings_.leave(client);
+}
+
+void Control::send(Reply reply, bool is_kept) {
+  if (run_) {
+    reply.state =
+        ending_ && ending_->how == RunResult::End::shut_down ? SimulationState::quitting : on_wire(playback_.state());
+    reply.run = run_->number;
+    reply.tick = run_->simulation.tick();
+    reply.time_ns = run_->simulation.time().count();
+  }
+  reply.error_message = printable(reply.error_message, longest_message, Lines::kept);
+  if (is_kept) ledger_.keep(reply);
+  const auto requester = requesters_.find(reply.client);
+  if (requester != requesters_.end()) requester->second.replies.write(reply);  // lost: it is asked for again
+}
+
+void Control::answer(const Request& request, ResultCode result, const std::string& text) {
+  Reply reply = reply_to(request);
+  reply.result = result;
+  reply.error_message = text;
+  send(std::move(reply), true);
+}
+
+void Control::answer_steps(const std::vector<Playback::Steps>& steps, ResultCode result, const std::string& text) {
+  for (const Playback::Steps& each : steps) {
+    const Request request{.client = each.client, .number = each.number, .operation = Operation::step_simulation};
+    const std::uint64_t tick = run_->simulation.tick();
+    answer(request, result,
+           each.until > tick ? text + ", " + ticks_text(each.until - tick) + " before the steps' end" : text);
+  }
+}
+
+std::string Control::label_of(std::uint64_t client) const {
+  const auto found = requesters_.find(client);
+  return found == requesters_.end() ? "a client that has gone" : found->second.label;
+}
+
+void Control::tell(const Request& request, const std::string& text, std::vector<std::byte> action) {
+  run_->monitor.controlled({run_->simulation.tick(), wire::name_of(request.operation),
+                            text + ", says " + label_of(request.client), std::move(action)});
+}
+
+void Control::reach_boundary() {
+  budget_.note_boundary(run_->simulation.tick() != first_tick_, now());
+  queries_.note_progress(Clock::now());
+  if (kept_.wants(run_->simulation.tick())) keep_snapshot();
+  if (!playback_.has_steps()) return;
+  const auto done = playback_.reached(run_->simulation.tick());
+  answer_steps(done, ResultCode::ok, "paused at tick " + std::to_string(run_->simulation.tick()));
+}
+
+void Control::keep_snapshot() {
+  try {
+    kept_.keep(run_->take_snapshot());
+  } catch (const SnapshotError&) {
+    // A controller has failed, which ends the run, or cannot save, which the run has an event of.
+  }
+}
+
+const std::string& Control::account_of(std::uint64_t client) const {
+  static const std::string gone = "clients that have gone";
+  const auto found = requesters_.find(client);
+  return found == requesters_.end() ? gone : found->second.account;
+}
+
+// A run that stands still, or is over, loses nothing.
+bool Control::is_unlimited() const { return playback_.holds() || run_->monitor.is_over(); }
+
+bool Control::may_be_done(const Request& request) {
+  if (takes_no_time(request) || is_unlimited()) return true;
+  if (request.operation == Operation::save_snapshot && saved_) return true;
+  const std::string& account = account_of(request.client);
+  return ends_the_run(request) ? budget_.allows_restart(account, now()) : budget_.allows(account, now());
+}
+
+void Control::charge(const Request& request, RequestBudget::Time took) {
+  if (!is_unlimited()) budget_.charge(account_of(request.client), took, now());
+}
+
+bool Control::has_work() {
+  return std::ranges::any_of(ledger_.waiting(), [this](const Request& request) { return may_be_done(request); });
+}
+
+// The next that may be done, and the actions that follow each other after it: these are done together. What one client
+// has asked for is done in its order.
+std::vector<Request> Control::take_next(Moment moment) {
+  std::deque<Request>& waiting = ledger_.waiting();
+  std::set<std::uint64_t> held_up;
+  std::vector<Request> taken;
+  for (std::size_t i = 0; i < waiting.size();) {
+    const Request& request = waiting[i];
+    const bool is_query = wire::is_query(request.operation);
+    const bool is_now = moment == Moment::boundary || is_query || ends_the_run(request);
+    const bool waits_for_another = moment == Moment::boundary && !is_query && held_up.contains(request.client);
+    if (!taken.empty() && !is_action(request)) break;
+    if (!is_now || waits_for_another || !may_be_done(request)) {
+      if (is_now && !is_query) held_up.insert(request.client);
+      ++i;
+      continue;
+    }
+    taken.push_back(std::move(waiting[i]));
+    waiting.erase(waiting.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!is_action(taken.back())) break;
+  }
+  return taken;
+}
+
+bool Control::perform(Moment moment) {
+  saved_.reset();
+  drop_what_is_too_much();
+  while (!ending_) {
+    const std::vector<Request> next = take_next(moment);
+    if (next.empty()) break;
+    const RequestBudget::Time began = now();
+    if (is_action(next.front()))
+      do_actions(next);
+    else if (wire::is_query(next.front().operation))
+      answer_query(next.front());
+    else
+      do_one(next.front());
+    for (const Request& request : next)
+      charge(request, (now() - began) / static_cast<RequestBudget::Time::rep>(next.size()));
+  }
+  return !ending_;
+}
+
+void Control::drop_what_is_too_much() {
+  std::vector<KeptForClient> kept;
+  ledger_.list(kept);
+  recordings_.list(kept);
+  for (const KeptForClient& each : what_goes(std::move(kept), most_kept_for_clients)) {
+    const std::string text = name_of(each.kind) + " dropped: more than " +
+                             std::to_string(most_kept_for_clients >> 20U) +
+                             " MiB wait for all clients together, and this was the oldest";
+    run_->monitor.add_event("dropped", text + ", of " + label_of(each.client));
+    if (each.kind == KeptForClient::Kind::recording)
+      recordings_.drop(each.client, text);
+    else
+      ledger_.drop(each, text);
+  }
+}
+
+}  // namespace cohort::session

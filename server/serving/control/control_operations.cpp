@@ -1,0 +1,210 @@
+#include <exception>
+#include <utility>
+
+#include "server/serving/control/control.hpp"
+#include "server/serving/control/control_actions.hpp"
+#include "server/serving/control/control_texts.hpp"
+
+namespace cohort::session {
+namespace {
+
+using wire::Operation;
+using wire::Reply;
+using wire::Request;
+using wire::ResultCode;
+using wire::SimulationState;
+
+constexpr std::uint32_t scope_default = 0;
+constexpr std::uint32_t scope_all = 255;
+
+std::string speed_text(double speed) {
+  return speed == 0.0 ? "as fast as it goes" : std::to_string(speed) + " simulated seconds per second at the most";
+}
+
+}  // namespace
+
+void Control::answer_query(const Request& request) {
+  Reply reply = reply_to(request);
+  queries_.answer(reply, request);
+  send(std::move(reply), false);
+}
+
+void Control::do_one(const Request& request) {
+  try {
+    switch (request.operation) {
+      case Operation::set_simulation_state: return set_state(request);
+      case Operation::step_simulation: return step(request);
+      case Operation::reset_simulation: {
+        if (request.scope != scope_default && request.scope != scope_all)
+          return answer(request, ResultCode::feature_unsupported, "only all can be reset: scope 0 or 255");
+        const std::uint64_t seed = request.set_seed ? request.seed : run_->experiment.seed;
+        NextRun next{.seed = seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()};
+        return begin_anew(request, std::move(next), "from the beginning with seed " + std::to_string(seed));
+      }
+      case Operation::set_speed: return set_speed(request);
+      case Operation::save_snapshot: return save(request);
+      case Operation::load_snapshot: return load(request);
+      case Operation::go_back: return go_back(request);
+      case Operation::start_recording: return start_recording(request);
+      default:
+        return answer(request, ResultCode::feature_unsupported, wire::name_of(request.operation) + " is not there yet");
+    }
+  } catch (const std::exception& error) {
+    answer(request, ResultCode::operation_failed, error.what());
+  }
+}
+
+void Control::set_state(const Request& request) {
+  const auto be = [&](PlaybackState state, const std::string& word) {
+    const bool already = playback_.state() == state;
+    if (already && !playback_.has_steps())
+      return answer(request, ResultCode::already_in_target_state, "the run is " + word + " already");
+    const bool was_held = playback_.holds();
+    const std::string at = word + " at tick " + std::to_string(run_->simulation.tick());
+    answer_steps(playback_.set(state), ResultCode::operation_failed, at);
+    if (was_held) run_->monitor.resume();
+    tell(request, at);
+    answer(request, ResultCode::ok, at);
+  };
+  switch (request.state) {
+    case SimulationState::playing: return be(PlaybackState::playing, "playing");
+    case SimulationState::paused: return be(PlaybackState::paused, "paused");
+    case SimulationState::quitting: return quit(request);
+    case SimulationState::stopped: break;
+  }
+  if (playback_.state() == PlaybackState::stopped)
+    return answer(request, ResultCode::already_in_target_state, "the run is stopped already");
+  begin_anew(request, {.seed = run_->experiment.seed, .state = PlaybackState::stopped, .speed = run_->monitor.speed()},
+             "stopped, and from the beginning");
+}
+
+void Control::step(const Request& request) {
+  if (playback_.state_without_steps() == PlaybackState::playing)
+    return answer(request, ResultCode::operation_failed, "the run is not paused, so it makes steps by itself");
+  if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
+  const bool was_held = playback_.holds();
+  playback_.step(run_->simulation.tick(), request.steps, request.client, request.number);
+  if (was_held) run_->monitor.resume();
+  tell(request, ticks_text(request.steps));
+}
+
+void Control::set_speed(const Request& request) {
+  run_->monitor.set_speed(request.speed);
+  tell(request, speed_text(request.speed));
+  answer(request, ResultCode::ok, speed_text(request.speed));
+}
+
+void Control::quit(const Request& request) {
+  tell(request, "the end");
+  ending_ = Ending{};
+  answer(request, ResultCode::ok, "the run ends at tick " + std::to_string(run_->simulation.tick()));
+}
+
+void Control::begin_anew(const Request& request, NextRun next, const std::string& text) {
+  if (!run_->monitor.options().prepare)
+    return answer(request, ResultCode::feature_unsupported, "this server cannot begin another run");
+  run_->monitor.options().prepare(next);
+  tell(request, text);
+  answered_by_next_run_.push_back(request);
+  budget_.begin_restart(account_of(request.client), Clock::now().time_since_epoch());
+  const RunResult::End how = next.snapshot == nullptr ? RunResult::End::reset : RunResult::End::restored;
+  ending_ = Ending{how, std::move(next)};
+}
+
+void Control::save(const Request& request) {
+  if (!saved_) {
+    const SessionSnapshot snapshot = run_->take_snapshot();
+    saved_ = Saved{"saved at tick " + std::to_string(snapshot.tick) + left_out_text(snapshot, run_->experiment),
+                   std::make_shared<const std::vector<std::byte>>(to_bytes(snapshot))};
+  }
+  if (saved_->bytes->size() > wire::largest_data)
+    return answer(request, ResultCode::operation_failed,
+                  "the snapshot has " + std::to_string(saved_->bytes->size()) + " bytes, and " +
+                      std::to_string(wire::largest_data) + " can be sent at the most");
+  tell(request, saved_->text);
+  Reply reply = reply_to(request);
+  reply.size = saved_->bytes->size();
+  reply.error_message = saved_->text;
+  ledger_.offer(request.client, saved_->bytes, Clock::now().time_since_epoch());
+  send(std::move(reply), true);
+}
+
+void Control::start_recording(const Request& request) {
+  if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
+  const std::string text = "recorded from tick " + std::to_string(run_->simulation.tick()) + " on";
+  recordings_.start(request.client, request.resource_string);
+  tell(request, text);
+  answer(request, ResultCode::ok, text);
+}
+
+void Control::load(const Request& request) {
+  const std::string why = ledger_.why_dropped(request.client, KeptForClient::Kind::upload);
+  const auto bytes = ledger_.take_all(request.client);
+  if (!bytes)
+    return answer(request, ResultCode::incorrect_state,
+                  "there is no snapshot to load: " + (why.empty() ? std::string("PutData brings it, whole") : why));
+  auto snapshot = std::make_shared<SessionSnapshot>(snapshot_from_bytes(*bytes));
+  expect_same_experiment(*snapshot, run_->experiment);
+  go_on_from(request, std::move(snapshot));
+}
+
+void Control::go_back(const Request& request) {
+  if (kept_.size() == 0)
+    return answer(request, ResultCode::not_found, "this server keeps no snapshots; start it with --keep-snapshots");
+  const std::int64_t tick = request.duration_ns / run_->experiment.world.step.count();
+  auto snapshot = tick < 0 ? nullptr : kept_.last_until(static_cast<std::uint64_t>(tick));
+  if (snapshot == nullptr)
+    return answer(request, ResultCode::not_found,
+                  "the first snapshot that is kept is of tick " + std::to_string(kept_.first_tick()) +
+                      ", the last of tick " + std::to_string(kept_.last_tick()) + "; none is at or before tick " +
+                      std::to_string(tick));
+  const std::uint64_t at = snapshot->tick;
+  go_on_from(request, std::move(snapshot));
+  if (!ending_) return;
+  kept_.forget_after(at);
+  goes_back_ = true;
+}
+
+void Control::go_on_from(const Request& request, std::shared_ptr<const SessionSnapshot> snapshot) {
+  const std::string text = "from tick " + std::to_string(snapshot->tick) + " on";
+  begin_anew(request, run_from(std::move(snapshot)), text);
+}
+
+NextRun Control::run_from(std::shared_ptr<const SessionSnapshot> snapshot) const {
+  NextRun next{.seed = snapshot->seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()};
+  if (next.state == PlaybackState::stopped) next.state = PlaybackState::paused;
+  next.snapshot = std::move(snapshot);
+  return next;
+}
+
+std::shared_ptr<const SessionSnapshot> Control::last_whole_snapshot() const {
+  auto snapshot = kept_.last_until(run_->simulation.tick());
+  while (snapshot != nullptr && !what_is_left_out(*snapshot, run_->experiment).empty())
+    snapshot = snapshot->tick == 0 ? nullptr : kept_.last_until(snapshot->tick - 1);
+  return snapshot;
+}
+
+void Control::rewind(const std::string& why) {
+  NextRun next = run_from(last_whole_snapshot());
+  const std::uint64_t at = next.snapshot->tick;
+  next.rewound = why + ", so the run has gone back from tick " + std::to_string(run_->simulation.tick()) + " to tick " +
+                 std::to_string(at) + ", where the state of all controllers is known";
+  run_->monitor.options().prepare(next);
+  kept_.forget_after(at);
+  goes_back_ = true;
+  ending_ = Ending{RunResult::End::restored, std::move(next)};
+}
+
+void Control::do_actions(std::span<const Request> requests) {
+  saved_.reset();  // the world is another now
+  for (ActionOutcome& outcome : act(run_->simulation, requests)) {
+    for (ActionOutcome::Done& done : outcome.done) tell(*outcome.request, done.text, std::move(done.action));
+    Reply reply = reply_to(*outcome.request);
+    reply.result = outcome.result;
+    reply.error_message = std::move(outcome.text);
+    reply.entity = std::move(outcome.entity);
+    send(std::move(reply), true);
+  }
+}
+
+}  // namespace cohort::session

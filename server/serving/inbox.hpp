@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "client_sdk/hosting/state_parts.hpp"
+#include "idl/dds/transport.hpp"
+#include "idl/wire/messages.hpp"
+#include "server/serving/control/received_request.hpp"
+
+namespace cohort::session {
+
+/// What DDS's threads leave for the thread of the run. What strangers can fill is bounded: beyond that, messages are
+/// counted as rejected and dropped. This is the door for text: what it holds of clients' is fit to be shown. Pure
+/// logic. Not thread-safe: under the server's lock.
+class Inbox {
+ public:
+  static constexpr std::size_t most_arrivals = 4096;
+  static constexpr std::size_t most_arrival_bytes = std::size_t{16} << 20;
+  static constexpr std::size_t largest_join = std::size_t{128} << 10;
+  static constexpr std::size_t most_reports = 4096;
+  static constexpr std::size_t most_report_bytes = std::size_t{16} << 20;
+  static constexpr std::size_t largest_report = std::size_t{64} << 10;
+  static constexpr std::size_t most_foreign_versions = 100;
+  // Of requests between two looks at them; each participant may have wire::requests_under_way.
+  static constexpr std::size_t most_requests = 1024;
+  static constexpr std::size_t most_request_bytes = std::size_t{64} << 20;
+  static constexpr std::size_t largest_request = std::size_t{4} << 20;
+
+  // Of texts for people [bytes].
+  static constexpr std::size_t longest_label = 100;
+  static constexpr std::size_t longest_text = 4096;
+
+  static constexpr std::size_t most_state_bytes = std::size_t{64} << 20;
+
+  struct Arrival {
+    wire::Join join;
+    wire::Sender sender;
+    wire::Participant* participant = nullptr;  ///< that it came in by
+  };
+  struct Liveliness {
+    wire::Sender sender;
+    bool alive = false;
+  };
+  struct Rejections {
+    std::string text;                     ///< of the first
+    std::optional<std::uint64_t> tick{};  ///< that the first answers, if it is an answer
+    std::uint64_t count = 0;
+  };
+  /// By who, or what participant, and reason.
+  using Rejected = std::map<std::pair<std::uint64_t, std::string>, Rejections>;
+  /// By client and kind: the last of each, since both sides ask again.
+  using States = std::map<std::pair<std::uint64_t, wire::StateKind>, KeptStateMessage>;
+  /// Each in the order of coming.
+  struct Contents {
+    std::vector<Arrival> arrivals{};
+    std::vector<Liveliness> liveliness{};
+    std::vector<wire::Report> reports{};
+    std::vector<std::uint32_t> ended_processes{};
+    std::vector<ReceivedRequest> requests{};
+    std::vector<wire::Sender> gone_requesters{};
+    States states{};
+    std::string failure{};                       ///< of something outside: the first
+    std::set<std::uint32_t> foreign_versions{};  ///< of the protocol, that clients have
+    Rejected rejected{};
+  };
+
+  // True if the thread of the run has to look at it. `participant`: of the server, that it came in by.
+  bool add_arrival(const wire::Join& join, const wire::Sender& sender, wire::Participant* participant);
+  bool add_liveliness(const wire::Sender& sender, bool alive);
+  bool add_report(const wire::Report& report, const wire::Sender& sender);
+  bool add_ended_process(std::uint32_t process);
+  bool add_request(const wire::Request& request, const wire::Sender& sender, wire::Participant* participant);
+  bool add_state(const wire::ControllerState& message, const wire::Sender& sender);
+  bool add_gone_requester(const wire::Sender& sender);
+  bool add_failure(const std::string& error);
+  bool add_foreign_version(std::uint32_t major);
+  /// Only counted, and told when the thread of the run next looks: a flood must not wake it for each message.
+  /// `tick`: of the frame that a rejected answer answers.
+  void reject(std::uint64_t who, const char* reason, std::string_view text, std::optional<std::uint64_t> tick = {});
+
+  /// Whether anything but rejections was put aside since `take`.
+  bool has_news() const { return has_news_; }
+  /// All of it; it is empty then.
+  Contents take();
+  bool has_liveliness() const { return !contents_.liveliness.empty(); }
+  /// That alone; the rest stays.
+  std::vector<Liveliness> take_liveliness() { return std::exchange(contents_.liveliness, {}); }
+
+ private:
+  Contents contents_;
+  std::map<std::uint64_t, std::size_t> requests_of_;  // by participant
+  std::size_t arrival_bytes_ = 0;
+  std::size_t report_bytes_ = 0;
+  std::size_t request_bytes_ = 0;
+  std::size_t state_bytes_ = 0;
+  bool has_news_ = false;
+};
+
+}  // namespace cohort::session

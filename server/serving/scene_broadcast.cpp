@@ -1,0 +1,98 @@
+#include "server/serving/scene_broadcast.hpp"
+
+#include <algorithm>
+
+#include "server/recording/cdr.hpp"
+
+namespace cohort::session {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto interval = 33ms;
+constexpr auto watcher_count_interval = 200ms;
+constexpr int share_of_time = 20;
+// What is only of use in small worlds is left out of a larger message.
+constexpr std::size_t largest_extra = 128 << 10;
+
+std::span<const std::uint8_t> bytes_of(const recording::Bytes& bytes) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+}
+
+std::size_t values_of(const Simulation& simulation) {
+  std::size_t values = 0;
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
+    const RobotKind& kind = simulation.kinds()[simulation.kind_of(robot)];
+    values += kind.observation_size + kind.command_size;
+  }
+  return values;
+}
+
+recording::Bytes robots_of(const Simulation& simulation, const viewing::SceneMaker& maker) {
+  if (sizeof(double) * values_of(simulation) > largest_extra) return {};
+  viewing::SceneRobots robots;
+  robots.robots.reserve(simulation.robot_count());
+  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) robots.robots.push_back(maker.robot(robot));
+  return recording::encode(robots);
+}
+
+recording::Bytes contacts_of(const viewing::SceneMaker& maker) {
+  recording::Bytes contacts = recording::encode(maker.contacts());
+  return contacts.size() > largest_extra ? recording::Bytes() : contacts;
+}
+
+}  // namespace
+
+SceneBroadcast::SceneBroadcast(wire::Participant& participant, const std::string& partition)
+    : descriptions_(participant, partition), updates_(participant, partition) {}
+
+bool SceneBroadcast::is_watched(Clock::time_point now) {
+  if (now - watchers_counted_at_ > watcher_count_interval) {
+    watchers_counted_at_ = now;
+    const std::uint32_t before = std::exchange(watchers_, updates_.matched());
+    has_newcomers_ = has_newcomers_ || watchers_ > before;
+  }
+  return watchers_ > 0;
+}
+
+void SceneBroadcast::publish(const Shown& shown, When when) {
+  const Clock::time_point begin = Clock::now();
+  if (!is_watched(begin)) return;
+  if (when == When::due && begin < next_) return;
+  if (when == When::for_newcomers && !has_newcomers_) return;
+  has_newcomers_ = false;
+  if (!maker_ || run_ != shown.run || maker_->is_outdated()) describe(shown);
+  update(shown);
+  const Clock::time_point end = Clock::now();
+  next_ = end + std::max<Clock::duration>(interval, share_of_time * (end - begin));
+}
+
+// Also for those who come later, as long as the server is there.
+void SceneBroadcast::end(const std::string& how, const std::string& why) {
+  maker_.reset();  // its simulation may be gone
+  viewing::Scene scene;
+  scene.revision = ++revision_;
+  scene.end = how;
+  scene.end_text = why;
+  const recording::Bytes bytes = recording::encode(scene);
+  descriptions_.write({run_, revision_, bytes_of(bytes)});
+}
+
+void SceneBroadcast::describe(const Shown& shown) {
+  run_ = shown.run;
+  maker_.emplace(shown.simulation, ++revision_);
+  const recording::Bytes scene = recording::encode(maker_->scene());
+  descriptions_.write({shown.run, revision_, bytes_of(scene)});
+}
+
+void SceneBroadcast::update(const Shown& shown) {
+  const Simulation& simulation = shown.simulation;
+  const recording::Bytes frame = recording::encode(maker_->frame(shown.run, simulation.state_hash()));
+  const recording::Bytes signals = recording::encode(maker_->signals());
+  const recording::Bytes contacts = contacts_of(*maker_);
+  const recording::Bytes robots = robots_of(simulation, *maker_);
+  updates_.write({shown.run, revision_, simulation.tick(), bytes_of(frame), bytes_of(signals), bytes_of(contacts),
+                  bytes_of(robots)});
+}
+
+}  // namespace cohort::session

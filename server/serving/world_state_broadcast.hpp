@@ -1,0 +1,32 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "idl/dds/transport.hpp"
+#include "server/simulation/simulation.hpp"
+
+namespace cohort::session {
+
+/// Tells observers of each tick's state hash and poses: docs/protocol.md, "WorldState". Does nothing while nobody
+/// listens. The thread that steps.
+class WorldStateBroadcast {
+ public:
+  WorldStateBroadcast(wire::Participant& participant, const std::string& partition) : writer_(participant, partition) {}
+
+  /// At a boundary.
+  void publish(const Simulation& simulation, std::uint32_t run);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  wire::Writer<wire::WorldState> writer_;
+  Clock::time_point observers_counted_at_{};
+  bool is_observed_ = false;
+  std::vector<double> poses_;           // reused
+  std::vector<std::uint32_t> present_;  // reused
+};
+
+}  // namespace cohort::session

@@ -4,30 +4,15 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "client_sdk/hosting/controller_state.hpp"
+#include "client_sdk/hosting/frame_handler.hpp"
 #include "client_sdk/include/cohort/controller.hpp"
 #include "idl/wire/messages.hpp"
 
 namespace cohort {
-
-/// A controller threw: which robot's, where, and its message.
-class ControllerFailure : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A controller cannot save its state: which robot's, and why. It goes on as it was.
-class SaveFailure : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// What a controller throws that leaves the run as if its process had died: no failure, and no answer.
-struct LeaveRun {};
 
 using OwnedController = std::unique_ptr<Controller, void (*)(Controller*)>;
 
@@ -46,28 +31,28 @@ Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,
 
 /// The controllers of some robots in this process: turns frames into answers. Knows nothing of the network, so a
 /// process of its own and a run in the server's process do the very same. One thread at a time.
-class ControllerHost {
+class ControllerHost final : public FrameHandler {
  public:
   explicit ControllerHost(ControllerKind kind);
   explicit ControllerHost(const Plugin& plugin) : ControllerHost(kind_of(plugin)) {}
-  ~ControllerHost();
+  ~ControllerHost() override;
 
   /// Creates a controller for each admitted robot (keeping those that it has if the reason is reset or restored) and
   /// calls `start`. `descriptions` holds at least those that `admit` names. Throws ControllerFailure, or LeaveRun if a
   /// controller did.
-  void start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions);
+  void start(const wire::Admit& admit, std::span<const wire::RobotDescription> descriptions) override;
 
   /// The answer's values, robot after robot as in `frame.robots`. Valid until the next call. Throws as `start` does,
   /// also if the frame does not fit the descriptions.
-  std::span<const double> answer(const wire::Observation& frame);
+  std::span<const double> answer(const wire::Observation& frame) override;
 
   /// What the controllers of all robots remember now, in the order of their ids. Throws SaveFailure, also if one
   /// writes more than `largest_state`, or LeaveRun if a controller did.
-  std::vector<RobotState> save() const;
+  std::vector<RobotState> save() const override;
   /// Right after `start`: lets the controllers go on from `states`, which may be of other robots too. Throws as `start`
   /// does, also if a controller leaves some of its state unread. A sentence for each kind of controllers whose state is
   /// of no use to these.
-  std::vector<std::string> load(std::span<const RobotState> states);
+  std::vector<std::string> load(std::span<const RobotState> states) override;
 
  private:
   struct Robot;

@@ -1,118 +1,20 @@
-#include <atomic>
-#include <condition_variable>
-#include <cstdio>
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <exception>
-#include <mutex>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
+#include <variant>
 
 #include "client_sdk/hosting/c_handles.hpp"
-#include "client_sdk/src/client.hpp"
-#include "client_sdk/src/environment.hpp"
+#include "client_sdk/include/cohort/client.hpp"
 
 namespace cohort {
 namespace {
-
-// Where the client's thread and the loop of whoever connected meet: one event at a time.
-class HandOver {
- public:
-  // On the client's thread: returns when the loop has answered. Throws LeaveRun if it closes instead.
-  void offer(const CohortEvent& event) {
-    Lock lock(mutex_);
-    event_ = event;
-    offered_ = true;
-    changed_.notify_all();
-    changed_.wait(lock, [&] { return !offered_ || closed_; });
-    if (!std::exchange(offered_, false)) return;
-    throw LeaveRun{};
-  }
-  // On the client's thread, at last.
-  void end(CohortEnd end, std::string why) {
-    const Lock lock(mutex_);
-    end_ = end;
-    why_ = std::move(why);
-    changed_.notify_all();
-  }
-
-  // By the loop.
-  CohortEvent next() {
-    Lock lock(mutex_);
-    changed_.wait(lock, [&] { return offered_ || end_; });
-    if (offered_) {
-      taken_ = true;
-      return event_;
-    }
-    last_error() = why_;
-    CohortEvent event{};
-    event.kind = cohort_event_end;
-    event.end = *end_;
-    return event;
-  }
-  void answer() {
-    const Lock lock(mutex_);
-    if (!std::exchange(taken_, false)) return;
-    offered_ = false;
-    changed_.notify_all();
-  }
-  void close() {
-    const Lock lock(mutex_);
-    closed_ = true;
-    changed_.notify_all();
-  }
-
- private:
-  using Lock = std::unique_lock<std::mutex>;
-
-  std::mutex mutex_;  // guards all below
-  std::condition_variable changed_;
-  CohortEvent event_{};
-  bool offered_ = false;  // `event_` waits for its answer
-  bool taken_ = false;    // the loop has it
-  bool closed_ = false;
-  std::optional<CohortEnd> end_;
-  std::string why_;
-};
-
-// Drives a robot by handing over whatever comes.
-class LoopController final : public Controller {
- public:
-  explicit LoopController(HandOver& hand_over) : hand_over_(hand_over) {}
-
-  void start(const Start& start) override {
-    robot_ = start.robot;
-    const CohortStart handle(start);
-    CohortEvent event{};
-    event.kind = cohort_event_start;
-    event.robot = robot_;
-    event.start = &handle;
-    hand_over_.offer(event);
-    if (handle.mistake) throw std::runtime_error(*handle.mistake);
-  }
-
-  void step(const Observation& observation, Command& command) override {
-    const CohortObservation observation_handle{observation};
-    CohortCommand command_handle{command};
-    CohortEvent event{};
-    event.kind = cohort_event_observation;
-    event.robot = robot_;
-    event.observation = &observation_handle;
-    event.command = &command_handle;
-    hand_over_.offer(event);
-  }
-
- private:
-  HandOver& hand_over_;
-  std::uint32_t robot_ = 0;
-};
-
-ControllerKind loop_controllers(const std::string& name, HandOver& hand_over) {
-  return {name, [&hand_over] {
-            return OwnedController(new LoopController(hand_over), [](Controller* controller) { delete controller; });
-          }};
-}
 
 CohortEnd end_of(ClientEnd end) {
   switch (end) {
@@ -143,45 +45,133 @@ ClientOptions options_of(const CohortOptions* given) {
 }  // namespace
 }  // namespace cohort
 
+// Hands out what a Client has for all of its robots robot by robot.
 struct CohortClient {
-  explicit CohortClient(cohort::ClientOptions its_options) : options(std::move(its_options)) {
-    options.tell = [this](cohort::Severity severity, const std::string& text) { tell(severity, text); };
-    thread = std::thread([this] { run(); });
-  }
-  CohortClient(const CohortClient&) = delete;
-  CohortClient& operator=(const CohortClient&) = delete;
-  ~CohortClient() {
-    stop = true;
-    hand_over.close();
-    thread.join();
+ public:
+  explicit CohortClient(const cohort::ClientOptions& options) : client_(options) {}
+
+  const cohort::Client& client() const { return client_; }
+  void remember() { remembers_ = true; }
+  CohortStateWriter* state_to_save() { return is_under_way_ && to_save_ ? &*to_save_ : nullptr; }
+  CohortStateReader* state_to_load() { return is_under_way_ && to_load_ ? &*to_load_ : nullptr; }
+
+  const cohort::DrivenRobot* find(std::uint32_t id) const {
+    const auto robot = std::ranges::find(robots_, id, [](const auto& each) { return each.start.robot; });
+    return robot == robots_.end() ? nullptr : &*robot;
   }
 
-  void run() noexcept {
-    CohortEnd end = cohort_end_failed;
-    try {
-      end = cohort::end_of(cohort::run_client(cohort::loop_controllers(options.name, hand_over), options, stop));
-    } catch (const std::exception& error) {
-      tell(cohort::Severity::error, error.what());
+  // Answers a robot's part of the event, and with the last robot the event itself.
+  void answer() {
+    if (!std::exchange(is_under_way_, false)) return;
+    if (start_ && !start_->mistake) check_parameters();
+    if (start_ && start_->mistake) {
+      const cohort::Start& start = start_->start;
+      fail("the controller of robot '" + start.name + "' failed in start at tick " + std::to_string(start.tick) + ": " +
+           *start_->mistake);
+    } else if (to_load_ && to_load_->mistake) {
+      fail("robot " + std::to_string(given_.robot) + ": its saved state cannot be read: " + *to_load_->mistake);
+    } else if (++next_robot_ == robot_count()) {
+      client_.answer();
+      event_.reset();
     }
-    const std::lock_guard lock(mutex);
-    hand_over.end(end, std::exchange(why, {}));
   }
 
-  // Not of an interruption: whoever closes knows.
-  void tell(cohort::Severity severity, const std::string& text) {
-    if (severity == cohort::Severity::info) return;
-    std::fprintf(stderr, "%s: %s\n", options.name.c_str(), text.c_str());
-    if (severity != cohort::Severity::error) return;
-    const std::lock_guard lock(mutex);
-    why = text;
+  void fail(const std::string& why) {
+    is_under_way_ = false;
+    client_.fail(why);
+    event_.reset();
   }
 
-  cohort::ClientOptions options;
-  std::atomic<bool> stop{false};
-  cohort::HandOver hand_over;
-  std::mutex mutex;
-  std::string why;  // guarded by `mutex`
-  std::thread thread;
+  // Waits for ever without `at_most`.
+  CohortEvent next(std::optional<std::chrono::milliseconds> at_most) {
+    answer();
+    while (!event_) {
+      event_ = at_most ? client_.next(*at_most) : client_.next();
+      if (!event_) {
+        given_ = {};
+        given_.kind = cohort_event_none;
+        return given_;
+      }
+      next_robot_ = 0;
+      if (robot_count() == 0) pass_over();
+    }
+    start_.reset();
+    to_save_.reset();
+    to_load_.reset();
+    given_ = {};
+    std::visit([this](const auto& event) { give(event); }, *event_);
+    is_under_way_ = given_.kind != cohort_event_end;
+    return given_;
+  }
+
+ private:
+  void give(const cohort::LeaseStart& lease) {
+    robots_ = lease.robots;
+    start_.emplace(lease.robots[next_robot_].start);
+    given_.kind = cohort_event_start;
+    given_.robot = start_->start.robot;
+    given_.start = &*start_;
+  }
+  void give(const cohort::Frame& frame) {
+    cohort::FrameRobot& robot = frame.robots[next_robot_];
+    observation_.emplace(CohortObservation{robot.observation});
+    command_.emplace(CohortCommand{robot.command});
+    given_.kind = cohort_event_observation;
+    given_.robot = robot.robot->start.robot;
+    given_.observation = &*observation_;
+    given_.command = &*command_;
+  }
+  void give(const cohort::SaveState& save) {
+    to_save_.emplace(CohortStateWriter{*save.state});
+    given_.kind = cohort_event_save;
+    given_.robot = save.robot->start.robot;
+  }
+  void give(const cohort::LoadState& load) {
+    to_load_.emplace(CohortStateReader{*load.state});
+    given_.kind = cohort_event_load;
+    given_.robot = load.robot->start.robot;
+  }
+  void give(const cohort::ClientEnded& ended) {
+    cohort::last_error() = ended.why;
+    given_.kind = cohort_event_end;
+    given_.end = cohort::end_of(ended.end);
+    event_.reset();  // the client gives it again
+  }
+
+  void check_parameters() {
+    try {
+      start_->start.parameters.check_all_were_asked_for();
+    } catch (const std::exception& error) {
+      start_->mistake = error.what();
+    }
+  }
+
+  // How many events in C the event is.
+  std::size_t robot_count() const {
+    if (const auto* lease = std::get_if<cohort::LeaseStart>(&*event_)) return lease->robots.size();
+    if (const auto* frame = std::get_if<cohort::Frame>(&*event_)) return frame->robots.size();
+    return remembers_ || std::holds_alternative<cohort::ClientEnded>(*event_) ? 1 : 0;
+  }
+
+  // Of no robots, or of a state that the loop does not remember.
+  void pass_over() {
+    if (const auto* save = std::get_if<cohort::SaveState>(&*event_)) save->state->leave_out();
+    client_.answer();
+    event_.reset();
+  }
+
+  cohort::Client client_;
+  bool remembers_ = false;
+  std::span<const cohort::DrivenRobot> robots_;  // of the lease
+  std::optional<cohort::ClientEvent> event_;     // that is not answered yet
+  std::size_t next_robot_ = 0;                   // of the event
+  CohortEvent given_{};                          // last
+  bool is_under_way_ = false;                    // and not answered
+  std::optional<CohortStart> start_;
+  std::optional<CohortObservation> observation_;
+  std::optional<CohortCommand> command_;
+  std::optional<CohortStateWriter> to_save_;
+  std::optional<CohortStateReader> to_load_;
 };
 
 CohortClient* cohort_connect(const CohortOptions* options) {
@@ -194,12 +184,38 @@ CohortClient* cohort_connect(const CohortOptions* options) {
 }
 
 CohortEventKind cohort_next(CohortClient* client, CohortEvent* event) {
-  client->hand_over.answer();
-  *event = client->hand_over.next();
+  *event = client->next(std::nullopt);
   return event->kind;
 }
 
-void cohort_answer(CohortClient* client) { client->hand_over.answer(); }
+CohortEventKind cohort_next_within(CohortClient* client, CohortEvent* event, int milliseconds) {
+  *event = client->next(std::chrono::milliseconds(std::max(milliseconds, 0)));
+  return event->kind;
+}
+
+void cohort_answer(CohortClient* client) { client->answer(); }
+
+int cohort_descriptor(const CohortClient* client) { return client->client().descriptor(); }
+
+bool cohort_is_over(const CohortClient* client) { return client->client().is_over(); }
+
+bool cohort_policy(const CohortClient* client, uint32_t robot, CohortPolicy* policy) {
+  const cohort::DrivenRobot* const driven = client->find(robot);
+  if (driven == nullptr) {
+    cohort::last_error() = "this client drives no robot " + std::to_string(robot);
+    return false;
+  }
+  *policy = {driven->policy.waits, driven->policy.period, driven->policy.phase, driven->policy.delay};
+  return true;
+}
+
+void cohort_remember(CohortClient* client) { client->remember(); }
+
+CohortStateWriter* cohort_state_to_save(CohortClient* client) { return client->state_to_save(); }
+
+CohortStateReader* cohort_state_to_load(CohortClient* client) { return client->state_to_load(); }
+
+void cohort_give_up(CohortClient* client, const char* why) { client->fail(why); }
 
 void cohort_close(CohortClient* client) { delete client; }
 

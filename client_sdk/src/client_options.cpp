@@ -1,26 +1,16 @@
 #include <algorithm>
+#include <cstdlib>
 
-#include "client_sdk/src/client.hpp"
-#include "client_sdk/src/this_process.hpp"
+#include "client_sdk/include/cohort/client.hpp"
+#include "client_sdk/src/domains.hpp"
 
 namespace cohort {
 
-bool RunWatch::is_over() const {
-  const std::lock_guard lock(mutex_);
-  return ended_ || (away_since_ && std::chrono::steady_clock::now() - *away_since_ > server_may_be_away);
-}
-
-void RunWatch::note_end() {
-  const std::lock_guard lock(mutex_);
-  ended_ = true;
-}
-
-void RunWatch::note_server(bool there) {
-  const std::lock_guard lock(mutex_);
-  if (there)
-    away_since_.reset();
-  else if (!away_since_)
-    away_since_ = std::chrono::steady_clock::now();
+void take_environment(ClientOptions& options) {
+  if (const char* server = std::getenv("COHORT_SERVER"); server != nullptr) options.server = server;
+  if (const char* domain = std::getenv("COHORT_DOMAIN"); domain != nullptr)
+    options.domain = domain_of_this_process(parse_domains(domain));
+  if (const char* secure = std::getenv("COHORT_SECURE"); secure != nullptr) options.secure = secure;
 }
 
 std::vector<std::string> split_selectors(std::string_view list) {

@@ -53,7 +53,7 @@ bool ClientStates::is_of_this_lease(const wire::ControllerState& head) const {
   return admit_ && head.run == admit_->run && head.epoch == admit_->epoch;
 }
 
-std::vector<std::string> ClientStates::act(ControllerHost& host, std::uint64_t next_tick) {
+std::vector<std::string> ClientStates::act(FrameHandler& host, std::uint64_t next_tick) {
   has_news_ = false;
   if (!writer_ || !admit_) return {};
   if (fetched_) return fetch(host);
@@ -67,7 +67,7 @@ std::vector<std::string> ClientStates::act(ControllerHost& host, std::uint64_t n
   return {};
 }
 
-std::vector<std::string> ClientStates::give(const wire::ControllerState& wanted, const ControllerHost& host) {
+std::vector<std::string> ClientStates::give(const wire::ControllerState& wanted, const FrameHandler& host) {
   if (saved_tick_ != wanted.tick) {
     unsaved_.clear();
     try {
@@ -86,7 +86,7 @@ std::vector<std::string> ClientStates::give(const wire::ControllerState& wanted,
   return {unsaved_ + "; there is no snapshot (told once)"};
 }
 
-std::vector<std::string> ClientStates::fetch(ControllerHost& host) {
+std::vector<std::string> ClientStates::fetch(FrameHandler& host) {
   std::optional<KeptStateMessage> here;
   {
     const std::lock_guard lock(mutex_);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "client_sdk/hosting/controller_host.hpp"
+#include "client_sdk/hosting/frame_handler.hpp"
 #include "client_sdk/hosting/state_parts.hpp"
 #include "idl/dds/transport.hpp"
 
@@ -32,13 +32,13 @@ class ClientStates {
   bool have_work() const { return fetched_ || has_news_; }
   /// Does what there is to do. `next_tick`: all frames before it are answered. Sentences for people. Throws as the
   /// host's functions do, and StateError.
-  std::vector<std::string> act(ControllerHost& host, std::uint64_t next_tick);
+  std::vector<std::string> act(FrameHandler& host, std::uint64_t next_tick);
 
  private:
   void receive(const wire::ControllerState& message);
   bool is_of_this_lease(const wire::ControllerState& head) const;
-  std::vector<std::string> give(const wire::ControllerState& wanted, const ControllerHost& host);
-  std::vector<std::string> fetch(ControllerHost& host);
+  std::vector<std::string> give(const wire::ControllerState& wanted, const FrameHandler& host);
+  std::vector<std::string> fetch(FrameHandler& host);
   void send(wire::ControllerState message);
 
   const std::uint64_t client_;

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 
 /// What the programs of Cohort have in common.
 namespace cohort {

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/include/cohort/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/domains.hpp"
-#include "client_sdk/src/environment.hpp"
 #include "client_sdk/src/program.hpp"
 
 namespace cohort {

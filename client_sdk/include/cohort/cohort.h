@@ -258,7 +258,10 @@ typedef struct CohortOptions {
 typedef enum CohortEventKind {
   cohort_event_start,       /* of a robot's run: look its channels up, now and again after each reset */
   cohort_event_observation, /* of a robot: set its command */
-  cohort_event_end          /* nothing will come any more: `end` and cohort_last_error say why */
+  cohort_event_end,         /* nothing will come any more: `end` and cohort_last_error say why */
+  cohort_event_none,        /* of cohort_next_within: nothing came in time */
+  cohort_event_save,        /* after cohort_remember: write a robot's state to cohort_state_to_save */
+  cohort_event_load         /* after cohort_remember: read a robot's state from cohort_state_to_load */
 } CohortEventKind;
 
 typedef enum CohortEnd {
@@ -272,7 +275,7 @@ typedef enum CohortEnd {
 
 typedef struct CohortEvent {
   CohortEventKind kind;
-  uint32_t robot;                       /* id of the robot that is started or observed */
+  uint32_t robot;                       /* id of the robot that the event is of */
   const CohortStart* start;             /* of a start, else NULL */
   const CohortObservation* observation; /* of an observation, else NULL */
   CohortCommand* command;               /* of an observation, else NULL */
@@ -288,6 +291,39 @@ CohortClient* cohort_connect(const CohortOptions* options);
  * is done first. With several robots, each tick gives an observation for each, in the order of their ids. Stays at
  * cohort_event_end once it is there. */
 CohortEventKind cohort_next(CohortClient* client, CohortEvent* event);
+
+/* The same, but fills in cohort_event_none if nothing comes within `milliseconds`, which may be 0. */
+CohortEventKind cohort_next_within(CohortClient* client, CohortEvent* event, int milliseconds);
+
+/* A file descriptor that poll() reports as readable when a tick's events are there. Each tick has an event for each
+ * robot, so then call cohort_next_within(..., 0) until it gives cohort_event_none. Not to be read or closed. */
+int cohort_descriptor(const CohortClient* client);
+
+/* Whether nobody wants the answer to the event under way any more: the server has ended the run or the lease, or has
+ * been away for too long. For loops that wait for hardware before they answer. */
+bool cohort_is_over(const CohortClient* client);
+
+/* When a robot's team is asked, and when its commands act: at each tick with `tick % period == phase`, and `delay`
+ * ticks later. If it does not wait (`mode: free`), the run keeps its pace whether answers come or not. */
+typedef struct CohortPolicy {
+  bool waits;
+  uint32_t period; /* [ticks] */
+  uint32_t phase;  /* [ticks] */
+  uint32_t delay;  /* [ticks] */
+} CohortPolicy;
+
+/* The policy of a robot that the client drives. False, with a last error, if it drives no robot of this id. */
+bool cohort_policy(const CohortClient* client, uint32_t robot, CohortPolicy* policy);
+
+/* From now on the loop also gets cohort_event_save and cohort_event_load, so that a run can go on from a snapshot: see
+ * "What a controller remembers". Without it such a run starts this client without its state, and says so. */
+void cohort_remember(CohortClient* client);
+CohortStateWriter* cohort_state_to_save(CohortClient* client); /* of the event under way; NULL if it is another */
+CohortStateReader* cohort_state_to_load(CohortClient* client); /* the same */
+
+/* Ends the client because it cannot go on, such as where a robot lacks a channel. The server is told `why`, and
+ * cohort_next gives cohort_event_end. Does nothing if no event is under way. */
+void cohort_give_up(CohortClient* client, const char* why);
 
 /* Hands the command of the event under way back, whose pointers are no longer valid, so that the simulation goes on
  * while the loop does something else. With several robots the answers leave when the last one is there. Does nothing

@@ -1,4 +1,4 @@
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 
 #include <gtest/gtest.h>
 

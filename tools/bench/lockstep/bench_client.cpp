@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 
 namespace cohort::bench {
 namespace {

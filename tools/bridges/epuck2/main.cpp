@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/program.hpp"
 #include "tools/bridges/epuck2/port.hpp"
 #include "tools/bridges/epuck2/robot.hpp"
@@ -86,7 +86,6 @@ class Bridge {
     client_.domain = options.domain;
     client_.robots = {name_.substr(name_.find(' ') + 1)};
     client_.name = "epuck2-bridge";
-    client_.watch = &watch_;
     client_.tell = [this](Severity, const std::string& text) { tell(text); };
     tell("programs reach it at " + address + ":" + std::to_string(port_.number()));
   }
@@ -106,7 +105,8 @@ class Bridge {
                                                        [](Controller* controller) { delete controller; });
                               }};
     try {
-      end_ = run_client(kind, client_, stop_);
+      ControllerHost host(kind);
+      end_ = run_client(host, client_.name, client_, stop_, &watch_);
     } catch (const std::exception& error) {
       tell(error.what());
     }

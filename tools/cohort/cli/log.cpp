@@ -9,7 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 #include "tools/cohort/cli/shown.hpp"
 
 namespace cohort::tool {

@@ -16,7 +16,7 @@ namespace spdlog {
 class logger;
 }
 namespace cohort {
-enum class Severity;  // client_sdk/src/client.hpp
+enum class Severity;  // client_sdk/src/attachment.hpp
 }
 
 namespace cohort::tool {

@@ -1,5 +1,5 @@
 #include "client_sdk/hosting/plugin_loader.hpp"
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/domains.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/domains.hpp"
 #include "tools/cohort/cli/key_reader.hpp"
 #include "tools/cohort/commands/commands.hpp"

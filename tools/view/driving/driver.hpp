@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 #include "tools/view/driving/held_command.hpp"
 #include "tools/view/source.hpp"
 

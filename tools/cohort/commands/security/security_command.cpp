@@ -5,7 +5,7 @@
 #include <ctime>
 #include <iostream>
 
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/security/certificates.hpp"
 

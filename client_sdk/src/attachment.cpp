@@ -1,4 +1,4 @@
-#include "client_sdk/src/client.hpp"
+#include "client_sdk/src/attachment.hpp"
 
 #include <unistd.h>
 
@@ -56,9 +56,10 @@ class Unlocked {
 
 // One process's part of the protocol. DDS threads only put what came into the members under `mutex_`; the thread in
 // `run` does the rest (with `inline_step`, the one that brought a frame answers it, if nobody is at it).
-class Client {
+class Attachment {
  public:
-  Client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop);
+  Attachment(FrameHandler& handler, const std::string& name, const ClientOptions& options,
+             const std::atomic<bool>& stop, RunWatch* watch);
   ClientEnd run();
 
  private:
@@ -100,9 +101,10 @@ class Client {
   const std::string name_;
   const std::uint64_t id_ = random_id();
   const std::atomic<bool>& stop_;
+  RunWatch* const watch_;
 
   std::mutex driving_;  // held by whoever uses the controllers
-  ControllerHost host_;
+  FrameHandler& handler_;
 
   std::mutex mutex_;  // guards all down to the participant
   std::condition_variable wake_;
@@ -134,11 +136,13 @@ class Client {
   ClientStates states_;  // with `driving_` held
 };
 
-Client::Client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop)
+Attachment::Attachment(FrameHandler& handler, const std::string& name, const ClientOptions& options,
+                       const std::atomic<bool>& stop, RunWatch* watch)
     : options_(options),
-      name_(options.name.empty() ? kind.name : options.name),
+      name_(options.name.empty() ? name : options.name),
       stop_(stop),
-      host_(kind),
+      watch_(watch),
+      handler_(handler),
       participant_(wire::Participant::client(options.domain, options.server, identity_of(options))),
       joins_(participant_),
       commands_(participant_),
@@ -155,7 +159,7 @@ Client::Client(const ControllerKind& kind, const ClientOptions& options, const s
                     wire::partition_of(id_), frames_kept_by_dds),
       states_(participant_, id_, [this] { wake(Lock(mutex_)); }) {}
 
-ClientEnd Client::run() {
+ClientEnd Attachment::run() {
   const wire::Join join{.client = id_,
                         .minor = states_.are_possible() ? wire::minor_version : wire::first_minor_with_state - 1,
                         .controller = name_,
@@ -185,7 +189,7 @@ ClientEnd Client::run() {
   }
 }
 
-void Client::receive(const wire::Admit& admit, const wire::Sender& sender) {
+void Attachment::receive(const wire::Admit& admit, const wire::Sender& sender) {
   if (admit.client != id_) return;
   Lock lock(mutex_);
   // Only the latest counts: by writing it the server has given up the one before.
@@ -193,7 +197,7 @@ void Client::receive(const wire::Admit& admit, const wire::Sender& sender) {
   wake(std::move(lock));
 }
 
-void Client::receive(const wire::RobotDescription& description, const wire::Sender& sender) {
+void Attachment::receive(const wire::RobotDescription& description, const wire::Sender& sender) {
   Lock lock(mutex_);
   std::erase_if(descriptions_, [&](const Description& known) {
     return known.server == sender.participant && known.description.description == description.description;
@@ -202,15 +206,15 @@ void Client::receive(const wire::RobotDescription& description, const wire::Send
   wake(std::move(lock));
 }
 
-void Client::receive(const wire::Report& report) {
+void Attachment::receive(const wire::Report& report) {
   if (report.client != id_) return;
-  if (options_.watch != nullptr && report.kind != wire::ReportKind::rejected) options_.watch->note_end();
+  if (watch_ != nullptr && report.kind != wire::ReportKind::rejected) watch_->note_end();
   Lock lock(mutex_);
   reports_.push_back(report);
   wake(std::move(lock));
 }
 
-void Client::receive(const wire::Observation& frame) {
+void Attachment::receive(const wire::Observation& frame) {
   if (frame.client != id_) return;
   Lock lock(mutex_);
   frames_.arrive(frame);
@@ -225,7 +229,7 @@ void Client::receive(const wire::Observation& frame) {
   wake(std::move(lock));
 }
 
-void Client::note_server(const wire::Sender& writer, bool alive) {
+void Attachment::note_server(const wire::Sender& writer, bool alive) {
   Lock lock(mutex_);
   if (alive) {
     servers_.insert(writer.writer);
@@ -233,16 +237,16 @@ void Client::note_server(const wire::Sender& writer, bool alive) {
   } else if (servers_.erase(writer.writer) != 0 && servers_.empty()) {
     server_left_ = Clock::now();
   }
-  if (options_.watch != nullptr) options_.watch->note_server(!server_left_);
+  if (watch_ != nullptr) watch_->note_server(!server_left_);
 }
 
-void Client::wake(Lock lock) {
+void Attachment::wake(Lock lock) {
   news_ = true;
   lock.unlock();
   wake_.notify_one();
 }
 
-void Client::drive(Lock& lock) {
+void Attachment::drive(Lock& lock) {
   try {
     for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
     if (offered_ && is_described(*offered_)) heed(*std::exchange(offered_, std::nullopt), lock);
@@ -256,13 +260,13 @@ void Client::drive(Lock& lock) {
   }
 }
 
-void Client::drive_inline(Lock& lock) {
+void Attachment::drive_inline(Lock& lock) {
   const auto begin = Clock::now();
   drive(lock);
   long_frames_ = Clock::now() - begin > longest_inline_frame ? long_frames_ + 1 : 0;
 }
 
-void Client::heed(const wire::Report& report) {
+void Attachment::heed(const wire::Report& report) {
   switch (report.kind) {
     case wire::ReportKind::finished: end_ = ClientEnd::finished; break;
     case wire::ReportKind::superseded:
@@ -282,7 +286,7 @@ void Client::heed(const wire::Report& report) {
   }
 }
 
-void Client::heed(Offer offer, Lock& lock) {
+void Attachment::heed(Offer offer, Lock& lock) {
   const wire::Admit& admit = offer.admit;
   if (admit.status != wire::AdmitStatus::admitted) {
     tell(Severity::error, "refused: " + admit.reason);
@@ -302,23 +306,23 @@ void Client::heed(Offer offer, Lock& lock) {
   for (const Description& known : descriptions_) descriptions.push_back(known.description);
   const Unlocked unlocked(lock);
   starting_ = true;
-  host_.start(current_->admit, descriptions);
+  handler_.start(current_->admit, descriptions);
   starting_ = false;
   states_.begin(current_->admit);
 }
 
-void Client::exchange_states(Lock& lock) {
+void Attachment::exchange_states(Lock& lock) {
   if (!states_.have_work()) return;
   std::vector<std::string> notices;
   {
     const std::uint64_t next_tick = frames_.next_tick();
     const Unlocked unlocked(lock);
-    notices = states_.act(host_, next_tick);
+    notices = states_.act(handler_, next_tick);
   }
   for (const std::string& notice : notices) tell(Severity::warning, notice);
 }
 
-void Client::answer_frames(Lock& lock) {
+void Attachment::answer_frames(Lock& lock) {
   if (states_.are_awaited()) return;
   // Frames may come faster than they can be answered, so what is more urgent is looked for between them.
   while (!end_ && !failure_ && !stop_ && !offered_ && reports_.empty()) {
@@ -333,7 +337,7 @@ void Client::answer_frames(Lock& lock) {
     std::span<const double> values;
     {
       const Unlocked unlocked(lock);
-      values = host_.answer(*frame);
+      values = handler_.answer(*frame);
     }
     const wire::Command command = frames_.finish(values);
     const Unlocked unlocked(lock);
@@ -341,7 +345,7 @@ void Client::answer_frames(Lock& lock) {
   }
 }
 
-bool Client::is_described(const Offer& offer) const {
+bool Attachment::is_described(const Offer& offer) const {
   return std::ranges::all_of(offer.admit.robots, [&](const wire::AdmittedRobot& robot) {
     return std::ranges::any_of(descriptions_, [&](const Description& known) {
       return known.server == offer.sender.participant && known.description.description == robot.description;
@@ -349,7 +353,7 @@ bool Client::is_described(const Offer& offer) const {
   });
 }
 
-std::optional<ClientEnd> Client::reason_to_leave() {
+std::optional<ClientEnd> Attachment::reason_to_leave() {
   if (stop_) {
     tell(Severity::info, "interrupted");
     return ClientEnd::interrupted;
@@ -366,8 +370,8 @@ std::optional<ClientEnd> Client::reason_to_leave() {
   return std::nullopt;
 }
 
-bool Client::server_is_lost() const { return server_left_ && Clock::now() - *server_left_ > server_may_be_away; }
-std::string Client::waiting_text() const {
+bool Attachment::server_is_lost() const { return server_left_ && Clock::now() - *server_left_ > server_may_be_away; }
+std::string Attachment::waiting_text() const {
   std::string text = "waiting for a server at " + options_.server + ", domain " + std::to_string(options_.domain);
   const auto& identity = participant_.identity();
   if (!identity) return text;
@@ -377,7 +381,7 @@ std::string Client::waiting_text() const {
          "clock is wrong; 'cohort doctor' looks at all of it";
 }
 
-ClientEnd Client::fail(Lock& lock) {
+ClientEnd Attachment::fail(Lock& lock) {
   const bool is_unfit = starting_ && !options_.start_must_succeed;
   tell(Severity::error, *failure_);
   const wire::Report report{.client = id_,
@@ -391,7 +395,7 @@ ClientEnd Client::fail(Lock& lock) {
   return ClientEnd::failed;
 }
 
-void Client::tell(Severity severity, const std::string& said) const {
+void Attachment::tell(Severity severity, const std::string& said) const {
   const std::string text = printable(said, std::string::npos, Lines::kept);
   if (options_.tell)
     options_.tell(severity, text);
@@ -401,8 +405,18 @@ void Client::tell(Severity severity, const std::string& said) const {
 
 }  // namespace
 
+ClientEnd run_client(FrameHandler& handler, const std::string& name, const ClientOptions& options,
+                     const std::atomic<bool>& stop, RunWatch* watch) {
+  return Attachment(handler, name, options, stop, watch).run();
+}
+
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop) {
-  return Client(kind, options, stop).run();
+  ControllerHost host(kind);
+  return run_client(host, kind.name, options, stop, nullptr);
+}
+
+ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop) {
+  return run_client(kind_of(plugin), options, stop);
 }
 
 }  // namespace cohort

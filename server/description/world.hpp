@@ -13,6 +13,7 @@
 #include "server/description/input_error.hpp"
 #include "server/description/kept_files.hpp"
 #include "server/description/model.hpp"
+#include "server/description/population.hpp"
 
 namespace cohort::description {
 
@@ -96,6 +97,8 @@ struct BreakableJoint {
   std::optional<Pose> X_LP{};  ///< where it is, in the first link; at the origin of the second one if absent
   double breaking_force = std::numeric_limits<double>::infinity();   ///< [N]
   double breaking_torque = std::numeric_limits<double>::infinity();  ///< [N m]
+  Problem first_place{};   ///< where a file names the first object, without a message
+  Problem second_place{};  ///< the same of the second one
 };
 
 /// A world with every include and population expanded. A robot's id is its place in `robots`.
@@ -112,10 +115,14 @@ struct World {
   std::vector<std::string> materials{""};  ///< 0 is of all that names none
   std::vector<MaterialPair> material_pairs;
   std::deque<Model> models;  ///< they stay where they are while more come
+  /// First those that stand where a file says, then those of the populations in their order, then those that events of
+  /// an experiment bring.
   std::vector<Instance> instances;
+  std::vector<Population> populations;
   std::vector<BreakableJoint> breakable_joints;
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order
   std::vector<Problem> warnings;    ///< what the file asks for and is not simulated
+  std::size_t seed_warnings = 0;    ///< how many of the last warnings depend on the seed
 
   const Instance& robot(std::uint32_t id) const { return instances[robots[id]]; }
   const Model& robot_model(std::uint32_t id) const { return models[robot(id).model]; }

@@ -54,6 +54,8 @@ std::optional<BreakableJoint> read_breakable_joint(const ExtensionValues& values
     return std::nullopt;
   }
   BreakableJoint joint{values.name(), *first, *first_link, *second, *second_link};
+  joint.first_place = report.place_of(values.where("first"));
+  joint.second_place = report.place_of(values.where("second"));
   if (values.has("pose")) joint.X_LP = values.pose("pose");
   if (values.has("breaking_force")) joint.breaking_force = values.real("breaking_force");
   if (values.has("breaking_torque")) joint.breaking_torque = values.real("breaking_torque");

@@ -4,8 +4,8 @@
 #include <ctime>
 #include <numbers>
 
-#include "server/parsing/world/occupancy.hpp"
 #include "server/parsing/world/read_world.hpp"
+#include "server/placement/occupancy.hpp"
 #include "tests/support/written_worlds.hpp"
 
 namespace cohort::description {
@@ -220,22 +220,22 @@ TEST_F(Populations, OfTenThousandTakeLessThanASecondOfTheProcessor) {
 }
 
 TEST(Triangles, AreHighestOnADiscAtACornerAnEdgeOrUphill) {
-  const parsing::Triangle slope = {Eigen::Vector3d(-10, -10, -10), Eigen::Vector3d(10, -10, 10),
-                                   Eigen::Vector3d(-10, 10, -10)};
-  EXPECT_NEAR(*parsing::highest_on_disc(slope, {-5, -5}, 1.0), -4.0, 1e-12);  // z is x: up the slope
-  EXPECT_NEAR(*parsing::highest_on_disc(slope, {10, -10}, 1.0), 10.0, 1e-12);
-  EXPECT_NEAR(*parsing::highest_on_disc(slope, {0, -10.5}, 1.0), std::sqrt(0.75),
+  const placement::Triangle slope = {Eigen::Vector3d(-10, -10, -10), Eigen::Vector3d(10, -10, 10),
+                                     Eigen::Vector3d(-10, 10, -10)};
+  EXPECT_NEAR(*placement::highest_on_disc(slope, {-5, -5}, 1.0), -4.0, 1e-12);  // z is x: up the slope
+  EXPECT_NEAR(*placement::highest_on_disc(slope, {10, -10}, 1.0), 10.0, 1e-12);
+  EXPECT_NEAR(*placement::highest_on_disc(slope, {0, -10.5}, 1.0), std::sqrt(0.75),
               1e-12);  // where an edge leaves the disc
-  EXPECT_FALSE(parsing::highest_on_disc(slope, {20, 20}, 1.0));
+  EXPECT_FALSE(placement::highest_on_disc(slope, {20, 20}, 1.0));
 }
 
 TEST(Triangles, AreAsFarAsTheirPartBetweenTheHeights) {
   // Leans from the y axis at z = 0 over x = 1 at z = 1.
-  const parsing::Triangle leaning = {Eigen::Vector3d(0, -5, 0), Eigen::Vector3d(0, 5, 0), Eigen::Vector3d(1, 0, 1)};
-  EXPECT_NEAR(parsing::distance_between_heights(leaning, 0.0, 0.25, {2, 0}), 1.75, 1e-12);
-  EXPECT_EQ(parsing::distance_between_heights(leaning, 0.0, 0.25, {0.2, 0}), 0.0);
-  EXPECT_NEAR(parsing::distance_between_heights(leaning, 0.5, 0.75, {0, 0}), 0.5, 1e-12);
-  EXPECT_EQ(parsing::distance_between_heights(leaning, 2.0, 3.0, {0, 0}), std::numeric_limits<double>::infinity());
+  const placement::Triangle leaning = {Eigen::Vector3d(0, -5, 0), Eigen::Vector3d(0, 5, 0), Eigen::Vector3d(1, 0, 1)};
+  EXPECT_NEAR(placement::distance_between_heights(leaning, 0.0, 0.25, {2, 0}), 1.75, 1e-12);
+  EXPECT_EQ(placement::distance_between_heights(leaning, 0.0, 0.25, {0.2, 0}), 0.0);
+  EXPECT_NEAR(placement::distance_between_heights(leaning, 0.5, 0.75, {0, 0}), 0.5, 1e-12);
+  EXPECT_EQ(placement::distance_between_heights(leaning, 2.0, 3.0, {0, 0}), std::numeric_limits<double>::infinity());
 }
 
 class FlawOfAPopulation : public Populations, public testing::WithParamInterface<Flaw> {};

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "server/parsing/world/occupancy.hpp"
+#include "server/description/input_error.hpp"
 
-namespace cohort::parsing {
+namespace cohort::description {
 
 /// Places in rows and columns about a centre, the first row at the least y.
 struct GridLayout {
@@ -52,31 +54,26 @@ enum class HeadingKind {
   along,    ///< the ring, counter-clockwise, or the line
 };
 
-/// Where the instances of a population are put.
-struct Placement {
-  std::string name;  ///< of the population
-  std::uint64_t seed = 1;
+/// Instances of one model whose places the seed of the run decides (`server/placement`).
+struct Population {
+  std::string name;
+  std::size_t model = 0;   ///< index into World::models
+  std::size_t bodies = 1;  ///< of each instance; their models follow each other from `model` on
   std::uint64_t count = 0;
+  std::uint64_t seed_offset = 0;  ///< added to the seed of the run
+  bool may_be_fewer = false;      ///< than `count`, if there is no room
   Layout layout;
   HeadingKind heading = HeadingKind::random;  ///< of an instance; of a formation as a whole
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
-  double yaw = 0.0;    ///< added to the heading [rad]
-  double gap = 0.0;    ///< [m]
-  double level = 0.0;  ///< static things no higher than this are ground [m]
+  double yaw = 0.0;           ///< added to the heading [rad]
+  double gap = 0.0;           ///< [m]
+  double level = 0.0;         ///< static things no higher than this are ground [m]
+  Problem place{};            ///< where a file has it, without a message
+  Problem placement_place{};  ///< where a file says how it is placed, without a message
+
+  // What it has in the world.
+  std::size_t first = 0;               ///< index into World::instances of the first body of its first instance
+  std::vector<std::uint64_t> numbers;  ///< of its instances, ascending; place i of the layout has number i
 };
 
-struct Placed {
-  std::uint64_t number = 0;  ///< of the place, from 0
-  Pose X_WM;
-};
-
-/// Poses for instances of a model, upright and with a gap of at least `gap` between the bounding circle of an instance
-/// and all that is in its way: everything solid of the occupancy and the bounding circles of the others. The circle is
-/// about the model's origin, so the heading does not matter. The lowest point of the model stands on the highest ground
-/// under the circle: planes, height maps, and what is static and no higher than `level`; at `level` if there is none.
-///
-/// Random places are tried again if they are taken, a bounded number of times; given ones are left out. The draws of
-/// instance i depend on seed, name and i alone.
-std::vector<Placed> place_instances(const Placement& placement, const Model& model, const Occupancy& occupancy);
-
-}  // namespace cohort::parsing
+}  // namespace cohort::description

@@ -1,4 +1,4 @@
-#include "server/parsing/world/check_detachable_joints.hpp"
+#include "server/placement/check_detachable_joints.hpp"
 
 #include <algorithm>
 #include <set>
@@ -7,7 +7,7 @@
 
 #include "server/core/text.hpp"
 
-namespace cohort::parsing {
+namespace cohort::placement {
 namespace {
 
 template <class Things>
@@ -52,4 +52,4 @@ void check_detachable_joints(World& world, std::vector<Problem>& problems) {
     }
 }
 
-}  // namespace cohort::parsing
+}  // namespace cohort::placement

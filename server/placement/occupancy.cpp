@@ -1,14 +1,13 @@
-#include "server/parsing/world/occupancy.hpp"
+#include "server/placement/occupancy.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "server/core/infinity.hpp"
 #include "server/core/plane_vectors.hpp"
 
-namespace cohort::parsing {
+namespace cohort::placement {
 namespace {
 
 using Eigen::Vector2d;
@@ -55,15 +54,14 @@ std::vector<Vector3d> cut(const std::vector<Vector3d>& polygon, double height, d
 
 // Whether each edge belongs to two triangles that go along it in opposite directions.
 bool is_closed(const TriangleMesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+  edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = triangle[i], to = triangle[(i + 1) % 3];
-      if (edges[{from, to}]++ > 0) return false;
-    }
-  return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
-    return edges.contains({edge.first.second, edge.first.first});
-  });
+    for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(triangle[i], triangle[(i + 1) % 3]);
+  std::ranges::sort(edges);
+  return std::ranges::adjacent_find(edges) == edges.end() && std::ranges::all_of(edges, [&](const auto& edge) {
+           return std::ranges::binary_search(edges, std::pair(edge.second, edge.first));
+         });
 }
 
 }  // namespace
@@ -140,11 +138,12 @@ void Occupancy::add_heights(const std::shared_ptr<const HeightGrid>& grid, const
 }
 
 void Occupancy::add_mesh(const TriangleMesh& mesh, const Pose& X_WC) {
-  const auto index = static_cast<std::uint32_t>(meshes_.size());
-  meshes_.push_back({is_closed(mesh)});
+  const std::uint32_t index = next_mesh_++;
+  const bool is_closed = placement::is_closed(mesh);
   for (const auto& corners : mesh.triangles) {
     Thing thing;
     thing.mesh = index;
+    thing.is_closed = is_closed;
     thing.is_static = true;
     for (std::size_t i = 0; i < 3; ++i) thing.triangle[i] = X_WC * mesh.vertices[corners[i]];
     const Triangle& t = thing.triangle;
@@ -198,7 +197,7 @@ std::optional<double> Occupancy::terrain(const Vector2d& centre, double radius) 
   return highest;
 }
 
-OccupancyCells::OccupancyCells(const Vector2d& lower, const Vector2d& upper, double reach, std::size_t expected)
+Cells::Cells(const Vector2d& lower, const Vector2d& upper, double reach, std::size_t expected)
     : lower_(lower), upper_(upper), reach_(reach) {
   const Vector2d size = upper_ - lower_;
   cell_ = std::max({reach, std::sqrt(size.prod() / static_cast<double>(expected + 1)),
@@ -209,25 +208,6 @@ OccupancyCells::OccupancyCells(const Vector2d& lower, const Vector2d& upper, dou
   };
   columns_ = cells_along(size.x());
   rows_ = cells_along(size.y());
-  cells_.resize(columns_ * rows_);
 }
 
-void OccupancyCells::add(const Occupancy::Thing& thing) {
-  const Vector2d reach = thing.footprint.half_extent() + Vector2d::Constant(reach_);
-  const Vector2d from = thing.footprint.centre - reach - lower_;
-  const Vector2d to = thing.footprint.centre + reach - lower_;
-  if ((to.array() < 0.0).any() || (from.array() > (upper_ - lower_).array()).any()) return;
-  const auto place = static_cast<std::uint32_t>(things_.size());
-  things_.push_back(thing);
-  for (std::size_t row = index(from.y(), rows_); row <= index(to.y(), rows_); ++row)
-    for (std::size_t column = index(from.x(), columns_); column <= index(to.x(), columns_); ++column)
-      cells_[row * columns_ + column].push_back(place);
-}
-
-std::size_t OccupancyCells::index(double offset, std::size_t count) const {
-  const double place = offset / cell_;
-  if (!(place > 0.0)) return 0;
-  return static_cast<std::size_t>(std::min(place, static_cast<double>(count - 1)));
-}
-
-}  // namespace cohort::parsing
+}  // namespace cohort::placement

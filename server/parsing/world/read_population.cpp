@@ -1,4 +1,4 @@
-#include "server/parsing/world/population.hpp"
+#include "server/parsing/world/read_population.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,54 +97,54 @@ std::optional<Layout> read_layout(const ExtensionValues& placement, std::uint64_
 }
 
 // False if it makes no sense; the report then has it.
-bool read_heading(const ExtensionValues& values, const SdfReport& report, Placement& placement) {
-  const bool is_random = std::holds_alternative<UniformLayout>(placement.layout) ||
-                         std::holds_alternative<GaussianLayout>(placement.layout);
+bool read_heading(const ExtensionValues& values, const SdfReport& report, Population& population) {
+  const bool is_random = std::holds_alternative<UniformLayout>(population.layout) ||
+                         std::holds_alternative<GaussianLayout>(population.layout);
   const bool has_course =
-      std::holds_alternative<RingLayout>(placement.layout) || std::holds_alternative<LineLayout>(placement.layout);
-  placement.heading = is_random ? HeadingKind::random : HeadingKind::fixed;
-  placement.yaw = values.real("yaw");
-  if (values.has("heading")) placement.heading = choice_of<HeadingKind>(headings, values.text("heading"));
-  if (placement.heading == HeadingKind::along && !has_course) {
+      std::holds_alternative<RingLayout>(population.layout) || std::holds_alternative<LineLayout>(population.layout);
+  population.heading = is_random ? HeadingKind::random : HeadingKind::fixed;
+  population.yaw = values.real("yaw");
+  if (values.has("heading")) population.heading = choice_of<HeadingKind>(headings, values.text("heading"));
+  if (population.heading == HeadingKind::along && !has_course) {
     report.problem(values.where("heading"), "'along' is for <cohort:ring> and <cohort:line>");
     return false;
   }
-  const bool needs_point = placement.heading == HeadingKind::towards || placement.heading == HeadingKind::away;
+  const bool needs_point = population.heading == HeadingKind::towards || population.heading == HeadingKind::away;
   if (needs_point != values.has("point")) {
     report.problem(values.where(needs_point ? "heading" : "point"),
                    needs_point ? "'" + values.text("heading") + "' needs a <cohort:point>"
                                : "is for the headings 'towards' and 'away'");
     return false;
   }
-  if (needs_point) placement.point = values.point("point");
+  if (needs_point) population.point = values.point("point");
   return true;
 }
 
 }  // namespace
 
-std::optional<Population> read_population(const sdf::ElementPtr& element, const Extension& extension,
-                                          std::uint64_t seed, const SdfReport& report) {
+std::optional<WrittenPopulation> read_population(const sdf::ElementPtr& element, const Extension& extension,
+                                                 const SdfReport& report) {
   const auto values = ExtensionValues::read(element, extension, report);
   if (!values) return std::nullopt;
   const auto placement =
       ExtensionValues::read(values->where("placement"), *find_extension("placement", "population"), report);
   if (!placement) return std::nullopt;
 
-  Population population;
-  population.uri_element = values->where("uri");
-  population.placement_element = placement->element();
-  population.uri = values->text("uri");
+  WrittenPopulation written{values->where("uri"), values->text("uri"), {}};
+  Population& population = written.population;
+  population.name = values->name();
+  population.count = values->whole("count");
+  population.seed_offset = values->whole("seed_offset");
   population.may_be_fewer = values->flag("may_be_fewer");
-  population.placement.name = values->name();
-  population.placement.seed = seed + values->whole("seed_offset");
-  population.placement.count = values->whole("count");
-  population.placement.gap = placement->real("gap");
-  population.placement.level = placement->real("level");
-  const std::optional<Layout> layout = read_layout(*placement, population.placement.count, report);
+  population.gap = placement->real("gap");
+  population.level = placement->real("level");
+  population.place = report.place_of(element);
+  population.placement_place = report.place_of(placement->element());
+  const std::optional<Layout> layout = read_layout(*placement, population.count, report);
   if (!layout) return std::nullopt;
-  population.placement.layout = *layout;
-  if (!read_heading(*placement, report, population.placement)) return std::nullopt;
-  return population;
+  population.layout = *layout;
+  if (!read_heading(*placement, report, population)) return std::nullopt;
+  return written;
 }
 
 }  // namespace cohort::parsing

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <sdf/Element.hh>
+#include <string>
+
+#include "server/description/population.hpp"
+#include "server/parsing/keys/extensions.hpp"
+#include "server/parsing/sdf/sdf_report.hpp"
+
+namespace cohort::parsing {
+
+/// A `cohort:population` as it is written.
+struct WrittenPopulation {
+  sdf::ElementPtr uri_element;
+  std::string uri;
+  Population population;  ///< without its model
+};
+
+/// Nothing if anything is wrong with the element; the report then has it.
+std::optional<WrittenPopulation> read_population(const sdf::ElementPtr& element, const Extension& extension,
+                                                 const SdfReport& report);
+
+}  // namespace cohort::parsing

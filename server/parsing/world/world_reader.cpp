@@ -1,0 +1,341 @@
+#include "server/parsing/world/world_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sdf/Error.hh>
+#include <sdf/Frame.hh>
+#include <sdf/Light.hh>
+#include <sdf/Physics.hh>
+#include <sdf/World.hh>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "server/core/text.hpp"
+#include "server/description/world.hpp"
+#include "server/parsing/model/not_supported.hpp"
+#include "server/parsing/model/read_model.hpp"
+#include "server/parsing/plugins/gazebo_plugins.hpp"
+#include "server/parsing/sdf/extension_values.hpp"
+#include "server/parsing/sdf/libsdformat_failure.hpp"
+#include "server/parsing/sdf/sdf_files.hpp"
+#include "server/parsing/sdf/sdf_values.hpp"
+#include "server/parsing/world/physics_settings.hpp"
+#include "server/parsing/world/read_breakable_joints.hpp"
+#include "server/parsing/world/read_population.hpp"
+#include "server/parsing/world/stand_on_plane.hpp"
+#include "server/placement/place.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+const Eigen::Vector3d sdf_gravity{0.0, 0.0, -9.8};  // SDF's default
+
+// A world has one at most.
+bool is_once(const Extension& extension) {
+  return extension.name == "physics" || extension.name == "air" || extension.name == "water";
+}
+
+}  // namespace
+
+World WorldReader::read(LoneModel lone, const std::vector<LaterObject>& later) {
+  const SdfFile& file = files_.world();
+  if (!file.loaded) throw InputError(std::move(problems_));
+  if (lone != LoneModel::none && file.root.Model() != nullptr) {
+    read_model_alone(file);
+    if (lone == LoneModel::on_plane && problems_.empty()) stand_on_plane(world_);
+    return finished();
+  }
+  if (file.root.WorldCount() != 1) {
+    // A misspelt <world> has been reported.
+    if (problems_.empty())
+      problems_.push_back(
+          {file.shown, file.tree.line, "", "expected one <world>, not " + std::to_string(file.root.WorldCount())});
+    throw InputError(std::move(problems_));
+  }
+  const sdf::World& sdf_world = *file.root.WorldByIndex(0);
+  read_settings(sdf_world);
+  read_models(sdf_world, file);
+  read_lights(sdf_world, file);
+  read_extensions(sdf_world);
+  for (const LaterObject& object : later) add_later(object);
+  if (problems_.empty()) placement::check_instances(world_, problems_);
+  return finished();
+}
+
+World WorldReader::read_model_file(std::vector<std::string> materials) {
+  world_.materials = std::move(materials);
+  const SdfFile& file = files_.world();
+  if (file.loaded && file.root.Model() == nullptr)
+    problems_.push_back({file.shown, file.tree.line, "", "expected one <model> or <robot>"});
+  if (!file.loaded || file.root.Model() == nullptr) throw InputError(std::move(problems_));
+  read_model_alone(file);
+  return finished();
+}
+
+World WorldReader::finished() {
+  if (!problems_.empty()) throw InputError(std::move(problems_));
+  placement::set_robots(world_);
+  return std::move(world_);
+}
+
+void WorldReader::read_model_alone(const SdfFile& file) {
+  world_.name = file.root.Model()->Name();
+  world_.gravity = sdf_gravity;
+  add_instance(world_.name, shared_model(file, file.root.Model()->Static()), {});
+}
+
+void WorldReader::read_settings(const sdf::World& sdf_world) {
+  world_.name = sdf_world.Name();
+  world_.gravity = to_eigen(sdf_world.Gravity());
+  // SDF's default is World's, which libsdformat rounds.
+  if (const sdf::ElementPtr field = find(sdf_world.Element(), {"magnetic_field"}); is_written(field))
+    world_.magnetic_field = to_eigen(field->Get<ignition::math::Vector3d>());
+  if (const sdf::ElementPtr wind = find(sdf_world.Element(), {"wind", "linear_velocity"}); is_written(wind))
+    world_.air.wind = to_eigen(wind->Get<ignition::math::Vector3d>());
+  check_numbers(sdf_world.Element(), report_);
+  warn_of_unsupported(sdf_world.Element(), report_);
+
+  if (const auto step = read_step(sdf_world.PhysicsDefault(), report_)) world_.step = *step;
+}
+
+void WorldReader::read_models(const sdf::World& sdf_world, const SdfFile& file) {
+  std::map<std::string, const Include*> includes;
+  for (const Include& include : file.includes) includes.emplace(include.name, &include);
+  auto next = file.includes.begin();
+  const auto add_placed_before = [&](std::size_t place) {
+    for (; next != file.includes.end() && next->place <= place; ++next)
+      if (next->X_WM) add_included_model(*next, written_pose(*next->X_WM, next->is_quaternion));
+  };
+  std::map<std::string, const sdf::Frame*> frames;  // FrameByName would search all of them for each
+  for (std::uint64_t i = 0; i < sdf_world.FrameCount(); ++i)
+    frames.emplace(sdf_world.FrameByIndex(i)->Name(), sdf_world.FrameByIndex(i));
+
+  std::size_t place = 0;
+  for (sdf::ElementPtr child = sdf_world.Element()->GetFirstElement(); child; child = child->GetNextElement()) {
+    const bool is_frame = child->GetName() == "frame";
+    if (!is_frame && child->GetName() != "model") continue;
+    add_placed_before(place++);
+    if (!child->GetAttributeSet("name")) continue;
+    const auto name = child->Get<std::string>("name");
+    const auto include = includes.find(name);
+    const auto frame = frames.find(name);
+    const sdf::Model* const sdf_model = is_frame ? nullptr : sdf_world.ModelByName(name);
+    const ModelReading how = reading(false, file);
+    const bool is_included = include != includes.end();
+    if (is_frame && is_included && frame != frames.end()) {
+      add_included_model(*include->second, resolved_pose(*frame->second, how));
+    } else if (sdf_model != nullptr && is_included) {
+      add_included_model(*include->second, resolved_pose(*sdf_model, how));
+    } else if (sdf_model != nullptr && !names_.contains(name)) {
+      read_inline_model(*sdf_model, file);
+    } else if (sdf_model != nullptr) {  // libsdformat drops the second of two, and the first one is found here again
+      report_.problem(child, "another model has the name '" + name + "'");
+    }
+  }
+  add_placed_before(place);
+}
+
+// A light of the world is an object with nothing but the light: events switch it off and move it as any other.
+void WorldReader::read_lights(const sdf::World& sdf_world, const SdfFile& file) {
+  const ModelReading how = reading(true, file);
+  for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
+    const sdf::Light& sdf_light = *sdf_world.LightByIndex(i);
+    Emitter light = read_light(sdf_light, how);
+    Model model;
+    model.name = light.name;
+    model.is_static = true;
+    model.links.push_back({"link", {}, {}, {}});
+    const Pose X_WM = light.X_LE;
+    light.X_LE = {};
+    model.emitters.push_back(std::move(light));
+    world_.models.push_back(std::move(model));
+    if (!add_instance(sdf_light.Name(), world_.models.size() - 1, X_WM))
+      report_.problem(sdf_light.Element(), "another object has the name '" + sdf_light.Name() + "'");
+  }
+}
+
+void WorldReader::read_inline_model(const sdf::Model& sdf_model, const SdfFile& file) {
+  const ModelReading how = reading(sdf_model.Static(), file);
+  const std::size_t model = add_models(read_model(sdf_model, how));
+  add_instance(sdf_model.Name(), model, resolved_pose(sdf_model, how));
+}
+
+void WorldReader::add_part(const SdfFile& unread, const std::string& name, const Pose& X_WM) {
+  const auto [entry, is_new] = parts_.emplace(&unread, std::nullopt);
+  if (is_new) {
+    const SdfFile& part = files_.load_part(unread);
+    if (part.loaded && part.root.Model() != nullptr) {
+      check_numbers(part.root.Element(), report_);
+      const sdf::Model& sdf_model = *part.root.Model();
+      entry->second = add_models(read_model(sdf_model, reading(sdf_model.Static(), part)));
+      add_instance(name, *entry->second, X_WM);
+    }
+    files_.let_go(part);
+  } else if (entry->second) {
+    add_instance(name, add_models(renamed(*entry->second, name)), X_WM);
+  }
+}
+
+// As a model that was read, with all of its bodies.
+std::vector<Model> WorldReader::renamed(std::size_t model, const std::string& name) const {
+  const std::size_t count = count_of_bodies(model);
+  const std::size_t length = world_.models[model].name.size();
+  std::vector<Model> bodies;
+  for (std::size_t body = model; body < model + count; ++body) {
+    bodies.push_back(world_.models[body]);
+    bodies.back().name = name + bodies.back().name.substr(length);
+  }
+  return bodies;
+}
+
+void WorldReader::add_included_model(const Include& include, const Pose& X_WM) {
+  if (include.is_part) return add_part(*include.file, include.name, X_WM);
+  add_instance(include.name, shared_model(*include.file, include.is_static), X_WM);
+}
+
+std::size_t WorldReader::shared_model(const SdfFile& file, bool is_static) {
+  const auto [entry, is_new] = shared_.emplace(std::pair{&file, is_static}, world_.models.size());
+  if (is_new) {
+    check_numbers(file.root.Element(), report_);
+    add_models(read_model(*file.root.Model(), reading(is_static, file)));
+  }
+  return entry->second;
+}
+
+std::size_t WorldReader::count_of_bodies(std::size_t model) const {
+  const auto several = bodies_.find(model);
+  return several == bodies_.end() ? 1 : several->second;
+}
+
+std::size_t WorldReader::add_models(std::vector<Model> bodies) {
+  const std::size_t first = world_.models.size();
+  if (bodies.size() > 1) bodies_.emplace(first, bodies.size());
+  for (Model& body : bodies) world_.models.push_back(std::move(body));
+  return first;
+}
+
+void WorldReader::read_extensions(const sdf::World& sdf_world) {
+  const auto extensions = extensions_in(sdf_world.Element(), report_);
+  std::set<std::string_view> given;
+  read_world_plugins(sdf_world.Element(), world_, report_);  // what stands in elements of ours goes before it
+  for (const auto& [element, extension] : extensions) {
+    if (is_once(*extension) && !given.insert(extension->name).second)
+      report_.problem(element, "<" + prefixed(extension->name) + "> is given twice");
+    if (extension->name == "population") {
+      if (auto population = read_population(element, *extension, report_)) add_population(*std::move(population));
+    } else if (extension->name == "physics") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.physics = with_values(world_.physics, *values);
+    } else if (extension->name == "climate") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.climate = {values->real("temperature"), values->real("humidity")};
+    } else if (extension->name == "air") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_)) {
+        world_.air.density = values->real("density");
+        world_.air.wind_force = values->real("force_approximation_scaling_factor");
+      }
+    } else if (extension->name == "water") {
+      if (const auto values = ExtensionValues::read(element, *extension, report_))
+        world_.water = Water{values->real("level"), values->real("density"), values->vector("current")};
+    }
+  }
+  placement::add_populations(world_, seed_, names_, problems_);
+  // Last, when all materials and objects are known; what could not be read may have had more.
+  const bool all_is_read = problems_.empty();
+  for (const auto& [element, extension] : extensions) read_reference(element, *extension, all_is_read);
+}
+
+// What names a material or an object. Its keys are checked in any case.
+void WorldReader::read_reference(const sdf::ElementPtr& element, const Extension& extension, bool all_is_read) {
+  const bool is_pair = extension.name == "material_pair";
+  if (!is_pair && extension.name != "breakable_joint") return;
+  const auto values = ExtensionValues::read(element, extension, report_);
+  if (!values || !all_is_read) return;
+  if (is_pair)
+    add_material_pair(*values);
+  else
+    add_breakable_joint(*values);
+}
+
+std::optional<std::uint32_t> WorldReader::find_material(const ExtensionValues& values, const char* key) const {
+  const std::vector<std::string> named(world_.materials.begin() + 1, world_.materials.end());
+  const auto found = std::find(named.begin(), named.end(), values.text(key));
+  if (found != named.end()) return static_cast<std::uint32_t>(found - named.begin() + 1);
+  report_.problem(values.where(key),
+                  "nothing is made of '" + values.text(key) + "'" + suggestion(values.text(key), named));
+  return std::nullopt;
+}
+
+void WorldReader::add_material_pair(const ExtensionValues& values) {
+  const std::optional<std::uint32_t> first = find_material(values, "first");
+  const std::optional<std::uint32_t> second = find_material(values, "second");
+  if (!first || !second) return;
+  for (const MaterialPair& other : world_.material_pairs)
+    if (std::minmax(other.first, other.second) == std::minmax(*first, *second))
+      report_.problem(values.element(), "another <cohort:material_pair> is of '" + values.text("first") + "' and '" +
+                                            values.text("second") + "'");
+  world_.material_pairs.push_back(
+      {*first, *second, values.real("friction"), values.real("restitution"), values.real("rolling_resistance")});
+}
+
+void WorldReader::add_breakable_joint(const ExtensionValues& values) {
+  const std::vector<BreakableJoint>& others = world_.breakable_joints;
+  if (std::any_of(others.begin(), others.end(), [&](const auto& other) { return other.name == values.name(); }))
+    return report_.problem(values.element(), "another breakable joint has the name '" + values.name() + "'");
+  if (auto joint = read_breakable_joint(values, world_, report_)) world_.breakable_joints.push_back(*std::move(joint));
+}
+
+template <class Report>
+const SdfFile* WorldReader::find_model(const std::string& uri, const Report& problem) {
+  const SdfFile* file = nullptr;
+  try {
+    file = &files_.model(uri);
+  } catch (const std::runtime_error& error) {
+    problem(error.what());
+    return nullptr;
+  }
+  if (!file->loaded) return nullptr;
+  if (file->root.Model() == nullptr) {
+    problem("'" + file->shown.string() + "' has no <model>");
+    return nullptr;
+  }
+  return file;
+}
+
+void WorldReader::add_later(const LaterObject& object) {
+  const auto problem = [&](std::string message) {
+    problems_.push_back({object.where.file, object.where.line, object.where.element, std::move(message)});
+  };
+  const SdfFile* const file = find_model(object.uri, problem);
+  if (file == nullptr) return;
+  const std::size_t before = world_.instances.size();
+  if (!add_instance(object.name, shared_model(*file, file->root.Model()->Static()), object.X_WM))
+    return problem("another object has the name '" + object.name + "'");
+  if (world_.instances.size() > before + 1)
+    return problem("the model has several roots, which are bodies of their own; an event can bring one");
+  world_.instances.back().is_present = false;
+}
+
+void WorldReader::add_population(WrittenPopulation written) {
+  const auto problem = [&](std::string message) { report_.problem(written.uri_element, std::move(message)); };
+  const SdfFile* const file = find_model(written.uri, problem);
+  if (file == nullptr) return;
+  Population& population = written.population;
+  population.model = shared_model(*file, file->root.Model()->Static());
+  population.bodies = count_of_bodies(population.model);
+  // Where a shape is wrong, so is the room that it takes.
+  if (problems_.empty()) world_.populations.push_back(std::move(population));
+}
+
+bool WorldReader::add_instance(const std::string& name, std::size_t model, const Pose& X_WM) {
+  for (std::size_t body = model; body < model + count_of_bodies(model); ++body) {
+    const std::string own = name + world_.models[body].name.substr(world_.models[model].name.size());
+    if (!names_.insert(own).second) return false;
+    world_.instances.push_back({own, body, X_WM});
+  }
+  return true;
+}
+
+}  // namespace cohort::parsing

@@ -114,6 +114,7 @@ struct Recorded {
   double joint_rate = 0.0;              ///< of joint states, and of the poses of all links [Hz]
   double observation_rate = 0.0;        ///< at the most, and no more often than the robot is asked [Hz]
   std::vector<std::uint32_t> observed;  ///< robots, ascending
+  std::vector<std::string> selectors;   ///< of the robots observed, as written; empty: all
   std::chrono::nanoseconds snapshot_interval = std::chrono::seconds(30);
 };
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,6 +89,10 @@ struct Experiment {
   History history;
   Recorded recorded;
   std::shared_ptr<const KeptFiles> inputs{};  ///< what it was read from; null if it was made in a program
+  /// Sets again what refers to robots and objects by index: teams, events, what is printed and recorded. Called when
+  /// the world has got other instances with another seed. Throws InputError; null if the experiment was made in a
+  /// program. Callable from any thread.
+  std::function<void(Experiment&)> select_again{};
 };
 
 }  // namespace cohort::description

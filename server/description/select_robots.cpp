@@ -77,6 +77,15 @@ std::vector<std::uint32_t> select_robots(const World& world, const std::string& 
                               (count == 0 ? "; the world has no robots" : suggestion(text, names)));
 }
 
+std::vector<std::uint32_t> select_robots(const World& world, std::span<const std::string> selectors) {
+  std::set<std::uint32_t> robots;
+  for (const std::string& selector : selectors) {
+    const auto selected = select_robots(world, selector);
+    robots.insert(selected.begin(), selected.end());
+  }
+  return {robots.begin(), robots.end()};
+}
+
 std::vector<std::size_t> select_objects(const World& world, const std::string& selector) {
   const std::string_view text = trimmed(selector);
   std::vector<std::size_t> found;

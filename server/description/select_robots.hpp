@@ -19,6 +19,9 @@ namespace cohort::description {
 /// Throws std::invalid_argument, with a message for the user, if it is none of these or means no robot.
 std::vector<std::uint32_t> select_robots(const World& world, const std::string& selector);
 
+/// All that any of `selectors` selects, ascending; throws as the other one.
+std::vector<std::uint32_t> select_robots(const World& world, std::span<const std::string> selectors);
+
 /// All that any of `selectors` selects, ascending; one that selects nothing does not matter.
 std::vector<std::uint32_t> select_robots_of_any(const World& world, std::span<const std::string> selectors);
 

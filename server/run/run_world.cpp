@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "server/core/processors.hpp"
-#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/placement/with_seed.hpp"
 #include "server/run/exchange.hpp"
 
 namespace cohort::session {
@@ -17,10 +17,7 @@ unsigned threads_for(const description::Experiment& experiment, unsigned wanted)
 std::shared_ptr<const description::Experiment> with_seed(
     const std::shared_ptr<const description::Experiment>& experiment, std::uint64_t seed) {
   if (seed == experiment->seed) return experiment;
-  auto other = std::make_shared<description::Experiment>(
-      parsing::read_experiment(experiment->inputs, seed, experiment->duration));
-  other->recorded = experiment->recorded;
-  return other;
+  return std::make_shared<description::Experiment>(placement::with_seed(*experiment, seed));
 }
 
 RunWorld build_world(std::shared_ptr<const description::Experiment> experiment, unsigned threads,

@@ -1,6 +1,5 @@
 #include "server/parsing/experiment/read_recorded.hpp"
 
-#include <set>
 #include <stdexcept>
 
 #include "server/description/experiment.hpp"
@@ -16,14 +15,13 @@ void read_recorded(const ScheduleEntry& entry, const World& world, Recorded& rec
   if (entry.values().has("observations")) recorded.observation_rate = entry.values().real("observations");
   recorded.snapshot_interval = entry.time("snapshots").value_or(recorded.snapshot_interval);
   if (!entry.is_written("robots")) return;
-  std::set<std::uint32_t> observed;
+  recorded.selectors = entry.values().texts("robots");
+  recorded.observed.clear();
   try {
-    for (const std::string& selector : entry.values().texts("robots"))
-      for (const std::uint32_t robot : select_robots(world, selector)) observed.insert(robot);
+    recorded.observed = select_robots(world, recorded.selectors);
   } catch (const std::invalid_argument& error) {
     entry.problem("robots", error.what());
   }
-  recorded.observed.assign(observed.begin(), observed.end());
 }
 
 Recorded read_recorded(const std::string& text, const Experiment& experiment) {

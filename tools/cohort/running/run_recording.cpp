@@ -1,8 +1,5 @@
 #include "tools/cohort/running/run_recording.hpp"
 
-#include <algorithm>
-#include <set>
-
 #include "server/description/select_robots.hpp"
 #include "tools/cohort/cli/wording.hpp"
 
@@ -15,10 +12,8 @@ void set_recorded(description::Experiment& experiment, const RecordOptions& opti
   recorded.observation_rate = options.observation_rate.value_or(recorded.observation_rate);
   if (options.snapshot_interval) recorded.snapshot_interval = nanoseconds(*options.snapshot_interval);
   if (options.robots.empty()) return;
-  std::set<std::uint32_t> robots;
-  for (const std::string& selector : options.robots)
-    for (const std::uint32_t robot : description::select_robots(experiment.world, selector)) robots.insert(robot);
-  recorded.observed.assign(robots.begin(), robots.end());
+  recorded.observed = description::select_robots(experiment.world, options.robots);
+  recorded.selectors = options.robots;
 }
 
 }  // namespace cohort::tool

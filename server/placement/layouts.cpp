@@ -45,7 +45,8 @@ class GivenPlaces {
   GivenPlaces(const Population& population, const RandomStream& random) : population_(population), random_(random) {}
 
   std::vector<Vector3d> operator()(const GridLayout& layout) {
-    const std::uint64_t columns = std::min(layout.columns, population_.count);
+    const std::uint64_t columns =
+        std::clamp<std::uint64_t>(population_.count, 1, std::max<std::uint64_t>(layout.columns, 1));
     const std::uint64_t rows = (population_.count + columns - 1) / columns;
     const auto half = [](std::uint64_t count) { return 0.5 * static_cast<double>(count - 1); };
     const Vector2d x_axis(std::cos(layout.yaw), std::sin(layout.yaw));

@@ -4,9 +4,11 @@
 #include <sys/resource.h>
 
 #include <fstream>
+#include <set>
 #include <thread>
 #include <vector>
 
+#include "server/geometry/shapes/footprint.hpp"
 #include "server/placement/place.hpp"
 #include "server/placement/with_seed.hpp"
 #include "tests/support/arena_of_obstacles.hpp"
@@ -63,6 +65,18 @@ TEST(Placing, GivesWhatMakingTheWorldWithThatSeedGivesAndOpensNoFile) {
     EXPECT_EQ(test::text_of(with_seed(with_seed(first, 77), seed)), expected);
   }
   EXPECT_NE(with_seed(first, 2).world.instances[29].X_WM.position, first.world.instances[29].X_WM.position);
+}
+
+TEST(Placing, LeavesTheGapToWhatEarlierPopulationsHavePutThere) {
+  const Placer placer(placed_arena(1));
+  std::vector<Pose> poses(placer.count());
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    ASSERT_TRUE(placer.place(seed, poses));
+    for (std::size_t post = 0; post < 24; ++post) {
+      const auto footprint = geometry::footprint_of(Box{{0.2, 0.1, 0.2}}, poses[post]);
+      EXPECT_GE(footprint->distance(poses[24].position.head<2>()), 0.058 + 0.02 - 1e-9) << seed;
+    }
+  }
 }
 
 TEST(Placing, IsTheSameFromManyThreadsWithOnePlacer) {

@@ -21,7 +21,7 @@ constexpr double most_deviations = 7.0;
 // Draws of an attempt: x, y and heading.
 constexpr std::uint32_t draws = 3;
 
-// Of lengths that are computed in more than one way.
+// Covers the rounding of lengths that are computed in two ways.
 constexpr double margin = 1.0 + 1e-9;
 
 double direction_of(const Vector2d& vector) { return std::atan2(vector.y(), vector.x()); }
@@ -143,7 +143,7 @@ std::vector<Vector3d> given_places(const Population& population, const RandomStr
 }
 
 Region region_of(const Population& population) {
-  const RandomStream any(0, "", "");  // of given places the seed changes the headings, and how a formation is turned
+  const RandomStream any(0, "", "");  // the seed only turns given places, and formations
   const auto* const formation = std::get_if<FormationLayout>(&population.layout);
   if (formation != nullptr && population.heading == HeadingKind::random) {
     double farthest = 0.0;

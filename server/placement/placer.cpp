@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr std::uint32_t most_tries = 2000;
 
-// What of a model may be in the way.
+// Returns a model with nothing but the collisions that may be in the way.
 Model solid_part(const Model& model) {
   Model solid;
   solid.is_static = model.is_static;
@@ -40,7 +40,7 @@ struct Placer::Prepared {
   struct PreparedPopulation {
     Population population;
     Extent extent;
-    std::vector<Model> bodies;  // what of them may be in the way of later populations
+    std::vector<Model> bodies;  // with nothing but their collisions, which are in the way of later populations
     StaticRoom room;
   };
 
@@ -89,7 +89,7 @@ std::vector<Placed> Placer::Prepared::draw(const PreparedPopulation& prepared, s
     for (std::size_t i = 0; i < given.size(); ++i) try_at(i, given[i].head<2>(), [&] { return given[i].z(); });
     return places;
   }
-  // Rejection sampling. What finds no place leaves none to those after it.
+  // Rejection sampling. It ends with the first instance that finds no place.
   for (std::uint64_t instance = 0; instance < population.count && places.size() == instance; ++instance)
     for (std::uint32_t attempt = 0; attempt < most_tries; ++attempt) {
       const Vector2d point = drawn_point(population.layout, random, instance, attempt);

@@ -19,7 +19,7 @@ struct Extent {
 };
 Extent extent_of(const Model& model);
 
-/// What a search for places of one population asks that does not depend on the seed.
+/// The part of a search for places of one population that does not depend on the seed: all that stands still.
 class StaticRoom {
  public:
   /// `fixed`, which must outlive this, has what stands where the file says; `moving` is the approximate number of other
@@ -36,7 +36,7 @@ class StaticRoom {
   ThingsInCells things_;
 };
 
-/// What stands in the way of an instance of one population, and the ground under it, in the course of a search.
+/// A search for places of one population: the obstacles to an instance, and the ground under it.
 class Room {
  public:
   /// `room` and `earlier`, which has what earlier populations have put there, must outlive this; at most `count`

@@ -41,7 +41,7 @@ YamlMap map_of_experiment(const YamlNode& document, const YamlReport& report) {
   return {document, "", names_of_keys(experiment_part("experiment", "")), report};
 }
 
-// What the document says of robots and objects, for a world that has others than when it was read first. All else of
+// Reads again which robots and objects the document selects, for a world whose instances have changed. All else of
 // the experiment stays as it is.
 void select_again(const YamlNode& document, const fs::path& file, Experiment& experiment) {
   std::vector<Problem> problems;

@@ -18,12 +18,10 @@
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
-#include "server/parsing/sdf/libsdformat_failure.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
 #include "server/parsing/sdf/sdf_values.hpp"
 #include "server/parsing/world/physics_settings.hpp"
 #include "server/parsing/world/read_breakable_joints.hpp"
-#include "server/parsing/world/read_population.hpp"
 #include "server/parsing/world/stand_on_plane.hpp"
 #include "server/placement/place.hpp"
 

@@ -7,7 +7,6 @@
 #include "client_sdk/include/cohort/client.hpp"
 #include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/domains.hpp"
-#include "client_sdk/src/program.hpp"
 
 namespace cohort {
 namespace {

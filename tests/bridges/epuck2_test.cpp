@@ -29,7 +29,7 @@ class Simulated {
   Process& bridge() { return *bridge_; }
 
   std::uint16_t port(const std::string& robot) {
-    const std::string prefix = "robot " + robot + ": programs reach it at ";
+    const std::string prefix = "robot " + robot + ": program reaches it at ";
     if (!bridge_->wait_for_output(prefix)) throw std::runtime_error("no port: " + bridge_->output());
     std::smatch match;
     const std::string output = bridge_->output();
@@ -308,12 +308,12 @@ TEST_F(Epuck2Bridge, EndsWhenItIsToldToWhileItWaits) {
 
 TEST(Epuck2BridgeOptions, AreRefusedWithWhatToDo) {
   const std::string program = COHORT_BUILD_DIR "/bin/cohort-epuck2-bridge";
-  for (const auto& [arguments, text] : {std::pair(std::vector<std::string>{"--robots", "all"}, "one by one"),
-                                        {{"--robots", "epucks/*"}, "one by one"},
-                                        {{"--robots", "0..x"}, "'x' is no id"},
+  for (const auto& [arguments, text] : {std::pair(std::vector<std::string>{"--robots", "all"}, "single robots"),
+                                        {{"--robots", "epucks/*"}, "single robots"},
+                                        {{"--robots", "0..x"}, "'x' is not an id"},
                                         {{"--robots", ","}, "names no robot"},
                                         {{"--robots", "0..3", "--listen", "127.0.0.1,127.0.0.2"}, "one for each robot"},
-                                        {{"--listen", "nowhere"}, "is no IPv4 address"},
+                                        {{"--listen", "nowhere"}, "is not an IPv4 address"},
                                         {{"--listen", "192.0.2.1", "--port", "0"}, "cannot listen at 192.0.2.1:0"},
                                         {{"--robots", "0..3", "--port", "65534"}, "no ports beyond 65535"},
                                         {{"--without-program", "dance"}, "--without-program"}}) {

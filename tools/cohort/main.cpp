@@ -2,7 +2,7 @@
 #include <string>
 #include <string_view>
 
-#include "client_sdk/src/program.hpp"
+#include "client_sdk/include/cohort/client.hpp"
 #include "idl/dds/transport.hpp"
 #include "server/core/atomic_file.hpp"
 #include "server/description/input_error.hpp"

@@ -175,4 +175,11 @@ class Client {
 /// address or the identity cannot be used.
 ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop);
 
+/// Sets what it returns on SIGINT, SIGTERM and SIGHUP (a closed terminal; not under nohup) from now on, so that a
+/// program can end in order. A second one of them ends the process at once.
+std::atomic<bool>& stop_on_signals();
+
+/// Returns the exit code of a program whose client ended so: 0 finished, 2 refused, 130 interrupted, 1 anything else.
+int exit_code_of(ClientEnd end);
+
 }  // namespace cohort

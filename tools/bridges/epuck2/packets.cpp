@@ -20,7 +20,7 @@ std::string hexadecimal(std::uint8_t byte) {
 
 bool has_bit(std::uint8_t byte, int bit) { return (byte >> bit & 1) != 0; }
 
-std::int16_t int16_at(const CommandBytes& bytes, std::size_t place) {
+std::int16_t int16_at(std::span<const std::uint8_t> bytes, std::size_t place) {
   return static_cast<std::int16_t>(bytes[place] | bytes[place + 1] << 8);
 }
 
@@ -62,7 +62,7 @@ std::optional<std::string> mistake_of(std::span<const std::uint8_t> begun) {
   return std::nullopt;
 }
 
-Command decode(const CommandBytes& bytes) {
+Command decode(std::span<const std::uint8_t> bytes) {
   Command command;
   command.wants_image = has_bit(bytes[1], 0);
   command.wants_sensors = has_bit(bytes[1], 1);

@@ -17,8 +17,6 @@ inline constexpr int image_width = 160;
 inline constexpr int image_height = 120;
 inline constexpr std::uint8_t greatest_brightness = 100;  // of a colour of an RGB LED; above, it is left as it is
 
-using CommandBytes = std::array<std::uint8_t, command_size>;
-
 /// A command, as it is written.
 struct Command {
   bool wants_image = false;
@@ -37,7 +35,8 @@ struct Command {
 
 /// What is wrong with the first bytes of a command, which may not all have come yet; nothing if a robot would take it.
 std::optional<std::string> mistake_of(std::span<const std::uint8_t> begun);
-Command decode(const CommandBytes& bytes);
+/// Decodes the `command_size` bytes of a command.
+Command decode(std::span<const std::uint8_t> bytes);
 
 /// What the sensors packet says, in its own units.
 struct Sensors {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <stdexcept>
 #include <string>
 
 namespace cohort::epuck2 {
@@ -53,11 +55,16 @@ void set_color(cohort::Command& command, CommandChannel led, double red, double 
   command.set(led, blue, 2);
 }
 
+std::size_t command_framing(std::span<const std::uint8_t> bytes) {
+  if (const auto mistake = mistake_of(bytes.first(std::min(bytes.size(), command_size))))
+    throw std::runtime_error(*mistake);
+  return command_size;
+}
+
 }  // namespace
 
-void Robot::start(const Start& start) {
-  // Whatever the experiment names as the controller, this takes its place: its parameters are not for us.
-  for (const Parameter& parameter : start.parameters.all()) start.parameters.has(parameter.name);
+void Robot::start(const DrivenRobot& robot) {
+  const Start& start = robot.start;
   wheel_position_ = {start.observation("left_wheel/0/position"), start.observation("right_wheel/0/position")};
   wheel_velocity_ = {start.command("left_wheel/0/velocity"), start.command("right_wheel/0/velocity")};
   for (std::size_t i = 0; i < proximity_.size(); ++i) {
@@ -79,31 +86,31 @@ void Robot::start(const Start& start) {
   counters_begin_at_ = {};
 }
 
-void Robot::step(const Observation& observation, cohort::Command& command) {
-  if (owes_an_answer_) answer(observation);
+bool Robot::exchange(bridges::Conversation& program, const Observation& observation) {
+  if (owes_an_answer_) answer(program, observation);
   owes_an_answer_ = false;
-  const bool must_wait = without_program_ == WithoutProgram::wait || !driven_;
-  const auto received =
-      port_.next_command(must_wait ? Port::Patience::until_a_command_comes : Port::Patience::while_one_is_connected);
-  if (received) {
-    driven_ = true;
-    owes_an_answer_ = true;
-    heed(*received, observation);
-  } else {
-    last_ = {};
-    speed_ = {};
-  }
-  act(command);
+  // Time stands still until a program has driven the robot for the first time.
+  const auto received = program.receive(command_framing, driven_ ? patience_ : bridges::Patience{});
+  if (!received) return false;
+  driven_ = true;
+  owes_an_answer_ = true;
+  heed(decode(*received), observation);
+  return true;
 }
 
-void Robot::answer(const Observation& observation) {
+void Robot::stand() {
+  last_ = {};
+  speed_ = {};
+}
+
+void Robot::answer(bridges::Conversation& program, const Observation& observation) {
   const bool one_of_two = packets_ == Packets::in_turn && last_.wants_image && last_.wants_sensors;
   const bool sends_image = last_.wants_image && !(one_of_two && sent_image_);
   const bool sends_sensors = last_.wants_sensors && !(one_of_two && sends_image);
   sent_image_ = sends_image;
-  if (sends_image) port_.send(image_packet());
-  if (sends_sensors) port_.send(sensors_packet(sense(observation)));
-  if (!sends_image && !sends_sensors) port_.send(empty_packet());
+  if (sends_image) program.send(image_packet());
+  if (sends_sensors) program.send(sensors_packet(sense(observation)));
+  if (!sends_image && !sends_sensors) program.send(empty_packet());
 }
 
 void Robot::heed(const Command& received, const Observation& observation) {

@@ -1,19 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cohort/controller.hpp>
 #include <cstdint>
 
+#include "tools/bridges/common/firmware.hpp"
 #include "tools/bridges/epuck2/packets.hpp"
-#include "tools/bridges/epuck2/port.hpp"
 
 namespace cohort::epuck2 {
-
-/// What becomes of a robot whose program has left.
-enum class WithoutProgram {
-  wait,   ///< time stands still until another one has connected and sent a command
-  stand,  ///< it stops, and the run goes on; another one that connects drives on from there
-};
 
 /// What answers a command that asks for image and sensors.
 enum class Packets {
@@ -21,25 +14,25 @@ enum class Packets {
   in_turn,  ///< one of them, by turns, for programs that read a single packet after each command
 };
 
-/// An e-puck2 whose commands come from a program at a port, each of them answered at the next step. Waits in `step`.
-class Robot final : public Controller {
+/// An e-puck2 whose commands come from a program, each of them answered at the next exchange.
+class Robot final : public bridges::Firmware {
  public:
-  Robot(Port& port, WithoutProgram without_program, Packets packets)
-      : port_(port), without_program_(without_program), packets_(packets) {}
+  /// `patience` outlives this.
+  Robot(const bridges::Patience& patience, Packets packets) : patience_(patience), packets_(packets) {}
 
   /// The robot has the channels of worlds/robots/epuck2.
-  void start(const Start& start) override;
-  void step(const Observation& observation, cohort::Command& command) override;
+  void start(const DrivenRobot& robot) override;
+  bool exchange(bridges::Conversation& program, const Observation& observation) override;
+  void act(cohort::Command& command) const override;
+  void stand() override;
 
  private:
   Sensors sense(const Observation& observation) const;
-  void answer(const Observation& observation);
+  void answer(bridges::Conversation& program, const Observation& observation);
   void heed(const Command& received, const Observation& observation);
-  void act(cohort::Command& command) const;
   std::array<std::int64_t, 2> steps_made(const Observation& observation) const;
 
-  Port& port_;
-  WithoutProgram without_program_;
+  const bridges::Patience& patience_;
   Packets packets_;
   bool sent_image_ = false;      // with the last answer
   bool driven_ = false;          // by a program, at some time

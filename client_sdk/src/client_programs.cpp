@@ -1,6 +1,7 @@
-#include "client_sdk/src/program.hpp"
-
+#include <atomic>
 #include <csignal>
+
+#include "client_sdk/include/cohort/client.hpp"
 
 namespace cohort {
 namespace {

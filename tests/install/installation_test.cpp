@@ -1,7 +1,15 @@
+#include <arpa/inet.h>
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <iterator>
+#include <sstream>
+#include <thread>
 
 #include "tests/support/http.hpp"
 #include "tests/support/process.hpp"
@@ -107,6 +115,77 @@ TEST_F(Installation, AnOutsideControllerGivesTheSameBitsOnAnyCpu) {
   const std::string expected = hash_of_run("experiment.yaml", "inprocess");
   EXPECT_EQ(hash_of_run("tuned.yaml", "inprocess"), expected);
   EXPECT_EQ(hash_with_attached("build/weaver", environment_of_another_cpu), expected);
+}
+
+// Firmware that speaks UDP: answers each datagram of a bridge with a command that depends on it.
+class UdpFirmware {
+ public:
+  UdpFirmware() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    ::bind(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place);
+    socklen_t size = sizeof place;
+    ::getsockname(socket_, reinterpret_cast<sockaddr*>(&place), &size);
+    port_ = ntohs(place.sin_port);
+    thread_ = std::thread([this] { answer(); });
+  }
+  UdpFirmware(const UdpFirmware&) = delete;
+  UdpFirmware& operator=(const UdpFirmware&) = delete;
+  ~UdpFirmware() {
+    ends_ = true;
+    thread_.join();
+    ::close(socket_);
+  }
+  std::string port() const { return std::to_string(port_); }
+  int answers() const { return answers_; }
+
+ private:
+  void answer() {
+    while (!ends_) {
+      pollfd readable{socket_, POLLIN, 0};
+      if (::poll(&readable, 1, 50) != 1) continue;
+      std::string text(65536, ' ');
+      sockaddr_in from{};
+      socklen_t size = sizeof from;
+      const ssize_t count = ::recvfrom(socket_, text.data(), text.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+      if (count <= 0) continue;
+      std::istringstream observed(text.substr(0, static_cast<std::size_t>(count)));
+      std::uint64_t tick = 0;
+      double sum = 0.0;
+      observed >> tick;
+      for (double value = 0.0; observed >> value;) sum += value;
+      std::string command = std::to_string(tick);
+      for (int i = 0; i < 64; ++i) command += " " + std::to_string(0.05 + 0.01 * sum * i);
+      ::sendto(socket_, command.data(), command.size(), 0, reinterpret_cast<sockaddr*>(&from), size);
+      ++answers_;
+    }
+  }
+
+  int socket_;
+  std::uint16_t port_ = 0;
+  std::atomic<bool> ends_{false};
+  std::atomic<int> answers_{0};
+  std::thread thread_;
+};
+
+TEST_F(Installation, AnOutsideBridgeIsAProgramOfItsOwnInCppAndInC) {
+  std::vector<std::string> hashes;
+  for (const char* bridge : {"build/udp_bridge", "in_c/build/udp_bridge", "build/udp_bridge"}) {
+    const ScratchFolder folder;
+    const ReservedDomain domain;
+    const UdpFirmware firmware;
+    Process server({cohort(), "serve", outside / "one_robot.yaml", "--domain", domain.text(), "--summary",
+                    folder / "summary.json"},
+                   environment);
+    Process client({outside / bridge, "sbot", firmware.port()}, {{"COHORT_DOMAIN", domain.text()}});
+    EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+    EXPECT_EQ(client.wait_for_exit(), 0) << client.output();
+    EXPECT_GE(firmware.answers(), 100);
+    hashes.push_back(hash_in(folder / "summary.json"));
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
 }
 
 TEST_F(Installation, AnOutsidePluginShowsNothingButItself) {

@@ -190,7 +190,7 @@ TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
   // Of the system, of the language, and what any folder may have.
   const std::regex others(
       "[a-z_]+|(std|sys|net|netinet|arpa|linux)[a-z]*/"
-      ".*|(std[a-z]+|dlfcn|elf|fcntl|ifaddrs|netdb|poll|pthread|spawn|"
+      ".*|(std[a-z]+|inttypes|dlfcn|elf|fcntl|ifaddrs|netdb|poll|pthread|spawn|"
       "termios|unistd|math|string|signal|fenv|time)\\.h|Eigen/.*|fmt/.*|cohort\\.h|cohort_build/"
       ".*|cxxabi\\.h|"
       "immintrin\\.h|x86intrin\\.h|execinfo\\.h");

@@ -163,6 +163,18 @@ TEST(Architecture, NeitherFoldersNorFilesIncludeEachOtherInACircle) {
   EXPECT_EQ(circle_in({{"a", {"b"}}, {"b", {"c"}}, {"c", {"b"}}}), "b > c > b");
 }
 
+// A header and the source of its name are one module.
+TEST(Architecture, NoTwoModulesOfSdfNeedEachOther) {
+  const auto module_of = [](const std::string& file) { return std::filesystem::path(file).replace_extension(); };
+  Graph modules;
+  for (const Source& source : read_sources())
+    if (source.path.starts_with("server/parsing/sdf/"))
+      for (const std::string& file : source.files)
+        if (module_of(file) != module_of(source.path)) modules[module_of(source.path)].insert(module_of(file));
+  EXPECT_GT(modules.size(), 25u);
+  EXPECT_EQ(circle_in(modules), "");
+}
+
 TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
   const std::vector<std::pair<std::string, std::regex>> libraries = {
       {"Cyclone DDS", std::regex("dds/.*")},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,13 +11,18 @@
 
 namespace cohort::parsing {
 
-struct SdfFile;
+/// A file that elements are written in.
+struct SourceFile {
+  std::filesystem::path path;   ///< absolute
+  std::filesystem::path shown;  ///< as the user calls it
+  bool is_foreign = false;      ///< not written for Cohort: it does not declare our prefix, or is URDF
+};
 
 /// An element of an XML file and the line where it starts.
 struct XmlNode {
   std::string name;
   int line = 0;
-  const SdfFile* file = nullptr;  ///< where it was written, in a tree that is put together from several
+  const SourceFile* file = nullptr;  ///< where it was written, in a tree that is put together from several
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string text;  ///< all text directly inside, without white space at the ends
   std::vector<XmlNode> children;

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "server/core/text.hpp"
-#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/yaml/yaml_document.hpp"
 
 namespace cohort::parsing {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "server/core/text.hpp"
-#include "server/parsing/sdf/sdf_schema.hpp"
-#include "server/parsing/sdf/unknown_names.hpp"
+#include "server/parsing/sdf/schema/sdf_schema.hpp"
+#include "server/parsing/sdf/tree/xml_edit.hpp"
 
 namespace cohort::parsing {
 namespace {
@@ -252,26 +252,14 @@ void replace_bad_values_below(XmlNode& node, const ElementSchema& schema, const 
 
 }  // namespace
 
-std::vector<Problem> replace_bad_values(XmlNode& tree, const SdfFile& file) {
+std::vector<Problem> replace_bad_values(SdfFile& file) {
   std::vector<Problem> problems;
-  replace_bad_values_below(tree, ElementSchema::root(), "", file, problems);
+  replace_bad_values_below(file.tree, ElementSchema::root(), "", file, problems);
   return problems;
 }
 
-void take_unknown_names(sdf::Errors& errors, const SdfFile& file, std::vector<Problem>& warnings) {
-  UnknownNames attributes;
-  for (const sdf::Error& error : errors) {
-    if (!is_unknown(error) || !error.Message().starts_with("XML Attribute")) continue;
-    const XmlNode* const node = file.node_at(error.LineNumber().value_or(0));
-    attributes.add({file.shown, node != nullptr ? node->line : 0,
-                    std::string(parent_of(readable_path(error.XmlPath().value_or("")))), ""},
-                   "unknown attribute '" + in_brackets(error.Message()) + "', which is ignored");
-  }
-  attributes.tell(warnings);
-  std::erase_if(errors, is_unknown);
-}
-
-std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file, const XmlNode& tree) {
+std::vector<Problem> problems_of(const sdf::Errors& errors, const SdfFile& file) {
+  const XmlNode& tree = file.tree;
   std::vector<Problem> problems;
   PlacedNames named;     // those that are wrong
   PlacedNames misspelt;  // attributes that others were taken for

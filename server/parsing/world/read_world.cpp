@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "server/core/text.hpp"
-#include "server/parsing/sdf/libsdformat_failure.hpp"
+#include "server/parsing/sdf/schema/libsdformat_scope.hpp"
 #include "server/parsing/world/world_reader.hpp"
 
 namespace cohort::parsing {

@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "server/core/text.hpp"
-#include "server/parsing/sdf/sdf_schema.hpp"
-#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/sdf/schema/sdf_schema.hpp"
+#include "server/parsing/sdf/schema/yaml_sdf.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -10,7 +10,7 @@
 #include "server/description/world.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
-#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/written_worlds.hpp"
 

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/writing/write_world.hpp"
 #include "server/simulation/simulation.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/writing/write_world.hpp"
 #include "server/simulation/simulation.hpp"

@@ -2,7 +2,7 @@
 #include "server/description/input_error.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/sdf/file_kind.hpp"
-#include "server/parsing/sdf/yaml_sdf.hpp"
+#include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/writing/write_world.hpp"
 #include "tools/cohort/cli/installed_files.hpp"

@@ -1,0 +1,205 @@
+#include "server/parsing/sdf/repair/mend_sdf.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <sdf/Sensor.hh>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/core/text.hpp"
+#include "server/parsing/sdf/tree/unknown_names.hpp"
+#include "server/parsing/sdf/tree/xml_edit.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+class SdfMender {
+ public:
+  SdfMender(const std::filesystem::path& file, std::vector<Problem>& warnings) : file_(file), warnings_(warnings) {}
+
+  void mend(XmlNode& node, const std::string& path);
+  void tell() const { told_.tell(warnings_); }
+
+ private:
+  void tell_of(const XmlNode& node, const std::string& path, const std::string& message) {
+    told_.add({file_, node.line, path, ""}, message);
+  }
+  void mend_model(XmlNode& model, const std::string& path);
+  void take_world_link(XmlNode& model, const std::string& path);
+  void mend_masses(XmlNode& model, const std::string& path);
+  void give_link(XmlNode& model, const std::string& path);
+  void mend_link(XmlNode& link, const std::string& path);
+  void number_apart(XmlNode& link, std::string_view kind, const std::string& path);
+  void mend_joint(XmlNode& joint, const std::string& path);
+  void mend_friction(XmlNode& friction, const std::string& path);
+  bool knows_sensor(const XmlNode& sensor, const std::string& path);
+
+  const std::filesystem::path& file_;
+  std::vector<Problem>& warnings_;
+  UnknownNames told_;
+};
+
+void SdfMender::mend(XmlNode& node, const std::string& path) {
+  if (node.name == "model") mend_model(node, path);
+  if (node.name == "link") mend_link(node, path);
+  if (node.name == "joint") mend_joint(node, path);
+  if (node.name == "friction") mend_friction(node, path);
+  if (node.name == "plugin" || node.name == "visual" || node.name == "sensor") return;
+  for (XmlNode& child : node.children) mend(child, (path.empty() ? "" : path + "/") + step_of(child));
+}
+
+std::string text_of_child(const XmlNode& node, std::string_view name) {
+  const XmlNode* const child = node.child(name);
+  return child != nullptr ? child->text : "";
+}
+
+bool is_flag_set(const XmlNode& node, std::string_view name) {
+  const std::string flag = text_of_child(node, name);
+  return flag == "true" || flag == "1";
+}
+
+void SdfMender::mend_model(XmlNode& model, const std::string& path) {
+  take_world_link(model, path);
+  if (!is_flag_set(model, "static")) mend_masses(model, path);
+  give_link(model, path);
+}
+
+// `world` is what joints call the world. A link of this name that is not solid stands for it.
+void SdfMender::take_world_link(XmlNode& model, const std::string& path) {
+  const auto is_it = [](const XmlNode& child) { return child.name == "link" && value_of(child, "name") == "world"; };
+  const auto link = std::ranges::find_if(model.children, is_it);
+  if (link == model.children.end()) return;
+  if (link->child("collision") == nullptr) {
+    tell_of(*link, path + "/link[world]", "a link called 'world' without collisions is taken for the world itself");
+    model.children.erase(link);
+    return;
+  }
+  tell_of(*link, path + "/link[world]", "'world' is the world itself; this link is called 'world_link'");
+  set_attribute(*link, "name", "world_link");
+  for (XmlNode& joint : model.children)
+    if (joint.name == "joint")
+      for (XmlNode& end : joint.children)
+        if ((end.name == "parent" || end.name == "child") && end.text == "world") end.text = "world_link";
+}
+
+// A root without mass is how Bullet says that the world holds it. What hangs on a joint and has none weighs what its
+// shapes do, once they are read (read_link.cpp).
+void SdfMender::mend_masses(XmlNode& model, const std::string& path) {
+  std::set<std::string> children;
+  for (const XmlNode& joint : model.children)
+    if (joint.name == "joint") children.insert(text_of_child(joint, "child"));
+  std::vector<XmlNode> held;
+  const XmlNode* first = nullptr;
+  std::string weightless;
+  for (XmlNode& link : model.children) {
+    XmlNode* const inertial = link.name == "link" ? child_of(link, "inertial") : nullptr;
+    if (inertial == nullptr || parse_real(text_of_child(*inertial, "mass")) != 0.0) continue;
+    const std::string name = value_of(link, "name");
+    if (children.contains(name)) {
+      if (first == nullptr) first = &link;
+      weightless += (weightless.empty() ? "'" : ", '") + name + "'";
+      continue;
+    }
+    *inertial = element_at(link, "inertial");
+    XmlNode inertia = element_at(link, "inertia");
+    for (const char* const moment : {"ixx", "iyy", "izz"}) inertia.children.push_back(element_at(link, moment, "1"));
+    inertial->children = {element_at(link, "mass", "1"), std::move(inertia)};
+    tell_of(link, path + "/" + step_of(link), "a root without mass is held by the world");
+    XmlNode& joint = held.emplace_back(element_at(link, "joint"));
+    joint.attributes = {{"name", name + "_to_world"}, {"type", "fixed"}};
+    joint.children = {element_at(link, "parent", "world"), element_at(link, "child", name)};
+  }
+  if (first != nullptr)
+    tell_of(*first, path,
+            "links without mass: " + weightless +
+                "; each has that of its collisions at 1000 kg/m^3, or else of its visuals, or else 1 g");
+  std::ranges::move(held, std::back_inserter(model.children));
+}
+
+void SdfMender::give_link(XmlNode& model, const std::string& path) {
+  const auto holds_any = [](const XmlNode& child) {
+    return child.name == "link" || child.name == "model" || child.name == "include";
+  };
+  if (std::ranges::any_of(model.children, holds_any)) return;
+  tell_of(model, path, "has no links: there is nothing of it that moves or is met");
+  XmlNode link = element_at(model, "link");
+  set_attribute(link, "name", "link");
+  std::erase_if(model.children, [](const XmlNode& child) { return child.name == "static"; });
+  model.children.push_back(element_at(model, "static", "true"));
+  model.children.push_back(std::move(link));
+}
+
+bool SdfMender::knows_sensor(const XmlNode& sensor, const std::string& path) {
+  const std::string type = value_of(sensor, "type");
+  if (sdf::Sensor().SetType(type)) return true;
+  tell_of(sensor, path + "/" + step_of(sensor), "there is no sensor of type '" + type + "' here; it is ignored");
+  return false;
+}
+
+void SdfMender::mend_link(XmlNode& link, const std::string& path) {
+  std::erase_if(link.children,
+                [&](const XmlNode& child) { return child.name == "sensor" && !knows_sensor(child, path); });
+  for (const char* const kind : {"collision", "sensor"}) number_apart(link, kind, path);
+  for (XmlNode& sensor : link.children)  // a camera sees nothing here, whatever is said of it
+    if (XmlNode* const camera = sensor.name == "sensor" ? child_of(sensor, "camera") : nullptr)
+      camera->children.clear();
+}
+
+// Parts of a link that have one name.
+void SdfMender::number_apart(XmlNode& link, std::string_view kind, const std::string& path) {
+  std::set<std::string> names;
+  for (XmlNode& part : link.children) {
+    const std::string name = value_of(part, "name");
+    if (part.name != kind || name.empty() || names.insert(name).second) continue;
+    std::string other = name + "_1";
+    for (int number = 2; !names.insert(other).second; ++number) other = name + "_" + std::to_string(number);
+    tell_of(part, path + "/" + step_of(part),
+            "another " + part.name + " of the link has this name; it is called '" + other + "'");
+    set_attribute(part, "name", other);
+  }
+}
+
+// SDF's own default is z. The two axes of a joint are not the same.
+void SdfMender::mend_joint(XmlNode& joint, const std::string& path) {
+  const std::string type = value_of(joint, "type");
+  if (value_of(joint, "name") == "world") {
+    tell_of(joint, path, "'world' is the world itself; this joint is called 'world_joint'");
+    set_attribute(joint, "name", "world_joint");
+  }
+  if (type == "fixed" || type == "ball") return;
+  const bool has_two = type == "universal" || type == "revolute2";
+  for (const char* const name : {"axis", "axis2"}) {
+    if (name == std::string_view("axis2") && !has_two) break;
+    XmlNode* axis = child_of(joint, name);
+    if (axis != nullptr && axis->child("xyz") != nullptr) continue;
+    const bool is_second = name == std::string_view("axis2");
+    tell_of(joint, path, std::string("has no direction of its <") + name + ">; it is " + (is_second ? "y" : "z"));
+    if (axis == nullptr) axis = &joint.children.emplace_back(element_at(joint, name));
+    axis->children.push_back(element_at(joint, "xyz", is_second ? "0 1 0" : "0 0 1"));
+  }
+}
+
+// ODE takes a negative one for any friction that it takes. SDF knows none.
+void SdfMender::mend_friction(XmlNode& friction, const std::string& path) {
+  XmlNode* const ode = child_of(friction, "ode");
+  if (ode == nullptr) return;
+  for (XmlNode& coefficient : ode->children) {
+    if (coefficient.name != "mu" && coefficient.name != "mu2") continue;
+    const auto value = parse_real(coefficient.text);
+    if (!value || !(*value < 0.0)) continue;
+    tell_of(coefficient, path + "/ode/" + coefficient.name, "expected a coefficient >= 0; it holds whatever pulls");
+    coefficient.text = "1000";
+  }
+}
+
+}  // namespace
+
+void mend_sdf(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings) {
+  SdfMender mender(file, warnings);
+  mender.mend(sdf, "");
+  mender.tell();
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,145 @@
+#include "server/parsing/sdf/repair/newer_sdf.hpp"
+
+#include <cmath>
+#include <optional>
+#include <sdf/SDFImpl.hh>
+#include <string>
+#include <utility>
+
+#include "server/core/text.hpp"
+#include "server/parsing/keys/extensions.hpp"
+#include "server/parsing/sdf/tree/xml_edit.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+constexpr const char* density_of_water = "1000";  // SDF's default [kg/m^3]
+
+class OlderSdf {
+ public:
+  OlderSdf(const std::filesystem::path& file, std::vector<Problem>& warnings) : file_(file), warnings_(warnings) {}
+
+  void change(XmlNode& node, const std::string& path);
+
+ private:
+  void warn(const XmlNode& node, const std::string& path, const std::string& message) {
+    warnings_.push_back({file_, node.line, path, message});
+  }
+  static void change_link(XmlNode& link);
+  static void change_joint(XmlNode& joint);
+  void change_geometry(XmlNode& geometry, const std::string& path);
+  void change_world(XmlNode& world, const std::string& path);
+
+  const std::filesystem::path& file_;
+  std::vector<Problem>& warnings_;
+};
+
+void OlderSdf::change(XmlNode& node, const std::string& path) {
+  if (node.name == "link") change_link(node);
+  if (node.name == "joint") change_joint(node);
+  if (node.name == "geometry") change_geometry(node, path);
+  if (node.name == "world") change_world(node, path);
+  if (node.name == "plugin") return;
+  for (XmlNode& child : node.children) change(child, (path.empty() ? "" : path + "/") + step_of(child));
+}
+
+XmlNode density_from(const XmlNode& where, const std::string& text) {
+  return element_at(where, prefixed("density"), text);
+}
+
+// `auto`: from the shapes and their densities, which our <cohort:density> says.
+void OlderSdf::change_link(XmlNode& link) {
+  const XmlNode* const inertial = link.child("inertial");
+  const bool is_auto =
+      inertial != nullptr && (value_of(*inertial, "auto") == "true" || value_of(*inertial, "auto") == "1");
+  if (XmlNode* const written = child_of(link, "inertial"); written != nullptr && !is_auto) {
+    std::erase_if(written->attributes, [](const auto& attribute) { return attribute.first == "auto"; });
+    std::erase_if(written->children, [](const XmlNode& child) { return child.name == "density"; });
+  }
+  for (XmlNode& collision : link.children) {
+    if (collision.name != "collision") continue;
+    const XmlNode* const density = collision.child("density");
+    const std::optional<std::string> text = density != nullptr ? std::optional(density->text) : std::nullopt;
+    std::erase_if(collision.children,
+                  [](const XmlNode& child) { return child.name == "density" || child.name == "auto_inertia_params"; });
+    if (is_auto && text) collision.children.push_back(density_from(collision, *text));
+  }
+  if (!is_auto) return;
+  const XmlNode* const density = inertial->child("density");
+  XmlNode ours = density_from(*inertial, density != nullptr ? density->text : density_of_water);
+  std::erase_if(link.children, [](const XmlNode& child) { return child.name == "inertial"; });
+  link.children.push_back(std::move(ours));
+}
+
+// SDF's position is multiplier * (leader - reference) + offset.
+void OlderSdf::change_joint(XmlNode& joint) {
+  std::optional<XmlNode> follows;
+  for (XmlNode& axis : joint.children) {
+    const XmlNode* const mimic = axis.name == "axis" ? axis.child("mimic") : nullptr;
+    if (mimic == nullptr) continue;
+    const auto number = [&](const char* name, double otherwise) {
+      const XmlNode* const child = mimic->child(name);
+      return child != nullptr ? parse_real(child->text).value_or(otherwise) : otherwise;
+    };
+    const double multiplier = number("multiplier", 1.0);
+    follows = element_at(*mimic, prefixed("mimic"));
+    follows->children = {element_at(*mimic, prefixed("joint"), value_of(*mimic, "joint")),
+                         element_at(*mimic, prefixed("multiplier"), shortest_text(multiplier)),
+                         element_at(*mimic, prefixed("offset"),
+                                    shortest_text(number("offset", 0.0) - multiplier * number("reference", 0.0)))};
+    std::erase_if(axis.children, [](const XmlNode& child) { return child.name == "mimic"; });
+  }
+  if (follows) joint.children.push_back(*std::move(follows));
+}
+
+void OlderSdf::change_geometry(XmlNode& geometry, const std::string& path) {
+  XmlNode* const cone = child_of(geometry, "cone");
+  if (cone == nullptr) return;
+  cone->name = "cylinder";
+  if (XmlNode* const radius = child_of(*cone, "radius"))
+    if (const auto value = parse_real(radius->text)) radius->text = shortest_text(*value / std::sqrt(3.0));
+  warn(*cone, path + "/cone", "a cone is taken for the cylinder of its length and volume");
+}
+
+// The object and its link that `arm::hand::palm` is.
+std::pair<std::string, std::string> object_and_link(const std::string& name) {
+  const std::size_t end = name.find("::");
+  return {name.substr(0, end), end == std::string::npos ? "" : name.substr(end + 2)};
+}
+
+// A fixed one holds two objects together.
+void OlderSdf::change_world(XmlNode& world, const std::string& path) {
+  std::vector<XmlNode> ours;
+  std::erase_if(world.children, [&](const XmlNode& joint) {
+    if (joint.name != "joint") return false;
+    const XmlNode* const parent = joint.child("parent");
+    const XmlNode* const child = joint.child("child");
+    const bool holds = value_of(joint, "type") == "fixed" && parent != nullptr && child != nullptr &&
+                       parent->text != "world" && child->text != "world";
+    if (!holds) {
+      warn(joint, path + "/" + step_of(joint),
+           "a joint between objects of a world is supported if it is fixed and is between two models; it is ignored");
+      return true;
+    }
+    XmlNode& held = ours.emplace_back(element_at(joint, prefixed("breakable_joint")));
+    set_attribute(held, "name", value_of(joint, "name"));
+    const auto add_end = [&](const std::string& key, const std::string& name) {
+      const auto [object, link] = object_and_link(name);
+      held.children.push_back(element_at(joint, prefixed(key), object));
+      if (!link.empty()) held.children.push_back(element_at(joint, prefixed(key + "_link"), link));
+    };
+    add_end("first", parent->text);
+    add_end("second", child->text);
+    return true;
+  });
+  for (XmlNode& each : ours) world.children.push_back(std::move(each));
+}
+
+}  // namespace
+
+void make_older(XmlNode& sdf, const std::filesystem::path& file, std::vector<Problem>& warnings) {
+  set_attribute(sdf, "version", sdf::SDF::Version());
+  OlderSdf(file, warnings).change(sdf, "");
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/parsing/files/xml_outline.hpp"
+
+/// Changing a tree of XML that was read.
+namespace cohort::parsing {
+
+/// nullptr if there is none.
+inline XmlNode* child_of(XmlNode& parent, std::string_view name) { return const_cast<XmlNode*>(parent.child(name)); }
+
+/// Empty if there is none.
+inline std::string value_of(const XmlNode& node, std::string_view attribute) {
+  const std::string* const value = node.attribute(attribute);
+  return value != nullptr ? *value : "";
+}
+
+inline void set_attribute(XmlNode& node, std::string_view name, const std::string& value) {
+  for (auto& attribute : node.attributes)
+    if (attribute.first == name) {
+      attribute.second = value;
+      return;
+    }
+  node.attributes.emplace_back(name, value);
+}
+
+/// The name of the element, or the one that an <include> gives; empty if there is none.
+inline std::string name_of(const XmlNode& node) {
+  if (const std::string* const name = node.attribute("name")) return *name;
+  const XmlNode* const name = node.name == "include" ? node.child("name") : nullptr;
+  return name != nullptr ? name->text : "";
+}
+
+/// An element as a step of a path, such as `model[NAME]`. There is one world, whose name does not matter.
+inline std::string path_step(const std::string& element, const std::string& name) {
+  return name.empty() || element == "world" ? element : element + "[" + name + "]";
+}
+
+inline std::string step_of(const XmlNode& node) { return path_step(node.name, name_of(node)); }
+
+/// The content of a model but its name and where it is.
+inline void add_content(const XmlNode& node, std::string& content, bool is_top = true) {
+  content += '<' + node.name;
+  for (const auto& [name, value] : node.attributes)
+    if (!is_top || name != "name") content += ' ' + name + "=\"" + value + '"';
+  content += '>' + node.text;
+  for (const XmlNode& child : node.children) {
+    if (!is_top || child.name != "pose") {
+      add_content(child, content, false);
+      continue;
+    }
+    content += "<pose";
+    for (const auto& [name, value] : child.attributes) content += ' ' + name + "=\"" + value + '"';
+  }
+  content += "</>";
+}
+
+/// An element that stands where another one does.
+inline XmlNode element_at(const XmlNode& where, std::string name, std::string text = "") {
+  return {std::move(name), where.line, where.file, {}, std::move(text), {}};
+}
+
+}  // namespace cohort::parsing

@@ -1,0 +1,229 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/urdf_file.hpp"
+#include "server/parsing/sdf/urdf/urdf_forms.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+// Of <gazebo>: what libsdformat's converter takes for a number.
+constexpr std::string_view gazebo_numbers[] = {"dampingFactor",
+                                               "maxVel",
+                                               "minDepth",
+                                               "mu1",
+                                               "mu2",
+                                               "kp",
+                                               "kd",
+                                               "maxContacts",
+                                               "laserRetro",
+                                               "springReference",
+                                               "stopCfm",
+                                               "stopErp",
+                                               "springStiffness",
+                                               "stopKp",
+                                               "stopKd",
+                                               "cfmDamping",
+                                               "fudgeFactor",
+                                               "initialJointPosition"};
+
+constexpr std::string_view joint_types[] = {"revolute", "continuous", "prismatic", "fixed"};
+
+class Checker {
+ public:
+  Checker(const std::filesystem::path& file, std::vector<Problem>& problems, std::vector<Problem>& warnings)
+      : file_(file), problems_(problems), warnings_(warnings) {}
+
+  void check(const XmlNode& robot);
+
+ private:
+  void problem(const XmlNode& node, const std::string& path, std::string message) {
+    problems_.push_back({file_, node.line, path, std::move(message)});
+  }
+  void warning(const XmlNode& node, const std::string& path, std::string message) {
+    warnings_.push_back({file_, node.line, path, std::move(message)});
+  }
+  void check_top(const XmlNode& node);
+  void check_form(const XmlNode& node, const std::string& path);
+  void check_attributes(const XmlNode& node, const UrdfForm& form, const std::string& path);
+  void check_gazebo(const XmlNode& gazebo);
+  void check_link(const XmlNode& link, const std::string& path);
+  void check_joint(const XmlNode& joint, const std::string& path);
+  void check_tree(const XmlNode& robot);
+  /// The link that <parent> or <child> names, reported if there is none.
+  void check_end(const XmlNode& joint, const std::string& path, const char* end);
+
+  const std::filesystem::path& file_;
+  std::vector<Problem>& problems_;
+  std::vector<Problem>& warnings_;
+  std::map<std::string, const XmlNode*> links_;
+  std::map<std::string, const XmlNode*> joints_;
+};
+
+std::string step(const XmlNode& node) {
+  const std::string* const name = node.attribute("name");
+  return node.name + (name != nullptr ? "[" + *name + "]" : "");
+}
+
+std::string end_of(const XmlNode& joint, const char* end) {
+  const XmlNode* const node = joint.child(end);
+  const std::string* const link = node != nullptr ? node->attribute("link") : nullptr;
+  return link != nullptr ? *link : "";
+}
+
+void Checker::check(const XmlNode& robot) {
+  for (const XmlNode& child : robot.children) check_top(child);
+  if (links_.empty()) problem(robot, step(robot), "expected at least one <link>");
+  for (const auto& [name, joint] : joints_) {
+    const std::string path = step(robot) + "/" + step(*joint);
+    check_end(*joint, path, "parent");
+    check_end(*joint, path, "child");
+    const XmlNode* const mimic = joint->child("mimic");
+    const std::string* const leader = mimic != nullptr ? mimic->attribute("joint") : nullptr;
+    if (leader != nullptr && !joints_.contains(*leader))
+      problem(*mimic, path + "/mimic", "the robot has no joint '" + *leader + "'");
+  }
+  if (problems_.empty()) check_tree(robot);
+}
+
+void Checker::check_top(const XmlNode& node) {
+  const std::string path = "robot/" + step(node);
+  if (node.name.starts_with("xacro:")) {
+    problem(node, path, "this is a xacro file; expected the URDF that `xacro FILE` makes of it");
+  } else if (node.name == "link" || node.name == "joint") {
+    const std::string* const name = node.attribute("name");
+    if (name == nullptr || name->empty() || name->find("::") != std::string::npos)
+      problem(node, path, "expected an attribute name=\"NAME\", without '::' in it");
+    else if (!(node.name == "link" ? links_ : joints_).emplace(*name, &node).second)
+      problem(node, path, "another " + node.name + " has the name '" + *name + "'");
+    node.name == "link" ? check_link(node, path) : check_joint(node, path);
+  } else if (node.name == "transmission") {
+    warning(node, path, "<transmission> is not supported and is ignored; motors are cohort: elements");
+  } else if (node.name == "gazebo") {
+    check_gazebo(node);
+  } else if (node.name != "material") {
+    warning(node, path, "<" + node.name + "> is not supported and is ignored");
+  }
+}
+
+void Checker::check_form(const XmlNode& node, const std::string& path) {
+  for (const XmlNode& child : node.children) {
+    if (child.name == "visual") continue;
+    const std::string child_path = path + "/" + step(child);
+    const UrdfForm* found = nullptr;
+    for (const UrdfForm& form : urdf_forms())
+      if (form.parent == node.name && form.name == child.name) found = &form;
+    if (found == nullptr) continue;
+    if (child.name != "collision" && node.child(child.name) != &child)
+      problem(child, child_path, "<" + child.name + "> is given twice");
+    check_attributes(child, *found, child_path);
+    check_form(child, child_path);
+  }
+}
+
+void Checker::check_attributes(const XmlNode& node, const UrdfForm& form, const std::string& path) {
+  for (const UrdfAttribute& attribute : form.attributes) {
+    const std::string name(attribute.name);
+    const std::string* const value = node.attribute(name);
+    if (value == nullptr) {
+      if (attribute.required) problem(node, path, "missing: the attribute '" + name + "'");
+      continue;
+    }
+    if (const std::optional<std::string> wrong = what_is_wrong(*value, attribute)) problem(node, path, *wrong);
+  }
+}
+
+void Checker::check_gazebo(const XmlNode& gazebo) {
+  for (const XmlNode& child : gazebo.children) {
+    if (std::find(std::begin(gazebo_numbers), std::end(gazebo_numbers), child.name) == std::end(gazebo_numbers))
+      continue;
+    const std::string* const attribute = child.attribute("value");
+    const UrdfAttribute number = {child.name, 1};
+    if (const auto wrong = what_is_wrong(attribute != nullptr ? *attribute : child.text, number))
+      problem(child, "robot/gazebo/" + child.name, *wrong);
+  }
+}
+
+void Checker::check_link(const XmlNode& link, const std::string& path) {
+  check_form(link, path);
+  for (const XmlNode& child : link.children) {
+    if (child.name == "collision") {
+      const XmlNode* const geometry = child.child("geometry");
+      if (geometry == nullptr || geometry->children.size() != 1)
+        problem(geometry != nullptr ? *geometry : child, path + "/collision/geometry",
+                "expected one of box, sphere, cylinder or mesh");
+    } else if (child.name == "inertial") {
+      for (const char* const part : {"mass", "inertia"})
+        if (child.child(part) == nullptr) problem(child, path + "/inertial", "missing: <" + std::string(part) + ">");
+    }
+  }
+}
+
+void Checker::check_joint(const XmlNode& joint, const std::string& path) {
+  check_form(joint, path);
+  const std::string* const type = joint.attribute("type");
+  if (type == nullptr) {
+    problem(joint, path, "missing: the attribute 'type'");
+  } else if (std::find(std::begin(joint_types), std::end(joint_types), *type) == std::end(joint_types)) {
+    problem(joint, path,
+            "the joint type '" + *type + "' is not supported; expected revolute, continuous, prismatic or fixed");
+  }
+  for (const char* const end : {"parent", "child"})
+    if (joint.child(end) == nullptr) problem(joint, path, "missing: <" + std::string(end) + " link=\"NAME\"/>");
+  for (const char* const ignored : {"safety_controller", "calibration"})
+    if (const XmlNode* const node = joint.child(ignored))
+      warning(*node, path + "/" + ignored, "<" + std::string(ignored) + "> is not supported and is ignored");
+}
+
+void Checker::check_end(const XmlNode& joint, const std::string& path, const char* end) {
+  const std::string link = end_of(joint, end);
+  if (link.empty() || links_.contains(link)) return;
+  std::vector<std::string> names;
+  for (const auto& [name, node] : links_) names.push_back(name);
+  problem(*joint.child(end), path + "/" + end, "the robot has no link '" + link + "'" + suggestion(link, names));
+}
+
+// The converter walks down from the root, for ever if the links are in a loop.
+void Checker::check_tree(const XmlNode& robot) {
+  std::map<std::string, std::string> parent;
+  for (const auto& [name, joint] : joints_)
+    if (!parent.emplace(end_of(*joint, "child"), end_of(*joint, "parent")).second)
+      problem(*joint, step(robot) + "/" + step(*joint),
+              "the link '" + end_of(*joint, "child") + "' is the child of another joint already");
+  std::string roots;
+  std::size_t count = 0;
+  for (const auto& [name, node] : links_) {
+    if (parent.contains(name)) continue;
+    roots += (count++ == 0 ? "'" : ", '") + name + "'";
+  }
+  if (count > 1) problem(robot, step(robot), "expected one link without a joint to a parent, not " + roots);
+  // Each walk up ends at a root or at a link that was met before; in this walk, that is a loop.
+  std::set<std::string> met;
+  for (const auto& [name, node] : links_) {
+    std::set<std::string> now;
+    std::string link = name;
+    while (parent.contains(link) && met.insert(link).second) {
+      now.insert(link);
+      link = parent[link];
+    }
+    if (now.contains(link)) problem(*links_[link], step(robot) + "/link[" + link + "]", "is part of a loop of joints");
+  }
+}
+
+}  // namespace
+
+void check_urdf(const XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+                std::vector<Problem>& warnings) {
+  std::vector<Problem> found;
+  Checker(file, found, warnings).check(robot);
+  problems.insert(problems.end(), found.begin(), found.end());
+}
+
+}  // namespace cohort::parsing

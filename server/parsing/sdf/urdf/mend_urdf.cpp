@@ -1,0 +1,235 @@
+#include "server/parsing/sdf/urdf/mend_urdf.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "server/core/text.hpp"
+#include "server/parsing/sdf/urdf/urdf_forms.hpp"
+#include "server/parsing/sdf/urdf/urdf_joints.hpp"
+#include "server/parsing/sdf/urdf/urdf_masses.hpp"
+#include "server/parsing/sdf/urdf/urdf_notes.hpp"
+#include "server/parsing/sdf/urdf/urdf_surface.hpp"
+#include "server/parsing/sdf/urdf/urdf_visuals.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+class UrdfMender {
+ public:
+  UrdfMender(const std::filesystem::path& file, std::vector<Problem>& problems, std::vector<Problem>& warnings)
+      : file_(file), problems_(problems), warnings_(warnings), notes_(file, warnings) {}
+
+  UrdfRest mend(XmlNode& robot);
+
+ private:
+  void take_optional_environment(XmlNode& node, const std::string& path);
+  void mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path);
+  void mend_shape(XmlNode& geometry, const std::string& path, const std::pair<std::string, std::size_t>& place);
+  void mend_link(XmlNode& link);
+  void mend_inertial(XmlNode& inertial, const std::string& path);
+  void take_unknown(XmlNode& node, const std::string& path);
+
+  const std::filesystem::path& file_;
+  std::vector<Problem>& problems_;
+  std::vector<Problem>& warnings_;
+  UrdfNotes notes_;
+  UrdfVisuals visuals_;
+  UrdfRest rest_;
+};
+
+UrdfRest UrdfMender::mend(XmlNode& robot) {
+  if (value_of(robot, "name").empty()) {
+    set_attribute(robot, "name", file_.stem().string());
+    notes_.warn(robot, "robot", "has no name; it is called '" + file_.stem().string() + "', as its file");
+  }
+  take_optional_environment(robot, "robot");
+  name_joints_apart(robot, notes_);
+  visuals_.mend_materials(robot);
+  for (XmlNode& child : robot.children) {
+    if (child.name == "link") mend_link(child);
+    if (child.name != "joint") continue;
+    mend_joint(child, rest_, notes_);
+    take_unknown(child, "robot/" + urdf_step(child));
+  }
+  let_go(robot, rest_);
+  keep_links_without_mass(robot, file_, rest_, warnings_);
+  notes_.tell();
+  return std::move(rest_);
+}
+
+// `$(optenv NAME VALUE)` is the value: what runs does not depend on the environment.
+void UrdfMender::take_optional_environment(XmlNode& node, const std::string& path) {
+  constexpr std::string_view opening = "$(optenv ";
+  for (auto& [name, value] : node.attributes)
+    for (std::size_t at = value.find(opening); at != std::string::npos; at = value.find(opening)) {
+      const std::size_t end = value.find(')', at);
+      if (end == std::string::npos) break;
+      const std::string inside = value.substr(at + opening.size(), end - at - opening.size());
+      const std::size_t space = std::min(inside.find(' '), inside.size());
+      value.replace(at, end + 1 - at, trimmed(inside.substr(space)));
+      notes_.pass_over(node, path, "$(optenv …) is what stands in it, whatever the environment says");
+    }
+  for (XmlNode& child : node.children) take_optional_environment(child, path + "/" + urdf_step(child));
+}
+
+// A comma between two numbers, or a point after one: others read up to there.
+void UrdfMender::mend_numbers(XmlNode& node, const UrdfForm& form, const std::string& path) {
+  for (const UrdfAttribute& attribute : form.attributes) {
+    const std::string value = value_of(node, attribute.name);
+    if (attribute.numbers == 0 || value.empty() || !what_is_wrong(value, attribute)) continue;
+    std::string spaced = value;
+    std::ranges::replace(spaced, ',', ' ');
+    std::string mended;
+    for (std::string_view word : words(spaced)) {
+      while (word.size() > 1 && word.ends_with('.')) word.remove_suffix(1);
+      mended += (mended.empty() ? "" : " ") + std::string(word);
+    }
+    if (what_is_wrong(mended, attribute)) continue;
+    notes_.warn(node, path, "expected numbers with spaces between them, not '" + value + "'; read as '" + mended + "'");
+    set_attribute(node, attribute.name, mended);
+  }
+}
+
+// Of Bullet: shapes that the converter does not know. What nobody knows is an error: what moves would go through
+// others.
+void UrdfMender::mend_shape(XmlNode& geometry, const std::string& path,
+                            const std::pair<std::string, std::size_t>& place) {
+  if (geometry.children.size() > 1)
+    notes_.pass_over(geometry, path, "has more than one shape; only the first counts, as other readers have it");
+  geometry.children.resize(1, geometry.children.front());
+  XmlNode& shape = geometry.children.front();
+  const XmlNode bullets = shape;
+  const auto stand_in = [&](const char* name, const char* size, const char* value) {
+    shape = element_at(geometry, name);
+    set_attribute(shape, size, value);
+  };
+  if (shape.name == "capsule") {
+    rest_.capsules.insert(place);
+    shape.name = "cylinder";
+  } else if (shape.name == "plane") {
+    rest_.planes.emplace(place, value_of(bullets, "normal").empty() ? "0 0 1" : value_of(bullets, "normal"));
+    stand_in("sphere", "radius", "1");
+  } else if (form_of("geometry", shape.name) == nullptr) {
+    problems_.push_back({file_, bullets.line, path + "/" + bullets.name,
+                         "<" + bullets.name +
+                             "> is not supported as a collision; expected box, sphere, cylinder, "
+                             "capsule, mesh or plane"});
+    stand_in("sphere", "radius", "1");
+  }
+  mend_mesh(geometry);
+}
+
+// The converter divides by the mass of links that it makes one.
+bool is_without_mass(const XmlNode& node) {
+  const XmlNode* const mass = node.name == "inertial" ? node.child("mass") : nullptr;
+  return mass != nullptr && parse_real(value_of(*mass, "value")) == 0.0;
+}
+
+// A box, a sphere or a cylinder that is flat, thin or a point, which others take for one that is not there.
+bool has_no_size(const XmlNode& shape) {
+  const UrdfForm* const form = form_of("geometry", shape.name);
+  return form != nullptr && std::ranges::any_of(form->attributes, [&](const UrdfAttribute& attribute) {
+           const std::string value = value_of(shape, attribute.name);
+           return attribute.positive &&
+                  std::ranges::any_of(words(value), [](auto word) { return parse_real(word) == 0.0; });
+         });
+}
+
+void UrdfMender::mend_link(XmlNode& link) {
+  const std::string path = "robot/" + urdf_step(link);
+  const std::string name = value_of(link, "name");
+  if (const XmlNode* const contact = link.child("contact"))
+    if (auto surface = surface_of(*contact, path + "/contact", notes_))
+      rest_.surfaces.emplace(name, *std::move(surface));
+  std::erase_if(link.children, [](const XmlNode& child) { return child.name == "contact"; });
+  visuals_.mend_link(link);
+  std::size_t collision = 0;
+  std::erase_if(link.children, [&](const XmlNode& child) {
+    if (child.name != "collision") return is_without_mass(child);
+    const XmlNode* const geometry = child.child("geometry");
+    const bool is_empty = geometry == nullptr || geometry->children.empty();
+    if (is_empty) notes_.pass_over(child, path + "/collision", "a <collision> without a shape, which is ignored");
+    if (is_empty || !has_no_size(geometry->children.front())) return is_empty;
+    notes_.pass_over(geometry->children.front(), path + "/collision/geometry",
+                     "a collision of size 0, which is left out");
+    return true;
+  });
+  for (XmlNode& child : link.children) {
+    if (child.name == "inertial") mend_inertial(child, path + "/inertial");
+    XmlNode* const geometry = child_of(child, "geometry");
+    if (child.name != "collision") continue;
+    if (geometry != nullptr) mend_shape(*geometry, path + "/collision/geometry", {name, collision});
+    ++collision;
+  }
+  take_unknown(link, path);
+}
+
+void UrdfMender::mend_inertial(XmlNode& inertial, const std::string& path) {
+  constexpr double least_mass = 2e-6;  // [kg]: the converter takes less for none
+  XmlNode* const mass = child_of(inertial, "mass");
+  const std::optional<double> value = mass != nullptr ? parse_real(value_of(*mass, "value")) : std::nullopt;
+  if (value && *value > 0.0 && *value < least_mass) {
+    notes_.pass_over(*mass, path + "/mass", "is less than 2 mg, which stands in for it");
+    set_attribute(*mass, "value", shortest_text(least_mass));
+  }
+  XmlNode* const inertia = child_of(inertial, "inertia");
+  if (inertia == nullptr) return;
+  for (const char* const product : {"ixy", "ixz", "iyz"}) {
+    if (inertia->attribute(product) != nullptr) continue;
+    set_attribute(*inertia, product, "0");
+    notes_.pass_over(*inertia, path + "/inertia", "has not all products of inertia; those that are missing are 0");
+  }
+}
+
+void UrdfMender::take_unknown(XmlNode& node, const std::string& path) {
+  std::set<std::string> met;
+  std::erase_if(node.children, [&](const XmlNode& child) {
+    const bool is_again = form_of(node.name, child.name) != nullptr && child.name != "collision" &&
+                          child.name != "visual" && !met.insert(child.name).second;
+    if (is_again) notes_.pass_over(child, path + "/" + urdf_step(child), "is given twice; only the first counts");
+    return is_again;
+  });
+  std::erase_if(node.children, [&](const XmlNode& child) {
+    if (child.name == "visual" || child.name.find(':') != std::string::npos) return false;
+    if (form_of(node.name, child.name) != nullptr) return false;
+    std::vector<std::string> known;
+    for (const UrdfForm& form : urdf_forms())
+      if (form.parent == node.name) known.emplace_back(form.name);
+    const auto meant = nearest(child.name, known);
+    notes_.pass_over(child, path + "/" + urdf_step(child),
+                     "unknown element <" + child.name + "> in a <" + node.name + ">, which is ignored" +
+                         (meant ? "; did you mean '" + *meant + "'?" : ""));
+    return true;
+  });
+  for (XmlNode& child : node.children) {
+    const UrdfForm* const form = form_of(node.name, child.name);
+    if (form == nullptr || child.name == "visual") continue;
+    const std::string child_path = path + "/" + urdf_step(child);
+    mend_numbers(child, *form, child_path);
+    std::vector<std::string> known;
+    for (const UrdfAttribute& attribute : form->attributes) known.emplace_back(attribute.name);
+    std::erase_if(child.attributes, [&](const auto& attribute) {
+      if (attribute.first.find(':') != std::string::npos) return false;
+      if (std::ranges::find(known, attribute.first) != known.end()) return false;
+      const auto meant = nearest(attribute.first, known);
+      notes_.pass_over(child, child_path,
+                       "unknown attribute '" + attribute.first + "' of <" + child.name + ">, which is ignored" +
+                           (meant ? "; did you mean '" + *meant + "'?" : ""));
+      return true;
+    });
+    take_unknown(child, child_path);
+  }
+}
+
+}  // namespace
+
+UrdfRest mend_urdf(XmlNode& robot, const std::filesystem::path& file, std::vector<Problem>& problems,
+                   std::vector<Problem>& warnings) {
+  return UrdfMender(file, problems, warnings).mend(robot);
+}
+
+}  // namespace cohort::parsing

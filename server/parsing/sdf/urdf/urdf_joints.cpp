@@ -1,0 +1,99 @@
+#include "server/parsing/sdf/urdf/urdf_joints.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "server/parsing/sdf/urdf/urdf_masses.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+void mend_limit(XmlNode& joint, const std::string& path, UrdfNotes& notes) {
+  const std::string type = value_of(joint, "type");
+  XmlNode* const limit = child_of(joint, "limit");
+  if (limit != nullptr) {
+    for (const char* const most : {"effort", "velocity"}) {
+      if (limit->attribute(most) != nullptr) continue;
+      set_attribute(*limit, most, "0");
+      notes.pass_over(*limit, path + "/limit", std::string("has no '") + most + "', which then has no limit");
+    }
+    return;
+  }
+  if (type == "revolute") set_attribute(joint, "type", "continuous");
+  if (type == "prismatic") {
+    XmlNode none = element_at(joint, "limit");
+    none.attributes = {{"lower", "-1e16"}, {"upper", "1e16"}, {"effort", "0"}, {"velocity", "0"}};
+    joint.children.push_back(std::move(none));
+  }
+  if (type == "revolute" || type == "prismatic")
+    notes.pass_over(joint, path, "has no <limit>, which a " + type + " joint needs; it moves without one");
+}
+
+}  // namespace
+
+void name_joints_apart(XmlNode& robot, UrdfNotes& notes) {
+  std::set<std::string> taken;
+  for (const XmlNode& child : robot.children)
+    if (child.name == "link") taken.insert(value_of(child, "name"));
+  std::map<std::string, std::string> renamed;
+  for (XmlNode& joint : robot.children) {
+    const std::string name = value_of(joint, "name");
+    if (joint.name != "joint" || !taken.contains(name)) continue;
+    std::string other = name + "_joint";
+    while (taken.contains(other)) other += "_";
+    notes.pass_over(joint, "robot/" + urdf_step(joint), "has the name of a link; it is called after it, with '_joint'");
+    set_attribute(joint, "name", other);
+    renamed.emplace(name, other);
+  }
+  for (XmlNode& joint : robot.children)
+    if (XmlNode* const mimic = joint.name == "joint" ? child_of(joint, "mimic") : nullptr)
+      if (const auto leader = renamed.find(value_of(*mimic, "joint")); leader != renamed.end())
+        set_attribute(*mimic, "joint", leader->second);
+}
+
+void mend_joint(XmlNode& joint, UrdfRest& rest, UrdfNotes& notes) {
+  const std::string path = "robot/" + urdf_step(joint);
+  const std::string type = value_of(joint, "type");
+  if (type == "spherical") {
+    rest.balls.insert(value_of(joint, "name"));
+    set_attribute(joint, "type", "continuous");
+  } else if (type == "planar") {
+    set_attribute(joint, "type", "floating");
+    notes.warn(joint, path, "a planar joint is not supported; its child is free, as of a floating one");
+  }
+  if (XmlNode* const properties = child_of(joint, "joint_properties"); properties != nullptr) {
+    if (joint.child("dynamics") == nullptr) properties->name = "dynamics";
+  }
+  mend_limit(joint, path, notes);
+}
+
+void let_go(XmlNode& robot, UrdfRest& rest) {
+  std::set<std::string> children;
+  for (const XmlNode& joint : robot.children)
+    if (joint.name == "joint") children.insert(urdf_end(joint, "child"));
+  std::set<std::string> gone;
+  for (XmlNode& joint : robot.children) {
+    if (joint.name != "joint" || value_of(joint, "type") != "floating") continue;
+    const std::string parent = urdf_end(joint, "parent");
+    const bool is_root_of_it_alone =
+        !children.contains(parent) && std::ranges::none_of(robot.children, [&](const XmlNode& other) {
+          return (other.name == "link" && value_of(other, "name") == parent && has_mass(other)) ||
+                 (other.name == "joint" && &other != &joint && urdf_end(other, "parent") == parent);
+        });
+    if (is_root_of_it_alone) {
+      gone.insert(parent);
+      continue;
+    }
+    rest.let_go.insert(value_of(joint, "name"));
+    set_attribute(joint, "type", "continuous");
+  }
+  std::erase_if(robot.children, [&](const XmlNode& node) {
+    return (node.name == "link" && gone.contains(value_of(node, "name"))) ||
+           (node.name == "joint" && gone.contains(urdf_end(node, "parent")));
+  });
+}
+
+}  // namespace cohort::parsing

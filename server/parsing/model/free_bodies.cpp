@@ -1,6 +1,8 @@
 #include "server/parsing/model/free_bodies.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <utility>
 
 #include "server/core/text.hpp"
@@ -102,16 +104,23 @@ std::size_t FreeBodies::body_of_element(const Model& model, const sdf::ElementPt
   return 0;
 }
 
-std::vector<DeviceScope> FreeBodies::scopes_of(std::size_t number, const Model& model,
-                                               const std::vector<DeviceScope>& scopes) const {
-  std::vector<DeviceScope> its_scopes = scopes;
-  if (count_ <= 1) return its_scopes;
-  for (DeviceScope& scope : its_scopes)
+std::vector<std::vector<DeviceScope>> FreeBodies::scopes(const Model& model,
+                                                         const std::vector<DeviceScope>& scopes) const {
+  if (count_ <= 1) return {scopes};
+  std::vector<std::vector<DeviceScope>> of_bodies(count_);
+  for (const DeviceScope& scope : scopes) {
+    std::map<std::size_t, std::set<sdf::ElementPtr>> devices;  // by body
     for (sdf::ElementPtr child = scope.model_element->GetFirstElement(); child; child = child->GetNextElement())
-      if ((has_prefix(child->GetName()) || child->GetName() == "plugin") &&
-          body_of_element(model, child, scope.prefix) != number)
-        scope.elsewhere.insert(child);
-  return its_scopes;
+      if (has_prefix(child->GetName()) || child->GetName() == "plugin")
+        devices[body_of_element(model, child, scope.prefix)].insert(child);
+    if (devices.empty()) of_bodies.front().push_back(scope);
+    for (const auto& [body, its_own] : devices) {
+      DeviceScope& added = of_bodies[body].emplace_back(scope);
+      for (const auto& [other, elements] : devices)
+        if (other != body) added.elsewhere.insert(elements.begin(), elements.end());
+    }
+  }
+  return of_bodies;
 }
 
 std::vector<SensorPlace> FreeBodies::sensors_of(std::size_t number, const Model& model,

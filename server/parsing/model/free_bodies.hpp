@@ -18,9 +18,9 @@ class FreeBodies {
   std::size_t count() const { return count_; }
   /// The parts of one body; all of the model if there is no other. Those after the first are called after their root.
   Model body(std::size_t number, const Model& model) const;
-  /// Where the devices of one body stand: what names a link or a joint of another one is left to that.
-  std::vector<DeviceScope> scopes_of(std::size_t number, const Model& model,
-                                     const std::vector<DeviceScope>& scopes) const;
+  /// Where the devices of each body stand: what names a link or a joint of another one is left to that. A scope without
+  /// devices is one of the first body.
+  std::vector<std::vector<DeviceScope>> scopes(const Model& model, const std::vector<DeviceScope>& scopes) const;
   /// The sensors of one body.
   std::vector<SensorPlace> sensors_of(std::size_t number, const Model& model,
                                       const std::vector<SensorPlace>& sensors) const;

@@ -280,6 +280,7 @@ std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& r
   set_loops_apart(model);
   model.couplings = read_couplings(sdf_model, model, "", reading);
   const FreeBodies bodies(model);
+  const std::vector<std::vector<DeviceScope>> scopes = bodies.scopes(model, parts.scopes());
   std::vector<Model> read;
   for (std::size_t number = 0; number < std::max<std::size_t>(bodies.count(), 1); ++number) {
     Model& body = read.emplace_back(bodies.body(number, model));
@@ -287,8 +288,7 @@ std::vector<Model> read_model(const sdf::Model& sdf_model, const ModelReading& r
     if (number > 0) body.name += "/" + without_colons(body.links.front().name);
     warn_of_loops(sdf_model, body, reading.report);
     take_kinematic_links(body, reading.report, element);
-    add_devices(bodies.scopes_of(number, model, parts.scopes()), bodies.sensors_of(number, model, parts.sensors()),
-                reading, body);
+    add_devices(scopes[number], bodies.sensors_of(number, model, parts.sensors()), reading, body);
   }
   return read;
 }

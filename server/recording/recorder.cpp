@@ -58,8 +58,8 @@ std::string observation_schema(const RobotKind& kind) {
   for (const cohort::Channel& channel : kind.observation)
     text += (channel.size == 1 ? "float64 " : "float64[" + std::to_string(channel.size) + "] ") +
             ros_field_name(channel.name) + "\n";
-  const RosDefinition time = definition<ros::Time>();
-  return schema_text({"", text, {{"builtin_interfaces/Time", time.text, {}}}});
+  const messages::RosDefinition time = messages::definition<ros::Time>();
+  return messages::schema_text({"", text, {{"builtin_interfaces/Time", time.text, {}}}});
 }
 
 std::vector<std::uint8_t> bytes_of(std::span<const std::byte> bytes) {
@@ -70,7 +70,7 @@ std::vector<std::uint8_t> bytes_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-template <RosMessage Message>
+template <messages::RosMessage Message>
 Recorder::Topic Recorder::add_topic(const std::string& topic, bool is_latched) {
   return {add_ros_channel(file_, topic, add_ros_schema<Message>(file_), is_latched)};
 }
@@ -135,7 +135,8 @@ void Recorder::add_observed() {
   std::set<std::uint32_t> seen;
   for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
     if (const std::uint32_t kind = simulation_->kind_of(robot); seen.insert(kind).second)
-      sensors_[kind] = standard_sensors(simulation_->description().robot_model(robot), kinds[kind]);
+      sensors_[kind] =
+          messages::device_messages(simulation_->description().robot_model(robot), kinds[kind].observation);
   std::vector<SchemaId> schemas;
   for (const RobotKind& kind : kinds)
     schemas.push_back(file_.add_schema(observation_type(kind.model), "ros2msg", observation_schema(kind)));
@@ -146,8 +147,9 @@ void Recorder::add_observed() {
     Observed& observed = observed_.emplace_back();
     observed.robot = robot;
     observed.topic = {add_ros_channel(file_, name + observation_topic_end, schemas[kind])};
-    for (const StandardSensor& sensor : sensors_[kind]) {
-      if (!schema_of.contains(sensor.type)) schema_of[sensor.type] = sensor.add_schema(file_);
+    for (const messages::DeviceMessage& sensor : sensors_[kind]) {
+      if (!schema_of.contains(sensor.type))
+        schema_of[sensor.type] = file_.add_schema(sensor.type, "ros2msg", messages::schema_text(sensor.definition));
       observed.sensors.push_back({add_ros_channel(file_, name + "/" + sensor.name, schema_of[sensor.type])});
     }
   }
@@ -168,7 +170,7 @@ void Recorder::write_roster() {
   robots_told_ = simulation_->robot_count();
 }
 
-template <RosMessage Message>
+template <messages::RosMessage Message>
 void Recorder::write(Topic& topic, const Message& message, Importance importance) {
   cdr_.clear();
   cdr_.add(message);
@@ -300,18 +302,20 @@ void Recorder::write_observations() {
 }
 
 void Recorder::write_sensors(std::uint32_t robot, std::span<Topic> topics, ros::TFMessage& places) {
-  const std::vector<StandardSensor>& sensors = sensors_[simulation_->kind_of(robot)];
+  const std::vector<messages::DeviceMessage>& sensors = sensors_[simulation_->kind_of(robot)];
   const std::string* placed = nullptr;  // the device that was placed last
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    const StandardSensor& sensor = sensors[i];
+    const messages::DeviceMessage& sensor = sensors[i];
     const ros::Header header{ros::time(simulation_->time()), simulation_->robot_name(robot) + "/" + sensor.device};
     cdr_.clear();
     sensor.add(cdr_, header, simulation_->observation(robot));
     write_bytes(topics[i], cdr_.bytes(), Importance::display);
     if (!sensor.place || (placed != nullptr && *placed == sensor.device)) continue;
     placed = &sensor.device;
-    places.transforms.push_back(
-        transform(header.frame_id, sensor.place(simulation_->world(), simulation_->body_of(robot)), header.stamp));
+    places.transforms.push_back(transform(header.frame_id, sensor.place([&](std::size_t link) {
+      return simulation_->world().link_pose(simulation_->body_of(robot), link);
+    }),
+                                          header.stamp));
   }
 }
 

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "idl/messages/device_messages.hpp"
 #include "server/description/experiment.hpp"
 #include "server/recording/mcap/writing/recording_file.hpp"
-#include "server/recording/ros_messages.hpp"
+#include "server/recording/ros_channels.hpp"
 #include "server/recording/run_messages.hpp"
-#include "server/recording/standard_sensors.hpp"
 #include "server/simulation/simulation.hpp"
 
 namespace cohort::recording {
@@ -64,9 +64,9 @@ class Recorder {
   };
   template <class Act>
   void unless_memory_lacks(const Act& act);
-  template <RosMessage Message>
+  template <messages::RosMessage Message>
   Topic add_topic(const std::string& topic, bool is_latched = false);
-  template <RosMessage Message>
+  template <messages::RosMessage Message>
   void write(Topic& topic, const Message& message, Importance importance = Importance::essential);
   void write_bytes(Topic& topic, ByteView bytes, Importance importance);
   void add_observed();
@@ -101,15 +101,15 @@ class Recorder {
     std::vector<Topic> sensors;  // as those of its kind
   };
   std::vector<Observed> observed_;
-  std::vector<std::vector<StandardSensor>> sensors_;  // by kind
-  std::map<std::string, Topic> joints_;               // by object
+  std::vector<std::vector<messages::DeviceMessage>> sensors_;  // by kind
+  std::map<std::string, Topic> joints_;                        // by object
   SchemaId joint_schema_ = 0;
   // As they stand at the boundary, robot after robot: an empty battery changes them too.
   std::vector<double> commands_before_;
   std::vector<std::size_t> command_offsets_;  // by robot
   std::uint32_t robots_told_ = 0;             // in the last roster
   Commands changes_;                          // reused, like the next
-  CdrWriter cdr_;
+  messages::CdrWriter cdr_;
 };
 
 }  // namespace cohort::recording

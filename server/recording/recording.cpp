@@ -46,23 +46,23 @@ std::optional<RecordedTick> TickStream::next() {
       if (!message) break;
       const std::string& topic = reader_->channels().at(message->channel).topic;
       if (topic == WorldBegins::topic) {
-        const auto begins = decode<WorldBegins>(message->data);
+        const auto begins = messages::decode<WorldBegins>(message->data);
         tick_of(*message, begins.tick).begins = begins;
       } else if (topic == ActionTaken::topic) {
-        auto action = decode<ActionTaken>(message->data);
+        auto action = messages::decode<ActionTaken>(message->data);
         tick_of(*message, action.tick).actions.push_back(std::move(action));
       } else if (topic == Boundary::topic) {
-        const auto boundary = decode<Boundary>(message->data);
+        const auto boundary = messages::decode<Boundary>(message->data);
         tick_of(*message, boundary.tick).state_hash = boundary.state_hash;
       } else if (topic == RecordedSnapshot::topic) {
-        auto snapshot = decode<RecordedSnapshot>(message->data);
+        auto snapshot = messages::decode<RecordedSnapshot>(message->data);
         tick_of(*message, snapshot.tick).snapshot = std::move(snapshot);
       } else {
         auto commands = decode_commands(message->data);
         tick_of(*message, commands.tick).commands = std::move(commands);
       }
     }
-  } catch (const CdrError& error) {
+  } catch (const messages::CdrError& error) {
     throw McapError(file_, 0, std::string("a message is not what Cohort records: ") + error.what());
   }
   return result;
@@ -79,8 +79,8 @@ Recording::Recording(const std::filesystem::path& file) : file_(file), reader_(f
   try {
     MessageStream stream = messages_of(reader_, worlds->id);
     while (const auto message = stream.next())
-      worlds_.push_back({decode<WorldBegins>(message->data), message->log_time});
-  } catch (const CdrError& error) {
+      worlds_.push_back({messages::decode<WorldBegins>(message->data), message->log_time});
+  } catch (const messages::CdrError& error) {
     throw McapError(file, 0, std::string("what it says of its run is no message of Cohort's: ") + error.what());
   }
   if (worlds_.empty()) throw McapError(file, 0, "no run begins in it");

@@ -11,11 +11,12 @@ bool is_alphanumeric(char letter) { return std::isalnum(static_cast<unsigned cha
 }  // namespace
 
 Commands decode_commands(ByteView bytes) {
-  auto commands = decode<Commands>(bytes);
+  auto commands = messages::decode<Commands>(bytes);
   const std::size_t count = commands.robots.size();
   if (commands.places.size() != count || commands.values.size() != count)
-    throw CdrError("commands have " + std::to_string(count) + " robots, " + std::to_string(commands.places.size()) +
-                   " places and " + std::to_string(commands.values.size()) + " values");
+    throw messages::CdrError("commands have " + std::to_string(count) + " robots, " +
+                             std::to_string(commands.places.size()) + " places and " +
+                             std::to_string(commands.values.size()) + " values");
   return commands;
 }
 

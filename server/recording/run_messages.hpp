@@ -1,10 +1,12 @@
 #pragma once
 
-#include "server/recording/ros_schema.hpp"
+#include "server/recording/ros_channels.hpp"
 
 /// The messages of a recording that are Cohort's own: what replays a run, and what happened in it. In the file they are
 /// as messages of a ROS 2 package `cohort_msgs` would be.
 namespace cohort::recording {
+
+using messages::field;
 
 /// Why a world begins in a recording.
 enum class Beginning : std::uint8_t {
@@ -90,7 +92,7 @@ struct Commands {
                                             field("places", &Commands::places), field("values", &Commands::values));
 };
 
-/// Throws CdrError if the three lists are not of one length.
+/// Throws messages::CdrError if the three lists are not of one length.
 Commands decode_commands(ByteView bytes);
 
 /// What somebody outside did to the world at a boundary.

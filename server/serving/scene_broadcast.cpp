@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/recording/cdr.hpp"
+#include "idl/messages/cdr.hpp"
 
 namespace cohort::session {
 namespace {
@@ -15,7 +15,7 @@ constexpr int share_of_time = 20;
 // What is only of use in small worlds is left out of a larger message.
 constexpr std::size_t largest_extra = 128 << 10;
 
-std::span<const std::uint8_t> bytes_of(const recording::Bytes& bytes) {
+std::span<const std::uint8_t> bytes_of(const messages::Bytes& bytes) {
   return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
@@ -28,17 +28,17 @@ std::size_t values_of(const Simulation& simulation) {
   return values;
 }
 
-recording::Bytes robots_of(const Simulation& simulation, const viewing::SceneMaker& maker) {
+messages::Bytes robots_of(const Simulation& simulation, const viewing::SceneMaker& maker) {
   if (sizeof(double) * values_of(simulation) > largest_extra) return {};
-  viewing::SceneRobots robots;
+  messages::SceneRobots robots;
   robots.robots.reserve(simulation.robot_count());
   for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) robots.robots.push_back(maker.robot(robot));
-  return recording::encode(robots);
+  return messages::encode(robots);
 }
 
-recording::Bytes contacts_of(const viewing::SceneMaker& maker) {
-  recording::Bytes contacts = recording::encode(maker.contacts());
-  return contacts.size() > largest_extra ? recording::Bytes() : contacts;
+messages::Bytes contacts_of(const viewing::SceneMaker& maker) {
+  messages::Bytes contacts = messages::encode(maker.contacts());
+  return contacts.size() > largest_extra ? messages::Bytes() : contacts;
 }
 
 }  // namespace
@@ -70,27 +70,27 @@ void SceneBroadcast::publish(const Shown& shown, When when) {
 // Also for those who come later, as long as the server is there.
 void SceneBroadcast::end(const std::string& how, const std::string& why) {
   maker_.reset();  // its simulation may be gone
-  viewing::Scene scene;
+  messages::Scene scene;
   scene.revision = ++revision_;
   scene.end = how;
   scene.end_text = why;
-  const recording::Bytes bytes = recording::encode(scene);
+  const messages::Bytes bytes = messages::encode(scene);
   descriptions_.write({run_, revision_, bytes_of(bytes)});
 }
 
 void SceneBroadcast::describe(const Shown& shown) {
   run_ = shown.run;
   maker_.emplace(shown.simulation, ++revision_);
-  const recording::Bytes scene = recording::encode(maker_->scene());
+  const messages::Bytes scene = messages::encode(maker_->scene());
   descriptions_.write({shown.run, revision_, bytes_of(scene)});
 }
 
 void SceneBroadcast::update(const Shown& shown) {
   const Simulation& simulation = shown.simulation;
-  const recording::Bytes frame = recording::encode(maker_->frame(shown.run, simulation.state_hash()));
-  const recording::Bytes signals = recording::encode(maker_->signals());
-  const recording::Bytes contacts = contacts_of(*maker_);
-  const recording::Bytes robots = robots_of(simulation, *maker_);
+  const messages::Bytes frame = messages::encode(maker_->frame(shown.run, simulation.state_hash()));
+  const messages::Bytes signals = messages::encode(maker_->signals());
+  const messages::Bytes contacts = contacts_of(*maker_);
+  const messages::Bytes robots = robots_of(simulation, *maker_);
   updates_.write({shown.run, revision_, simulation.tick(), bytes_of(frame), bytes_of(signals), bytes_of(contacts),
                   bytes_of(robots)});
 }

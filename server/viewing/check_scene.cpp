@@ -6,18 +6,18 @@ namespace cohort::viewing {
 namespace {
 
 void expect(bool holds, const char* otherwise) {
-  if (!holds) throw recording::CdrError(otherwise);
+  if (!holds) throw messages::CdrError(otherwise);
 }
 
-void check_mesh(const SceneMesh& mesh) {
+void check_mesh(const messages::SceneMesh& mesh) {
   const std::size_t vertices = mesh.vertices.size() / 3;
   expect(std::ranges::all_of(mesh.triangles, [&](std::uint32_t vertex) { return vertex < vertices; }),
          "a mesh has a triangle of a vertex that is not there");
   expect(mesh.colors.empty() || mesh.colors.size() == mesh.triangles.size(), "a mesh has other colours than triangles");
 }
 
-void check_shape(const Scene& scene, const SceneShape& shape) {
-  const bool is_mesh = shape.kind == static_cast<std::uint8_t>(ShapeKind::mesh);
+void check_shape(const messages::Scene& scene, const messages::SceneShape& shape) {
+  const bool is_mesh = shape.kind == static_cast<std::uint8_t>(messages::ShapeKind::mesh);
   expect(!is_mesh || shape.mesh < scene.meshes.size(), "a shape is of a mesh that is not there");
   expect(!shape.has_mesh_colors || (is_mesh && !scene.meshes[shape.mesh].colors.empty()),
          "a shape has the colours of a mesh that has none");
@@ -25,20 +25,20 @@ void check_shape(const Scene& scene, const SceneShape& shape) {
 
 }  // namespace
 
-std::size_t check_scene(const Scene& scene) {
+std::size_t check_scene(const messages::Scene& scene) {
   std::ranges::for_each(scene.meshes, check_mesh);
-  for (const SceneModel& model : scene.models)
-    for (const SceneLink& link : model.links)
-      for (const SceneShape& shape : link.shapes) check_shape(scene, shape);
+  for (const messages::SceneModel& model : scene.models)
+    for (const messages::SceneLink& link : model.links)
+      for (const messages::SceneShape& shape : link.shapes) check_shape(scene, shape);
   std::size_t links = 0;
-  for (const SceneEntity& entity : scene.entities) {
+  for (const messages::SceneEntity& entity : scene.entities) {
     expect(entity.model < scene.models.size(), "an object is of a model that is not there");
     links += scene.models[entity.model].links.size();
   }
   return links;
 }
 
-void check_frame(const SceneFrame& frame, std::size_t links) {
+void check_frame(const messages::SceneFrame& frame, std::size_t links) {
   expect(frame.positions.size() == 3 * links && frame.orientations.size() == 4 * links,
          "a frame has other links than its scene");
 }

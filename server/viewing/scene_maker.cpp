@@ -74,11 +74,11 @@ void SceneMaker::choose_lamps() {
     if (is_led[lamp] == 0) lamps_.push_back(lamp);
 }
 
-SceneEmitter SceneMaker::emitter(const emission::Mount& mount) const {
+messages::SceneEmitter SceneMaker::emitter(const emission::Mount& mount) const {
   return {.entity = mount.body, .link = place_of(mount), .position = vector_of(mount.X_LE.position)};
 }
 
-void SceneMaker::add_entities(Scene& scene) const {
+void SceneMaker::add_entities(messages::Scene& scene) const {
   scene.entities.reserve(objects_);
   for (std::uint32_t body = 0; body < objects_; ++body)
     scene.entities.push_back(
@@ -89,12 +89,12 @@ void SceneMaker::add_entities(Scene& scene) const {
     for (const std::uint32_t robot : team.robots) scene.entities[robots[robot]].team = team.name;
 }
 
-void SceneMaker::add_emitters(Scene& scene) const {
+void SceneMaker::add_emitters(messages::Scene& scene) const {
   const emission::Emitters& emitters = simulation_.emitters();
   scene.lamps.reserve(lamps_.size());
   for (const std::uint32_t index : lamps_) {
     const emission::Lamp& lamp = emitters.lamp(index);
-    SceneEmitter shown = emitter(lamp.mount);
+    messages::SceneEmitter shown = emitter(lamp.mount);
     if (lamp.light.kind != description::Light::Kind::point)
       shown.direction = vector_of(lamp.mount.X_LE.orientation * lamp.light.direction_E);
     shown.range = static_cast<float>(lamp.light.range);
@@ -109,9 +109,9 @@ void SceneMaker::add_emitters(Scene& scene) const {
   for (const emission::Marker& marker : emitters.markers()) scene.leds.push_back(emitter(marker.mount));
 }
 
-Scene SceneMaker::scene() const {
+messages::Scene SceneMaker::scene() const {
   const description::World& world = simulation_.description();
-  Scene scene;
+  messages::Scene scene;
   scene.revision = revision_;
   scene.world = world.name;
   scene.step_ns = world.step.count();
@@ -121,8 +121,8 @@ Scene SceneMaker::scene() const {
   return scene;
 }
 
-SceneFrame SceneMaker::frame(std::uint32_t run, std::uint64_t state_hash) const {
-  SceneFrame frame;
+messages::SceneFrame SceneMaker::frame(std::uint32_t run, std::uint64_t state_hash) const {
+  messages::SceneFrame frame;
   frame.revision = revision_;
   frame.run = run;
   frame.tick = simulation_.tick();
@@ -142,9 +142,9 @@ SceneFrame SceneMaker::frame(std::uint32_t run, std::uint64_t state_hash) const 
   return frame;
 }
 
-SceneSignals SceneMaker::signals() const {
+messages::SceneSignals SceneMaker::signals() const {
   const emission::Emitters& emitters = simulation_.emitters();
-  SceneSignals signals;
+  messages::SceneSignals signals;
   signals.revision = revision_;
   signals.lamps.reserve(4 * lamps_.size());
   for (const std::uint32_t index : lamps_) {
@@ -167,10 +167,10 @@ SceneSignals SceneMaker::signals() const {
   return signals;
 }
 
-SceneContacts SceneMaker::contacts() const {
+messages::SceneContacts SceneMaker::contacts() const {
   const double step = std::chrono::duration<double>(simulation_.description().step).count();
   const auto found = simulation_.world().contacts();
-  SceneContacts contacts;
+  messages::SceneContacts contacts;
   contacts.revision = revision_;
   contacts.positions.reserve(3 * found.size());
   contacts.forces.reserve(3 * found.size());
@@ -190,7 +190,7 @@ SceneContacts SceneMaker::contacts() const {
   return contacts;
 }
 
-SceneRobot SceneMaker::robot(std::uint32_t robot) const {
+messages::SceneRobot SceneMaker::robot(std::uint32_t robot) const {
   const auto observation = simulation_.observation(robot);
   const auto command = simulation_.command(robot);
   return {revision_,

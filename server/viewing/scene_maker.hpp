@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "idl/messages/scene_messages.hpp"
 #include "server/simulation/simulation.hpp"
-#include "server/viewing/scene_messages.hpp"
 
 namespace cohort::viewing {
 
@@ -17,12 +17,12 @@ class SceneMaker {
 
   /// Objects have come that are not in the scene: time for another maker.
   bool is_outdated() const;
-  Scene scene() const;
-  SceneFrame frame(std::uint32_t run, std::uint64_t state_hash) const;
-  SceneSignals signals() const;
-  SceneContacts contacts() const;
+  messages::Scene scene() const;
+  messages::SceneFrame frame(std::uint32_t run, std::uint64_t state_hash) const;
+  messages::SceneSignals signals() const;
+  messages::SceneContacts contacts() const;
   /// `robot`: an id of the simulation.
-  SceneRobot robot(std::uint32_t robot) const;
+  messages::SceneRobot robot(std::uint32_t robot) const;
 
  private:
   struct PlacedLink {
@@ -32,9 +32,9 @@ class SceneMaker {
   std::uint32_t place_of(const emission::Mount& mount) const {
     return first_of_link_[simulation_.world().model_of(mount.body)][mount.link] + place_in_model_[mount.body];
   }
-  SceneEmitter emitter(const emission::Mount& mount) const;
-  void add_entities(Scene& scene) const;
-  void add_emitters(Scene& scene) const;
+  messages::SceneEmitter emitter(const emission::Mount& mount) const;
+  void add_entities(messages::Scene& scene) const;
+  void add_emitters(messages::Scene& scene) const;
   void choose_lamps();
 
   const Simulation& simulation_;

@@ -9,7 +9,7 @@ namespace {
 
 float number(double value) { return static_cast<float>(value); }
 
-PoseNumbers numbers_of(const Pose& pose) {
+messages::PoseNumbers numbers_of(const Pose& pose) {
   const Eigen::Quaterniond& q = pose.orientation;
   return {number(pose.position.x()),
           number(pose.position.y()),
@@ -20,8 +20,8 @@ PoseNumbers numbers_of(const Pose& pose) {
           number(q.w())};
 }
 
-SceneMesh mesh_of(const description::TriangleMesh& triangles) {
-  SceneMesh mesh;
+messages::SceneMesh mesh_of(const description::TriangleMesh& triangles) {
+  messages::SceneMesh mesh;
   mesh.vertices.reserve(3 * triangles.vertices.size());
   for (const Eigen::Vector3d& vertex : triangles.vertices)
     for (const double part : vertex) mesh.vertices.push_back(number(part));
@@ -34,9 +34,9 @@ SceneMesh mesh_of(const description::TriangleMesh& triangles) {
 }
 
 // Triangles as description::Heightmap says.
-SceneMesh mesh_of(const description::HeightGrid& grid) {
+messages::SceneMesh mesh_of(const description::HeightGrid& grid) {
   const Eigen::Vector2d half = grid.half_size();
-  SceneMesh mesh;
+  messages::SceneMesh mesh;
   mesh.vertices.reserve(3 * grid.columns * grid.rows);
   for (std::size_t row = 0; row < grid.rows; ++row) {
     for (std::size_t column = 0; column < grid.columns; ++column) {
@@ -62,81 +62,85 @@ SceneMesh mesh_of(const description::HeightGrid& grid) {
 // Shapes, with the meshes that they share.
 class ShapeWriter {
  public:
-  explicit ShapeWriter(std::vector<SceneMesh>& meshes) : meshes_(meshes) {}
+  explicit ShapeWriter(std::vector<messages::SceneMesh>& meshes) : meshes_(meshes) {}
 
-  SceneShape shape(const description::Shape& from) {
-    SceneShape shape;
+  messages::SceneShape shape(const description::Shape& from) {
+    messages::SceneShape shape;
     std::visit([&](const auto& each) { fill(shape, each); }, from);
     return shape;
   }
 
  private:
-  static void fill(SceneShape& shape, ShapeKind kind, const Vector& size) {
+  static void fill(messages::SceneShape& shape, messages::ShapeKind kind, const messages::Vector& size) {
     shape.kind = static_cast<std::uint8_t>(kind);
     shape.size = size;
   }
-  static void fill(SceneShape& shape, const description::Box& box) { fill(shape, ShapeKind::box, vector_of(box.size)); }
-  static void fill(SceneShape& shape, const description::Sphere& sphere) {
-    fill(shape, ShapeKind::sphere, {number(sphere.radius)});
+  static void fill(messages::SceneShape& shape, const description::Box& box) {
+    fill(shape, messages::ShapeKind::box, vector_of(box.size));
   }
-  static void fill(SceneShape& shape, const description::Cylinder& cylinder) {
-    fill(shape, ShapeKind::cylinder, {number(cylinder.radius), number(cylinder.length)});
+  static void fill(messages::SceneShape& shape, const description::Sphere& sphere) {
+    fill(shape, messages::ShapeKind::sphere, {number(sphere.radius)});
   }
-  static void fill(SceneShape& shape, const description::Capsule& capsule) {
-    fill(shape, ShapeKind::capsule, {number(capsule.radius), number(capsule.length)});
+  static void fill(messages::SceneShape& shape, const description::Cylinder& cylinder) {
+    fill(shape, messages::ShapeKind::cylinder, {number(cylinder.radius), number(cylinder.length)});
   }
-  static void fill(SceneShape& shape, const description::Ellipsoid& ellipsoid) {
-    fill(shape, ShapeKind::ellipsoid, vector_of(ellipsoid.radii));
+  static void fill(messages::SceneShape& shape, const description::Capsule& capsule) {
+    fill(shape, messages::ShapeKind::capsule, {number(capsule.radius), number(capsule.length)});
   }
-  static void fill(SceneShape& shape, const description::Plane& plane) {
-    fill(shape, ShapeKind::plane, vector_of(plane.normal));
+  static void fill(messages::SceneShape& shape, const description::Ellipsoid& ellipsoid) {
+    fill(shape, messages::ShapeKind::ellipsoid, vector_of(ellipsoid.radii));
   }
-  void fill(SceneShape& shape, const description::Mesh& mesh) { fill_mesh(shape, *mesh.triangles); }
-  void fill(SceneShape& shape, const description::Heightmap& map) { fill_mesh(shape, *map.grid); }
+  static void fill(messages::SceneShape& shape, const description::Plane& plane) {
+    fill(shape, messages::ShapeKind::plane, vector_of(plane.normal));
+  }
+  void fill(messages::SceneShape& shape, const description::Mesh& mesh) { fill_mesh(shape, *mesh.triangles); }
+  void fill(messages::SceneShape& shape, const description::Heightmap& map) { fill_mesh(shape, *map.grid); }
 
   template <class Source>
-  void fill_mesh(SceneShape& shape, const Source& source) {
-    fill(shape, ShapeKind::mesh, {});
+  void fill_mesh(messages::SceneShape& shape, const Source& source) {
+    fill(shape, messages::ShapeKind::mesh, {});
     const auto [found, is_new] = indices_.try_emplace(&source, static_cast<std::uint32_t>(meshes_.size()));
     if (is_new) meshes_.push_back(mesh_of(source));
     shape.mesh = found->second;
   }
 
-  std::vector<SceneMesh>& meshes_;
+  std::vector<messages::SceneMesh>& meshes_;
   std::map<const void*, std::uint32_t> indices_;
 };
 
-SceneLink link_of(const description::Link& from, ShapeWriter& writer) {
-  SceneLink link;
+messages::SceneLink link_of(const description::Link& from, ShapeWriter& writer) {
+  messages::SceneLink link;
   link.name = from.name;
   link.pose = numbers_of(from.X_ML);
   link.shapes.reserve(from.visuals.size() + from.collisions.size());
-  const auto add = [&](const description::Shape& shape, const Pose& pose, ShapeRole role,
+  const auto add = [&](const description::Shape& shape, const Pose& pose, messages::ShapeRole role,
                        const Eigen::Vector4d& color) {
-    SceneShape& added = link.shapes.emplace_back(writer.shape(shape));
+    messages::SceneShape& added = link.shapes.emplace_back(writer.shape(shape));
     added.role = static_cast<std::uint8_t>(role);
     added.pose = numbers_of(pose);
     for (int part = 0; part < 4; ++part) added.color.at(static_cast<std::size_t>(part)) = number(color[part]);
   };
   for (const description::Visual& visual : from.visuals) {
-    add(visual.shape, visual.X_LV, ShapeRole::visual, visual.color);
+    add(visual.shape, visual.X_LV, messages::ShapeRole::visual, visual.color);
     const auto* const mesh = std::get_if<description::Mesh>(&visual.shape);
     link.shapes.back().has_mesh_colors = mesh != nullptr && !visual.has_color && !mesh->triangles->colors.empty();
   }
-  const ShapeRole role = from.visuals.empty() ? ShapeRole::collision_as_visual : ShapeRole::collision;
+  const messages::ShapeRole role =
+      from.visuals.empty() ? messages::ShapeRole::collision_as_visual : messages::ShapeRole::collision;
   for (const description::Collision& collision : from.collisions)
     add(collision.shape, collision.X_LC, role, {from.color.x(), from.color.y(), from.color.z(), 1.0});
   return link;
 }
 
 // A ray from a place in S along a direction there.
-void add_ray(SceneSensor& sensor, const Pose& X_LS, const Eigen::Vector3d& p_S, const Eigen::Vector3d& direction_S) {
+void add_ray(messages::SceneSensor& sensor, const Pose& X_LS, const Eigen::Vector3d& p_S,
+             const Eigen::Vector3d& direction_S) {
   for (const double part : X_LS* p_S) sensor.origins.push_back(number(part));
   for (const double part : X_LS.orientation* direction_S) sensor.directions.push_back(number(part));
 }
 
-SceneSensor sensor_on(const std::string& name, const char* kind, std::size_t link, std::size_t rays) {
-  SceneSensor sensor;
+messages::SceneSensor sensor_on(const std::string& name, const char* kind, std::size_t link, std::size_t rays) {
+  messages::SceneSensor sensor;
   sensor.name = name;
   sensor.kind = kind;
   sensor.link = static_cast<std::uint32_t>(link);
@@ -149,8 +153,8 @@ Eigen::Vector3d outwards(double bearing, double elevation = 0.0) {
   return {std::cos(elevation) * std::cos(bearing), std::cos(elevation) * std::sin(bearing), std::sin(elevation)};
 }
 
-SceneSensor shown(const description::ProximityRing& ring) {
-  SceneSensor sensor = sensor_on(ring.name, "proximity_ring", ring.link, ring.count);
+messages::SceneSensor shown(const description::ProximityRing& ring) {
+  messages::SceneSensor sensor = sensor_on(ring.name, "proximity_ring", ring.link, ring.count);
   for (std::size_t i = 0; i < ring.count; ++i) {
     const Eigen::Vector3d direction = outwards(ring.first_bearing + static_cast<double>(i) * ring.spacing);
     add_ray(sensor, ring.X_LS, ring.ring_radius * direction, direction);
@@ -161,16 +165,16 @@ SceneSensor shown(const description::ProximityRing& ring) {
   return sensor;
 }
 
-SceneSensor shown(const description::GroundSensors& ground) {
-  SceneSensor sensor = sensor_on(ground.name, "ground_sensors", ground.link, ground.places_L.size());
+messages::SceneSensor shown(const description::GroundSensors& ground) {
+  messages::SceneSensor sensor = sensor_on(ground.name, "ground_sensors", ground.link, ground.places_L.size());
   for (const Eigen::Vector3d& place : ground.places_L) add_ray(sensor, {}, place, -Eigen::Vector3d::UnitZ());
   sensor.range = number(ground.range);
   sensor.channel = ground.name + "/0/reading";
   return sensor;
 }
 
-SceneSensor shown(const description::LightSensors& light) {
-  SceneSensor sensor = sensor_on(light.name, "light_sensors", light.link, light.count);
+messages::SceneSensor shown(const description::LightSensors& light) {
+  messages::SceneSensor sensor = sensor_on(light.name, "light_sensors", light.link, light.count);
   for (std::size_t i = 0; i < light.count; ++i)
     add_ray(sensor, light.X_LS, Eigen::Vector3d::Zero(),
             outwards(light.first_bearing + static_cast<double>(i) * light.spacing));
@@ -183,8 +187,8 @@ double between(double lower, double upper, std::size_t index, std::size_t count)
   return lower + (upper - lower) * static_cast<double>(index) / static_cast<double>(count - 1);
 }
 
-SceneSensor shown(const description::Lidar& lidar) {
-  SceneSensor sensor = sensor_on(lidar.name, "lidar", lidar.link, lidar.rows * lidar.columns);
+messages::SceneSensor shown(const description::Lidar& lidar) {
+  messages::SceneSensor sensor = sensor_on(lidar.name, "lidar", lidar.link, lidar.rows * lidar.columns);
   for (std::size_t row = 0; row < lidar.rows; ++row)
     for (std::size_t column = 0; column < lidar.columns; ++column)
       add_ray(sensor, lidar.X_LS, Eigen::Vector3d::Zero(),
@@ -196,24 +200,24 @@ SceneSensor shown(const description::Lidar& lidar) {
 }
 
 template <class Device>
-std::optional<SceneSensor> shown(const Device&) {
+std::optional<messages::SceneSensor> shown(const Device&) {
   return std::nullopt;
 }
 
-std::vector<SceneSensor> sensors_of(const description::Model& model) {
-  std::vector<SceneSensor> sensors;
+std::vector<messages::SceneSensor> sensors_of(const description::Model& model) {
+  std::vector<messages::SceneSensor> sensors;
   sensors.reserve(model.devices.size());
   for (const description::Device& device : model.devices)
     std::visit(
         [&](const auto& each) {
-          if (std::optional<SceneSensor> sensor = shown(each)) sensors.push_back(*std::move(sensor));
+          if (std::optional<messages::SceneSensor> sensor = shown(each)) sensors.push_back(*std::move(sensor));
         },
         device);
   return sensors;
 }
 
-std::vector<SceneChannel> channels_of(const std::vector<Channel>& from) {
-  std::vector<SceneChannel> channels;
+std::vector<messages::SceneChannel> channels_of(const std::vector<Channel>& from) {
+  std::vector<messages::SceneChannel> channels;
   channels.reserve(from.size());
   for (const Channel& channel : from)
     channels.push_back({channel.name, channel.unit, channel.size, channel.lower, channel.upper, channel.neutral});
@@ -222,12 +226,12 @@ std::vector<SceneChannel> channels_of(const std::vector<Channel>& from) {
 
 }  // namespace
 
-void add_models(const Simulation& simulation, Scene& scene) {
+void add_models(const Simulation& simulation, messages::Scene& scene) {
   const description::World& world = simulation.description();
   ShapeWriter writer(scene.meshes);
   scene.models.reserve(world.models.size());
   for (const description::Model& from : world.models) {
-    SceneModel& model = scene.models.emplace_back();
+    messages::SceneModel& model = scene.models.emplace_back();
     model.name = from.name;
     model.is_static = from.is_static;
     model.links.reserve(from.links.size());
@@ -235,7 +239,7 @@ void add_models(const Simulation& simulation, Scene& scene) {
     model.sensors = sensors_of(from);
   }
   for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
-    SceneModel& model = scene.models[world.robot(robot).model];
+    messages::SceneModel& model = scene.models[world.robot(robot).model];
     if (!model.observation.empty() || !model.command.empty()) continue;
     const RobotKind& kind = simulation.kinds()[simulation.kind_of(robot)];
     model.observation = channels_of(kind.observation);

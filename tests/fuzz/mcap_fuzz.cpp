@@ -1,6 +1,6 @@
 #include "server/recording/mcap/reading/mcap_reader.hpp"
 #include "server/recording/mcap/reading/recover.hpp"
-#include "server/recording/ros_messages.hpp"
+#include "server/recording/ros_channels.hpp"
 #include "tests/fuzz/fuzz_file.hpp"
 
 namespace {
@@ -13,8 +13,8 @@ constexpr ReadLimits limits{.chunk_size = 1U << 20U, .open_chunks = 4U << 20U};
 template <class Message>
 void decode_any(ByteView bytes) {
   try {
-    decode<Message>(bytes);
-  } catch (const CdrError&) {
+    cohort::messages::decode<Message>(bytes);
+  } catch (const cohort::messages::CdrError&) {
   }
 }
 

@@ -18,16 +18,16 @@ Encoded encoded() {
   Simulation simulation(experiment, 1);
   simulation.step();
   const viewing::SceneMaker maker(simulation, 1);
-  return {recording::encode(maker.scene()), recording::encode(maker.frame(1, 2)), recording::encode(maker.signals()),
-          recording::encode(maker.contacts()), recording::encode(maker.robot(0))};
+  return {messages::encode(maker.scene()), messages::encode(maker.frame(1, 2)), messages::encode(maker.signals()),
+          messages::encode(maker.contacts()), messages::encode(maker.robot(0))};
 }
 
 template <class Message, class Check>
 void decode_any(const recording::Bytes& bytes, std::span<const std::uint8_t> input, Check&& check) {
   const recording::Bytes changed = fuzz::edited(bytes, input);
   try {
-    check(recording::decode<Message>(changed));
-  } catch (const recording::CdrError&) {
+    check(messages::decode<Message>(changed));
+  } catch (const messages::CdrError&) {
   }
 }
 
@@ -38,11 +38,11 @@ void decode_any(const recording::Bytes& bytes, std::span<const std::uint8_t> inp
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const Encoded whole = encoded();
   const std::span<const std::uint8_t> input(data, size);
-  decode_any<viewing::Scene>(whole.scene, input, [](const auto& scene) { viewing::check_scene(scene); });
-  decode_any<viewing::SceneFrame>(whole.frame, input,
-                                  [](const auto& frame) { viewing::check_frame(frame, links_of_scene); });
-  decode_any<viewing::SceneSignals>(whole.signals, input, [](const auto&) {});
-  decode_any<viewing::SceneContacts>(whole.contacts, input, [](const auto&) {});
-  decode_any<viewing::SceneRobot>(whole.robot, input, [](const auto&) {});
+  decode_any<messages::Scene>(whole.scene, input, [](const auto& scene) { viewing::check_scene(scene); });
+  decode_any<messages::SceneFrame>(whole.frame, input,
+                                   [](const auto& frame) { viewing::check_frame(frame, links_of_scene); });
+  decode_any<messages::SceneSignals>(whole.signals, input, [](const auto&) {});
+  decode_any<messages::SceneContacts>(whole.contacts, input, [](const auto&) {});
+  decode_any<messages::SceneRobot>(whole.robot, input, [](const auto&) {});
   return 0;
 }

@@ -165,11 +165,11 @@ void plant_a_change(const std::filesystem::path& from, const std::filesystem::pa
   for (auto stream = reader.messages({.order = recording::Order::file}); const auto message = stream.next();) {
     recording::Bytes bytes(message->data.begin(), message->data.end());
     if (message->channel == commands) {
-      auto decoded = recording::decode<Commands>(bytes);
+      auto decoded = messages::decode<Commands>(bytes);
       if (decoded.tick == tick) {
         double& value = decoded.values.front();
         value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ 1U);
-        bytes = recording::encode(decoded);
+        bytes = messages::encode(decoded);
         is_planted = true;
       }
     }

@@ -5,13 +5,14 @@
 
 #include "server/recording/mcap/reading/recover.hpp"
 #include "server/recording/mcap/writing/recording_file.hpp"
-#include "server/recording/ros_messages.hpp"
+#include "server/recording/ros_channels.hpp"
 #include "tests/support/any_message.hpp"
 #include "tests/support/node_folder.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/recordings.hpp"
 
 namespace cohort::recording {
+
 namespace {
 
 using namespace test;
@@ -137,7 +138,7 @@ TEST_F(OfficialReader, ReadsWhatAThreadWroteAndWhatWasRecovered) {
 // As decoders of ROS's messages give it.
 template <class Value>
 json as_json(const Value& value) {
-  if constexpr (RosMessage<Value>) {
+  if constexpr (messages::RosMessage<Value>) {
     json object = json::object();
     std::apply([&](const auto&... fields) { ((object[fields.name] = as_json(value.*fields.member)), ...); },
                Value::fields);
@@ -157,7 +158,7 @@ void write_any(McapWriter& writer, AnyMessage& any, std::vector<json>& written) 
   for (int i = 0; i < 5; ++i) {
     Message message;
     any.fill(message);
-    writer.write_message(channel, 0, Timestamp(written.size()), {}, encode(message));
+    writer.write_message(channel, 0, Timestamp(written.size()), {}, messages::encode(message));
     written.push_back(as_json(message));
   }
 }

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "server/recording/cdr.hpp"
+#include "idl/messages/cdr.hpp"
 
 namespace cohort::test {
 
@@ -11,7 +11,7 @@ class AnyMessage {
  public:
   template <class Value>
   void fill(Value& value) {
-    if constexpr (recording::RosMessage<Value>) {
+    if constexpr (messages::RosMessage<Value>) {
       std::apply([&](const auto&... fields) { (fill(value.*fields.member), ...); }, Value::fields);
     } else if constexpr (std::is_same_v<Value, bool>) {
       value = random_() % 2 == 1;

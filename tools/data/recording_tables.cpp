@@ -5,8 +5,8 @@
 #include <map>
 #include <optional>
 
+#include "idl/messages/ros_messages.hpp"
 #include "server/recording/mcap/format/mcap_error.hpp"
-#include "server/recording/ros_messages.hpp"
 
 namespace cohort::data {
 namespace {
@@ -74,7 +74,7 @@ class RecordingTables {
     while (const std::optional<Message> message = stream.next()) {
       try {
         read(*message);
-      } catch (const CdrError& error) {
+      } catch (const messages::CdrError& error) {
         throw McapError(recording_.file(), 0, std::string("a message is not what Cohort records: ") + error.what());
       }
     }
@@ -86,23 +86,23 @@ class RecordingTables {
  private:
   void read(const Message& message) {
     const std::string& topic = recording_.reader().channels().at(message.channel).topic;
-    if (topic == WorldBegins::topic) run_ = decode<WorldBegins>(message.data).run;
-    if (topic == Roster::topic) return read_roster(decode<Roster>(message.data));
+    if (topic == WorldBegins::topic) run_ = messages::decode<WorldBegins>(message.data).run;
+    if (topic == Roster::topic) return read_roster(messages::decode<Roster>(message.data));
     const bool is_before = std::chrono::nanoseconds(message.log_time) < selection_.from;
     // They count from then on.
     if (topic == Commands::topic && is_before) return take_commands(decode_commands(message.data), nullptr);
     if (is_before) return;
     const std::vector<Cell> time = {std::uint64_t{run_}, seconds(message.publish_time)};
     if (topic == Boundary::topic) {
-      const auto boundary = decode<Boundary>(message.data);
+      const auto boundary = messages::decode<Boundary>(message.data);
       add("ticks", {{"tick", Type::whole}, {"state_hash", Type::text}}, time,
           {boundary.tick, fmt::format("{:016x}", boundary.state_hash)});
     } else if (topic == RecordedEvent::topic) {
-      const auto event = decode<RecordedEvent>(message.data);
+      const auto event = messages::decode<RecordedEvent>(message.data);
       add("events", {{"tick", Type::whole}, {"kind", Type::text}, {"text", Type::text}, {"count", Type::whole}}, time,
           {event.tick, event.kind, event.text, event.count});
     } else if (topic == RecordedMiss::topic) {
-      const auto miss = decode<RecordedMiss>(message.data);
+      const auto miss = messages::decode<RecordedMiss>(message.data);
       add("misses",
           {{"tick", Type::whole},
            {"frame_tick", Type::whole},
@@ -111,12 +111,12 @@ class RecordingTables {
            {"waited", Type::real, "s"}},
           time, {miss.tick, miss.frame_tick, robot(miss.robot).name, miss.on_late, miss.waited});
     } else if (topic == ActionTaken::topic) {
-      const auto action = decode<ActionTaken>(message.data);
+      const auto action = messages::decode<ActionTaken>(message.data);
       add("actions", {{"tick", Type::whole}, {"text", Type::text}}, time, {action.tick, action.text});
     } else if (topic == Commands::topic) {
       take_commands(decode_commands(message.data), &time);
     } else if (topic == "/tf") {
-      add_poses(decode<ros::TFMessage>(message.data), time);
+      add_poses(messages::decode<ros::TFMessage>(message.data), time);
     } else if (topic.ends_with(observation_topic_end)) {
       add_observation(topic, message.data, time);
     }
@@ -126,16 +126,16 @@ class RecordingTables {
     roster_ = std::move(roster);
     robot_of_topic_.clear();
     for (std::uint32_t id = 0; id < roster_.robots.size(); ++id) {
-      if (roster_.robots[id].kind >= roster_.kinds.size()) throw CdrError("a robot is of no kind");
+      if (roster_.robots[id].kind >= roster_.kinds.size()) throw messages::CdrError("a robot is of no kind");
       robot_of_topic_["/" + roster_.robots[id].name + observation_topic_end] = id;
       commanded_[id] = roster_.robots[id].command;
       if (commanded_[id].size() != size_of(roster_.kinds[roster_.robots[id].kind].command))
-        throw CdrError("a robot's command is not of its kind");
+        throw messages::CdrError("a robot's command is not of its kind");
     }
   }
 
   const RecordedRobot& robot(std::uint32_t id) const {
-    if (id >= roster_.robots.size()) throw CdrError("a message is of a robot that is not in the roster");
+    if (id >= roster_.robots.size()) throw messages::CdrError("a message is of a robot that is not in the roster");
     return roster_.robots[id];
   }
   bool is_selected(const RecordedRobot& robot) const {
@@ -170,7 +170,7 @@ class RecordingTables {
       std::vector<double>& values = commanded_[id];
       for (; i < commands.robots.size() && commands.robots[i] == id; ++i) {
         if (commands.places[i] >= values.size())
-          throw CdrError("a command is of a channel that its robot does not have");
+          throw messages::CdrError("a command is of a channel that its robot does not have");
         values[commands.places[i]] = commands.values[i];
       }
       if (time != nullptr && is_selected(each))
@@ -201,10 +201,10 @@ class RecordingTables {
     const RecordedRobot& each = robot(found->second);
     if (!is_selected(each)) return;
     const std::vector<RecordedChannel>& channels = roster_.kinds[each.kind].observation;
-    CdrReader reader(data);
+    messages::CdrReader reader(data);
     reader.get<ros::Time>();
     const std::size_t size = size_of(channels);
-    if (size > reader.left() / sizeof(double)) throw CdrError("an observation has too few values");
+    if (size > reader.left() / sizeof(double)) throw messages::CdrError("an observation has too few values");
     std::vector<double> values(size);
     for (double& value : values) reader.read(value);
     add_values("observations", each, channels, values, time);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "idl/messages/run_history.hpp"
 #include "server/serving/control/entity_filter.hpp"
-#include "server/viewing/run_history.hpp"
 
 namespace cohort::session {
 namespace {
@@ -173,7 +173,7 @@ void ControlQueries::stop_recording(Reply& reply, const Request& request) {
 
 void ControlQueries::fill_history(Reply& reply, const Request& request) const {
   constexpr std::size_t most_events = 250;
-  viewing::RunHistory history;
+  messages::RunHistory history;
   const RunMonitor& monitor = run_->monitor;
   if (monitor.options().from) history.begin_tick = monitor.options().from->tick;
   history.keep_interval = kept_.interval();
@@ -186,7 +186,7 @@ void ControlQueries::fill_history(Reply& reply, const Request& request) const {
   history.events.reserve(events.size());
   for (const RunEvent& event : events)
     history.events.push_back({event.tick, event.last_tick, event.count, event.kind, event.text});
-  put(recording::encode(history), reply);
+  put(messages::encode(history), reply);
   reply.offset = revision;
   reply.size = monitor.events().revision();
 }

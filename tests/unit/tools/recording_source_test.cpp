@@ -82,7 +82,7 @@ class Viewing {
   ViewStatus request(const std::string& operation, double number = 0.0) {
     ask(operation, number);
     ask("speed", 1.0);  // ends what the source waits for, so that the one before is done
-    return recording::decode<ViewStatus>(topics_.newest(Topic::status)->data);
+    return messages::decode<ViewStatus>(topics_.newest(Topic::status)->data);
   }
 
  private:

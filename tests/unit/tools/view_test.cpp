@@ -145,11 +145,11 @@ TEST(ViewRequests, BecomeRequestsOrAreExplained) {
 }
 
 // What a server answers that has run so far.
-wire::Reply told(std::uint32_t run, std::uint64_t revision, const viewing::RunHistory& history) {
+wire::Reply told(std::uint32_t run, std::uint64_t revision, const messages::RunHistory& history) {
   wire::Reply reply;
   reply.run = run;
   reply.offset = revision;
-  const recording::Bytes bytes = recording::encode(history);
+  const recording::Bytes bytes = messages::encode(history);
   for (const std::byte each : bytes) reply.data.push_back(static_cast<std::uint8_t>(each));
   return reply;
 }
@@ -194,7 +194,7 @@ TEST(ViewHistory, WhatARunGoesBackBehindHasNotHappened) {
 
 TEST(ViewHistory, KeepsTheNewestEventsOnly) {
   LiveHistory history;
-  viewing::RunHistory all;
+  messages::RunHistory all;
   for (std::uint64_t i = 0; i < ViewEvents::most + 10; ++i) all.events.push_back({i, i, 1, "event", std::to_string(i)});
   history.take(told(1, all.events.size(), all), step);
   EXPECT_EQ(history.events().events.size(), ViewEvents::most);
@@ -205,7 +205,7 @@ TEST(ViewHistory, WhatIsNoHistoryIsRefused) {
   LiveHistory history;
   wire::Reply reply;
   reply.data = {0, 1, 0, 0, 7};
-  EXPECT_THROW(history.take(reply, step), recording::CdrError);
+  EXPECT_THROW(history.take(reply, step), messages::CdrError);
 }
 
 }  // namespace

@@ -6,13 +6,13 @@ namespace cohort::viewing {
 namespace {
 
 // Two objects of a model with two links, of which one is a mesh.
-Scene scene_of_two() {
-  Scene scene;
+messages::Scene scene_of_two() {
+  messages::Scene scene;
   scene.meshes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}}};
-  SceneShape shape;
-  shape.kind = static_cast<std::uint8_t>(ShapeKind::mesh);
+  messages::SceneShape shape;
+  shape.kind = static_cast<std::uint8_t>(messages::ShapeKind::mesh);
   shape.mesh = 0;
-  SceneModel model;
+  messages::SceneModel model;
   model.links = {{"body", {}, {shape}}, {"arm", {}, {}}};
   scene.models = {model};
   scene.entities = {{"one", 0}, {"two", 0}};
@@ -21,35 +21,35 @@ Scene scene_of_two() {
 
 TEST(CheckScene, CountsTheLinksOfAFrame) {
   EXPECT_EQ(check_scene(scene_of_two()), 4U);
-  SceneFrame frame;
+  messages::SceneFrame frame;
   frame.positions.resize(12);
   frame.orientations.resize(16);
   check_frame(frame, 4);
-  EXPECT_THROW(check_frame(frame, 5), recording::CdrError);
+  EXPECT_THROW(check_frame(frame, 5), messages::CdrError);
   frame.orientations.pop_back();
-  EXPECT_THROW(check_frame(frame, 4), recording::CdrError);
+  EXPECT_THROW(check_frame(frame, 4), messages::CdrError);
 }
 
 TEST(CheckScene, RefusesIndicesOfNothing) {
-  Scene of_model = scene_of_two();
+  messages::Scene of_model = scene_of_two();
   of_model.entities[1].model = 1;
-  EXPECT_THROW(check_scene(of_model), recording::CdrError);
-  Scene of_mesh = scene_of_two();
-  of_mesh.models[0].links[0].shapes[0].mesh = none;
-  EXPECT_THROW(check_scene(of_mesh), recording::CdrError);
-  Scene of_vertex = scene_of_two();
+  EXPECT_THROW(check_scene(of_model), messages::CdrError);
+  messages::Scene of_mesh = scene_of_two();
+  of_mesh.models[0].links[0].shapes[0].mesh = messages::none;
+  EXPECT_THROW(check_scene(of_mesh), messages::CdrError);
+  messages::Scene of_vertex = scene_of_two();
   of_vertex.meshes[0].triangles[2] = 3;
-  EXPECT_THROW(check_scene(of_vertex), recording::CdrError);
+  EXPECT_THROW(check_scene(of_vertex), messages::CdrError);
 }
 
 TEST(CheckScene, RefusesColoursOfNothing) {
-  Scene scene = scene_of_two();
+  messages::Scene scene = scene_of_two();
   scene.models[0].links[0].shapes[0].has_mesh_colors = true;
-  EXPECT_THROW(check_scene(scene), recording::CdrError);
+  EXPECT_THROW(check_scene(scene), messages::CdrError);
   scene.meshes[0].colors = {10, 20, 30};
   EXPECT_EQ(check_scene(scene), 4U);
   scene.meshes[0].colors.push_back(40);
-  EXPECT_THROW(check_scene(scene), recording::CdrError);
+  EXPECT_THROW(check_scene(scene), messages::CdrError);
 }
 
 }  // namespace

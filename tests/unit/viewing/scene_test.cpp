@@ -3,8 +3,8 @@
 #include <set>
 #include <sstream>
 
+#include "idl/messages/ros_schema.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "server/recording/ros_schema.hpp"
 #include "server/viewing/scene_maker.hpp"
 #include "tests/support/files.hpp"
 #include "tests/support/shipped_experiment.hpp"
@@ -19,26 +19,26 @@ description::Experiment shipped(const std::string& name) {
 TEST(SceneOfAWorld, HasEveryObjectWithItsVisuals) {
   const description::Experiment experiment = shipped("obstacle_avoidance");
   const Simulation simulation(experiment, 1);
-  const Scene scene = SceneMaker(simulation, 7).scene();
+  const messages::Scene scene = SceneMaker(simulation, 7).scene();
   EXPECT_EQ(scene.revision, 7U);
   ASSERT_EQ(scene.entities.size(), simulation.objects().size());
   std::set<std::uint32_t> robots;
-  for (const SceneEntity& entity : scene.entities) {
-    if (entity.robot == none) continue;
+  for (const messages::SceneEntity& entity : scene.entities) {
+    if (entity.robot == messages::none) continue;
     robots.insert(entity.robot);
     EXPECT_EQ(entity.name, simulation.robot_name(entity.robot));
     EXPECT_EQ(entity.team, "explorers");
   }
   EXPECT_EQ(robots.size(), 16U);
-  const SceneModel& sbot = scene.models[scene.entities[simulation.description().robots[0]].model];
+  const messages::SceneModel& sbot = scene.models[scene.entities[simulation.description().robots[0]].model];
   ASSERT_EQ(sbot.links.size(), 2U);
   // Hull and two tracks; the collision of the hull beside.
-  const auto count = [](const SceneLink& link, ShapeRole role) {
-    return std::ranges::count(link.shapes, static_cast<std::uint8_t>(role), &SceneShape::role);
+  const auto count = [](const messages::SceneLink& link, messages::ShapeRole role) {
+    return std::ranges::count(link.shapes, static_cast<std::uint8_t>(role), &messages::SceneShape::role);
   };
-  EXPECT_EQ(count(sbot.links[0], ShapeRole::visual), 3);
-  EXPECT_GE(count(sbot.links[0], ShapeRole::collision), 1);
-  EXPECT_EQ(count(sbot.links[0], ShapeRole::collision_as_visual), 0);
+  EXPECT_EQ(count(sbot.links[0], messages::ShapeRole::visual), 3);
+  EXPECT_GE(count(sbot.links[0], messages::ShapeRole::collision), 1);
+  EXPECT_EQ(count(sbot.links[0], messages::ShapeRole::collision_as_visual), 0);
   EXPECT_FLOAT_EQ(sbot.links[1].shapes[0].color[0], 0.85f);
   EXPECT_FALSE(sbot.observation.empty());
   EXPECT_FALSE(sbot.command.empty());
@@ -47,20 +47,20 @@ TEST(SceneOfAWorld, HasEveryObjectWithItsVisuals) {
 TEST(SceneOfAWorld, TellsWhereRaysBegin) {
   const description::Experiment experiment = shipped("obstacle_avoidance");
   const Simulation simulation(experiment, 1);
-  const Scene scene = SceneMaker(simulation, 1).scene();
-  const SceneModel& sbot = scene.models[scene.entities[simulation.description().robots[0]].model];
-  const auto ring = std::ranges::find(sbot.sensors, "proximity_ring", &SceneSensor::kind);
+  const messages::Scene scene = SceneMaker(simulation, 1).scene();
+  const messages::SceneModel& sbot = scene.models[scene.entities[simulation.description().robots[0]].model];
+  const auto ring = std::ranges::find(sbot.sensors, "proximity_ring", &messages::SceneSensor::kind);
   ASSERT_NE(ring, sbot.sensors.end());
   EXPECT_EQ(ring->directions.size(), 45U);
   EXPECT_GT(ring->range, 0.0f);
-  const auto channel = std::ranges::find(sbot.observation, ring->channel, &SceneChannel::name);
+  const auto channel = std::ranges::find(sbot.observation, ring->channel, &messages::SceneChannel::name);
   EXPECT_NE(channel, sbot.observation.end()) << ring->channel;
 }
 
 TEST(SceneOfAWorld, TellsWhereLinksRestAndWhatCommandsBeginWith) {
   const description::Experiment experiment = shipped("obstacle_avoidance");
   const Simulation simulation(experiment, 1);
-  const Scene scene = SceneMaker(simulation, 1).scene();
+  const messages::Scene scene = SceneMaker(simulation, 1).scene();
   const std::size_t model = scene.entities[simulation.description().robots[0]].model;
   const description::Model& described = simulation.description().models[model];
   for (std::size_t link = 0; link < described.links.size(); ++link)
@@ -75,9 +75,9 @@ TEST(SceneOfAWorld, TellsWhereLinksRestAndWhatCommandsBeginWith) {
 TEST(SceneOfAWorld, AHeightMapIsAMeshAsHighAsItsGround) {
   const description::Experiment experiment = shipped("rough_terrain");
   const Simulation simulation(experiment, 1);
-  const Scene scene = SceneMaker(simulation, 1).scene();
+  const messages::Scene scene = SceneMaker(simulation, 1).scene();
   ASSERT_FALSE(scene.meshes.empty());
-  const SceneMesh& ground = scene.meshes[0];
+  const messages::SceneMesh& ground = scene.meshes[0];
   const geometry::Scene& solids = simulation.world().scene();
   // Straight down onto some of its vertices.
   const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
@@ -97,8 +97,8 @@ TEST(SceneOfAWorld, AMeshHasTheColoursOfItsFileUnlessItsVisualHasOne) {
   setenv("COHORT_MODEL_PATH", COHORT_SOURCE_DIR "/worlds/robots", 1);
   const Simulation simulation(parsing::read_experiment(exhibits / "experiment.yaml"), 1);
   unsetenv("COHORT_MODEL_PATH");
-  const Scene scene = SceneMaker(simulation, 1).scene();
-  const auto badge = std::ranges::find(scene.models, "badge", &SceneModel::name);
+  const messages::Scene scene = SceneMaker(simulation, 1).scene();
+  const auto badge = std::ranges::find(scene.models, "badge", &messages::SceneModel::name);
   ASSERT_NE(badge, scene.models.end());
   ASSERT_EQ(badge->links[0].shapes.size(), 2U);
   const auto& [own, green] = std::tie(badge->links[0].shapes[0], badge->links[0].shapes[1]);
@@ -120,14 +120,14 @@ TEST(SceneOfAWorld, FramesHaveThePosesAndChangeNothing) {
   for (int tick = 0; tick < 20; ++tick) {
     simulation.step();
     unseen.step();
-    const SceneFrame frame = maker.frame(3, 4);
+    const messages::SceneFrame frame = maker.frame(3, 4);
     maker.signals();
     maker.contacts();
     EXPECT_EQ(frame.tick, simulation.tick());
     EXPECT_EQ(simulation.state_hash(), unseen.state_hash());
   }
-  const SceneFrame frame = maker.frame(3, 4);
-  const Scene scene = maker.scene();
+  const messages::SceneFrame frame = maker.frame(3, 4);
+  const messages::Scene scene = maker.scene();
   std::size_t place = 0;
   for (std::uint32_t model = 0; model < scene.models.size(); ++model)
     for (std::size_t link = 0; link < scene.models[model].links.size(); ++link)
@@ -154,7 +154,7 @@ TEST(SceneOfAWorld, WhatComesLaterNeedsAnotherMaker) {
   X_WM.position = {0.0, 0.0, 3.0};
   simulation.add_object("another", pillar, X_WM);
   EXPECT_TRUE(maker.is_outdated());
-  const Scene scene = SceneMaker(simulation, 2).scene();
+  const messages::Scene scene = SceneMaker(simulation, 2).scene();
   EXPECT_EQ(scene.entities.back().name, "another");
 }
 
@@ -173,17 +173,17 @@ std::string definition_on_the_page(const std::string& name) {
   return text;
 }
 
-void expect_on_the_page(const recording::RosDefinition& definition) {
+void expect_on_the_page(const messages::RosDefinition& definition) {
   EXPECT_EQ(definition_on_the_page(definition.name), definition.text) << definition.name;
-  for (const recording::RosDefinition& part : definition.parts) expect_on_the_page(part);
+  for (const messages::RosDefinition& part : definition.parts) expect_on_the_page(part);
 }
 
 TEST(SceneMessages, AreDefinedOnTheirPageFieldByField) {
-  expect_on_the_page(recording::definition<Scene>());
-  expect_on_the_page(recording::definition<SceneFrame>());
-  expect_on_the_page(recording::definition<SceneSignals>());
-  expect_on_the_page(recording::definition<SceneContacts>());
-  expect_on_the_page(recording::definition<SceneRobots>());
+  expect_on_the_page(messages::definition<messages::Scene>());
+  expect_on_the_page(messages::definition<messages::SceneFrame>());
+  expect_on_the_page(messages::definition<messages::SceneSignals>());
+  expect_on_the_page(messages::definition<messages::SceneContacts>());
+  expect_on_the_page(messages::definition<messages::SceneRobots>());
 }
 
 }  // namespace

@@ -5,17 +5,17 @@
 namespace cohort::view {
 namespace {
 
-using viewing::ShapeKind;
+using messages::ShapeKind;
 
 constexpr double plane_size = 20.0;       // [m]
 constexpr double plane_thickness = 1e-3;  // [m]
 
-std::string frame_name(const viewing::Scene& scene, std::uint32_t entity, std::size_t link) {
-  const viewing::SceneEntity& named = scene.entities[entity];
+std::string frame_name(const messages::Scene& scene, std::uint32_t entity, std::size_t link) {
+  const messages::SceneEntity& named = scene.entities[entity];
   return named.name + "/" + scene.models[named.model].links[link].name;
 }
 
-void fill_colors(const viewing::SceneMesh& mesh, float opacity, Marker& marker) {
+void fill_colors(const messages::SceneMesh& mesh, float opacity, Marker& marker) {
   constexpr float full = 255.0f;
   marker.colors.reserve(mesh.colors.size());
   for (std::size_t i = 0; i + 2 < mesh.colors.size(); i += 3) {
@@ -24,7 +24,7 @@ void fill_colors(const viewing::SceneMesh& mesh, float opacity, Marker& marker) 
   }
 }
 
-void fill_mesh(const viewing::SceneMesh& mesh, Marker& marker) {
+void fill_mesh(const messages::SceneMesh& mesh, Marker& marker) {
   marker.kind = Marker::triangle_list;
   marker.scale = {1.0, 1.0, 1.0};
   marker.points.reserve(mesh.triangles.size());
@@ -34,7 +34,7 @@ void fill_mesh(const viewing::SceneMesh& mesh, Marker& marker) {
   }
 }
 
-void fill_shape(const viewing::Scene& scene, const viewing::SceneShape& shape, Marker& marker) {
+void fill_shape(const messages::Scene& scene, const messages::SceneShape& shape, Marker& marker) {
   const auto& [a, b, c] = shape.size;
   switch (static_cast<ShapeKind>(shape.kind)) {
     case ShapeKind::box: marker.scale = {a, b, c}; break;
@@ -59,7 +59,7 @@ void fill_shape(const viewing::Scene& scene, const viewing::SceneShape& shape, M
   }
 }
 
-Marker marker_of(const viewing::Scene& scene, const viewing::SceneShape& shape) {
+Marker marker_of(const messages::Scene& scene, const messages::SceneShape& shape) {
   Marker marker;
   const auto& pose = shape.pose;
   marker.pose = {{pose[0], pose[1], pose[2]}, {pose[3], pose[4], pose[5], pose[6]}};
@@ -68,9 +68,10 @@ Marker marker_of(const viewing::Scene& scene, const viewing::SceneShape& shape) 
   return marker;
 }
 
-void add_link(const viewing::Scene& scene, const viewing::SceneLink& link, const std::string& frame, MarkerArray& to) {
-  for (const viewing::SceneShape& shape : link.shapes) {
-    if (shape.role == static_cast<std::uint8_t>(viewing::ShapeRole::collision)) continue;
+void add_link(const messages::Scene& scene, const messages::SceneLink& link, const std::string& frame,
+              MarkerArray& to) {
+  for (const messages::SceneShape& shape : link.shapes) {
+    if (shape.role == static_cast<std::uint8_t>(messages::ShapeRole::collision)) continue;
     Marker marker = marker_of(scene, shape);
     marker.header.frame_id = frame;
     marker.ns = frame;
@@ -81,30 +82,30 @@ void add_link(const viewing::Scene& scene, const viewing::SceneLink& link, const
 
 }  // namespace
 
-MarkerArray markers_of(const viewing::Scene& scene) {
+MarkerArray markers_of(const messages::Scene& scene) {
   MarkerArray all;
   all.markers.reserve(1 + scene.entities.size());
   Marker& clear = all.markers.emplace_back();
   clear.header.frame_id = "world";
   clear.action = 3;
   for (std::uint32_t entity = 0; entity < scene.entities.size(); ++entity) {
-    const viewing::SceneModel& model = scene.models[scene.entities[entity].model];
+    const messages::SceneModel& model = scene.models[scene.entities[entity].model];
     for (std::size_t link = 0; link < model.links.size(); ++link)
       add_link(scene, model.links[link], frame_name(scene, entity, link), all);
   }
   return all;
 }
 
-recording::ros::TFMessage transforms_of(const viewing::Scene& scene, const viewing::SceneFrame& frame) {
+messages::ros::TFMessage transforms_of(const messages::Scene& scene, const messages::SceneFrame& frame) {
   constexpr std::int64_t second = 1'000'000'000;
   constexpr double full = 32767.0;
-  const recording::ros::Time stamp{static_cast<std::int32_t>(frame.time_ns / second),
-                                   static_cast<std::uint32_t>(frame.time_ns % second)};
+  const messages::ros::Time stamp{static_cast<std::int32_t>(frame.time_ns / second),
+                                  static_cast<std::uint32_t>(frame.time_ns % second)};
   std::vector<std::vector<std::uint32_t>> entities_of_model(scene.models.size());
   for (std::uint32_t entity = 0; entity < scene.entities.size(); ++entity)
     entities_of_model[scene.entities[entity].model].push_back(entity);
 
-  recording::ros::TFMessage message;
+  messages::ros::TFMessage message;
   message.transforms.reserve(frame.positions.size() / 3);
   std::size_t place = 0;
   const auto add = [&](std::uint32_t entity, std::size_t link) {

@@ -1,13 +1,13 @@
 #pragma once
 
-#include "server/recording/ros_messages.hpp"
-#include "server/viewing/scene_messages.hpp"
+#include "idl/messages/ros_messages.hpp"
+#include "idl/messages/scene_messages.hpp"
 
 /// A scene in ROS 2's own messages, for viewers that know nothing of Cohort. Each link has a frame, `NAME/LINK` in the
 /// frame `world`.
 namespace cohort::view {
 
-using recording::field;
+using messages::field;
 
 struct ColorRGBA {
   float r = 0, g = 0, b = 0, a = 1;
@@ -24,7 +24,7 @@ struct Duration {
 };
 
 struct CompressedImage {
-  recording::ros::Header header{};
+  messages::ros::Header header{};
   std::string format{};
   std::vector<std::uint8_t> data{};
   static constexpr const char* type = "sensor_msgs/msg/CompressedImage";
@@ -49,17 +49,17 @@ struct MeshFile {
 struct Marker {
   enum Kind : std::int32_t { cube = 1, sphere = 2, cylinder = 3, triangle_list = 11 };
 
-  recording::ros::Header header{};
+  messages::ros::Header header{};
   std::string ns{};
   std::int32_t id = 0;
   std::int32_t kind = cube;
   std::int32_t action = 0;  ///< 0: add; 3: delete all
-  recording::ros::Pose pose{};
-  recording::ros::Vector3 scale{};
+  messages::ros::Pose pose{};
+  messages::ros::Vector3 scale{};
   ColorRGBA color{};
   Duration lifetime{};
   bool frame_locked = true;
-  std::vector<recording::ros::Point> points{};
+  std::vector<messages::ros::Point> points{};
   std::vector<ColorRGBA> colors{};
   std::string texture_resource{};
   CompressedImage texture{};
@@ -87,8 +87,8 @@ struct MarkerArray {
 };
 
 /// All that is visible; of planes a piece. They take the place of all markers before.
-MarkerArray markers_of(const viewing::Scene& scene);
+MarkerArray markers_of(const messages::Scene& scene);
 /// The frames of all links that are in the world.
-recording::ros::TFMessage transforms_of(const viewing::Scene& scene, const viewing::SceneFrame& frame);
+messages::ros::TFMessage transforms_of(const messages::Scene& scene, const messages::SceneFrame& frame);
 
 }  // namespace cohort::view

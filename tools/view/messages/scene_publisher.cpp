@@ -6,23 +6,23 @@
 
 namespace cohort::view {
 
-std::uint32_t ScenePublisher::show(viewing::Scene scene, std::chrono::nanoseconds time) {
+std::uint32_t ScenePublisher::show(messages::Scene scene, std::chrono::nanoseconds time) {
   scene.revision = scene_.revision;
-  recording::Bytes bytes = recording::encode(scene);
+  recording::Bytes bytes = messages::encode(scene);
   if (scene.revision != 0 && bytes == scene_bytes_) return scene.revision;
   ++scene.revision;
   show_as_it_is(std::move(scene), time);
   return scene_.revision;
 }
 
-void ScenePublisher::show_as_it_is(viewing::Scene scene, std::chrono::nanoseconds time) {
+void ScenePublisher::show_as_it_is(messages::Scene scene, std::chrono::nanoseconds time) {
   scene_ = std::move(scene);
   revision_of_markers_ = 0;
-  scene_bytes_ = recording::encode(scene_);
+  scene_bytes_ = messages::encode(scene_);
   topics_.publish(Topic::scene, time, scene_bytes_);
 }
 
-void ScenePublisher::show(const viewing::SceneFrame& frame, std::chrono::nanoseconds time) {
+void ScenePublisher::show(const messages::SceneFrame& frame, std::chrono::nanoseconds time) {
   publish(Topic::frame, frame, time);
   // Whoever reads these gets them late rather than everybody paying for them.
   if (frame.revision != scene_.revision) return;
@@ -31,7 +31,7 @@ void ScenePublisher::show(const viewing::SceneFrame& frame, std::chrono::nanosec
   if (is_read(Topic::transforms)) publish(Topic::transforms, transforms_of(scene_, frame), time);
 }
 
-void ScenePublisher::show(const viewing::SceneSignals& signals, std::chrono::nanoseconds time) {
+void ScenePublisher::show(const messages::SceneSignals& signals, std::chrono::nanoseconds time) {
   if (signals == signals_) return;
   signals_ = signals;
   publish(Topic::signals, signals, time);

@@ -2,31 +2,31 @@
 
 #include <utility>
 
-#include "server/recording/ros_messages.hpp"
+#include "idl/messages/ros_messages.hpp"
 #include "tools/view/messages/markers.hpp"
 #include "tools/view/messages/view_messages.hpp"
 
 namespace cohort::view {
 namespace {
 
-template <recording::RosMessage Message>
+template <messages::RosMessage Message>
 TopicInfo topic(const char* name) {
-  const recording::RosDefinition definition = recording::definition<Message>();
-  return {name, Message::type, recording::schema_text(definition)};
+  const messages::RosDefinition definition = messages::definition<Message>();
+  return {name, Message::type, messages::schema_text(definition)};
 }
 
 }  // namespace
 
 const std::array<TopicInfo, topic_count>& topic_table() {
   static const std::array<TopicInfo, topic_count> table = {
-      topic<viewing::Scene>("/cohort/scene"),
-      topic<viewing::SceneFrame>("/cohort/frame"),
-      topic<viewing::SceneSignals>("/cohort/signals"),
-      topic<viewing::SceneContacts>("/cohort/contacts"),
+      topic<messages::Scene>("/cohort/scene"),
+      topic<messages::SceneFrame>("/cohort/frame"),
+      topic<messages::SceneSignals>("/cohort/signals"),
+      topic<messages::SceneContacts>("/cohort/contacts"),
       topic<ViewStatus>("/cohort/status"),
-      topic<viewing::SceneRobots>("/cohort/robots"),
+      topic<messages::SceneRobots>("/cohort/robots"),
       topic<ViewEvents>("/cohort/events"),
-      topic<recording::ros::TFMessage>("/tf"),
+      topic<messages::ros::TFMessage>("/tf"),
       topic<MarkerArray>("/markers"),
   };
   return table;

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "server/viewing/scene_messages.hpp"
+#include "idl/messages/scene_messages.hpp"
 
 /// What viewers are told beside the scene (server/viewing/scene_messages.hpp).
 namespace cohort::view {
 
-using recording::field;
+using messages::field;
 
 /// How what is shown goes on. Times of a recording are its log times, of a server simulated ones.
 struct ViewStatus {

@@ -8,14 +8,14 @@ namespace cohort::view {
 wire::Request LiveHistory::question() const { return {.operation = wire::Operation::get_history, .offset = revision_}; }
 
 bool LiveHistory::take(const wire::Reply& reply, std::chrono::nanoseconds step) {
-  const auto history = recording::decode<viewing::RunHistory>(std::as_bytes(std::span(reply.data)));
+  const auto history = messages::decode<messages::RunHistory>(std::as_bytes(std::span(reply.data)));
   keep_interval_ = history.keep_interval;
   first_kept_ = step * static_cast<std::int64_t>(history.first_kept_tick);
   const bool is_another_run = reply.run != run_;
   const bool was_asked_of_it = !is_another_run || revision_ == 0;
   if (is_another_run) begin_run(reply.run, history.begin_tick);
   if (!was_asked_of_it) return true;
-  for (const viewing::HistoryEvent& event : history.events) add(event, step);
+  for (const messages::HistoryEvent& event : history.events) add(event, step);
   revision_ = reply.offset;
   return is_another_run || !history.events.empty();
 }
@@ -27,7 +27,7 @@ void LiveHistory::begin_run(std::uint32_t run, std::uint64_t begin_tick) {
   std::erase_if(events_.events, [&](const ViewEvent& event) { return event.tick >= begin_tick; });
 }
 
-void LiveHistory::add(const viewing::HistoryEvent& event, std::chrono::nanoseconds step) {
+void LiveHistory::add(const messages::HistoryEvent& event, std::chrono::nanoseconds step) {
   std::vector<ViewEvent>& events = events_.events;
   std::erase_if(events, [&](const ViewEvent& known) { return known.kind == event.kind && known.text == event.text; });
   if (events.size() == ViewEvents::most) events.erase(events.begin());

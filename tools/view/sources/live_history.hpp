@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cstdint>
 
+#include "idl/messages/run_history.hpp"
 #include "idl/wire/control_messages.hpp"
-#include "server/viewing/run_history.hpp"
 #include "tools/view/messages/view_messages.hpp"
 
 namespace cohort::view {
@@ -14,7 +14,7 @@ class LiveHistory {
  public:
   /// The question that brings what is not known yet.
   wire::Request question() const;
-  /// The reply to it, and the time of a tick. Throws recording::CdrError if the reply is none. True if there is
+  /// The reply to it, and the time of a tick. Throws messages::CdrError if the reply is none. True if there is
   /// anything new.
   bool take(const wire::Reply& reply, std::chrono::nanoseconds step);
 
@@ -26,7 +26,7 @@ class LiveHistory {
 
  private:
   void begin_run(std::uint32_t run, std::uint64_t begin_tick);
-  void add(const viewing::HistoryEvent& event, std::chrono::nanoseconds step);
+  void add(const messages::HistoryEvent& event, std::chrono::nanoseconds step);
 
   std::uint32_t run_ = 0;
   std::uint64_t revision_ = 0;

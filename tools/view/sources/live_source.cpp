@@ -95,7 +95,7 @@ void LiveSource::show_what_arrives() {
     }
     try {
       show(arrived);
-    } catch (const recording::CdrError& error) {
+    } catch (const messages::CdrError& error) {
       ViewStatus status = status_without_run();
       status.note =
           std::string("what the server shows cannot be read, perhaps since it is of another version: ") + error.what();
@@ -106,7 +106,7 @@ void LiveSource::show_what_arrives() {
 
 void LiveSource::show(Arrived& arrived) {
   if (arrived.scene) {
-    auto scene = recording::decode<viewing::Scene>(*arrived.scene);
+    auto scene = messages::decode<messages::Scene>(*arrived.scene);
     if (!scene.end.empty()) {
       arrived.scene.reset();
       show(arrived);  // the last picture may have come with it
@@ -121,14 +121,14 @@ void LiveSource::show(Arrived& arrived) {
     if (arrived.has_other_watched || arrivals_ != topics_.arrivals()) show_extras();
     return;
   }
-  const auto frame = recording::decode<viewing::SceneFrame>(arrived.frame);
+  const auto frame = messages::decode<messages::SceneFrame>(arrived.frame);
   if (frame.revision == revision_) viewing::check_frame(frame, links_);
   {
     const std::lock_guard lock(mutex_);
     time_ = std::chrono::nanoseconds(frame.time_ns);
   }
   publisher_.show(frame, time_);
-  publisher_.show(recording::decode<viewing::SceneSignals>(arrived.signals), time_);
+  publisher_.show(messages::decode<messages::SceneSignals>(arrived.signals), time_);
   contacts_ = std::move(arrived.contacts);
   robots_ = std::move(arrived.robots);
   show_extras();
@@ -157,9 +157,9 @@ void LiveSource::show_extras() {
 }
 
 void LiveSource::show_robots() {
-  auto robots = recording::decode<viewing::SceneRobots>(robots_);
+  auto robots = messages::decode<messages::SceneRobots>(robots_);
   const std::lock_guard lock(mutex_);
-  std::erase_if(robots.robots, [&](const viewing::SceneRobot& each) {
+  std::erase_if(robots.robots, [&](const messages::SceneRobot& each) {
     return std::ranges::find(watched_, each.robot) == watched_.end();
   });
   publisher_.publish(Topic::robots, robots, time_);
@@ -269,7 +269,7 @@ void LiveSource::ask_history(ControlClient& client) {
   const auto reply = client.ask(history_.question(), for_a_reply, is_stopping_);
   if (!reply || reply->result != ResultCode::ok) return;  // a server of before has none
   if (history_.take(*reply, std::chrono::nanoseconds(run_.step_ns)))
-    topics_.publish(Topic::events, std::chrono::nanoseconds(reply->time_ns), recording::encode(history_.events()));
+    topics_.publish(Topic::events, std::chrono::nanoseconds(reply->time_ns), messages::encode(history_.events()));
 }
 
 void LiveSource::answer_all(const std::string& text) {
@@ -350,7 +350,7 @@ void LiveSource::ask_status(ControlClient& client) {
 }
 
 void LiveSource::show_status(const ViewStatus& status) {
-  topics_.publish(Topic::status, std::chrono::nanoseconds(status.time_ns), recording::encode(status));
+  topics_.publish(Topic::status, std::chrono::nanoseconds(status.time_ns), messages::encode(status));
 }
 
 }  // namespace cohort::view

@@ -234,7 +234,7 @@ void RecordingSource::show() {
   publisher_.show(maker_->frame(run_, state_hash_), log_time_);
   publisher_.show(maker_->signals(), log_time_);
   if (publisher_.is_read(Topic::contacts)) publisher_.publish(Topic::contacts, maker_->contacts(), log_time_);
-  viewing::SceneRobots robots;
+  messages::SceneRobots robots;
   robots.robots.reserve(watched_.size());
   for (const std::uint32_t robot : watched_)
     if (robot < replay_.simulation().robot_count()) robots.robots.push_back(maker_->robot(robot));
@@ -267,7 +267,7 @@ void RecordingSource::show_events() {
     try {
       while (const auto message = messages.next()) {
         if (events.events.size() == ViewEvents::most) break;
-        const auto event = recording::decode<recording::RecordedEvent>(message->data);
+        const auto event = messages::decode<recording::RecordedEvent>(message->data);
         const auto time = static_cast<std::int64_t>(message->log_time.count());
         events.events.push_back({time, event.tick, event.kind, event.text, event.count, time});
       }

@@ -172,11 +172,11 @@ class Ctl {
   void history() {
     const Reply status = ask({.operation = Operation::get_status});
     if (status.status.empty()) throw no_reply();
-    viewing::RunHistory all;
+    messages::RunHistory all;
     Request request{.operation = Operation::get_history};
     for (bool is_complete = false; !is_complete;) {
       const Reply reply = ask_and_get(request);
-      add(all, recording::decode<viewing::RunHistory>(std::as_bytes(std::span(reply.data))));
+      add(all, messages::decode<messages::RunHistory>(std::as_bytes(std::span(reply.data))));
       is_complete = reply.offset == request.offset || reply.offset >= reply.size;
       request.offset = reply.offset;
     }

@@ -19,20 +19,20 @@ double seconds_at(std::uint64_t tick, std::chrono::nanoseconds step) {
 
 }  // namespace
 
-void add(viewing::RunHistory& history, viewing::RunHistory later) {
-  std::vector<viewing::HistoryEvent> events = std::move(history.events);
-  for (viewing::HistoryEvent& event : later.events) {
+void add(messages::RunHistory& history, messages::RunHistory later) {
+  std::vector<messages::HistoryEvent> events = std::move(history.events);
+  for (messages::HistoryEvent& event : later.events) {
     std::erase_if(events, [&](const auto& known) { return known.kind == event.kind && known.text == event.text; });
     events.push_back(std::move(event));
   }
-  std::ranges::stable_sort(events, {}, &viewing::HistoryEvent::tick);
+  std::ranges::stable_sort(events, {}, &messages::HistoryEvent::tick);
   history = std::move(later);
   history.events = std::move(events);
 }
 
-std::string history_text(const viewing::RunHistory& history, std::chrono::nanoseconds step) {
+std::string history_text(const messages::RunHistory& history, std::chrono::nanoseconds step) {
   std::string text;
-  for (const viewing::HistoryEvent& event : history.events) {
+  for (const messages::HistoryEvent& event : history.events) {
     text += fmt::format("{:10.3f} s  {:<11} {}", seconds_at(event.tick, step), event.kind, event.text);
     if (event.count > 1)
       text += fmt::format(" ({} times, last at {:.3f} s)", event.count, seconds_at(event.last_tick, step));
@@ -44,9 +44,9 @@ std::string history_text(const viewing::RunHistory& history, std::chrono::nanose
                             seconds_at(history.keep_interval, step));
 }
 
-std::string history_json(const viewing::RunHistory& history, std::chrono::nanoseconds step) {
+std::string history_json(const messages::RunHistory& history, std::chrono::nanoseconds step) {
   ordered_json events = ordered_json::array();
-  for (const viewing::HistoryEvent& event : history.events)
+  for (const messages::HistoryEvent& event : history.events)
     events.push_back({{"tick", event.tick},
                       {"last_tick", event.last_tick},
                       {"count", event.count},

@@ -4,13 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "server/recording/cdr.hpp"
+#include "idl/messages/cdr.hpp"
 
 /// What has happened in a run and how far back it can go, for those who look on: docs/protocol.md, "Control",
 /// GetHistory.
-namespace cohort::viewing {
-
-using recording::field;
+namespace cohort::messages {
 
 /// Something that happened, perhaps more than once.
 struct HistoryEvent {
@@ -38,4 +36,4 @@ struct RunHistory {
                  field("last_kept_tick", &RunHistory::last_kept_tick), field("events", &RunHistory::events));
 };
 
-}  // namespace cohort::viewing
+}  // namespace cohort::messages

@@ -2,10 +2,10 @@
 
 #include <random>
 
-#include "server/recording/ros_messages.hpp"
+#include "idl/messages/ros_sensor_messages.hpp"
 #include "tests/support/any_message.hpp"
 
-namespace cohort::recording {
+namespace cohort::messages {
 namespace {
 
 using namespace std::chrono_literals;
@@ -96,7 +96,7 @@ TYPED_TEST(RosMessages, TakeAnyBytes) {
 
 TEST(RosSchema, HasEachMessageInItOnceInTheOrderOfRosbag2) {
   const std::string line = "\n" + std::string(80, '=') + "\nMSG: ";
-  EXPECT_EQ(schema_text(definition<ros::TFMessage>()),
+  EXPECT_EQ(messages::schema_text(messages::definition<ros::TFMessage>()),
             "geometry_msgs/TransformStamped[] transforms\n" + line +
                 "geometry_msgs/TransformStamped\n"
                 "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n" +
@@ -106,11 +106,11 @@ TEST(RosSchema, HasEachMessageInItOnceInTheOrderOfRosbag2) {
                 "geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n" + line +
                 "std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" + line +
                 "builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n");
-  EXPECT_EQ(definition<ros::Imu>().text,
+  EXPECT_EQ(messages::definition<ros::Imu>().text,
             "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
             "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
             "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n");
-  EXPECT_EQ(definition<ros::NavSatStatus>().text, "int8 status\nuint16 service\n");
+  EXPECT_EQ(messages::definition<ros::NavSatStatus>().text, "int8 status\nuint16 service\n");
 }
 
 TEST(RosTime, IsSecondsAndNanosecondsAlsoBeforeTheEpochAndAtItsEnds) {
@@ -122,4 +122,4 @@ TEST(RosTime, IsSecondsAndNanosecondsAlsoBeforeTheEpochAndAtItsEnds) {
 }
 
 }  // namespace
-}  // namespace cohort::recording
+}  // namespace cohort::messages

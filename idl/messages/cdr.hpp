@@ -3,19 +3,24 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <type_traits>
 #include <utility>
-
-#include "server/recording/mcap/format/mcap.hpp"
+#include <vector>
 
 /// CDR, little-endian, as ROS 2 has it: the encapsulation 00 01 00 00, then the fields, each number at a multiple of
 /// its size from the first byte after the encapsulation (OMG DDSI-RTPS 2.5, 10; CORBA 3.4 part 2, 9.3).
-namespace cohort::recording {
+namespace cohort::messages {
+
+using Bytes = std::vector<std::byte>;
+using ByteView = std::span<const std::byte>;
 
 /// A message that ends too early or is no little-endian CDR.
 class CdrError : public std::runtime_error {
@@ -242,4 +247,4 @@ Message decode(ByteView bytes) {
   return CdrReader(bytes).get<Message>();
 }
 
-}  // namespace cohort::recording
+}  // namespace cohort::messages

@@ -1,13 +1,11 @@
-#include "server/recording/standard_sensors.hpp"
+#include "idl/messages/device_messages.hpp"
 
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
-#include "server/recording/ros_schema.hpp"
-
-namespace cohort::recording {
+namespace cohort::messages {
 namespace {
 
 using Values = std::span<const double>;
@@ -22,7 +20,8 @@ std::array<double, 9> not_measured() { return {-1.0}; }
 // Makes the sensors of one model.
 class Sensors {
  public:
-  Sensors(const description::Model& model, const RobotKind& kind) : model_(model), kind_(kind) {}
+  Sensors(const description::Model& model, std::span<const Channel> observation)
+      : model_(model), observation_(observation) {}
 
   void operator()(const description::Lidar& lidar) {
     const std::size_t at = offset(lidar.name + "/0/ranges");
@@ -72,16 +71,14 @@ class Sensors {
         [=](ros::WrenchStamped& message, Values values) {
           message.wrench = {vector_at(values, force), vector_at(values, torque)};
         },
-        [sensor, joint = model_.joints[sensor.joint]](const physics::World& world, std::uint32_t body) {
-          return place_of(sensor, joint, world, body);
-        });
+        [sensor, joint = model_.joints[sensor.joint]](const LinkPoses& X_WL) { return place_of(sensor, joint, X_WL); });
   }
   void operator()(const description::ClimateSensor& sensor) {
     const std::size_t temperature = offset(sensor.name + "/0/temperature");
     const std::size_t humidity = offset(sensor.name + "/0/humidity");
-    const auto place = [sensor](const physics::World& world, std::uint32_t body) {
-      const Pose X_WL = world.link_pose(body, sensor.link);
-      return Pose{X_WL * sensor.p_LS, X_WL.orientation};
+    const auto place = [sensor](const LinkPoses& X_WL) {
+      const Pose X_WS = X_WL(sensor.link);
+      return Pose{X_WS * sensor.p_LS, X_WS.orientation};
     };
     add_placed<ros::Temperature>(
         sensor.name, "temperature",
@@ -104,30 +101,29 @@ class Sensors {
   template <class Other>
   void operator()(const Other&) {}
 
-  std::vector<StandardSensor> take() { return std::move(sensors_); }
+  std::vector<DeviceMessage> take() { return std::move(sensors_); }
 
  private:
   std::size_t offset(const std::string& channel) const {
     std::size_t at = 0;
-    for (const cohort::Channel& each : kind_.observation) {
+    for (const Channel& each : observation_) {
       if (each.name == channel) return at;
       at += each.size;
     }
-    throw std::logic_error("robots of the model " + kind_.model + " have no " + channel);
+    throw std::logic_error("robots of the model " + model_.name + " have no " + channel);
   }
 
   // Of a sensor with a place S on a link.
   template <RosMessage Message, class Posed, class Fill>
   void add(const Posed& sensor, const std::string& what, const Fill& fill_in) {
-    add_placed<Message>(sensor.name, what, fill_in, [sensor](const physics::World& world, std::uint32_t body) {
-      return world.link_pose(body, sensor.link) * sensor.X_LS;
-    });
+    add_placed<Message>(sensor.name, what, fill_in,
+                        [sensor](const LinkPoses& X_WL) { return X_WL(sensor.link) * sensor.X_LS; });
   }
   template <RosMessage Message, class Fill>
   void add_placed(const std::string& device, const std::string& what, const Fill& fill_in,
-                  decltype(StandardSensor::place) place = {}) {
+                  decltype(DeviceMessage::place) place = {}) {
     sensors_.push_back({what.empty() ? device : device + "/" + what, device, Message::type,
-                        [](RecordingFile& file) { return add_ros_schema<Message>(file); },
+                        messages::definition<Message>(),
                         [fill_in](CdrWriter& writer, const ros::Header& header, Values observation) {
                           Message message;
                           message.header = header;
@@ -180,29 +176,29 @@ class Sensors {
   }
 
   static Pose place_of(const description::ForceTorqueSensor& sensor, const description::Joint& joint,
-                       const physics::World& world, std::uint32_t body) {
+                       const LinkPoses& X_WL) {
     using Frame = description::ForceTorqueSensor::Frame;
-    const Pose X_WJ = world.link_pose(body, joint.child) * joint.X_LJ;
+    const Pose X_WJ = X_WL(joint.child) * joint.X_LJ;
     Pose X_WS = X_WJ;
     if (sensor.axes == Frame::sensor) X_WS.orientation = (X_WJ * sensor.X_JS).orientation;
-    if (sensor.axes == Frame::child) X_WS.orientation = world.link_pose(body, joint.child).orientation;
+    if (sensor.axes == Frame::child) X_WS.orientation = X_WL(joint.child).orientation;
     if (sensor.axes == Frame::parent)
-      X_WS.orientation = joint.parent == description::Joint::world ? Eigen::Quaterniond::Identity()
-                                                                   : world.link_pose(body, joint.parent).orientation;
+      X_WS.orientation =
+          joint.parent == description::Joint::world ? Eigen::Quaterniond::Identity() : X_WL(joint.parent).orientation;
     return X_WS;
   }
 
   const description::Model& model_;
-  const RobotKind& kind_;
-  std::vector<StandardSensor> sensors_;
+  std::span<const Channel> observation_;
+  std::vector<DeviceMessage> sensors_;
 };
 
 }  // namespace
 
-std::vector<StandardSensor> standard_sensors(const description::Model& model, const RobotKind& kind) {
-  Sensors sensors(model, kind);
+std::vector<DeviceMessage> device_messages(const description::Model& model, std::span<const Channel> observation) {
+  Sensors sensors(model, observation);
   for (const description::Device& device : model.devices) std::visit(sensors, device);
   return sensors.take();
 }
 
-}  // namespace cohort::recording
+}  // namespace cohort::messages

@@ -5,14 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "server/recording/cdr.hpp"
+#include "idl/messages/cdr.hpp"
 
 /// What viewers are told of a world, as messages of a ROS 2 package `cohort_msgs` would be. SI units, radians; frames
 /// as in description/model.hpp. A pose is x y z and a quaternion qx qy qz qw. Numbers are float32 where they are only
 /// to be looked at.
-namespace cohort::viewing {
-
-using recording::field;
+namespace cohort::messages {
 
 using Vector = std::array<float, 3>;
 using PoseNumbers = std::array<float, 7>;
@@ -230,4 +228,4 @@ struct SceneRobots {
   static constexpr auto fields = std::tuple(field("robots", &SceneRobots::robots));
 };
 
-}  // namespace cohort::viewing
+}  // namespace cohort::messages

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "server/recording/cdr.hpp"
+#include "idl/messages/cdr.hpp"
 
 /// What rosbag2 and Foxglove want to know of messages.
-namespace cohort::recording {
+namespace cohort::messages {
 
 /// A message's definition: `package/Name`, its lines `type name`, and the messages that are in it.
 struct RosDefinition {
@@ -62,19 +62,4 @@ RosDefinition definition() {
   return result;
 }
 
-/// The metadata that a channel has in a bag of ROS 2: reliable, and `is_latched` as of /tf_static.
-StringMap ros_channel_metadata(bool is_latched = false);
-
-/// Adds the schema of a message to a McapWriter or a RecordingFile.
-template <RosMessage Message, class Writer>
-SchemaId add_ros_schema(Writer& writer) {
-  return writer.add_schema(Message::type, "ros2msg", schema_text(definition<Message>()));
-}
-
-/// The same for a channel of such messages.
-template <class Writer>
-ChannelId add_ros_channel(Writer& writer, std::string topic, SchemaId schema, bool is_latched = false) {
-  return writer.add_channel(std::move(topic), schema, "cdr", ros_channel_metadata(is_latched));
-}
-
-}  // namespace cohort::recording
+}  // namespace cohort::messages

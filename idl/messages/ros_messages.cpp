@@ -1,9 +1,9 @@
-#include "server/recording/ros_messages.hpp"
-
 #include <algorithm>
 #include <cstring>
 
-namespace cohort::recording::ros {
+#include "idl/messages/ros_sensor_messages.hpp"
+
+namespace cohort::messages::ros {
 
 Time time(std::chrono::nanoseconds since_epoch) {
   constexpr std::chrono::seconds first(std::numeric_limits<std::int32_t>::min());
@@ -31,4 +31,4 @@ void PointCloud2::set_points(const std::vector<float>& coordinates) {
   is_dense = true;
 }
 
-}  // namespace cohort::recording::ros
+}  // namespace cohort::messages::ros

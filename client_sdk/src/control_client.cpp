@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <variant>
 
 #include "client_sdk/src/this_process.hpp"
 #include "client_sdk/text/printable.hpp"
@@ -32,17 +33,24 @@ std::optional<wire::Identity> identity_of(const ControlOptions& options) {
   return identity;
 }
 
-// Makes what a server says fit to be shown.
+// Make what a server says fit to be shown.
+void clean(wire::EntityName& name) { name.entity = printable(name.entity); }
+void clean(wire::EntityNames& names) {
+  for (std::string& entity : names.entities) entity = printable(entity);
+}
+void clean(wire::EntityState& state) { state.entity = printable(state.entity); }
+void clean(wire::SimulationStatus& status) {
+  status.experiment = printable(status.experiment);
+  for (std::string& robot : status.awaited) robot = printable(robot);
+  for (wire::ControllerStatus& controller : status.controllers) controller.label = printable(controller.label);
+}
 wire::Reply cleaned(wire::Reply reply) {
   reply.error_message = printable(reply.error_message, std::string::npos, Lines::kept);
-  reply.entity = printable(reply.entity);
-  for (std::string& entity : reply.entities) entity = printable(entity);
-  for (wire::EntityState& state : reply.states) state.entity = printable(state.entity);
-  for (wire::SimulationStatus& status : reply.status) {
-    status.experiment = printable(status.experiment);
-    for (std::string& robot : status.awaited) robot = printable(robot);
-    for (wire::ControllerStatus& controller : status.controllers) controller.label = printable(controller.label);
-  }
+  std::visit(
+      [](auto& returned) {
+        if constexpr (requires { clean(returned); }) clean(returned);
+      },
+      reply.returned);
   return reply;
 }
 
@@ -104,14 +112,13 @@ bool ControlClient::wait_for_server(std::chrono::milliseconds at_most, const std
   return true;
 }
 
-std::optional<wire::Reply> ControlClient::ask(wire::Request request, std::chrono::milliseconds at_most,
+std::optional<wire::Reply> ControlClient::ask(wire::Operation operation, std::chrono::milliseconds at_most,
                                               const std::atomic<bool>& stop) {
   State& state = *state_;
   const auto begin = Clock::now();
   const auto is_late = [&] { return Clock::now() - begin > at_most; };
-  request.client = state.id;
-  request.number = state.next_number++;
-  request.label = state.label;
+  const wire::Request request{
+      .client = state.id, .number = state.next_number++, .label = state.label, .operation = std::move(operation)};
   {
     const std::lock_guard lock(state.mutex);
     state.awaited = request.number;
@@ -133,68 +140,72 @@ std::optional<wire::Reply> ControlClient::ask(wire::Request request, std::chrono
   return std::nullopt;
 }
 
-wire::Reply ControlClient::expect(wire::Request request, std::chrono::milliseconds at_most,
+wire::Reply ControlClient::expect(wire::Operation operation, std::chrono::milliseconds at_most,
                                   const std::atomic<bool>& stop) {
-  const std::string what = wire::name_of(request.operation);
-  const auto reply = ask(std::move(request), at_most, stop);
+  const std::string what = wire::name_of(wire::code_of(operation));
+  auto reply = ask(std::move(operation), at_most, stop);
   if (!reply && stop) throw ControlError("interrupted");
   if (!reply && server_is_gone()) throw ControlError("the server has gone");
   if (!reply) throw ControlError("the server does not answer " + what);
   if (reply->result != wire::ResultCode::ok) throw ControlError(reply->error_message, reply->result);
-  return *reply;
+  return std::move(*reply);
+}
+
+wire::DataPart ControlClient::fetch(wire::Operation operation, std::chrono::milliseconds at_most,
+                                    const std::atomic<bool>& stop, std::string& text) {
+  wire::Reply reply = expect(std::move(operation), at_most, stop);
+  text = std::move(reply.error_message);
+  if (auto* const part = std::get_if<wire::DataPart>(&reply.returned)) return std::move(*part);
+  throw ControlError("the server sends no data");
 }
 
 ControlClient::SavedSnapshot ControlClient::save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
-  wire::Request request{.operation = wire::Operation::save_snapshot};
-  const wire::Reply saved = expect(request, at_most, stop);
-  const std::uint64_t size = saved.size;
+  std::string text;
+  const std::uint64_t size = fetch(wire::SaveSnapshot{}, at_most, stop, text).size;
   if (size > wire::largest_data) throw ControlError("the server says that its snapshot is larger than may be");
   std::vector<std::byte> bytes;
   bytes.reserve(size);
-  request.operation = wire::Operation::get_data;
   while (bytes.size() < size) {
-    request.offset = bytes.size();
-    const wire::Reply part = expect(request, at_most, stop);
+    std::string ignored;
+    const wire::DataPart part = fetch(wire::GetData{.offset = bytes.size()}, at_most, stop, ignored);
     if (part.offset != bytes.size() || part.size != size || part.data.empty() || part.data.size() > size - bytes.size())
       throw ControlError("the server sends another part of the snapshot than it was asked for");
     const auto data = std::as_bytes(std::span(part.data));
     bytes.insert(bytes.end(), data.begin(), data.end());
   }
-  return {std::move(bytes), saved.error_message};
+  return {std::move(bytes), std::move(text)};
 }
 
 wire::Reply ControlClient::load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,
                                 const std::atomic<bool>& stop) {
-  wire::Request request{.operation = wire::Operation::put_data, .size = snapshot.size()};
-  while (request.offset < snapshot.size()) {
-    const auto part =
-        snapshot.subspan(request.offset, std::min<std::size_t>(wire::largest_part, snapshot.size() - request.offset));
+  for (std::uint64_t offset = 0; offset < snapshot.size(); offset += wire::largest_part) {
+    const auto part = snapshot.subspan(offset, std::min<std::size_t>(wire::largest_part, snapshot.size() - offset));
     const auto* const begin = reinterpret_cast<const std::uint8_t*>(part.data());
-    request.data.assign(begin, begin + part.size());
-    expect(request, at_most, stop);
-    request.offset += part.size();
+    expect(wire::PutData{.size = snapshot.size(), .offset = offset, .data = {begin, begin + part.size()}}, at_most,
+           stop);
   }
-  return expect({.operation = wire::Operation::load_snapshot}, at_most, stop);
+  return expect(wire::LoadSnapshot{}, at_most, stop);
 }
 
 std::string ControlClient::start_recording(const std::string& recorded, std::chrono::milliseconds at_most,
                                            const std::atomic<bool>& stop) {
-  return expect({.operation = wire::Operation::start_recording, .resource_string = recorded}, at_most, stop)
-      .error_message;
+  return expect(wire::StartRecording{recorded}, at_most, stop).error_message;
 }
 
 ControlClient::RecordingPart ControlClient::get_recording(std::uint64_t offset, std::chrono::milliseconds at_most,
                                                           const std::atomic<bool>& stop) {
-  wire::Reply reply = expect({.operation = wire::Operation::get_recording, .offset = offset}, at_most, stop);
-  RecordingPart part{std::move(reply.data), reply.size != 0 && reply.size == offset + reply.data.size(),
-                     std::move(reply.error_message)};
-  if (reply.offset != offset || (reply.size != 0 && reply.size < offset + part.bytes.size()))
+  std::string problem;
+  wire::DataPart data = fetch(wire::GetRecording{offset}, at_most, stop, problem);
+  RecordingPart part{std::move(data.data), false, std::move(problem)};
+  const std::uint64_t end = offset + part.bytes.size();
+  if (data.offset != offset || (data.size != 0 && data.size < end))
     throw ControlError("the server sends another part of the recording than it was asked for");
+  part.is_last = data.size != 0 && data.size == end;
   return part;
 }
 
 void ControlClient::stop_recording(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
-  expect({.operation = wire::Operation::stop_recording}, at_most, stop);
+  expect(wire::StopRecording{}, at_most, stop);
 }
 
 }  // namespace cohort

@@ -43,8 +43,8 @@ class ControlClient {
   bool wait_for_server(std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
 
   /// Asks and waits for the reply, whatever its result is. Nothing if none comes within `at_most`, `stop` is set, or
-  /// the server goes; what was asked for may happen all the same. Client and number are filled in.
-  std::optional<wire::Reply> ask(wire::Request request, std::chrono::milliseconds at_most,
+  /// the server goes; what was asked for may happen all the same.
+  std::optional<wire::Reply> ask(wire::Operation operation, std::chrono::milliseconds at_most,
                                  const std::atomic<bool>& stop);
   /// A server was there, and is there no more.
   bool server_is_gone() const;
@@ -77,7 +77,10 @@ class ControlClient {
 
  private:
   struct State;
-  wire::Reply expect(wire::Request request, std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+  wire::Reply expect(wire::Operation operation, std::chrono::milliseconds at_most, const std::atomic<bool>& stop);
+  // The data that the operation returns, and the server's sentence about it.
+  wire::DataPart fetch(wire::Operation operation, std::chrono::milliseconds at_most, const std::atomic<bool>& stop,
+                       std::string& text);
   std::unique_ptr<State> state_;
 };
 

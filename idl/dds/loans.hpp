@@ -4,11 +4,10 @@
 #include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "idl/cohort.h"
 
-/// What codecs share: samples that borrow from messages, and messages of what samples hold.
+/// What fields.hpp is made of: samples that borrow from messages, and messages of what samples hold.
 namespace cohort::wire {
 
 // Cyclone's structs are not const-correct; writing only reads what they point to. `_release` stays false: it is ours.
@@ -28,12 +27,6 @@ template <class Sequence>
 auto to_span(const Sequence& sequence) {
   using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
   return std::span<const Element>(sequence._buffer, sequence._buffer == nullptr ? 0 : sequence._length);
-}
-
-inline std::vector<std::string> to_strings(const dds_sequence_string& texts) {
-  std::vector<std::string> result;
-  for (const char* text : to_span(texts)) result.push_back(to_string(text));
-  return result;
 }
 
 }  // namespace cohort::wire

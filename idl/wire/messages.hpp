@@ -30,17 +30,20 @@ struct Join {
   std::string host{};
   std::uint32_t process = 0;
   std::vector<std::string> robots{};
+  bool operator==(const Join&) const = default;
 };
 
 struct Parameter {
   std::string name{};
   std::vector<std::string> values{};
+  bool operator==(const Parameter&) const = default;
 };
 
 struct Team {
   std::string name{};
   std::string controller{};
   std::vector<Parameter> parameters{};
+  bool operator==(const Team&) const = default;
 };
 
 enum class Mode : std::uint32_t { lockstep = 0, free = 1 };
@@ -55,6 +58,7 @@ struct AdmittedRobot {
   std::uint32_t phase = 0;
   std::uint32_t delay = 0;
   Mode mode = Mode::lockstep;
+  bool operator==(const AdmittedRobot&) const = default;
 };
 
 enum class AdmitStatus : std::uint32_t { admitted = 0, refused = 1 };
@@ -71,6 +75,7 @@ struct Admit {
   std::int64_t step_ns = 0;
   std::vector<Team> teams{};
   std::vector<AdmittedRobot> robots{};
+  bool operator==(const Admit&) const = default;
 };
 
 struct RobotDescription {
@@ -78,6 +83,7 @@ struct RobotDescription {
   std::string model{};
   std::vector<Channel> observation{};
   std::vector<Channel> command{};
+  bool operator==(const RobotDescription&) const = default;
 };
 
 struct Observation {
@@ -135,6 +141,7 @@ struct Report {
   std::uint64_t tick = 0;
   std::string reason{};
   std::string text{};
+  bool operator==(const Report&) const = default;
 };
 
 /// The `reason` of a client's report that its controllers have failed before they answered anything.

@@ -29,7 +29,8 @@ wire::Report cleaned(wire::Report report) {
 
 wire::Request cleaned(wire::Request request) {
   request.label = printable(request.label, Inbox::longest_label);
-  for (std::string* text : {&request.filter, &request.entity, &request.uri, &request.link}) *text = printable(*text);
+  std::visit([](auto& operation) { wire::for_each_name(operation, [](std::string& name) { name = printable(name); }); },
+             request.operation);
   return request;
 }
 

@@ -19,7 +19,7 @@ void drain(ClientSession& session) {
 
 void ask(const ViewRequest& request) {
   try {
-    request_of(request);
+    operation_of(request);
   } catch (const std::invalid_argument&) {
   }
 }

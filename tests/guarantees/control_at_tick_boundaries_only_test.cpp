@@ -11,7 +11,6 @@
 namespace cohort::test {
 namespace {
 
-using wire::Operation;
 using wire::ResultCode;
 
 TEST(ControlAtTickBoundariesOnly, PausesAndChangesOfSpeedLeaveTheRunItsBits) {
@@ -55,10 +54,8 @@ TEST(ControlAtTickBoundariesOnly, TwoWhoStepAtOnceGetTheStepsOfBoth) {
   std::atomic<int> failures = 0;
   const auto step_ten_times = [&] {
     ControlClient client = client_of(run);
-    wire::Request request = of(Operation::step_simulation);
-    request.steps = 5;
     for (int i = 0; i < 10; ++i) {
-      const auto reply = client.ask(request, patience, never);
+      const auto reply = client.ask(wire::StepSimulation{5}, patience, never);
       if (!reply || reply->result != ResultCode::ok) ++failures;
     }
   };
@@ -180,10 +177,8 @@ class Stranger {
         requests_(participant_) {
     while (requests_.matched() == 0) std::this_thread::sleep_for(1ms);
   }
-  void send(wire::Request request, std::uint64_t number) {
-    request.client = id_;
-    request.number = number;
-    requests_.write(request);
+  void send(const wire::Operation& operation, std::uint64_t number) {
+    requests_.write({.client = id_, .number = number, .operation = operation});
   }
   std::vector<wire::Reply> received(std::size_t at_least) {
     const auto replies = [&] {
@@ -207,12 +202,10 @@ TEST(ControlAtTickBoundariesOnly, ARequestThatComesAgainIsAnsweredAgainAndDoneOn
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   Stranger stranger(run.domain(), 0x77);
-  wire::Request step = of(Operation::step_simulation);
-  step.steps = 4;
   // The first may be lost, as between any two who have just met.
   std::size_t received = 0;
   for (int i = 0; i < 5; ++i) {
-    stranger.send(step, 1);
+    stranger.send(wire::StepSimulation{4}, 1);
     received = stranger.received(received + 1).size();
   }
   ASSERT_GE(received, 5u);
@@ -230,48 +223,44 @@ TEST(ControlAtTickBoundariesOnly, WhatCannotBeIsRefusedWithASentence) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
   ControlClient client = client_of(run);
-  std::vector<wire::Request> bad;
-  bad.push_back(of(static_cast<Operation>(4711)));
-  bad.push_back(of(Operation::step_simulation));  // none
-  bad.push_back(of(Operation::step_simulation));
-  bad.back().steps = ~std::uint64_t{0};
-  bad.push_back(of(Operation::set_speed));
-  bad.back().speed = -1.0;
-  bad.push_back(of(Operation::set_speed));
-  bad.back().speed = std::numeric_limits<double>::quiet_NaN();
-  bad.push_back(of(Operation::set_simulation_state));
-  bad.back().state = static_cast<wire::SimulationState>(9);
-  bad.push_back(of(Operation::reset_simulation));
-  bad.back().scope = 2;
-  bad.push_back(of(Operation::get_entity_state));
-  bad.back().entity = "swarm/nobody";
-  bad.push_back(of(Operation::get_entities));
-  bad.back().filter = "((a*)*";
-  bad.push_back(of(Operation::get_entities));
-  bad.back().filter = "a{1,30000}";
-  bad.push_back(of(Operation::get_data));
-  bad.push_back(of(Operation::load_snapshot));
-  bad.push_back(of(Operation::put_data));
-  bad.back().size = ~std::uint64_t{0};
-  bad.push_back(of(Operation::set_entity_state));
-  bad.back().pose.position.x = std::numeric_limits<double>::infinity();
-  for (const wire::Request& request : bad) {
-    const auto reply = client.ask(request, patience, never);
-    const std::string what = wire::name_of(request.operation);
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  const std::string long_name(2000, 'x');
+  const std::vector<std::pair<wire::Operation, ResultCode>> bad = {
+      {wire::UnknownOperation{4711}, ResultCode::feature_unsupported},
+      {wire::StepSimulation{0}, ResultCode::malformed},
+      {wire::StepSimulation{~std::uint64_t{0}}, ResultCode::malformed},
+      {wire::SetSpeed{-1.0}, ResultCode::malformed},
+      {wire::SetSpeed{std::numeric_limits<double>::quiet_NaN()}, ResultCode::malformed},
+      {wire::SetSimulationState{static_cast<wire::SimulationState>(9)}, ResultCode::malformed},
+      {wire::ResetSimulation{.scope = 2}, ResultCode::feature_unsupported},
+      {wire::GetEntityState{"swarm/nobody"}, ResultCode::not_found},
+      {wire::GetEntityState{long_name}, ResultCode::malformed},
+      {wire::GetEntities{"((a*)*"}, ResultCode::malformed},
+      {wire::GetEntities{"a{1,30000}"}, ResultCode::malformed},
+      {wire::GetData{}, ResultCode::not_found},
+      {wire::LoadSnapshot{}, ResultCode::incorrect_state},
+      {wire::PutData{.size = ~std::uint64_t{0}}, ResultCode::malformed},
+      {wire::SetEntityState{.entity = "swarm/sbot_1"}, ResultCode::malformed},
+      {wire::SetEntityState{.entity = "swarm/sbot_1", .pose = wire::Pose{{infinite, 0, 0}, {}}}, ResultCode::malformed},
+      {wire::SetEntityState{.entity = "swarm/sbot_1", .twist = wire::Twist{{}, {0, 0, infinite}}},
+       ResultCode::malformed},
+      {wire::SpawnEntity{.entity = "new", .uri = "sbot", .pose = {{0, infinite, 0}, {}}}, ResultCode::malformed},
+      {wire::SpawnEntity{.entity = "new", .uri = "sbot", .team = long_name}, ResultCode::malformed},
+      {wire::SetLight{.entity = "lamp", .intensity = infinite}, ResultCode::malformed},
+      {wire::SetLight{.entity = "lamp", .color = wire::Vector3{infinite, 0, 0}}, ResultCode::malformed},
+      {wire::ApplyForce{.entity = "swarm/sbot_1", .torque = {0, infinite, 0}}, ResultCode::malformed},
+  };
+  for (const auto& [operation, result] : bad) {
+    const auto reply = client.ask(operation, patience, never);
+    const std::string what = wire::name_of(wire::code_of(operation));
     ASSERT_TRUE(reply) << what;
-    EXPECT_NE(reply->result, ResultCode::ok) << what;
+    EXPECT_EQ(reply->result, result) << what << ": " << reply->error_message;
     EXPECT_FALSE(reply->error_message.empty()) << what;
   }
   EXPECT_EQ(run.tick(), 0u);
-  const auto state = client.ask(
-      [] {
-        auto request = of(Operation::get_entity_state);
-        request.entity = "swarm/sbot_1";
-        return request;
-      }(),
-      patience, never);
-  ASSERT_TRUE(state && state->states.size() == 1);
-  EXPECT_EQ(state->states[0].pose.position.z, 0.0);
+  const auto state = client.ask(wire::GetEntityState{"swarm/sbot_1"}, patience, never);
+  ASSERT_TRUE(state && state->get<wire::EntityState>() != nullptr);
+  EXPECT_EQ(state->get<wire::EntityState>()->pose.position.z, 0.0);
   run.done({"shutdown"});
   run.finish();
 }
@@ -286,16 +275,14 @@ TEST(ControlAtTickBoundariesOnly, FloodsOfRequestsNeverStopARun) {
   const auto flood = [](const std::stop_token& enough, Stranger& stranger) {
     std::uint64_t number = 1;
     while (!enough.stop_requested()) {
-      stranger.send(of(Operation::get_status), ++number);
-      stranger.send(of(Operation::save_snapshot), ++number);
-      const auto any = static_cast<Operation>(++number % 128);
-      if (any != Operation::reset_simulation && any != Operation::set_simulation_state)  // which end this run
-        stranger.send(of(any), number);
-      stranger.send(of(Operation::set_entity_state), 3);
-      wire::Request large = of(Operation::put_data);
-      large.size = wire::largest_data;
-      large.data.assign(1000, 7);
-      stranger.send(large, ++number);
+      stranger.send(wire::GetStatus{}, ++number);
+      stranger.send(wire::SaveSnapshot{}, ++number);
+      const auto any = static_cast<wire::OperationCode>(++number % 128);
+      if (any != wire::OperationCode::reset_simulation &&
+          any != wire::OperationCode::set_simulation_state)  // which end this run
+        stranger.send(wire::UnknownOperation{static_cast<std::uint32_t>(any)}, number);
+      stranger.send(wire::SetEntityState{}, 3);
+      stranger.send(wire::PutData{.size = wire::largest_data, .data = std::vector<std::uint8_t>(1000, 7)}, ++number);
     }
   };
   std::jthread one(flood, std::ref(first)), two(flood, std::ref(second));
@@ -315,8 +302,7 @@ TEST(ControlAtTickBoundariesOnly, AFloodOfResetsLeavesTheSameRun) {
   {
     Stranger stranger(run.domain(), 0x1111);
     std::jthread flood([&](const std::stop_token& enough) {
-      for (std::uint64_t number = 2; !enough.stop_requested(); ++number)
-        stranger.send(of(Operation::reset_simulation), number);
+      for (std::uint64_t number = 2; !enough.stop_requested(); ++number) stranger.send(wire::ResetSimulation{}, number);
     });
     EXPECT_TRUE(run.comes_to([](const auto& status) { return status["run"] >= 5; }));
   }

@@ -8,15 +8,13 @@
 namespace cohort::test {
 namespace {
 
-using wire::Operation;
 using wire::ResultCode;
 
 wire::EntityState state_of(ControlClient& client, const std::string& name) {
-  wire::Request request = of(Operation::get_entity_state);
-  request.entity = name;
-  const auto reply = client.ask(request, patience, never);
-  EXPECT_TRUE(reply && reply->states.size() == 1) << name;
-  return reply && !reply->states.empty() ? reply->states[0] : wire::EntityState{};
+  const auto reply = client.ask(wire::GetEntityState{name}, patience, never);
+  const auto* const state = reply ? reply->get<wire::EntityState>() : nullptr;
+  EXPECT_NE(state, nullptr) << name;
+  return state != nullptr ? *state : wire::EntityState{};
 }
 
 constexpr const char* box = R"(<sdf version="1.9"><model name="box"><link name="body">
@@ -143,10 +141,9 @@ TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndC
   ControlledRun run(field, {"--paused"});
   ControlClient client = client_of(run);
   const std::string hash = run.status()["state_hash"];
-  wire::Request spawn = of(Operation::spawn_entity);
-  spawn.entity = "crate";
-  const auto result_of = [&](const wire::Request& request) {
-    const auto reply = client.ask(request, patience, never);
+  wire::SpawnEntity spawn{.entity = "crate"};
+  const auto result_of = [&](const wire::Operation& operation) {
+    const auto reply = client.ask(operation, patience, never);
     EXPECT_TRUE(reply && !reply->error_message.empty());
     return reply ? reply->result : ResultCode::ok;
   };
@@ -159,21 +156,14 @@ TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndC
   spawn.pose.orientation = {0, 0, 0, 1};
   spawn.entity = "swarm/sbot_0";
   EXPECT_EQ(result_of(spawn), ResultCode::name_not_unique);
-  for (const Operation operation : {Operation::delete_entity, Operation::apply_force, Operation::set_entity_state}) {
-    wire::Request request = of(operation);
-    request.entity = "swarm/nobody";
-    request.set_pose = true;
-    request.force = {1, 0, 0};
-    EXPECT_EQ(result_of(request), ResultCode::not_found) << wire::name_of(operation);
-  }
-  wire::Request push = of(Operation::set_entity_state);
-  push.entity = "ground";
-  push.set_twist = true;
-  push.twist.linear.x = 1;
-  EXPECT_EQ(result_of(push), ResultCode::operation_failed) << "it is static";
-  wire::Request light = of(Operation::set_light);
-  light.entity = "ground";
-  EXPECT_EQ(result_of(light), ResultCode::operation_failed);
+  const std::string nobody = "swarm/nobody";
+  EXPECT_EQ(result_of(wire::DeleteEntity{nobody}), ResultCode::not_found);
+  EXPECT_EQ(result_of(wire::ApplyForce{.entity = nobody, .force = {1, 0, 0}}), ResultCode::not_found);
+  EXPECT_EQ(result_of(wire::SetEntityState{.entity = nobody, .pose = wire::Pose{}}), ResultCode::not_found);
+  EXPECT_EQ(result_of(wire::SetEntityState{.entity = "ground", .twist = wire::Twist{{1, 0, 0}, {}}}),
+            ResultCode::operation_failed)
+      << "it is static";
+  EXPECT_EQ(result_of(wire::SetLight{.entity = "ground"}), ResultCode::operation_failed);
   EXPECT_EQ(run.status()["state_hash"], hash);
 
   // Another name where that is allowed, and the reply says which.
@@ -182,8 +172,10 @@ TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndC
   const auto renamed = client.ask(spawn, patience, never);
   ASSERT_TRUE(renamed);
   EXPECT_EQ(renamed->result, ResultCode::ok) << renamed->error_message;
-  EXPECT_NE(renamed->entity, "swarm/sbot_0");
-  EXPECT_EQ(state_of(client, renamed->entity).pose.position.x, 2.0);
+  const auto* const name = renamed->get<wire::EntityName>();
+  ASSERT_NE(name, nullptr);
+  EXPECT_NE(name->entity, "swarm/sbot_0");
+  EXPECT_EQ(state_of(client, name->entity).pose.position.x, 2.0);
   EXPECT_NE(run.status()["state_hash"], hash);
   run.done({"shutdown"});
   run.finish();

@@ -9,8 +9,6 @@
 namespace cohort::test {
 namespace {
 
-using wire::Operation;
-
 TEST(ControlAtTickBoundariesOnly, AResetGivesTheBitsOfTheFirstRunAndAnotherSeedThoseOfAnother) {
   const FieldOfRobots field(4, 5.0);
   const std::string expected = reference(field);
@@ -105,9 +103,7 @@ TEST(ControlAtTickBoundariesOnly, TellsWhatHasHappenedAndHowFarBackItCanGo) {
   const FieldOfRobots field(4, 5.0);
   ControlledRun run(field, {"--paused", "--keep-snapshots", "0.5"});
   ControlClient client = client_of(run);
-  wire::Request faster;
-  faster.operation = Operation::set_speed;
-  faster.speed = 2.0;
+  const wire::SetSpeed faster{2.0};
   run.done({"step", "120"});
   ASSERT_TRUE(client.ask(faster, patience, never));
   run.done({"step", "10"});

@@ -43,12 +43,11 @@ class Steps {
 // Somebody who asks for the same thing a thousand times a second, and waits for no answer.
 class Asker {
  public:
-  Asker(const ReservedDomain& domain, std::uint64_t id, wire::Operation operation)
+  Asker(const ReservedDomain& domain, std::uint64_t id, const wire::Operation& operation)
       : participant_(wire::Participant::client(domain.number())), requests_(participant_) {
     EXPECT_TRUE(eventually([&] { return requests_.matched() == 1; }));
     thread_ = std::jthread([this, id, operation](const std::stop_token& enough) {
-      wire::Request request = of(operation);
-      request.client = id;
+      wire::Request request{.client = id, .operation = operation};
       for (request.number = 1; !enough.stop_requested(); ++request.number) {
         requests_.write(request);
         std::this_thread::sleep_for(1ms);
@@ -85,24 +84,22 @@ TEST_P(FloodsOf, RequestsLeaveTheRunItsProgress) {
   run.done({"shutdown"});
   const auto controlled = events_of(run.finish(), "control");
   const bool is_done = std::ranges::any_of(controlled, [](const auto& event) {
-    return event["text"].template get<std::string>().starts_with(wire::name_of(GetParam()));
+    return event["text"].template get<std::string>().starts_with(wire::name_of(wire::code_of(GetParam())));
   });
-  EXPECT_TRUE(is_done || is_another_run || wire::is_query(GetParam()))
+  EXPECT_TRUE(is_done || is_another_run || wire::is_query(wire::code_of(GetParam())))
       << "what is asked for costs nothing if it is refused";
 }
 
 INSTANTIATE_TEST_SUITE_P(, FloodsOf,
-                         ::testing::Values(wire::Operation::save_snapshot, wire::Operation::reset_simulation,
-                                           wire::Operation::get_entities),
-                         [](const auto& flood) { return wire::name_of(flood.param); });
+                         ::testing::Values(wire::SaveSnapshot{}, wire::ResetSimulation{}, wire::GetEntities{}),
+                         [](const auto& flood) { return wire::name_of(wire::code_of(flood.param)); });
 
 TEST(FloodsNeverStopARun, OfDataThatIsHandedOverPushOutTheOldestWhichIsToldWhy) {
   const FieldOfRobots field(1, 1e4);
   ControlledRun run(field, {"--paused"}, false);
   constexpr std::uint64_t size = std::uint64_t{140} << 20;
   const auto hand_over = [](ControlClient& client) {
-    wire::Request part = of(wire::Operation::put_data);
-    part.size = size;
+    wire::PutData part{.size = size};
     part.data.resize(wire::largest_part);
     for (; part.offset < size; part.offset += part.data.size()) {
       const auto reply = client.ask(part, patience, never);
@@ -113,7 +110,7 @@ TEST(FloodsNeverStopARun, OfDataThatIsHandedOverPushOutTheOldestWhichIsToldWhy) 
   hand_over(first);
   hand_over(second);
   const auto load = [](ControlClient& client) {
-    const auto reply = client.ask(of(wire::Operation::load_snapshot), patience, never);
+    const auto reply = client.ask(wire::LoadSnapshot{}, patience, never);
     return reply ? reply->error_message : "";
   };
   EXPECT_NE(load(first).find("dropped: more than 256 MiB wait for all clients together"), std::string::npos);

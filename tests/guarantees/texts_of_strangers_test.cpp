@@ -35,7 +35,7 @@ TEST_P(TextsOfStrangers, AreShownHarmlesslyAndTheRunGoesOn) {
   wire::Writer<wire::Join> joins(participant);
   wire::Writer<wire::Request> requests(participant);
   ASSERT_TRUE(eventually([&] { return joins.matched() == 1 && requests.matched() == 1; }));
-  wire::Request request{.client = id_of_stranger, .number = 1, .operation = wire::Operation::set_speed};
+  wire::Request request{.client = id_of_stranger, .number = 1, .operation = wire::SetSpeed{}};
   request.label = GetParam();
   joins.write(join_with(GetParam(), "no robot " + GetParam()));
   requests.write(request);

@@ -53,12 +53,6 @@ inline const std::atomic<bool> never = false;
 
 inline ControlClient client_of(const ControlledRun& run) { return ControlClient({.domain = run.domain().number()}); }
 
-inline wire::Request of(wire::Operation operation) {
-  wire::Request request;
-  request.operation = operation;
-  return request;
-}
-
 /// The hash of the field's run with its controllers in the server's process.
 inline std::string reference(const FieldOfRobots& field, const std::vector<std::string>& more = {}) {
   std::vector<std::string> arguments = {"--controllers", "inprocess"};

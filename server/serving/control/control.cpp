@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "client_sdk/text/printable.hpp"
 #include "server/serving/control/control_actions.hpp"
@@ -12,7 +13,7 @@
 namespace cohort::session {
 namespace {
 
-using wire::Operation;
+using wire::OperationCode;
 using wire::Reply;
 using wire::Request;
 using wire::ResultCode;
@@ -36,30 +37,27 @@ SimulationState on_wire(PlaybackState state) {
   return SimulationState::paused;
 }
 
-bool may_ask(const wire::Identity& identity, Operation operation) {
+bool may_ask(const wire::Identity& identity, OperationCode operation) {
   return identity.may_control || (identity.door == wire::observers_door && wire::is_looking_on(operation));
 }
 
+bool is_query(const Request& request) { return wire::is_query(request.code()); }
+
 bool ends_the_run(const Request& request) {
-  switch (request.operation) {
-    case Operation::reset_simulation:
-    case Operation::load_snapshot:
-    case Operation::go_back: return true;
-    case Operation::set_simulation_state:
-      return request.state == SimulationState::stopped || request.state == SimulationState::quitting;
-    default: return false;
-  }
+  if (const auto* set = std::get_if<wire::SetSimulationState>(&request.operation))
+    return set->state == SimulationState::stopped || set->state == SimulationState::quitting;
+  const OperationCode code = request.code();
+  return code == OperationCode::reset_simulation || code == OperationCode::load_snapshot ||
+         code == OperationCode::go_back;
 }
 
 // It takes no time, and who wants the run to stop must be able to say so.
 bool takes_no_time(const Request& request) {
-  switch (request.operation) {
-    case Operation::set_simulation_state: return request.state != SimulationState::stopped;
-    case Operation::step_simulation:
-    case Operation::set_speed:
-    case Operation::stop_recording: return true;
-    default: return false;
-  }
+  if (const auto* set = std::get_if<wire::SetSimulationState>(&request.operation))
+    return set->state != SimulationState::stopped;
+  const OperationCode code = request.code();
+  return code == OperationCode::step_simulation || code == OperationCode::set_speed ||
+         code == OperationCode::stop_recording;
 }
 
 }  // namespace
@@ -86,7 +84,7 @@ void Control::end(RunResult::End how) {
   const std::string at = "the run has ended at tick " + std::to_string(run_->simulation.tick());
   answer_steps(playback_.set(PlaybackState::playing), ResultCode::operation_failed, at);
   for (const Request& request : std::exchange(ledger_.waiting(), {}))
-    if (!wire::is_query(request.operation)) answer(request, ResultCode::incorrect_state, at);  // these come again
+    if (!is_query(request)) answer(request, ResultCode::incorrect_state, at);  // these come again
   const bool goes_on = how == RunResult::End::reset || how == RunResult::End::restored;
   if (!goes_on)  // the server may be gone soon
     for (auto& [id, requester] : requesters_) requester.replies.wait_until_received(last_reply);
@@ -97,7 +95,7 @@ wire::Reply Control::reply_to(const Request& request) {
   Reply reply;
   reply.client = request.client;
   reply.number = request.number;
-  reply.operation = request.operation;
+  reply.operation = request.code();
   return reply;
 }
 
@@ -130,7 +128,7 @@ void Control::take(const ReceivedRequest& received) {
     return reject("foreign: a Request comes in another's name, or in nobody's");
   if (requester_of(received) == nullptr)
     return reject("flood: more clients control this run than may, and none of them is idle");
-  if (const auto& identity = received.participant->identity(); identity && !may_ask(*identity, request.operation)) {
+  if (const auto& identity = received.participant->identity(); identity && !may_ask(*identity, request.code())) {
     reject("forbidden: " + label_of(request.client) + " may not control the run");
     Reply reply = reply_to(request);
     reply.result = ResultCode::not_permitted;
@@ -152,9 +150,9 @@ void Control::receive(const Request& request) {
   };
   if (request.number == 0) return refuse(ResultCode::malformed, "requests are numbered from 1");
   if (const std::string wrong = what_is_wrong(request); !wrong.empty())
-    return refuse(wire::name_of(request.operation).empty() ? ResultCode::feature_unsupported : ResultCode::malformed,
+    return refuse(wire::name_of(request.code()).empty() ? ResultCode::feature_unsupported : ResultCode::malformed,
                   wrong);
-  if (wire::is_query(request.operation)) return may_be_done(request) ? answer_query(request) : put_off(request);
+  if (is_query(request)) return may_be_done(request) ? answer_query(request) : put_off(request);
   switch (ledger_.receive(request.client, request.number)) {
     case RequestLedger::Receipt::under_way: return;  // its reply comes
     case RequestLedger::Receipt::answered: return send(ledger_.remembered(request.client, request.number), false);
@@ -178,10 +176,10 @@ void Control::put_off(const Request& request) {
     bytes += size_of(waiting);
     if (account_of(waiting.client) == account_of(request.client)) ++of_account;
   }
-  const bool is_query = wire::is_query(request.operation);
+  const bool is_question = is_query(request);
   if (of_account >= most_waiting_of_account || bytes > most_waiting_bytes) {
     run_->monitor.add_event("rejected", "flood: more requests of " + label_of(request.client) + " than can be done");
-    if (is_query) return;
+    if (is_question) return;
     return answer(
         request, ResultCode::operation_failed,
         "too many requests: " + std::to_string(of_account) + " of " + account_of(request.client) + " wait already");
@@ -230,7 +228,7 @@ void Control::answer(const Request& request, ResultCode result, const std::strin
 
 void Control::answer_steps(const std::vector<Playback::Steps>& steps, ResultCode result, const std::string& text) {
   for (const Playback::Steps& each : steps) {
-    const Request request{.client = each.client, .number = each.number, .operation = Operation::step_simulation};
+    const Request request{.client = each.client, .number = each.number, .operation = wire::StepSimulation{}};
     const std::uint64_t tick = run_->simulation.tick();
     answer(request, result,
            each.until > tick ? text + ", " + ticks_text(each.until - tick) + " before the steps' end" : text);
@@ -243,7 +241,7 @@ std::string Control::label_of(std::uint64_t client) const {
 }
 
 void Control::tell(const Request& request, const std::string& text, std::vector<std::byte> action) {
-  run_->monitor.controlled({run_->simulation.tick(), wire::name_of(request.operation),
+  run_->monitor.controlled({run_->simulation.tick(), wire::name_of(request.code()),
                             text + ", says " + label_of(request.client), std::move(action)});
 }
 
@@ -275,7 +273,7 @@ bool Control::is_unlimited() const { return playback_.holds() || run_->monitor.i
 
 bool Control::may_be_done(const Request& request) {
   if (takes_no_time(request) || is_unlimited()) return true;
-  if (request.operation == Operation::save_snapshot && saved_) return true;
+  if (request.code() == OperationCode::save_snapshot && saved_) return true;
   const std::string& account = account_of(request.client);
   return ends_the_run(request) ? budget_.allows_restart(account, now()) : budget_.allows(account, now());
 }
@@ -296,12 +294,12 @@ std::vector<Request> Control::take_next(Moment moment) {
   std::vector<Request> taken;
   for (std::size_t i = 0; i < waiting.size();) {
     const Request& request = waiting[i];
-    const bool is_query = wire::is_query(request.operation);
-    const bool is_now = moment == Moment::boundary || is_query || ends_the_run(request);
-    const bool waits_for_another = moment == Moment::boundary && !is_query && held_up.contains(request.client);
+    const bool is_question = is_query(request);
+    const bool is_now = moment == Moment::boundary || is_question || ends_the_run(request);
+    const bool waits_for_another = moment == Moment::boundary && !is_question && held_up.contains(request.client);
     if (!taken.empty() && !is_action(request)) break;
     if (!is_now || waits_for_another || !may_be_done(request)) {
-      if (is_now && !is_query) held_up.insert(request.client);
+      if (is_now && !is_question) held_up.insert(request.client);
       ++i;
       continue;
     }
@@ -321,7 +319,7 @@ bool Control::perform(Moment moment) {
     const RequestBudget::Time began = now();
     if (is_action(next.front()))
       do_actions(next);
-    else if (wire::is_query(next.front().operation))
+    else if (is_query(next.front()))
       answer_query(next.front());
     else
       do_one(next.front());

@@ -87,20 +87,21 @@ class Control {
   // Operations: done or refused with a reply, or begun.
   void answer_query(const wire::Request& request);
   void do_one(const wire::Request& request);
-  void set_state(const wire::Request& request);
-  void step(const wire::Request& request);
-  void set_speed(const wire::Request& request);
+  void carry_out(const wire::Request& request, const wire::SetSimulationState& operation);
+  void carry_out(const wire::Request& request, const wire::StepSimulation& operation);
+  void carry_out(const wire::Request& request, const wire::ResetSimulation& operation);
+  void carry_out(const wire::Request& request, const wire::SetSpeed& operation);
+  void carry_out(const wire::Request& request, const wire::SaveSnapshot&);
+  void carry_out(const wire::Request& request, const wire::LoadSnapshot&);
+  void carry_out(const wire::Request& request, const wire::GoBack& operation);
+  void carry_out(const wire::Request& request, const wire::StartRecording& operation);
   void quit(const wire::Request& request);
   // What begins a run anew, and what is kept of one.
   void begin_anew(const wire::Request& request, NextRun next, const std::string& text);
   void keep_snapshot();
   std::shared_ptr<const SessionSnapshot> last_whole_snapshot() const;
   NextRun run_from(std::shared_ptr<const SessionSnapshot> snapshot) const;
-  void save(const wire::Request& request);
-  void load(const wire::Request& request);
-  void go_back(const wire::Request& request);
   void go_on_from(const wire::Request& request, std::shared_ptr<const SessionSnapshot> snapshot);
-  void start_recording(const wire::Request& request);
   void do_actions(std::span<const wire::Request> requests);
 
   LiveRecordings& recordings_;

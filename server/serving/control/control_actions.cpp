@@ -2,11 +2,12 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
+#include <variant>
 
 namespace cohort::session {
 namespace {
 
-using wire::Operation;
 using wire::Request;
 using wire::ResultCode;
 
@@ -24,33 +25,55 @@ bool has_orientation(const wire::Pose& pose) {
   return std::abs(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w - 1.0) < tolerance;
 }
 
-std::vector<Action> state_actions(const Request& request) {
+void add_actions(const wire::SetEntityState& operation, std::vector<Action>& actions) {
+  const std::string& entity = operation.entity;
+  if (operation.pose) actions.emplace_back(SetPose{entity, from_wire(*operation.pose)});
+  if (operation.twist)  // a new pose is one at rest
+    actions.emplace_back(SetVelocity{entity, from_wire(operation.twist->linear), from_wire(operation.twist->angular)});
+}
+void add_actions(const wire::SpawnEntity& operation, std::vector<Action>& actions) {
+  actions.emplace_back(SpawnObject{operation.entity,
+                                   operation.resource_string.empty() ? operation.uri : operation.resource_string,
+                                   from_wire(operation.pose), operation.allow_renaming, operation.team});
+}
+void add_actions(const wire::DeleteEntity& operation, std::vector<Action>& actions) {
+  actions.emplace_back(RemoveObject{operation.entity});
+}
+void add_actions(const wire::SetLight& operation, std::vector<Action>& actions) {
+  SetLight light{.name = operation.entity, .on = operation.on, .intensity = operation.intensity};
+  if (operation.color) light.color = from_wire(*operation.color);
+  actions.emplace_back(std::move(light));
+}
+void add_actions(const wire::ApplyForce& operation, std::vector<Action>& actions) {
+  actions.emplace_back(ApplyForce{operation.entity, operation.link, from_wire(operation.force),
+                                  from_wire(operation.torque), std::chrono::nanoseconds(operation.duration_ns)});
+}
+
+template <class Operation>
+constexpr bool is_kind_of_action = requires(const Operation& operation, std::vector<Action>& actions) {
+  add_actions(operation, actions);
+};
+
+std::vector<Action> actions_of(const Request& request) {
   std::vector<Action> actions;
-  if (request.set_pose) actions.emplace_back(SetPose{request.entity, from_wire(request.pose)});
-  if (request.set_twist)  // a new pose is one at rest
-    actions.emplace_back(
-        SetVelocity{request.entity, from_wire(request.twist.linear), from_wire(request.twist.angular)});
+  std::visit(
+      [&]<class One>(const One& operation) {
+        if constexpr (is_kind_of_action<One>) add_actions(operation, actions);
+      },
+      request.operation);
   return actions;
 }
 
-std::vector<Action> actions_of(const Request& request) {
-  switch (request.operation) {
-    case Operation::spawn_entity:
-      return {SpawnObject{request.entity, request.resource_string.empty() ? request.uri : request.resource_string,
-                          from_wire(request.pose), request.allow_renaming, request.filter}};
-    case Operation::delete_entity: return {RemoveObject{request.entity}};
-    case Operation::set_entity_state: return state_actions(request);
-    case Operation::set_light: {
-      SetLight light{.name = request.entity, .on = request.on};
-      if (request.set_intensity) light.intensity = request.intensity;
-      if (request.set_color) light.color = from_wire(request.color);
-      return {light};
-    }
-    case Operation::apply_force:
-      return {ApplyForce{request.entity, request.link, from_wire(request.force), from_wire(request.torque),
-                         std::chrono::nanoseconds(request.duration_ns)}};
-    default: return {};
-  }
+const std::string& entity_of(const Request& request) {
+  static const std::string none;
+  return std::visit(
+      [](const auto& operation) -> const std::string& {
+        if constexpr (requires { operation.entity; })
+          return operation.entity;
+        else
+          return none;
+      },
+      request.operation);
 }
 
 // What can be seen without the world, with its result.
@@ -59,36 +82,30 @@ struct Refusal {
   std::string text;
 };
 std::optional<Refusal> refusal_of(const Request& request) {
-  const bool spawns = request.operation == Operation::spawn_entity;
-  if (spawns && request.uri.empty() && request.resource_string.empty())
-    return Refusal{ResultCode::no_resource, "neither a model of the world nor the text of one is given"};
-  if (request.operation == Operation::set_entity_state && !request.set_pose && !request.set_twist)
-    return Refusal{ResultCode::malformed, "neither a pose nor a twist is to be set"};
-  if ((spawns || request.set_pose) && !has_orientation(request.pose))
-    return Refusal{spawns ? ResultCode::invalid_spawn_pose : ResultCode::invalid_pose,
-                   "the orientation is no unit quaternion"};
+  constexpr const char* no_orientation = "the orientation is no unit quaternion";
+  if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation)) {
+    if (spawn->uri.empty() && spawn->resource_string.empty())
+      return Refusal{ResultCode::no_resource, "neither a model of the world nor the text of one is given"};
+    if (!has_orientation(spawn->pose)) return Refusal{ResultCode::invalid_spawn_pose, no_orientation};
+  }
+  if (const auto* state = std::get_if<wire::SetEntityState>(&request.operation))
+    if (state->pose && !has_orientation(*state->pose)) return Refusal{ResultCode::invalid_pose, no_orientation};
   return std::nullopt;
 }
 
 // Why it could not be done, in simulation_interfaces's numbers.
 ResultCode code_of_failure(const Request& request, const Objects& objects) {
-  const bool is_known = objects.find(request.entity).has_value();
-  if (request.operation == Operation::spawn_entity)
-    return is_known && !request.allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
-  return is_known || request.operation == Operation::set_light ? ResultCode::operation_failed : ResultCode::not_found;
+  const bool is_known = objects.find(entity_of(request)).has_value();
+  if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation))
+    return is_known && !spawn->allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
+  return is_known || std::holds_alternative<wire::SetLight>(request.operation) ? ResultCode::operation_failed
+                                                                               : ResultCode::not_found;
 }
 
 }  // namespace
 
 bool is_action(const Request& request) {
-  switch (request.operation) {
-    case Operation::spawn_entity:
-    case Operation::delete_entity:
-    case Operation::set_entity_state:
-    case Operation::set_light:
-    case Operation::apply_force: return true;
-    default: return false;
-  }
+  return std::visit([]<class One>(const One&) { return is_kind_of_action<One>; }, request.operation);
 }
 
 std::vector<ActionOutcome> act(Simulation& simulation, std::span<const Request> requests) {
@@ -123,8 +140,8 @@ std::vector<ActionOutcome> act(Simulation& simulation, std::span<const Request> 
       else
         outcome.result = code_of_failure(request, objects);
     }
-    outcome.entity = request.entity;
-    if (request.operation == Operation::spawn_entity && outcome.result == ResultCode::ok)
+    outcome.entity = entity_of(request);
+    if (std::holds_alternative<wire::SpawnEntity>(request.operation) && outcome.result == ResultCode::ok)
       outcome.entity = objects.name(spawned++);
   }
   return outcomes;

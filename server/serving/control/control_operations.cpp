@@ -1,5 +1,6 @@
 #include <exception>
 #include <utility>
+#include <variant>
 
 #include "server/serving/control/control.hpp"
 #include "server/serving/control/control_actions.hpp"
@@ -8,7 +9,6 @@
 namespace cohort::session {
 namespace {
 
-using wire::Operation;
 using wire::Reply;
 using wire::Request;
 using wire::ResultCode;
@@ -31,30 +31,20 @@ void Control::answer_query(const Request& request) {
 
 void Control::do_one(const Request& request) {
   try {
-    switch (request.operation) {
-      case Operation::set_simulation_state: return set_state(request);
-      case Operation::step_simulation: return step(request);
-      case Operation::reset_simulation: {
-        if (request.scope != scope_default && request.scope != scope_all)
-          return answer(request, ResultCode::feature_unsupported, "only all can be reset: scope 0 or 255");
-        const std::uint64_t seed = request.set_seed ? request.seed : run_->experiment.seed;
-        NextRun next{.seed = seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()};
-        return begin_anew(request, std::move(next), "from the beginning with seed " + std::to_string(seed));
-      }
-      case Operation::set_speed: return set_speed(request);
-      case Operation::save_snapshot: return save(request);
-      case Operation::load_snapshot: return load(request);
-      case Operation::go_back: return go_back(request);
-      case Operation::start_recording: return start_recording(request);
-      default:
-        return answer(request, ResultCode::feature_unsupported, wire::name_of(request.operation) + " is not there yet");
-    }
+    std::visit(
+        [&](const auto& operation) {
+          if constexpr (requires { carry_out(request, operation); })
+            carry_out(request, operation);
+          else
+            answer(request, ResultCode::feature_unsupported, wire::name_of(request.code()) + " is not there yet");
+        },
+        request.operation);
   } catch (const std::exception& error) {
     answer(request, ResultCode::operation_failed, error.what());
   }
 }
 
-void Control::set_state(const Request& request) {
+void Control::carry_out(const Request& request, const wire::SetSimulationState& operation) {
   const auto be = [&](PlaybackState state, const std::string& word) {
     const bool already = playback_.state() == state;
     if (already && !playback_.has_steps())
@@ -66,7 +56,7 @@ void Control::set_state(const Request& request) {
     tell(request, at);
     answer(request, ResultCode::ok, at);
   };
-  switch (request.state) {
+  switch (operation.state) {
     case SimulationState::playing: return be(PlaybackState::playing, "playing");
     case SimulationState::paused: return be(PlaybackState::paused, "paused");
     case SimulationState::quitting: return quit(request);
@@ -78,20 +68,28 @@ void Control::set_state(const Request& request) {
              "stopped, and from the beginning");
 }
 
-void Control::step(const Request& request) {
+void Control::carry_out(const Request& request, const wire::ResetSimulation& operation) {
+  if (operation.scope != scope_default && operation.scope != scope_all)
+    return answer(request, ResultCode::feature_unsupported, "only all can be reset: scope 0 or 255");
+  const std::uint64_t seed = operation.seed.value_or(run_->experiment.seed);
+  begin_anew(request, {.seed = seed, .state = playback_.state_without_steps(), .speed = run_->monitor.speed()},
+             "from the beginning with seed " + std::to_string(seed));
+}
+
+void Control::carry_out(const Request& request, const wire::StepSimulation& operation) {
   if (playback_.state_without_steps() == PlaybackState::playing)
     return answer(request, ResultCode::operation_failed, "the run is not paused, so it makes steps by itself");
   if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
   const bool was_held = playback_.holds();
-  playback_.step(run_->simulation.tick(), request.steps, request.client, request.number);
+  playback_.step(run_->simulation.tick(), operation.steps, request.client, request.number);
   if (was_held) run_->monitor.resume();
-  tell(request, ticks_text(request.steps));
+  tell(request, ticks_text(operation.steps));
 }
 
-void Control::set_speed(const Request& request) {
-  run_->monitor.set_speed(request.speed);
-  tell(request, speed_text(request.speed));
-  answer(request, ResultCode::ok, speed_text(request.speed));
+void Control::carry_out(const Request& request, const wire::SetSpeed& operation) {
+  run_->monitor.set_speed(operation.speed);
+  tell(request, speed_text(operation.speed));
+  answer(request, ResultCode::ok, speed_text(operation.speed));
 }
 
 void Control::quit(const Request& request) {
@@ -111,7 +109,7 @@ void Control::begin_anew(const Request& request, NextRun next, const std::string
   ending_ = Ending{how, std::move(next)};
 }
 
-void Control::save(const Request& request) {
+void Control::carry_out(const Request& request, const wire::SaveSnapshot&) {
   if (!saved_) {
     const SessionSnapshot snapshot = run_->take_snapshot();
     saved_ = Saved{"saved at tick " + std::to_string(snapshot.tick) + left_out_text(snapshot, run_->experiment),
@@ -123,21 +121,21 @@ void Control::save(const Request& request) {
                       std::to_string(wire::largest_data) + " can be sent at the most");
   tell(request, saved_->text);
   Reply reply = reply_to(request);
-  reply.size = saved_->bytes->size();
+  reply.returned = wire::DataPart{saved_->bytes->size(), 0, {}};
   reply.error_message = saved_->text;
   ledger_.offer(request.client, saved_->bytes, Clock::now().time_since_epoch());
   send(std::move(reply), true);
 }
 
-void Control::start_recording(const Request& request) {
+void Control::carry_out(const Request& request, const wire::StartRecording& operation) {
   if (run_->monitor.is_over()) return answer(request, ResultCode::incorrect_state, "the run is over");
   const std::string text = "recorded from tick " + std::to_string(run_->simulation.tick()) + " on";
-  recordings_.start(request.client, request.resource_string);
+  recordings_.start(request.client, operation.recorded);
   tell(request, text);
   answer(request, ResultCode::ok, text);
 }
 
-void Control::load(const Request& request) {
+void Control::carry_out(const Request& request, const wire::LoadSnapshot&) {
   const std::string why = ledger_.why_dropped(request.client, KeptForClient::Kind::upload);
   const auto bytes = ledger_.take_all(request.client);
   if (!bytes)
@@ -148,10 +146,10 @@ void Control::load(const Request& request) {
   go_on_from(request, std::move(snapshot));
 }
 
-void Control::go_back(const Request& request) {
+void Control::carry_out(const Request& request, const wire::GoBack& operation) {
   if (kept_.size() == 0)
     return answer(request, ResultCode::not_found, "this server keeps no snapshots; start it with --keep-snapshots");
-  const std::int64_t tick = request.duration_ns / run_->experiment.world.step.count();
+  const std::int64_t tick = operation.duration_ns / run_->experiment.world.step.count();
   auto snapshot = tick < 0 ? nullptr : kept_.last_until(static_cast<std::uint64_t>(tick));
   if (snapshot == nullptr)
     return answer(request, ResultCode::not_found,
@@ -202,7 +200,7 @@ void Control::do_actions(std::span<const Request> requests) {
     Reply reply = reply_to(*outcome.request);
     reply.result = outcome.result;
     reply.error_message = std::move(outcome.text);
-    reply.entity = std::move(outcome.entity);
+    reply.returned = wire::EntityName{std::move(outcome.entity)};
     send(std::move(reply), true);
   }
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
+#include <variant>
 
 #include "idl/messages/run_history.hpp"
 #include "server/serving/control/entity_filter.hpp"
@@ -9,7 +11,6 @@
 namespace cohort::session {
 namespace {
 
-using wire::Operation;
 using wire::Reply;
 using wire::Request;
 using wire::ResultCode;
@@ -31,9 +32,9 @@ enum Feature : std::uint32_t {
   step_simulation_multiple = 32,
 };
 
-void put(std::span<const std::byte> bytes, Reply& reply) {
+std::vector<std::uint8_t> on_wire(std::span<const std::byte> bytes) {
   const auto* const begin = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  reply.data.assign(begin, begin + bytes.size());
+  return {begin, begin + bytes.size()};
 }
 
 wire::Vector3 on_wire(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -53,46 +54,43 @@ void ControlQueries::note_progress(Clock::time_point now) {
 
 void ControlQueries::answer(Reply& reply, const Request& request) {
   try {
-    switch (request.operation) {
-      case Operation::get_simulator_features: fill_features(reply); break;
-      case Operation::get_entities: fill_entities(reply, request); break;
-      case Operation::get_entity_state: fill_entity_state(reply, request); break;
-      case Operation::get_status: fill_status(reply); break;
-      case Operation::get_data: fill_data(reply, request); break;
-      case Operation::put_data: take_data(reply, request); break;
-      case Operation::get_recording: fill_recording(reply, request); break;
-      case Operation::stop_recording: stop_recording(reply, request); break;
-      case Operation::get_history: fill_history(reply, request); break;
-      default: break;  // every reply has the state
-    }
+    std::visit(
+        [&](const auto& operation) {
+          if constexpr (requires { fill(reply, request, operation); }) fill(reply, request, operation);
+        },
+        request.operation);  // every reply has the state
   } catch (const std::exception& error) {
     reply.result = ResultCode::malformed;
     reply.error_message = error.what();
   }
 }
 
-void ControlQueries::fill_features(Reply& reply) const {
-  reply.features = {spawning,
-                    deleting,
-                    spawning_resource_string,
-                    entity_state_getting,
-                    entity_state_setting,
-                    simulation_state_getting,
-                    simulation_state_setting,
-                    simulation_state_pause,
-                    step_simulation_single,
-                    step_simulation_multiple};
-  reply.spawn_formats = {"sdf", "urdf", "yaml"};
-  if (run_->monitor.options().prepare) reply.features.push_back(simulation_reset);
-  std::ranges::sort(reply.features);
+void ControlQueries::fill(Reply& reply, const Request&, const wire::GetSimulatorFeatures&) const {
+  wire::SimulatorFeatures has;
+  has.features = {spawning,
+                  deleting,
+                  spawning_resource_string,
+                  entity_state_getting,
+                  entity_state_setting,
+                  simulation_state_getting,
+                  simulation_state_setting,
+                  simulation_state_pause,
+                  step_simulation_single,
+                  step_simulation_multiple};
+  has.spawn_formats = {"sdf", "urdf", "yaml"};
+  if (run_->monitor.options().prepare) has.features.push_back(simulation_reset);
+  std::ranges::sort(has.features);
+  reply.returned = std::move(has);
 }
 
-void ControlQueries::fill_entities(Reply& reply, const Request& request) const {
-  const EntityFilter filter(request.filter);
+void ControlQueries::fill(Reply& reply, const Request&, const wire::GetEntities& operation) const {
+  const EntityFilter filter(operation.filter);
   const Objects& objects = run_->simulation.objects();
+  wire::EntityNames found;
   for (std::uint32_t object = 0; object < objects.size(); ++object)
     if (objects.is_present(object) && filter.matches(objects.name(object)))
-      reply.entities.push_back(objects.name(object));
+      found.entities.push_back(objects.name(object));
+  reply.returned = std::move(found);
 }
 
 std::optional<std::uint32_t> ControlQueries::find_entity(Reply& reply, const std::string& name) const {
@@ -104,20 +102,19 @@ std::optional<std::uint32_t> ControlQueries::find_entity(Reply& reply, const std
   return std::nullopt;
 }
 
-void ControlQueries::fill_entity_state(Reply& reply, const Request& request) const {
-  const auto object = find_entity(reply, request.entity);
+void ControlQueries::fill(Reply& reply, const Request&, const wire::GetEntityState& operation) const {
+  const auto object = find_entity(reply, operation.entity);
   if (!object) return;
   const Pose X_WL = run_->simulation.object_pose(*object);
   const auto& q = X_WL.orientation;
   const physics::Twist twist = run_->simulation.world().link_twist(*object, 0);
-  reply.entity = request.entity;
-  reply.states.push_back({request.entity,
-                          {on_wire(X_WL.position), {q.x(), q.y(), q.z(), q.w()}},
-                          {on_wire(twist.linear_W), on_wire(twist.angular_W)}});
+  reply.returned = wire::EntityState{operation.entity,
+                                     {on_wire(X_WL.position), {q.x(), q.y(), q.z(), q.w()}},
+                                     {on_wire(twist.linear_W), on_wire(twist.angular_W)}};
 }
 
-void ControlQueries::fill_status(Reply& reply) {
-  wire::SimulationStatus& status = reply.status.emplace_back();
+void ControlQueries::fill(Reply& reply, const Request&, const wire::GetStatus&) {
+  auto& status = reply.returned.emplace<wire::SimulationStatus>();
   status.experiment = run_->experiment.name;
   status.seed = run_->experiment.seed;
   status.step_ns = run_->experiment.world.step.count();
@@ -133,23 +130,21 @@ void ControlQueries::fill_status(Reply& reply) {
   run_->fill_status(status);
 }
 
-void ControlQueries::fill_data(Reply& reply, const Request& request) const {
-  const auto part = ledger_.part(request.client, request.offset);
+void ControlQueries::fill(Reply& reply, const Request& request, const wire::GetData& operation) const {
+  const auto part = ledger_.part(request.client, operation.offset);
   if (!part) {
     reply.result = ResultCode::not_found;
     const std::string why = ledger_.why_dropped(request.client, KeptForClient::Kind::saved_snapshot);
     reply.error_message = why.empty() ? "there is no data for this client: it has saved nothing" : why;
     return;
   }
-  reply.size = part->size;
-  reply.offset = request.offset;
-  put(part->bytes, reply);
+  reply.returned = wire::DataPart{part->size, operation.offset, on_wire(part->bytes)};
 }
 
-void ControlQueries::fill_recording(Reply& reply, const Request& request) {
+void ControlQueries::fill(Reply& reply, const Request& request, const wire::GetRecording& operation) {
   std::optional<LiveRecordings::Part> part;
   try {
-    part = recordings_.fetch(request.client, request.offset);
+    part = recordings_.fetch(request.client, operation.offset);
   } catch (const std::runtime_error& dropped) {
     reply.result = ResultCode::not_found;
     reply.error_message = dropped.what();
@@ -157,21 +152,19 @@ void ControlQueries::fill_recording(Reply& reply, const Request& request) {
   }
   if (!part) {
     reply.result = ResultCode::not_found;
-    reply.error_message = "this client records nothing, or has fetched beyond byte " + std::to_string(request.offset);
+    reply.error_message = "this client records nothing, or has fetched beyond byte " + std::to_string(operation.offset);
     return;
   }
-  reply.size = part->bytes.size.value_or(0);
-  reply.offset = request.offset;
-  put(part->bytes.bytes, reply);
+  reply.returned = wire::DataPart{part->bytes.size.value_or(0), operation.offset, on_wire(part->bytes.bytes)};
   reply.error_message = part->problem;
 }
 
-void ControlQueries::stop_recording(Reply& reply, const Request& request) {
+void ControlQueries::fill(Reply& reply, const Request& request, const wire::StopRecording&) {
   recordings_.stop(request.client);
   reply.error_message = "recorded up to tick " + std::to_string(run_->simulation.tick());
 }
 
-void ControlQueries::fill_history(Reply& reply, const Request& request) const {
+void ControlQueries::fill(Reply& reply, const Request&, const wire::GetHistory& operation) const {
   constexpr std::size_t most_events = 250;
   messages::RunHistory history;
   const RunMonitor& monitor = run_->monitor;
@@ -181,21 +174,18 @@ void ControlQueries::fill_history(Reply& reply, const Request& request) const {
     history.first_kept_tick = kept_.first_tick();
     history.last_kept_tick = kept_.last_tick();
   }
-  std::uint64_t revision = request.offset;
+  std::uint64_t revision = operation.revision;
   const std::vector<RunEvent> events = monitor.events().changed_since(revision, most_events);
   history.events.reserve(events.size());
   for (const RunEvent& event : events)
     history.events.push_back({event.tick, event.last_tick, event.count, event.kind, event.text});
-  put(messages::encode(history), reply);
-  reply.offset = revision;
-  reply.size = monitor.events().revision();
+  reply.returned = wire::HistoryPart{revision, monitor.events().revision(), on_wire(messages::encode(history))};
 }
 
-void ControlQueries::take_data(Reply& reply, const Request& request) {
-  reply.size = request.size;
-  reply.offset = request.offset;
+void ControlQueries::fill(Reply& reply, const Request& request, const wire::PutData& part) {
+  reply.returned = wire::DataPart{part.size, part.offset, {}};
   const auto wrong =
-      ledger_.take_part(request.client, request.size, request.offset, request.data, Clock::now().time_since_epoch());
+      ledger_.take_part(request.client, part.size, part.offset, part.data, Clock::now().time_since_epoch());
   if (!wrong) return;
   reply.result = ResultCode::malformed;
   reply.error_message = *wrong;

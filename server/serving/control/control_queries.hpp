@@ -30,15 +30,16 @@ class ControlQueries {
   void answer(wire::Reply& reply, const wire::Request& request);
 
  private:
-  void fill_features(wire::Reply& reply) const;
-  void fill_entities(wire::Reply& reply, const wire::Request& request) const;
-  void fill_entity_state(wire::Reply& reply, const wire::Request& request) const;
-  void fill_status(wire::Reply& reply);
-  void fill_data(wire::Reply& reply, const wire::Request& request) const;
-  void take_data(wire::Reply& reply, const wire::Request& request);
-  void fill_recording(wire::Reply& reply, const wire::Request& request);
-  void stop_recording(wire::Reply& reply, const wire::Request& request);
-  void fill_history(wire::Reply& reply, const wire::Request& request) const;
+  // One for each question. Those without one ask for what every reply says.
+  void fill(wire::Reply& reply, const wire::Request&, const wire::GetSimulatorFeatures&) const;
+  void fill(wire::Reply& reply, const wire::Request&, const wire::GetEntities& operation) const;
+  void fill(wire::Reply& reply, const wire::Request&, const wire::GetEntityState& operation) const;
+  void fill(wire::Reply& reply, const wire::Request&, const wire::GetStatus&);
+  void fill(wire::Reply& reply, const wire::Request& request, const wire::GetData& operation) const;
+  void fill(wire::Reply& reply, const wire::Request& request, const wire::PutData& part);
+  void fill(wire::Reply& reply, const wire::Request& request, const wire::GetRecording& operation);
+  void fill(wire::Reply& reply, const wire::Request& request, const wire::StopRecording&);
+  void fill(wire::Reply& reply, const wire::Request&, const wire::GetHistory& operation) const;
   std::optional<std::uint32_t> find_entity(wire::Reply& reply, const std::string& name) const;
 
   RequestLedger& ledger_;

@@ -14,8 +14,15 @@ struct ReceivedRequest {
 
 /// What it takes in memory.
 inline std::size_t size_of(const wire::Request& request) {
-  return sizeof request + request.label.size() + request.filter.size() + request.entity.size() + request.uri.size() +
-         request.resource_string.size() + request.link.size() + request.data.size();
+  std::size_t bytes = sizeof request + request.label.size();
+  const auto add = [&](const auto& content) { bytes += content.size(); };
+  std::visit(
+      [&](const auto& operation) {
+        wire::for_each_name(operation, add);
+        wire::for_each_document(operation, add);
+      },
+      request.operation);
+  return bytes;
 }
 
 }  // namespace cohort::session

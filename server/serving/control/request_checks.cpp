@@ -2,37 +2,73 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace cohort::session {
+namespace {
 
-using wire::Operation;
-using wire::SimulationState;
+constexpr const char* not_finite = "a number is not finite";
+
+bool is_finite(const wire::Vector3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const wire::Pose& pose) {
+  const wire::Quaternion& q = pose.orientation;
+  return is_finite(pose.position) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) &&
+         std::isfinite(q.w);
+}
+bool is_finite(const wire::Twist& twist) { return is_finite(twist.linear) && is_finite(twist.angular); }
+
+std::string what_is_wrong_with(const wire::UnknownOperation& operation) {
+  return "there is no operation " + std::to_string(operation.number);
+}
+std::string what_is_wrong_with(const wire::SetSimulationState& operation) {
+  if (operation.state <= wire::SimulationState::quitting) return {};
+  return "there is no state " + std::to_string(static_cast<std::uint32_t>(operation.state)) +
+         " to set: 0 stopped, 1 playing, 2 paused, 3 quitting";
+}
+std::string what_is_wrong_with(const wire::StepSimulation& operation) {
+  constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
+  if (operation.steps > 0 && operation.steps <= most_steps) return {};
+  return "expected at least 1 step, and at most 2^62, not " + std::to_string(operation.steps);
+}
+std::string what_is_wrong_with(const wire::SetSpeed& operation) {
+  if (operation.speed >= 0.0 && operation.speed <= 1e9) return {};
+  return "expected a speed from 0 (as fast as it goes) to 1e9, not " + std::to_string(operation.speed);
+}
+std::string what_is_wrong_with(const wire::SetEntityState& operation) {
+  if (!operation.pose && !operation.twist) return "neither a pose nor a twist is to be set";
+  const bool fits =
+      (!operation.pose || is_finite(*operation.pose)) && (!operation.twist || is_finite(*operation.twist));
+  return fits ? "" : not_finite;
+}
+std::string what_is_wrong_with(const wire::SpawnEntity& operation) {
+  return is_finite(operation.pose) ? "" : not_finite;
+}
+std::string what_is_wrong_with(const wire::SetLight& operation) {
+  const bool fits =
+      std::isfinite(operation.intensity.value_or(0.0)) && is_finite(operation.color.value_or(wire::Vector3{}));
+  return fits ? "" : not_finite;
+}
+std::string what_is_wrong_with(const wire::ApplyForce& operation) {
+  return is_finite(operation.force) && is_finite(operation.torque) ? "" : not_finite;
+}
+
+template <class One>
+std::string complaint_about(const One& operation) {
+  constexpr std::size_t longest_name = 1024;
+  std::string wrong;
+  wire::for_each_name(operation, [&](const std::string& name) {
+    if (name.size() > longest_name)
+      wrong = "a name of " + std::to_string(name.size()) + " bytes is longer than " + std::to_string(longest_name);
+  });
+  if constexpr (requires { what_is_wrong_with(operation); })
+    if (wrong.empty()) wrong = what_is_wrong_with(operation);
+  return wrong;
+}
+
+}  // namespace
 
 std::string what_is_wrong(const wire::Request& request) {
-  constexpr std::size_t longest_name = 1024;
-  constexpr std::uint64_t most_steps = std::uint64_t{1} << 62;
-  const auto finite = [](std::initializer_list<double> numbers) {
-    return std::all_of(numbers.begin(), numbers.end(), [](double number) { return std::isfinite(number); });
-  };
-  const auto finite_vector = [&](const wire::Vector3& v) { return finite({v.x, v.y, v.z}); };
-  if (wire::name_of(request.operation).empty())
-    return "there is no operation " + std::to_string(static_cast<std::uint32_t>(request.operation));
-  for (const std::string* name : {&request.filter, &request.entity, &request.link})
-    if (name->size() > longest_name)
-      return "a name of " + std::to_string(name->size()) + " bytes is longer than " + std::to_string(longest_name);
-  if (request.operation == Operation::step_simulation && (request.steps == 0 || request.steps > most_steps))
-    return "expected at least 1 step, and at most 2^62, not " + std::to_string(request.steps);
-  if (request.operation == Operation::set_speed && !(request.speed >= 0.0 && request.speed <= 1e9))
-    return "expected a speed from 0 (as fast as it goes) to 1e9, not " + std::to_string(request.speed);
-  if (request.operation == Operation::set_simulation_state && request.state > SimulationState::quitting)
-    return "there is no state " + std::to_string(static_cast<std::uint32_t>(request.state)) +
-           " to set: 0 stopped, 1 playing, 2 paused, 3 quitting";
-  const wire::Quaternion& q = request.pose.orientation;
-  const bool numbers_fit = finite_vector(request.pose.position) && finite({q.x, q.y, q.z, q.w}) &&
-                           finite_vector(request.twist.linear) && finite_vector(request.twist.angular) &&
-                           finite_vector(request.force) && finite_vector(request.torque) &&
-                           finite_vector(request.color) && finite({request.intensity});
-  return numbers_fit ? std::string() : "a number is not finite";
+  return std::visit([](const auto& operation) { return complaint_about(operation); }, request.operation);
 }
 
 }  // namespace cohort::session

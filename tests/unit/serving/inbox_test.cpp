@@ -8,10 +8,7 @@ namespace {
 wire::Sender sender_of(std::uint64_t participant) { return {.writer = 10 * participant, .participant = participant}; }
 
 wire::Request request_of(std::uint64_t number, std::size_t bytes = 0) {
-  wire::Request request;
-  request.number = number;
-  request.data.resize(bytes);
-  return request;
+  return {.number = number, .operation = wire::PutData{.data = std::vector<std::uint8_t>(bytes)}};
 }
 
 bool add_request(Inbox& inbox, std::uint64_t number, std::uint64_t participant = 1, std::size_t bytes = 0) {
@@ -44,8 +41,9 @@ TEST(Inbox, MakesTextsOfClientsFitToBeShown) {
   inbox.add_report({.kind = wire::ReportKind::failed, .text = "one\ntwo\x7f"}, sender_of(1));
   wire::Request request = request_of(1);
   request.label = "\u009b";
-  request.entity = "\x07";
-  request.resource_string = "a document:\n\t\xff";
+  const std::string document = "a document:\n\t\xff";
+  request.operation =
+      wire::SpawnEntity{.entity = "\x07", .uri = "\x08", .resource_string = document, .team = "a\nteam"};
   inbox.add_request(request, sender_of(1), nullptr);
   const Inbox::Contents contents = inbox.take();
   EXPECT_EQ(contents.arrivals[0].join.controller, std::string(97, 'x') + "\u2026");
@@ -53,8 +51,11 @@ TEST(Inbox, MakesTextsOfClientsFitToBeShown) {
   EXPECT_EQ(contents.arrivals[0].join.robots, std::vector<std::string>{"\ufffd"});
   EXPECT_EQ(contents.reports[0].text, "one two\ufffd");
   EXPECT_EQ(contents.requests[0].request.label, "\ufffd");
-  EXPECT_EQ(contents.requests[0].request.entity, "\ufffd");
-  EXPECT_EQ(contents.requests[0].request.resource_string, request.resource_string) << "which its parser checks";
+  const auto& spawn = std::get<wire::SpawnEntity>(contents.requests[0].request.operation);
+  EXPECT_EQ(spawn.entity, "\ufffd");
+  EXPECT_EQ(spawn.uri, "\ufffd");
+  EXPECT_EQ(spawn.team, "a team");
+  EXPECT_EQ(spawn.resource_string, document) << "which its parser checks";
 }
 
 TEST(Inbox, BoundsJoinsAndReportsInBytes) {

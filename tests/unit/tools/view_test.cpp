@@ -130,27 +130,30 @@ TEST(ViewAdmission, ATokenIsWholeOrWrong) {
 }
 
 TEST(ViewRequests, BecomeRequestsOrAreExplained) {
-  EXPECT_EQ(request_of({.operation = "pause"}).state, wire::SimulationState::paused);
-  EXPECT_EQ(request_of({.operation = "step", .number = 3.0}).steps, 3U);
-  const wire::Request move = request_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0}});
-  EXPECT_EQ(move.entity, "bar");
-  EXPECT_EQ(move.pose.position, (wire::Vector3{1.0, 2.0, 0.0}));
-  EXPECT_EQ(move.pose.orientation, (wire::Quaternion{0.0, 0.0, 0.0, 1.0}));
-  const wire::Request turned = request_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0, 0.5, 3.0}});
-  EXPECT_DOUBLE_EQ(2.0 * std::atan2(turned.pose.orientation.z, turned.pose.orientation.w), 3.0);
-  EXPECT_THROW(request_of({.operation = "move", .name = "bar", .numbers = {1.0}}), std::invalid_argument);
-  EXPECT_THROW(request_of({.operation = "move", .numbers = {1.0, 2.0}}), std::invalid_argument);
-  EXPECT_THROW(request_of({.operation = "step", .number = 0.0 / 0.0}), std::invalid_argument);
-  EXPECT_THROW(request_of({.operation = "shutdown"}), std::invalid_argument);
+  EXPECT_EQ(operation_of({.operation = "pause"}),
+            wire::Operation(wire::SetSimulationState{wire::SimulationState::paused}));
+  EXPECT_EQ(operation_of({.operation = "step", .number = 3.0}), wire::Operation(wire::StepSimulation{3}));
+  EXPECT_EQ(operation_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0}}),
+            wire::Operation(wire::SetEntityState{.entity = "bar", .pose = wire::Pose{{1.0, 2.0, 0.0}, {}}}));
+  EXPECT_EQ(operation_of({.operation = "spawn", .name = "new", .text = "bar", .numbers = {1.0, 2.0}}),
+            wire::Operation(wire::SpawnEntity{.entity = "new", .uri = "bar", .pose = {{1.0, 2.0, 0.0}, {}}}))
+      << "a model of the world, never the text of one";
+  const auto turned = std::get<wire::SetEntityState>(
+      operation_of({.operation = "move", .name = "bar", .numbers = {1.0, 2.0, 0.5, 3.0}}));
+  EXPECT_DOUBLE_EQ(2.0 * std::atan2(turned.pose->orientation.z, turned.pose->orientation.w), 3.0);
+  EXPECT_THROW(operation_of({.operation = "move", .name = "bar", .numbers = {1.0}}), std::invalid_argument);
+  EXPECT_THROW(operation_of({.operation = "move", .numbers = {1.0, 2.0}}), std::invalid_argument);
+  EXPECT_THROW(operation_of({.operation = "step", .number = 0.0 / 0.0}), std::invalid_argument);
+  EXPECT_THROW(operation_of({.operation = "shutdown"}), std::invalid_argument);
 }
 
 // What a server answers that has run so far.
 wire::Reply told(std::uint32_t run, std::uint64_t revision, const messages::RunHistory& history) {
   wire::Reply reply;
   reply.run = run;
-  reply.offset = revision;
-  const recording::Bytes bytes = messages::encode(history);
-  for (const std::byte each : bytes) reply.data.push_back(static_cast<std::uint8_t>(each));
+  auto& part = reply.returned.emplace<wire::HistoryPart>();
+  part.revision = revision;
+  for (const std::byte each : messages::encode(history)) part.data.push_back(static_cast<std::uint8_t>(each));
   return reply;
 }
 
@@ -166,7 +169,7 @@ constexpr std::chrono::milliseconds step{10};
 TEST(ViewHistory, WhatHappensAgainIsCountedAndTheLastStandsAtTheEnd) {
   LiveHistory history;
   EXPECT_TRUE(history.take(told(1, 2, {0, 0, 0, 0, {{3, 3, 1, "missed", "a"}, {5, 5, 1, "joined", "b"}}}), step));
-  EXPECT_EQ(history.question().offset, 2U);
+  EXPECT_EQ(history.question().revision, 2U);
   EXPECT_FALSE(history.take(told(1, 2, {}), step));
   EXPECT_TRUE(history.take(told(1, 3, {0, 0, 0, 0, {{3, 9, 2, "missed", "a"}}}), step));
   EXPECT_EQ(texts(history.events()), (Texts{"b", "a"}));
@@ -184,7 +187,7 @@ TEST(ViewHistory, WhatARunGoesBackBehindHasNotHappened) {
   // The question was still about the first run: what it brought is asked for again.
   EXPECT_TRUE(history.take(told(2, 9, {100, 50, 0, 100, {{101, 101, 1, "event", "partly"}}}), step));
   EXPECT_EQ(texts(history.events()), (Texts{"early"}));
-  EXPECT_EQ(history.question().offset, 0U);
+  EXPECT_EQ(history.question().revision, 0U);
   EXPECT_TRUE(history.take(told(2, 1, {100, 50, 50, 100, {{101, 101, 1, "event", "anew"}}}), step));
   EXPECT_EQ(texts(history.events()), (Texts{"early", "anew"}));
   EXPECT_EQ(history.first_kept(), std::chrono::milliseconds(500));
@@ -204,7 +207,8 @@ TEST(ViewHistory, KeepsTheNewestEventsOnly) {
 TEST(ViewHistory, WhatIsNoHistoryIsRefused) {
   LiveHistory history;
   wire::Reply reply;
-  reply.data = {0, 1, 0, 0, 7};
+  EXPECT_THROW(history.take(reply, step), messages::CdrError);
+  reply.returned = wire::HistoryPart{.data = {0, 1, 0, 0, 7}};
   EXPECT_THROW(history.take(reply, step), messages::CdrError);
 }
 

@@ -9,7 +9,6 @@ namespace cohort::view {
 namespace {
 
 using wire::Operation;
-using wire::Request;
 using wire::SimulationState;
 
 wire::Vector3 vector_in(const ViewRequest& asked) {
@@ -35,56 +34,48 @@ const std::string& object_in(const ViewRequest& asked) {
   return asked.name;
 }
 
-template <SimulationState state>
-Request to_state(const ViewRequest&) {
-  return {.operation = Operation::set_simulation_state, .state = state};
+template <wire::SimulationState state>
+Operation to_state(const ViewRequest&) {
+  return wire::SetSimulationState{state};
 }
 
-Request reset(const ViewRequest&) { return {.operation = Operation::reset_simulation}; }
+Operation reset(const ViewRequest&) { return wire::ResetSimulation{}; }
 
-Request step(const ViewRequest& asked) {
+Operation step(const ViewRequest& asked) {
   constexpr double most = 1e9;
   if (!(asked.number >= 1.0 && asked.number <= most))
     throw std::invalid_argument("a running world steps ahead, by one tick or more");
-  return {.operation = Operation::step_simulation, .steps = static_cast<std::uint64_t>(asked.number)};
+  return wire::StepSimulation{static_cast<std::uint64_t>(asked.number)};
 }
 
-Request speed(const ViewRequest& asked) {
+Operation speed(const ViewRequest& asked) {
   if (!(asked.number >= 0.0) || !std::isfinite(asked.number))
     throw std::invalid_argument("a speed is above 0, or 0 for as fast as it goes");
-  return {.operation = Operation::set_speed, .speed = asked.number};
+  return wire::SetSpeed{asked.number};
 }
 
-Request spawn(const ViewRequest& asked) {
-  return {.operation = Operation::spawn_entity,
-          .entity = object_in(asked),
-          .uri = asked.text,
-          .set_pose = true,
-          .pose = pose_in(asked)};
+Operation spawn(const ViewRequest& asked) {
+  return wire::SpawnEntity{.entity = object_in(asked), .uri = asked.text, .pose = pose_in(asked)};
 }
 
-Request remove(const ViewRequest& asked) { return {.operation = Operation::delete_entity, .entity = object_in(asked)}; }
+Operation remove(const ViewRequest& asked) { return wire::DeleteEntity{object_in(asked)}; }
 
-Request move(const ViewRequest& asked) {
-  return {
-      .operation = Operation::set_entity_state, .entity = object_in(asked), .set_pose = true, .pose = pose_in(asked)};
+Operation move(const ViewRequest& asked) {
+  return wire::SetEntityState{.entity = object_in(asked), .pose = pose_in(asked)};
 }
 
-Request light(const ViewRequest& asked) {
-  return {.operation = Operation::set_light, .entity = object_in(asked), .on = asked.number != 0.0};
+Operation light(const ViewRequest& asked) {
+  return wire::SetLight{.entity = object_in(asked), .on = asked.number != 0.0};
 }
 
-Request push(const ViewRequest& asked) {
+Operation push(const ViewRequest& asked) {
   constexpr std::int64_t tenth_of_a_second = 100'000'000;
-  return {.operation = Operation::apply_force,
-          .entity = object_in(asked),
-          .force = vector_in(asked),
-          .duration_ns = tenth_of_a_second};
+  return wire::ApplyForce{.entity = object_in(asked), .force = vector_in(asked), .duration_ns = tenth_of_a_second};
 }
 
 struct ViewOperation {
   const char* name;
-  Request (*request)(const ViewRequest&);
+  Operation (*operation)(const ViewRequest&);
 };
 constexpr std::array view_operations = {
     ViewOperation{"play", to_state<SimulationState::playing>},
@@ -101,12 +92,12 @@ constexpr std::array view_operations = {
 
 }  // namespace
 
-Request request_of(const ViewRequest& asked) {
+Operation operation_of(const ViewRequest& asked) {
   const auto* const found =
       std::ranges::find_if(view_operations, [&](const ViewOperation& each) { return asked.operation == each.name; });
   if (found == view_operations.end())
     throw std::invalid_argument("'" + asked.operation + "' is nothing that a server can do");
-  return found->request(asked);
+  return found->operation(asked);
 }
 
 }  // namespace cohort::view

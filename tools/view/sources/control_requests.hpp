@@ -1,13 +1,11 @@
 #pragma once
 
-#include <optional>
-
 #include "idl/wire/control_messages.hpp"
 #include "tools/view/source.hpp"
 
 namespace cohort::view {
 
 /// What a server is asked for a viewer. Throws std::invalid_argument, with a sentence, if what it asks makes no sense.
-wire::Request request_of(const ViewRequest& asked);
+wire::Operation operation_of(const ViewRequest& asked);
 
 }  // namespace cohort::view

@@ -5,10 +5,12 @@
 
 namespace cohort::view {
 
-wire::Request LiveHistory::question() const { return {.operation = wire::Operation::get_history, .offset = revision_}; }
+wire::GetHistory LiveHistory::question() const { return {revision_}; }
 
 bool LiveHistory::take(const wire::Reply& reply, std::chrono::nanoseconds step) {
-  const auto history = messages::decode<messages::RunHistory>(std::as_bytes(std::span(reply.data)));
+  const auto* const part = reply.get<wire::HistoryPart>();
+  if (part == nullptr) throw messages::CdrError("the reply has no history");
+  const auto history = messages::decode<messages::RunHistory>(std::as_bytes(std::span(part->data)));
   keep_interval_ = history.keep_interval;
   first_kept_ = step * static_cast<std::int64_t>(history.first_kept_tick);
   const bool is_another_run = reply.run != run_;
@@ -16,7 +18,7 @@ bool LiveHistory::take(const wire::Reply& reply, std::chrono::nanoseconds step) 
   if (is_another_run) begin_run(reply.run, history.begin_tick);
   if (!was_asked_of_it) return true;
   for (const messages::HistoryEvent& event : history.events) add(event, step);
-  revision_ = reply.offset;
+  revision_ = part->revision;
   return is_another_run || !history.events.empty();
 }
 

@@ -13,7 +13,7 @@ namespace cohort::view {
 class LiveHistory {
  public:
   /// The question that brings what is not known yet.
-  wire::Request question() const;
+  wire::GetHistory question() const;
   /// The reply to it, and the time of a tick. Throws messages::CdrError if the reply is none. True if there is
   /// anything new.
   bool take(const wire::Reply& reply, std::chrono::nanoseconds step);

@@ -244,7 +244,7 @@ Answer LiveSource::done(ControlClient& client, const ViewRequest& asked) {
     if (asked.operation == "step" && asked.number < 0.0 && history_.can_go_back())
       return gone_back(client,
                        run_time_ + time_of(std::trunc(asked.number) * 1e-9 * static_cast<double>(run_.step_ns)));
-    const auto reply = client.ask(request_of(asked), for_a_reply, is_stopping_);
+    const auto reply = client.ask(operation_of(asked), for_a_reply, is_stopping_);
     return reply ? Answer{reply->is_done(), reply->error_message} : no_answer;
   } catch (const std::invalid_argument& error) {
     return {false, error.what()};
@@ -253,15 +253,14 @@ Answer LiveSource::done(ControlClient& client, const ViewRequest& asked) {
 
 Answer LiveSource::gone_back(ControlClient& client, std::chrono::nanoseconds time) {
   if (time > run_time_) throw std::invalid_argument("the run has not come to that time yet");
-  const auto reply =
-      client.ask({.operation = wire::Operation::go_back, .duration_ns = time.count()}, for_a_reply, is_stopping_);
+  const auto reply = client.ask(wire::GoBack{time.count()}, for_a_reply, is_stopping_);
   if (!reply) return no_answer;
   if (reply->result != ResultCode::ok || reply->state != SimulationState::paused || run_.step_ns <= 0)
     return {reply->result == ResultCode::ok, reply->error_message};
-  wire::Request on{.operation = wire::Operation::step_simulation};
-  on.steps = static_cast<std::uint64_t>(std::max<std::int64_t>(0, time.count() - reply->time_ns) / run_.step_ns);
-  if (on.steps == 0) return {true, reply->error_message};
-  const auto arrived = client.ask(std::move(on), for_a_reply, is_stopping_);
+  const auto steps =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(0, time.count() - reply->time_ns) / run_.step_ns);
+  if (steps == 0) return {true, reply->error_message};
+  const auto arrived = client.ask(wire::StepSimulation{steps}, for_a_reply, is_stopping_);
   return arrived ? Answer{arrived->result == ResultCode::ok, arrived->error_message} : no_answer;
 }
 
@@ -283,7 +282,7 @@ void LiveSource::answer_all(const std::string& text) {
 
 void LiveSource::play_if_seen(ControlClient& client) {
   if (!options_.plays_when_seen || has_played_ || !publisher_.is_read(Topic::frame)) return;
-  const auto reply = client.ask(request_of({.operation = "play"}), for_a_reply, is_stopping_);
+  const auto reply = client.ask(operation_of({.operation = "play"}), for_a_reply, is_stopping_);
   has_played_ = reply && reply->is_done();
 }
 
@@ -321,10 +320,10 @@ std::string LiveSource::to_attach(const std::string& robot) const {
 }
 
 void LiveSource::ask_status(ControlClient& client) {
-  const auto reply = client.ask({.operation = wire::Operation::get_status}, for_a_reply, is_stopping_);
+  const auto reply = client.ask(wire::GetStatus{}, for_a_reply, is_stopping_);
   ViewStatus status = status_without_run();
-  if (reply && !reply->status.empty()) {
-    const wire::SimulationStatus& run = reply->status.front();
+  if (const auto* const returned = reply ? reply->get<wire::SimulationStatus>() : nullptr) {
+    const wire::SimulationStatus& run = *returned;
     status.name = run.experiment;
     status.phase = run.started ? "running" : "gathering";
     status.is_playing = reply->state == SimulationState::playing;

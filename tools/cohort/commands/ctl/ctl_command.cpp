@@ -6,6 +6,7 @@
 #include <iterator>
 #include <span>
 #include <thread>
+#include <variant>
 
 #include "client_sdk/src/control_client.hpp"
 #include "tools/cohort/cli/output_file.hpp"
@@ -21,7 +22,6 @@ namespace {
 using std::chrono::milliseconds;
 using wire::Operation;
 using wire::Reply;
-using wire::Request;
 using wire::ResultCode;
 
 constexpr milliseconds for_a_server{5'000};
@@ -30,11 +30,12 @@ constexpr milliseconds watch_interval{500};
 
 milliseconds patience_for(const CtlCommand& command) {
   if (command.timeout) return milliseconds(static_cast<std::int64_t>(*command.timeout * 1e3));
-  const Operation operation = command.request.operation;
-  const bool takes_long = command.what == CtlCommand::What::load ||
-                          (command.what == CtlCommand::What::request &&
-                           (operation == Operation::step_simulation || operation == Operation::reset_simulation ||
-                            operation == Operation::go_back));
+  const Operation& operation = command.operation;
+  const bool takes_long =
+      command.what == CtlCommand::What::load ||
+      (command.what == CtlCommand::What::request &&
+       (std::holds_alternative<wire::StepSimulation>(operation) ||
+        std::holds_alternative<wire::ResetSimulation>(operation) || std::holds_alternative<wire::GoBack>(operation)));
   return takes_long ? for_ever : for_a_reply;
 }
 
@@ -68,7 +69,6 @@ class Ctl {
         std::fputs(status(2).c_str(), stdout);
         break;
       case CtlCommand::What::history: history(); break;
-      case CtlCommand::What::entities: entities(); break;
       case CtlCommand::What::save: save(); break;
       case CtlCommand::What::load: load(); break;
     }
@@ -99,23 +99,26 @@ class Ctl {
                     why.empty() ? ": the server does not answer" : ", and will be at the next tick: " + why));
   }
 
-  Reply ask(const Request& request) {
-    if (auto reply = client_.ask(request, patience_, stop_)) return std::move(*reply);
+  Reply ask(const Operation& operation) {
+    if (auto reply = client_.ask(operation, patience_, stop_)) return std::move(*reply);
     throw no_reply();
   }
 
   // The same, and the request was done.
-  Reply ask_and_get(const Request& request) {
-    Reply reply = ask(request);
-    if (reply.result != ResultCode::ok) throw std::runtime_error(reply.error_message);
-    return reply;
+  template <class One>
+  typename One::Returned ask_and_get(const One& operation) {
+    const Reply reply = ask(operation);
+    const auto* const returned = reply.get<typename One::Returned>();
+    if (reply.result != ResultCode::ok || returned == nullptr) throw std::runtime_error(reply.error_message);
+    return *returned;
   }
 
   // What is asked for waits for a boundary, and that for the controllers.
   std::string why_it_waits() {
-    const auto reply = client_.ask({.operation = Operation::get_status}, for_status, stop_);
-    if (!reply || reply->status.empty()) return {};
-    const wire::SimulationStatus& status = reply->status.front();
+    const auto reply = client_.ask(wire::GetStatus{}, for_status, stop_);
+    const auto* const returned = reply ? reply->get<wire::SimulationStatus>() : nullptr;
+    if (returned == nullptr) return {};
+    const wire::SimulationStatus& status = *returned;
     if (status.awaited.empty()) return fmt::format("the run is {}", word_of(reply->state));
     std::string text = fmt::format("the run waits for {}", status.awaited.front());
     if (status.awaited_count > 1) text += fmt::format(" and {} more", status.awaited_count - 1);
@@ -125,27 +128,30 @@ class Ctl {
   }
 
   void request() {
-    if (command_.request.operation == Operation::spawn_entity) take_model();
-    const bool quits = command_.request.operation == Operation::set_simulation_state &&
-                       command_.request.state == wire::SimulationState::quitting;
-    const auto reply = client_.ask(command_.request, patience_, stop_);
+    if (auto* spawn = std::get_if<wire::SpawnEntity>(&command_.operation)) take_model(*spawn);
+    const auto* const set = std::get_if<wire::SetSimulationState>(&command_.operation);
+    const bool quits = set != nullptr && set->state == wire::SimulationState::quitting;
+    const auto reply = client_.ask(command_.operation, patience_, stop_);
     if (!reply && quits && client_.server_is_gone()) return;  // with its last words
     if (!reply) throw no_reply();
     if (!reply->is_done()) throw std::runtime_error(reply->error_message);
-    std::printf("%s\n", reply->error_message.c_str());
+    if (const auto* names = reply->get<wire::EntityNames>())
+      for (const std::string& name : names->entities) std::printf("%s\n", name.c_str());
+    else
+      std::printf("%s\n", reply->error_message.c_str());
   }
 
-  void take_model() {
+  void take_model(wire::SpawnEntity& spawn) const {
     if (!std::filesystem::is_regular_file(command_.model)) {
-      command_.request.uri = command_.model.string();
+      spawn.uri = command_.model.string();
       return;
     }
     const std::vector<char> text = read_file(command_.model);
-    command_.request.resource_string.assign(text.begin(), text.end());
+    spawn.resource_string.assign(text.begin(), text.end());
   }
 
   std::string status(int indent) {
-    const Reply reply = ask({.operation = Operation::get_status});
+    const Reply reply = ask(wire::GetStatus{});
     return command_.json ? status_json(reply, indent) : status_text(reply);
   }
 
@@ -170,23 +176,17 @@ class Ctl {
   }
 
   void history() {
-    const Reply status = ask({.operation = Operation::get_status});
-    if (status.status.empty()) throw no_reply();
+    const wire::SimulationStatus status = ask_and_get(wire::GetStatus{});
     messages::RunHistory all;
-    Request request{.operation = Operation::get_history};
+    wire::GetHistory question;
     for (bool is_complete = false; !is_complete;) {
-      const Reply reply = ask_and_get(request);
-      add(all, messages::decode<messages::RunHistory>(std::as_bytes(std::span(reply.data))));
-      is_complete = reply.offset == request.offset || reply.offset >= reply.size;
-      request.offset = reply.offset;
+      const wire::HistoryPart part = ask_and_get(question);
+      add(all, messages::decode<messages::RunHistory>(std::as_bytes(std::span(part.data))));
+      is_complete = part.revision == question.revision || part.revision >= part.newest;
+      question.revision = part.revision;
     }
-    const std::chrono::nanoseconds step(status.status.front().step_ns);
+    const std::chrono::nanoseconds step(status.step_ns);
     show(command_.json ? history_json(all, step) : history_text(all, step));
-  }
-
-  void entities() {
-    command_.request.operation = Operation::get_entities;
-    for (const std::string& name : ask_and_get(command_.request).entities) std::printf("%s\n", name.c_str());
   }
 
   void save() {

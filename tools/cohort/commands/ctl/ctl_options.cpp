@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +15,6 @@
 namespace cohort::tool {
 namespace {
 
-using wire::Operation;
 using wire::SimulationState;
 
 constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
@@ -55,138 +55,135 @@ wire::Pose pose_in(const std::string& text) {
   return pose;
 }
 
+// A subcommand that is one request, and the operation that its options fill in.
+template <class Operation>
+struct RequestLine {
+  CommandLine line;
+  Operation& operation;
+};
+
 // Subcommands that are one request.
 class Requests {
  public:
-  // `request` must outlive the command line.
-  Requests(CommandLine line, wire::Request& request) : line_(std::move(line)), request_(request) {}
+  // `command` must outlive the command line.
+  Requests(CommandLine line, CtlCommand& command) : line_(std::move(line)), command_(command) {}
 
-  CommandLine add(const std::string& name, const std::string& text, Operation operation,
-                  SimulationState state = SimulationState::stopped) {
+  template <class Operation>
+  RequestLine<Operation> add(const std::string& name, const std::string& text, Operation as_it_is = {}) {
+    const auto operation = std::make_shared<Operation>(std::move(as_it_is));
     CommandLine sub = line_.add_subcommand(name, text);
-    sub.callback([&request = request_, operation, state] {
-      request.operation = operation;
-      request.state = state;
-    });
-    return sub;
-  }
-  void add_name(CommandLine sub) {
-    sub.add_option("NAME", request_.entity, "Of an object, with its scope").required().type_name("");
-  }
-  Option add_vector(CommandLine sub, const std::string& name, wire::Vector3& vector, const std::string& text) {
-    return sub
-        .add_option_function<std::string>(
-            name, [&vector](const std::string& value) { vector = vector_in(value); }, text)
-        .type_name("\"X Y Z\"");
-  }
-  Option add_pose(CommandLine sub) {
-    return sub
-        .add_option_function<std::string>(
-            "--pose",
-            [&request = request_](const std::string& value) {
-              request.pose = pose_in(value);
-              request.set_pose = true;
-            },
-            "Metres and radians, in the world")
-        .type_name("\"X Y Z [ROLL PITCH YAW]\"");
+    sub.callback([&command = command_, operation] { command.operation = *operation; });
+    return {sub, *operation};
   }
 
  private:
   CommandLine line_;
-  wire::Request& request_;
+  CtlCommand& command_;
 };
 
-void add_time_commands(Requests& requests, CtlCommand& command) {
-  requests.add("pause", "Hold the run at the next boundary", Operation::set_simulation_state, SimulationState::paused);
-  requests.add("resume", "Let it go on", Operation::set_simulation_state, SimulationState::playing);
-  CommandLine step =
-      requests.add("step", "Let a paused run make so many ticks, and wait for them", Operation::step_simulation);
-  command.request.steps = 1;
-  step.add_option("N", command.request.steps, "How many; 1 if it is not said")
+void add_name(CommandLine sub, std::string& entity) {
+  sub.add_option("NAME", entity, "Of an object, with its scope").required().type_name("");
+}
+
+Option add_vector(CommandLine sub, const std::string& name, wire::Vector3& vector, const std::string& text) {
+  return sub
+      .add_option_function<std::string>(
+          name, [&vector](const std::string& value) { vector = vector_in(value); }, text)
+      .type_name("\"X Y Z\"");
+}
+
+void add_pose(CommandLine sub, wire::Pose& pose) {
+  sub.add_option_function<std::string>(
+         "--pose", [&pose](const std::string& value) { pose = pose_in(value); }, "Metres and radians, in the world")
+      .type_name("\"X Y Z [ROLL PITCH YAW]\"")
+      .required();
+}
+
+void add_time_commands(Requests& requests) {
+  using wire::SetSimulationState;
+  requests.add("pause", "Hold the run at the next boundary", SetSimulationState{SimulationState::paused});
+  requests.add("resume", "Let it go on", SetSimulationState{SimulationState::playing});
+  auto [step, steps] =
+      requests.add<wire::StepSimulation>("step", "Let a paused run make so many ticks, and wait for them");
+  step.add_option("N", steps.steps, "How many; 1 if it is not said")
       .check(whole_number(1, std::uint64_t{1} << 62))
       .type_name("");
-  CommandLine speed = requests.add("speed", "Simulated seconds per second at the most", Operation::set_speed);
+  auto [speed, set_speed] = requests.add<wire::SetSpeed>("speed", "Simulated seconds per second at the most");
   speed
       .add_option_function<std::string>(
-          "X", [&](const std::string& text) { command.request.speed = text == "max" ? 0.0 : *parse_real(text); },
+          "X", [&set = set_speed](const std::string& text) { set.speed = text == "max" ? 0.0 : *parse_real(text); },
           "max, or a number")
       .required()
       .check(max_or_number_above_zero(1e9))
       .type_name("");
-  CommandLine reset = requests.add("reset", "Begin anew, the controllers attached", Operation::reset_simulation);
+  auto [reset, to_reset] = requests.add<wire::ResetSimulation>("reset", "Begin anew, the controllers attached");
   reset
       .add_option_function<std::uint64_t>(
-          "--seed",
-          [&](const std::uint64_t& seed) {
-            command.request.set_seed = true;
-            command.request.seed = seed;
-          },
-          "Another seed")
+          "--seed", [&to = to_reset](const std::uint64_t& seed) { to.seed = seed; }, "Another seed")
       .check(whole_number(0, most))
       .type_name("N");
-  CommandLine back = requests.add("back", "Go back to the last kept snapshot at or before a time", Operation::go_back);
+  auto [back, go_back] = requests.add<wire::GoBack>("back", "Go back to the last kept snapshot at or before a time");
   back.add_option_function<double>(
-          "T", [&](const double& seconds) { command.request.duration_ns = nanoseconds(seconds).count(); },
+          "T", [&go = go_back](const double& seconds) { go.duration_ns = nanoseconds(seconds).count(); },
           "Simulated seconds from the run's beginning")
       .required()
       .check(number_from_zero(most_seconds))
       .type_name("");
-  requests.add("shutdown", "End the run and the server", Operation::set_simulation_state, SimulationState::quitting);
+  requests.add("shutdown", "End the run and the server", SetSimulationState{SimulationState::quitting});
 }
 
-void add_world_commands(Requests& requests, CtlCommand& command) {
-  wire::Request& request = command.request;
-  CommandLine spawn = requests.add("spawn", "Add an object or a robot to the world", Operation::spawn_entity);
+void add_object_commands(Requests& requests, CtlCommand& command) {
+  auto [spawn, to_spawn] = requests.add<wire::SpawnEntity>("spawn", "Add an object or a robot to the world");
   spawn.add_option("MODEL", command.model, "A model of the world, or a file with one (.sdf, .urdf, .yaml)")
       .required()
       .type_name("");
-  spawn.add_option("--name", request.entity, "Its name in the world").required().type_name("NAME");
-  spawn.add_option("--team", request.filter, "That a robot joins, where several could be meant").type_name("NAME");
-  spawn.add_flag("--rename", request.allow_renaming, "Take another name where this one is taken");
-  requests.add_pose(spawn).required();
-  CommandLine remove = requests.add("remove", "Take an object out of the world", Operation::delete_entity);
-  requests.add_name(remove);
-  CommandLine pose = requests.add("set-pose", "Put an object elsewhere, at rest", Operation::set_entity_state);
-  requests.add_name(pose);
-  requests.add_pose(pose).required();
-  CommandLine velocity = requests.add("set-velocity", "Give an object a velocity", Operation::set_entity_state);
-  requests.add_name(velocity);
-  const auto twist_is_set = [&request](const std::string&) { request.set_twist = true; };
-  requests.add_vector(velocity, "--linear", request.twist.linear, "Metres per second, in the world")
-      .required()
-      .each(twist_is_set);
-  requests.add_vector(velocity, "--angular", request.twist.angular, "Radians per second, in the world");
-  CommandLine light = requests.add("set-light", "Switch a light", Operation::set_light);
-  requests.add_name(light);
+  spawn.add_option("--name", to_spawn.entity, "Its name in the world").required().type_name("NAME");
+  spawn.add_option("--team", to_spawn.team, "That a robot joins, where several could be meant").type_name("NAME");
+  spawn.add_flag("--rename", to_spawn.allow_renaming, "Take another name where this one is taken");
+  add_pose(spawn, to_spawn.pose);
+  auto [remove, to_remove] = requests.add<wire::DeleteEntity>("remove", "Take an object out of the world");
+  add_name(remove, to_remove.entity);
+  auto [pose, new_pose] =
+      requests.add("set-pose", "Put an object elsewhere, at rest", wire::SetEntityState{.pose = wire::Pose{}});
+  add_name(pose, new_pose.entity);
+  add_pose(pose, *new_pose.pose);
+  auto [velocity, new_twist] =
+      requests.add("set-velocity", "Give an object a velocity", wire::SetEntityState{.twist = wire::Twist{}});
+  add_name(velocity, new_twist.entity);
+  add_vector(velocity, "--linear", new_twist.twist->linear, "Metres per second, in the world").required();
+  add_vector(velocity, "--angular", new_twist.twist->angular, "Radians per second, in the world");
+  auto [force, push] = requests.add<wire::ApplyForce>("apply-force", "Push an object for a while");
+  add_name(force, push.entity);
+  add_vector(force, "--force", push.force, "Newtons, in the world");
+  add_vector(force, "--torque", push.torque, "Newton metres, in the world");
+  force
+      .add_option_function<double>(
+          "--duration", [&to = push](const double& seconds) { to.duration_ns = std::llround(seconds * 1e9); },
+          "Simulated seconds (default: one step)")
+      .check(number_above_zero(9e9))
+      .type_name("S");
+  force.add_option("--link", push.link, "Of the object (default: its root)").type_name("LINK");
+}
+
+void add_light_command(Requests& requests) {
+  auto [light, to] = requests.add<wire::SetLight>("set-light", "Switch a light");
+  wire::SetLight& set = to;
+  add_name(light, set.entity);
   light
       .add_option_function<std::string>(
-          "STATE", [&](const std::string& state) { request.on = state == "on"; }, "on or off")
+          "STATE", [&set](const std::string& state) { set.on = state == "on"; }, "on or off")
       .required()
       .check(one_of({"on", "off"}))
       .type_name("on|off");
   light
       .add_option_function<double>(
-          "--intensity",
-          [&](const double& intensity) {
-            request.set_intensity = true;
-            request.intensity = intensity;
-          },
-          "Its intensity")
+          "--intensity", [&set](const double& intensity) { set.intensity = intensity; }, "Its intensity")
       .type_name("X");
-  requests.add_vector(light, "--color", request.color, "Red, green and blue from 0 to 1").each([&request](const auto&) {
-    request.set_color = true;
-  });
-  CommandLine force = requests.add("apply-force", "Push an object for a while", Operation::apply_force);
-  requests.add_name(force);
-  requests.add_vector(force, "--force", request.force, "Newtons, in the world");
-  requests.add_vector(force, "--torque", request.torque, "Newton metres, in the world");
-  force
-      .add_option_function<double>(
-          "--duration", [&](const double& seconds) { request.duration_ns = std::llround(seconds * 1e9); },
-          "Simulated seconds (default: one step)")
-      .check(number_above_zero(9e9))
-      .type_name("S");
-  force.add_option("--link", request.link, "Of the object (default: its root)").type_name("LINK");
+  light
+      .add_option_function<std::string>(
+          "--color", [&set](const std::string& value) { set.color = vector_in(value); },
+          "Red, green and blue from 0 to 1")
+      .type_name("\"X Y Z\"");
 }
 
 }  // namespace
@@ -202,9 +199,10 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
                   "Seconds to wait (default: 5 for a server, 30 for what is asked, no end for step, reset and load)")
       .check(number_above_zero(9e6))
       .type_name("S");
-  Requests requests(line, command.request);
-  add_time_commands(requests, command);
-  add_world_commands(requests, command);
+  Requests requests(line, command);
+  add_time_commands(requests);
+  add_object_commands(requests, command);
+  add_light_command(requests);
 
   const auto add_file = [&](const std::string& name, const std::string& text, CtlCommand::What what) {
     CommandLine sub = line.add_subcommand(name, text);
@@ -220,9 +218,8 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
   CommandLine history = line.add_subcommand("history", "Say what has happened, and how far back the run can go");
   history.add_flag("--json", command.json, "As JSON");
   history.callback([&] { command.what = CtlCommand::What::history; });
-  CommandLine entities = line.add_subcommand("entities", "List what is in the world");
-  entities.add_option("FILTER", command.request.filter, "POSIX extended regular expression").type_name("");
-  entities.callback([&] { command.what = CtlCommand::What::entities; });
+  auto [entities, get_entities] = requests.add<wire::GetEntities>("entities", "List what is in the world");
+  entities.add_option("FILTER", get_entities.filter, "POSIX extended regular expression").type_name("");
   line.footer(
       "Examples: cohort ctl pause; cohort ctl step 10; cohort ctl spawn box --name crate_1 --pose \"1 0 0.1\";\n"
       "cohort ctl --server 10.0.0.5 --domain 7 status --watch");

@@ -11,15 +11,14 @@ namespace cohort::tool {
 /// What the command line says of `cohort ctl`: docs/cli.md.
 struct CtlCommand {
   enum class What {
-    request,  ///< one, and its reply
+    request,  ///< `operation`, and its reply
     status,
     history,
-    entities,
     save,
     load,
   };
   What what = What::request;
-  wire::Request request{};
+  wire::Operation operation{};  ///< of a request
   Connection connection{};
   std::filesystem::path file{};     ///< of a snapshot
   std::filesystem::path model{};    ///< of what is spawned: a file, or the name of a model of the world

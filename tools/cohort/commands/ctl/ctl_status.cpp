@@ -50,8 +50,9 @@ std::string word_of(wire::SimulationState state) {
 }
 
 std::string status_text(const wire::Reply& reply) {
-  if (reply.status.empty()) return "the server says nothing of its run\n";
-  const wire::SimulationStatus& status = reply.status.front();
+  const auto* const returned = reply.get<wire::SimulationStatus>();
+  if (returned == nullptr) return "the server says nothing of its run\n";
+  const wire::SimulationStatus& status = *returned;
   std::string text = fmt::format("{}   {}   run {}, seed {}   {}\n", status.experiment, word_of(reply.state), reply.run,
                                  status.seed, counted(status.robots, "robot"));
   text += fmt::format("tick {}   {:.2f} of {:.2f} s simulated   {:.2f} x real time (speed {})   hash {:016x}\n",
@@ -78,8 +79,9 @@ std::string status_text(const wire::Reply& reply) {
 std::string status_json(const wire::Reply& reply, int indent) {
   nlohmann::ordered_json json = {
       {"state", word_of(reply.state)}, {"run", reply.run}, {"tick", reply.tick}, {"sim_time_ns", reply.time_ns}};
-  if (reply.status.empty()) return json_text(json, indent) + "\n";
-  const wire::SimulationStatus& status = reply.status.front();
+  const auto* const returned = reply.get<wire::SimulationStatus>();
+  if (returned == nullptr) return json_text(json, indent) + "\n";
+  const wire::SimulationStatus& status = *returned;
   nlohmann::ordered_json controllers = nlohmann::ordered_json::array();
   for (const wire::ControllerStatus& each : status.controllers)
     controllers.push_back({{"label", each.label},

@@ -1,0 +1,155 @@
+#include "server/batch/batch.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "server/parsing/experiment/read_experiment.hpp"
+
+namespace cohort {
+namespace {
+
+constexpr std::size_t pose_size = 7;
+
+std::uint64_t last_tick_of(const description::Experiment& experiment) {
+  if (experiment.duration.count() == 0) return std::numeric_limits<std::uint64_t>::max();
+  return static_cast<std::uint64_t>(experiment.duration / experiment.world.step);
+}
+
+// So few that all workers have something to do to the end, and so many that handing them over costs nothing.
+std::size_t worlds_a_chunk(std::size_t worlds, unsigned threads) {
+  constexpr std::size_t chunks_a_thread = 8;
+  return std::clamp<std::size_t>(worlds / (threads * chunks_a_thread), 1, 16);
+}
+
+}  // namespace
+
+Batch::Batch(const description::Experiment& experiment, std::size_t worlds, unsigned threads)
+    : experiment_(experiment), last_tick_(last_tick_of(experiment)), workers_(threads) {
+  if (worlds == 0) throw std::invalid_argument("a batch needs at least one world");
+  std::vector<Pose> X_WM;
+  for (const description::Instance& instance : experiment.world.instances) X_WM.push_back(instance.X_WM);
+  for (std::size_t world = 0; world < worlds; ++world) worlds_.push_back(begin(experiment.seed, X_WM));
+  robots_ = worlds_[0]->robot_count();
+  for (const RobotKind& kind : kinds()) {
+    observation_size_ = std::max(observation_size_, kind.observation_size);
+    command_size_ = std::max(command_size_, kind.command_size);
+  }
+  observations_.resize(worlds * robots_ * observation_size_);
+  commands_.resize(worlds * robots_ * command_size_);
+  poses_.resize(worlds * robots_ * pose_size);
+  done_.resize(worlds);
+  failures_.resize(worlds);
+  for (std::size_t world = 0; world < worlds; ++world) {
+    fill_neutral(world);
+    take(world);
+  }
+}
+
+Batch::~Batch() = default;
+
+std::unique_ptr<Simulation> Batch::begin(std::uint64_t seed, std::span<const Pose> X_WM) const {
+  description::Experiment experiment = experiment_;
+  experiment.seed = seed;
+  if (X_WM.size() != experiment.world.instances.size())
+    throw std::invalid_argument("got " + std::to_string(X_WM.size()) + " poses, expected one for each of the " +
+                                std::to_string(experiment.world.instances.size()) + " objects of the experiment");
+  for (std::size_t object = 0; object < X_WM.size(); ++object) experiment.world.instances[object].X_WM = X_WM[object];
+  return std::make_unique<Simulation>(experiment, 1);
+}
+
+std::vector<Pose> Batch::placed(std::uint64_t seed) const {
+  std::vector<Pose> X_WM;
+  const description::Experiment read =
+      experiment_.inputs ? parsing::read_experiment(experiment_.inputs, seed, experiment_.duration) : experiment_;
+  for (const description::Instance& instance : read.world.instances) X_WM.push_back(instance.X_WM);
+  return X_WM;
+}
+
+void Batch::reset(std::size_t world, std::uint64_t seed) {
+  expect_world(world);
+  reset(world, seed, placed(seed));
+}
+
+void Batch::reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X_WM) {
+  expect_world(world);
+  worlds_[world] = begin(seed, X_WM);
+  failures_[world].clear();
+  done_[world] = 0;
+  std::ranges::fill(std::span(observations_).subspan(world * robots_ * observation_size_, robots_ * observation_size_),
+                    0.0);
+  fill_neutral(world);
+  take(world);
+}
+
+void Batch::step(std::uint64_t ticks) {
+  if (ticks == 0) throw std::invalid_argument("a batch is stepped by at least one tick");
+  for (std::size_t world = 0; world < worlds(); ++world)
+    if (!stands_still(world)) check_commands(world);
+  workers_.for_each_chunk(worlds(), worlds_a_chunk(worlds(), workers_.threads()),
+                          [&](std::size_t begin, std::size_t end, unsigned) {
+                            for (std::size_t world = begin; world < end; ++world)
+                              if (!stands_still(world)) run(world, ticks);
+                          });
+  for (std::size_t world = 0; world < worlds(); ++world)
+    if (!failures_[world].empty())
+      throw std::runtime_error("world " + std::to_string(world) + ": " + std::exchange(failures_[world], {}));
+}
+
+void Batch::run(std::size_t world, std::uint64_t ticks) {
+  Simulation& simulation = *worlds_[world];
+  for (std::uint32_t robot = 0; robot < robots_; ++robot) simulation.set_command(robot, command(world, robot));
+  try {
+    for (std::uint64_t left = ticks; left > 0; --left) {
+      simulation.step();
+      if (simulation.stop_reason() || simulation.tick() >= last_tick_) break;
+    }
+  } catch (const std::exception& error) {
+    failures_[world] = error.what();
+    done_[world] |= failed;
+  }
+  take(world);
+}
+
+void Batch::check_commands(std::size_t world) const {
+  for (std::uint32_t robot = 0; robot < robots_; ++robot)
+    if (const auto fault = worlds_[world]->check_command(robot, command(world, robot)))
+      throw std::invalid_argument("world " + std::to_string(world) + ": " + fault->text);
+}
+
+std::span<const double> Batch::command(std::size_t world, std::uint32_t robot) const {
+  return {commands_.data() + (world * robots_ + robot) * command_size_, kinds()[kind_of(robot)].command_size};
+}
+
+void Batch::fill_neutral(std::size_t world) {
+  for (std::uint32_t robot = 0; robot < robots_; ++robot) {
+    const std::span<const double> neutral = worlds_[world]->command(robot);
+    std::ranges::copy(neutral,
+                      commands_.begin() + static_cast<std::ptrdiff_t>((world * robots_ + robot) * command_size_));
+  }
+}
+
+// What is to be seen of a world as it is now.
+void Batch::take(std::size_t world) {
+  const Simulation& simulation = *worlds_[world];
+  if (simulation.stop_reason()) done_[world] |= stopped;
+  if (simulation.tick() >= last_tick_) done_[world] |= timed_out;
+  for (std::uint32_t robot = 0; robot < robots_; ++robot) {
+    const std::size_t row = world * robots_ + robot;
+    std::ranges::copy(simulation.observation(robot), observations_.data() + row * observation_size_);
+    const Pose X_WL = simulation.robot_pose(robot);
+    const Eigen::Quaterniond& q = X_WL.orientation;
+    const double numbers[pose_size] = {
+        X_WL.position.x(), X_WL.position.y(), X_WL.position.z(), q.w(), q.x(), q.y(), q.z()};
+    std::ranges::copy(numbers, poses_.data() + row * pose_size);
+    if (simulation.objects().is_quarantined(simulation.body_of(robot))) done_[world] |= quarantined;
+  }
+}
+
+void Batch::expect_world(std::size_t world) const {
+  if (world >= worlds())
+    throw std::invalid_argument("there is no world " + std::to_string(world) + ", expected one of 0 to " +
+                                std::to_string(worlds() - 1));
+}
+
+}  // namespace cohort

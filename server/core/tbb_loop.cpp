@@ -6,11 +6,21 @@
 
 namespace cohort {
 
-struct TbbLoop::Threads {
-  explicit Threads(unsigned count)
-      : allowance(tbb::global_control::max_allowed_parallelism, count), arena(static_cast<int>(count)) {}
+namespace {
 
-  tbb::global_control allowance;  // oneTBB starts no more threads than cores without it
+// oneTBB starts no more threads than cores without it. Of all that are set in a process the least one counts, so there
+// is one, for as long as the process lives: how many threads a loop has is a matter of its arena.
+void allow_more_threads_than_cores() {
+  constexpr std::size_t more_than_any_pool = 4096;
+  [[maybe_unused]] static const auto* const allowance =
+      new tbb::global_control(tbb::global_control::max_allowed_parallelism, more_than_any_pool);
+}
+
+}  // namespace
+
+struct TbbLoop::Threads {
+  explicit Threads(unsigned count) : arena(static_cast<int>(count)) { allow_more_threads_than_cores(); }
+
   tbb::task_arena arena;
 };
 

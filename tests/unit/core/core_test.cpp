@@ -9,7 +9,6 @@
 #include "client_sdk/math/portable_math.hpp"
 #include "server/core/hash.hpp"
 #include "server/core/random.hpp"
-#include "server/core/worker_pool.hpp"
 
 namespace cohort {
 namespace {
@@ -73,29 +72,6 @@ TEST(StateHash, DependsOnValuesOrderAndCount) {
   EXPECT_NE(hash_of({1.0}), hash_of({1.0, 0.0}));
   EXPECT_NE(hash_of({0.0}), hash_of({-0.0}));
   EXPECT_NE(hash_of({1.0}), hash_of({std::nextafter(1.0, 2.0)})) << "one bit counts";
-}
-
-TEST(WorkerPool, CoversEveryIndexOnceInChunksThatDoNotDependOnThreads) {
-  for (const unsigned threads : {1u, 2u, 8u}) {
-    WorkerPool workers(threads);
-    std::vector<std::atomic<int>> visits(1003);
-    workers.for_each_chunk(visits.size(), 10, [&](std::size_t begin, std::size_t end, unsigned worker) {
-      EXPECT_EQ(begin % 10, 0u);
-      EXPECT_LE(end - begin, 10u);
-      EXPECT_LT(worker, threads);
-      for (std::size_t i = begin; i < end; ++i) ++visits[i];
-    });
-    for (const auto& count : visits) EXPECT_EQ(count, 1);
-  }
-}
-
-TEST(WorkerPool, PassesAnExceptionOn) {
-  WorkerPool workers(2);
-  EXPECT_THROW(workers.for_each_chunk(100, 1,
-                                      [](std::size_t begin, std::size_t, unsigned) {
-                                        if (begin == 50) throw std::runtime_error("no");
-                                      }),
-               std::runtime_error);
 }
 
 TEST(PortableMath, IsWhatEveryLibraryOfThisProgramCalls) { EXPECT_TRUE(functions_not_portable().empty()); }

@@ -8,9 +8,18 @@
 #include "server/physics/contact/same_point.hpp"
 
 namespace cohort::physics {
+namespace {
+
+// One for all worlds: it has no state, and takes more memory than a small world.
+BulletNarrowPhase& narrow_phase() {
+  static BulletNarrowPhase shared(Collision::margin);
+  return shared;
+}
+
+}  // namespace
 
 Collision::Collision(const geometry::Scene& scene, MayTouch may_touch)
-    : scene_(scene), may_touch_(std::move(may_touch)), narrow_phase_(margin) {}
+    : scene_(scene), may_touch_(std::move(may_touch)) {}
 
 void Collision::add(std::shared_ptr<const BulletShape> shape) {
   const auto solid = static_cast<std::uint32_t>(shapes_.size());
@@ -102,7 +111,7 @@ void Collision::find_contact(SolidPair& pair) {
     return;
   }
   if (!pair.general) {
-    pair.general.emplace(narrow_phase_, shapes_[pair.a], shapes_[pair.b]);
+    pair.general.emplace(narrow_phase(), shapes_[pair.a], shapes_[pair.b]);
     pair.contact.count = 0;
   }
   pair.general->update(a.X_WC, b.X_WC, pair.contact);
@@ -113,7 +122,7 @@ ContactPoints Collision::contact_at(const Pose& X_WA, std::uint32_t solid, std::
   const geometry::Solid& b = scene_.solid(other);
   ContactPoints found;
   if (!find_closed_form_contact(scene_.solid(solid).shape, X_WA, b.shape, b.X_WC, margin, found))
-    BulletContact(narrow_phase_, shapes_[solid], shapes_[other]).update(X_WA, b.X_WC, found);
+    BulletContact(narrow_phase(), shapes_[solid], shapes_[other]).update(X_WA, b.X_WC, found);
   return found;
 }
 
@@ -240,7 +249,7 @@ void Collision::restore(SnapshotReader& reader) {
       bool is_general = false;
       reader.read(is_general);
       if (!is_general) continue;
-      pair.general.emplace(narrow_phase_, shapes_[pair.a], shapes_[pair.b]);
+      pair.general.emplace(narrow_phase(), shapes_[pair.a], shapes_[pair.b]);
       pair.general->restore(scene_.solid(pair.a).X_WC, scene_.solid(pair.b).X_WC, reader);
     }
   }

@@ -89,7 +89,6 @@ class Collision {
   const geometry::Scene& scene_;
   std::vector<std::shared_ptr<const BulletShape>> shapes_;
   MayTouch may_touch_;
-  mutable BulletNarrowPhase narrow_phase_;
   std::vector<std::vector<SolidPair>> pairs_;  // by solid, ascending b
   std::vector<double> furthest_unseen_;        // by solid
   std::vector<Eigen::Vector3d> ways_;          // by solid

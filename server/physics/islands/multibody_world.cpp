@@ -7,11 +7,19 @@
 #include <string>
 #include <utility>
 
+#include "server/physics/islands/island_solver.hpp"
+
 namespace cohort::physics {
 namespace {
 
 constexpr std::size_t members_at_once = 16;
 constexpr std::size_t islands_at_once = 8;
+
+// Each thread has one for all worlds, so that many small worlds share memory that stays in the cache.
+IslandSolver& solver_of_this_thread() {
+  static thread_local IslandSolver solver;
+  return solver;
+}
 
 }  // namespace
 
@@ -218,9 +226,10 @@ void MultibodyWorld::solve_islands() {
     const std::size_t bodies = islands_.members(island).size();
     return bodies >= LargeIslandSolver::least_bodies && !is_solved_directly(assembly_.settings, bodies);
   };
-  workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned worker) {
+  workers_.for_each_chunk(islands_.count(), islands_at_once, [&](std::size_t begin, std::size_t end, unsigned) {
+    IslandSolver& solver = solver_of_this_thread();
     for (auto island = static_cast<std::uint32_t>(begin); island < end; ++island)
-      if (!is_large(island)) memory_[worker].solver.solve(assembly_, islands_.members(island));
+      if (!is_large(island)) solver.solve(assembly_, islands_.members(island));
   });
   for (std::uint32_t island = 0; island < islands_.count(); ++island)
     if (is_large(island)) large_island_solver_.solve(assembly_, islands_.members(island));

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "server/physics/islands/assembly.hpp"
-#include "server/physics/islands/island_solver.hpp"
 #include "server/physics/islands/islands.hpp"
 #include "server/physics/islands/large_island_solver.hpp"
 #include "server/physics/islands/sleep.hpp"
@@ -106,7 +105,6 @@ class MultibodyWorld final : public World {
 
  private:
   struct Memory {  // of one worker
-    IslandSolver solver;
     std::vector<std::uint32_t> near;
     std::vector<std::uint32_t> candidates;
     double furthest = 0.0;  // way of a part in this step [m]

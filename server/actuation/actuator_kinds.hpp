@@ -15,7 +15,7 @@ class ActuatorOf : public Actuator {
   ActuatorOf(const Device& device, const Mount& mount) : device_(device), mount_(mount) {}
 
  protected:
-  Device device_;
+  const Device& device_;  // of the model
   Mount mount_;
 };
 

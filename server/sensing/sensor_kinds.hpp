@@ -13,7 +13,7 @@ class SensorOf : public Sensor {
   SensorOf(const Device& device, const Mount& mount) : device_(device), mount_(mount) {}
 
  protected:
-  Device device_;
+  const Device& device_;  // of the model
   Mount mount_;
 };
 

@@ -26,34 +26,48 @@ std::uint64_t whole_ticks(std::chrono::nanoseconds time, std::chrono::nanosecond
 
 }  // namespace
 
-SignalChain::SignalChain(const description::Readout& readout, std::vector<Channel> channels, std::uint64_t seed,
-                         const std::string& robot, const std::string& device, std::chrono::nanoseconds step)
-    : readout_(readout), random_(seed, robot, device) {
+SignalPlan::SignalPlan(const description::Readout& readout, const std::vector<Channel>& channels,
+                       std::chrono::nanoseconds step)
+    : readout_(readout) {
   for (const Channel& channel : channels) {
     for (std::uint32_t i = 0; i < channel.size; ++i) {
       const int place = channel.is_measured ? noise_on(channel, i) : -1;
-      Value value{place, 0.0, channel.lower, channel.upper};
+      Value value{place, 0.0, channel.lower, channel.upper, channel.neutral};
       if (place >= 0) {
         const description::Noise& noise = readout_.noises[static_cast<std::size_t>(place)];
         wanders_ = wanders_ || noise.drift_deviation > 0.0;
+        draws_bias_ = draws_bias_ || noise.bias_deviation > 0.0;
         value.constant = noise.mean + noise.bias;
-        if (noise.bias_deviation > 0.0)
-          value.constant += noise.bias_deviation * random_.normal(never, draw_of(bias, values_.size()));
       }
       values_.push_back(value);
-      reported_.push_back(channel.neutral);
     }
   }
   period_ = std::max<std::uint64_t>(1, whole_ticks(readout_.period, step));
   latency_ = whole_ticks(readout_.latency, step);
   sample_time_ = static_cast<double>(period_) * static_cast<double>(step.count()) * 1e-9;
   is_immediate_ = period_ == 1 && latency_ == 0 && readout_.drop_out == 0.0;
-  if (is_immediate_) reported_.clear();
-  if (wanders_) drift_.assign(values_.size(), 0.0);
-  drift_before_ = drift_;
 }
 
-int SignalChain::noise_on(const Channel& channel, std::uint32_t element) const {
+SignalChain::SignalChain(std::shared_ptr<const SignalPlan> plan, std::uint64_t seed, const std::string& robot,
+                         const std::string& device)
+    : plan_(std::move(plan)), random_(seed, robot, device) {
+  if (plan_->is_immediate_ && !plan_->draws_bias_ && !plan_->wanders_) return;
+  memory_ = std::make_unique<Memory>();
+  const std::vector<SignalPlan::Value>& values = plan_->values_;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const SignalPlan::Value& value = values[i];
+    if (!plan_->is_immediate_) memory_->reported.push_back(value.neutral);
+    if (!plan_->draws_bias_) continue;
+    double& constant = memory_->constants.emplace_back(value.constant);
+    if (value.noise < 0) continue;
+    const double deviation = plan_->readout_.noises[static_cast<std::size_t>(value.noise)].bias_deviation;
+    if (deviation > 0.0) constant += deviation * random_.normal(never, draw_of(bias, i));
+  }
+  if (plan_->wanders_) memory_->drift.assign(values.size(), 0.0);
+  memory_->drift_before = memory_->drift;
+}
+
+int SignalPlan::noise_on(const Channel& channel, std::uint32_t element) const {
   int place = -1;
   for (std::size_t i = 0; i < readout_.noises.size(); ++i) {
     const description::Noise& noise = readout_.noises[i];
@@ -68,29 +82,31 @@ int SignalChain::noise_on(const Channel& channel, std::uint32_t element) const {
 // times but the first ones, and it forgets itself by 1/e in `drift_time` (Gelb, "Applied Optimal Estimation", 1974,
 // section 3.6).
 void SignalChain::disturb(std::uint64_t tick, std::span<double> values) {
-  if (readout_.noises.empty()) return;
-  if (wanders_) {
-    if (tick == drift_tick_)
-      drift_ = drift_before_;
+  const std::vector<description::Noise>& noises = plan_->readout_.noises;
+  if (noises.empty()) return;
+  if (plan_->wanders_) {
+    if (tick == memory_->drift_tick)
+      memory_->drift = memory_->drift_before;
     else
-      drift_before_ = drift_;
-    drift_tick_ = tick;
+      memory_->drift_before = memory_->drift;
+    memory_->drift_tick = tick;
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Value& value = values_[i];
+    const SignalPlan::Value& value = plan_->values_[i];
     if (value.noise < 0) {
       if (std::isinf(values[i])) values[i] = std::clamp(values[i], value.lower, value.upper);
       continue;
     }
-    const description::Noise& noise = readout_.noises[static_cast<std::size_t>(value.noise)];
-    double reading = values[i] + value.constant;
+    const description::Noise& noise = noises[static_cast<std::size_t>(value.noise)];
+    double reading = values[i] + (plan_->draws_bias_ ? memory_->constants[i] : value.constant);
     if (noise.deviation > 0.0) reading += noise.deviation * random_.normal(tick, draw_of(gaussian, i));
     if (noise.uniform > 0.0) reading += noise.uniform * (2.0 * random_.uniform(tick, draw_of(uniform, i)) - 1.0);
     if (noise.drift_deviation > 0.0) {
-      const double kept = noise.drift_time > 0.0 ? std::exp(-sample_time_ / noise.drift_time) : 0.0;
-      drift_[i] = kept * drift_[i] +
-                  noise.drift_deviation * std::sqrt(1.0 - kept * kept) * random_.normal(tick, draw_of(drift, i));
-      reading += drift_[i];
+      const double kept = noise.drift_time > 0.0 ? std::exp(-plan_->sample_time_ / noise.drift_time) : 0.0;
+      double& wandered = memory_->drift[i];
+      wandered = kept * wandered +
+                 noise.drift_deviation * std::sqrt(1.0 - kept * kept) * random_.normal(tick, draw_of(drift, i));
+      reading += wandered;
     }
     if (noise.precision > 0.0) reading = noise.precision * std::round(reading / noise.precision);
     values[i] = std::clamp(reading, value.lower, value.upper);
@@ -98,48 +114,56 @@ void SignalChain::disturb(std::uint64_t tick, std::span<double> values) {
 }
 
 void SignalChain::take(std::uint64_t tick, std::span<const double> values) {
-  if (readout_.drop_out > 0.0 && random_.uniform(tick, draw_of(drop_out, 0)) < readout_.drop_out) return;
-  if (!under_way_.empty() && under_way_.back().due == tick + latency_) under_way_.pop_back();
-  under_way_.push_back({tick + latency_, {values.begin(), values.end()}});
+  const double drop_out_rate = plan_->readout_.drop_out;
+  if (drop_out_rate > 0.0 && random_.uniform(tick, draw_of(drop_out, 0)) < drop_out_rate) return;
+  std::vector<Report>& under_way = memory_->under_way;
+  const std::uint64_t due = tick + plan_->latency_;
+  if (!under_way.empty() && under_way.back().due == due) under_way.pop_back();
+  under_way.push_back({due, {values.begin(), values.end()}});
 }
 
 void SignalChain::report(std::uint64_t tick, std::span<double> values) {
-  while (!under_way_.empty() && under_way_.front().due <= tick) {
-    reported_ = std::move(under_way_.front().values);
-    under_way_.pop_front();
-  }
-  std::ranges::copy(reported_, values.begin());
+  std::vector<Report>& under_way = memory_->under_way;
+  auto next = under_way.begin();
+  for (; next != under_way.end() && next->due <= tick; ++next) memory_->reported = std::move(next->values);
+  under_way.erase(under_way.begin(), next);
+  std::ranges::copy(memory_->reported, values.begin());
 }
 
-template <class Self, class Visit>
-void SignalChain::visit_state(Self& self, Visit&& visit) {
-  for (auto& number : self.drift_) visit(number);
-  for (auto& number : self.reported_) visit(number);
-  for (auto& report : self.under_way_) {
+template <class Memories, class Visit>
+void SignalChain::visit_state(Memories& memory, Visit&& visit) {
+  for (auto& number : memory.drift) visit(number);
+  for (auto& number : memory.reported) visit(number);
+  for (auto& report : memory.under_way) {
     visit(report.due);
     for (auto& number : report.values) visit(number);
   }
 }
 
 void SignalChain::hash(StateHash& hash) const {
-  visit_state(*this, [&](const auto& number) { hash.add(number); });
+  if (memory_) visit_state(std::as_const(*memory_), [&](const auto& number) { hash.add(number); });
 }
 
 void SignalChain::save(SnapshotWriter& writer) const {
-  writer.add_count(under_way_.size());
-  visit_state(*this, StateSaver{writer});
-  if (!wanders_) return;
-  writer.add(drift_tick_);
-  for (const double drift : drift_before_) writer.add(drift);
+  writer.add_count(memory_ ? memory_->under_way.size() : 0);
+  if (!memory_) return;
+  visit_state(std::as_const(*memory_), StateSaver{writer});
+  if (!plan_->wanders_) return;
+  writer.add(memory_->drift_tick);
+  for (const double drift : memory_->drift_before) writer.add(drift);
 }
 
 void SignalChain::restore(SnapshotReader& reader) {
   constexpr std::size_t least_bytes = sizeof(std::uint64_t);
-  under_way_.assign(reader.read_count(least_bytes), {0, std::vector<double>(values_.size())});
-  visit_state(*this, StateRestorer{reader});
-  if (!wanders_) return;
-  reader.read(drift_tick_);
-  for (double& drift : drift_before_) reader.read(drift);
+  const std::size_t reports = reader.read_count(least_bytes);
+  if (reports > 0 && plan_->is_immediate_)
+    throw SnapshotError("the snapshot has a report of a sensor that delays none");
+  if (!memory_) return;
+  memory_->under_way.assign(reports, {0, std::vector<double>(plan_->values_.size())});
+  visit_state(*memory_, StateRestorer{reader});
+  if (!plan_->wanders_) return;
+  reader.read(memory_->drift_tick);
+  for (double& drift : memory_->drift_before) reader.read(drift);
 }
 
 }  // namespace cohort::sensing

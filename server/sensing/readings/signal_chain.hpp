@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,19 +14,49 @@
 
 namespace cohort::sensing {
 
+/// What decides how the readings of one sensor come out and is the same for all robots of a model. Constant, and shared
+/// by their signal chains.
+class SignalPlan {
+ public:
+  SignalPlan(const description::Readout& readout, const std::vector<Channel>& channels, std::chrono::nanoseconds step);
+
+ private:
+  friend class SignalChain;
+  struct Value {
+    int noise = -1;         // place in the readout's, -1: none
+    double constant = 0.0;  // bias and mean of the noise
+    double lower = 0.0;
+    double upper = 0.0;
+    double neutral = 0.0;
+  };
+  int noise_on(const Channel& channel, std::uint32_t element) const;
+
+  description::Readout readout_;
+  std::vector<Value> values_;
+  bool draws_bias_ = false;  // for each robot
+  bool wanders_ = false;
+  bool is_immediate_ = true;
+  std::uint64_t period_ = 1;   // in ticks
+  std::uint64_t latency_ = 0;  // in ticks
+  double sample_time_ = 0.0;   // from one measurement to the next [s]
+};
+
 /// How the readings of one sensor of one robot come out: what description::Readout says, at work. Draws depend on seed,
 /// robot, device, tick and value alone. One robot's is used by one thread at a time.
 class SignalChain {
  public:
   /// `robot`: scoped name.
-  SignalChain(const description::Readout& readout, std::vector<Channel> channels, std::uint64_t seed,
-              const std::string& robot, const std::string& device, std::chrono::nanoseconds step);
+  SignalChain(std::shared_ptr<const SignalPlan> plan, std::uint64_t seed, const std::string& robot,
+              const std::string& device);
+  SignalChain(const description::Readout& readout, const std::vector<Channel>& channels, std::uint64_t seed,
+              const std::string& robot, const std::string& device, std::chrono::nanoseconds step)
+      : SignalChain(std::make_shared<const SignalPlan>(readout, channels, step), seed, robot, device) {}
 
   /// Whether readings are as old as the tick and need no memory; then `disturb` is all that there is to it.
-  bool is_immediate() const { return is_immediate_; }
+  bool is_immediate() const { return plan_->is_immediate_; }
   /// Whether the sensor measures at this tick, for someone who asks it at `is_due` ticks.
   bool measures_at(std::uint64_t tick, bool is_due) const {
-    return is_immediate_ ? is_due || wanders_ : tick % period_ == 0;
+    return plan_->is_immediate_ ? is_due || plan_->wanders_ : tick % plan_->period_ == 0;
   }
   /// Adds all errors to what has been measured at this tick. What is infinite, where nothing was there to be measured,
   /// becomes the bound of its channel, if there is noise on the device at all. As `take` and `report`, it may be called
@@ -43,34 +73,24 @@ class SignalChain {
   void restore(SnapshotReader& reader);
 
  private:
-  struct Value {
-    int noise = -1;         // place in the readout's, -1: none
-    double constant = 0.0;  // bias and mean of the noise
-    double lower = 0.0;
-    double upper = 0.0;
-  };
   struct Report {
     std::uint64_t due = 0;  // the tick at which it arrives
     std::vector<double> values;
   };
-  int noise_on(const Channel& channel, std::uint32_t element) const;
-  template <class Self, class Visit>
-  static void visit_state(Self& self, Visit&& visit);
+  struct Memory {
+    std::vector<double> constants;     // of each value, if a bias is drawn
+    std::vector<double> drift;         // of each value, if any wanders
+    std::vector<double> drift_before;  // before `drift_tick`
+    std::uint64_t drift_tick = ~std::uint64_t{0};
+    std::vector<double> reported;   // that holds now, unless it is immediate
+    std::vector<Report> under_way;  // oldest first
+  };
+  template <class Memories, class Visit>
+  static void visit_state(Memories& memory, Visit&& visit);
 
-  description::Readout readout_;
+  std::shared_ptr<const SignalPlan> plan_;
   RandomStream random_;
-  std::vector<Value> values_;
-  bool wanders_ = false;
-  bool is_immediate_ = true;
-  std::uint64_t period_ = 1;   // in ticks
-  std::uint64_t latency_ = 0;  // in ticks
-  double sample_time_ = 0.0;   // from one measurement to the next [s]
-
-  std::vector<double> drift_;         // of each value, if any wanders
-  std::vector<double> drift_before_;  // before `drift_tick_`
-  std::uint64_t drift_tick_ = ~std::uint64_t{0};
-  std::vector<double> reported_;  // that holds now; if there is a memory
-  std::deque<Report> under_way_;  // oldest first
+  std::unique_ptr<Memory> memory_;  // null if it needs none
 };
 
 }  // namespace cohort::sensing

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -12,7 +11,7 @@
 
 #include "server/description/input_error.hpp"
 #include "server/description/kept_files.hpp"
-#include "server/description/model.hpp"
+#include "server/description/models.hpp"
 #include "server/description/population.hpp"
 
 namespace cohort::description {
@@ -114,7 +113,7 @@ struct World {
   std::optional<Water> water{};
   std::vector<std::string> materials{""};  ///< 0 is of all that names none
   std::vector<MaterialPair> material_pairs;
-  std::deque<Model> models;  ///< they stay where they are while more come
+  Models models;
   /// First those that stand where a file says, then those of the populations in their order, then those that events of
   /// an experiment bring.
   std::vector<Instance> instances;

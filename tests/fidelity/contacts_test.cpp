@@ -97,7 +97,7 @@ TEST(Contacts, APairOfMaterialsHasItsOwnFriction) {
   SmallWorld small;
   small.description.materials = {"", "ice", "felt"};
   small.description.material_pairs = {{1, 2, 0.05, 0.0, 0.0}};
-  small.description.models[0].links[0].collisions[0].surface.material = 1;
+  small.description.models.edit(0).links[0].collisions[0].surface.material = 1;
   const Vector3d size(0.2, 0.2, 0.05);
   description::Surface felt;
   felt.material = 2;

@@ -233,7 +233,7 @@ TEST_P(FirstWeek, TracksHoldOnToMaterialsAsTheirPairSays) {
     SmallWorld small(physics.world());
     small.description.materials = {"", "ice", "rubber"};
     small.description.material_pairs = {{2, 1, 0.05, 0.0, 0.0}};
-    small.description.models[0].links[0].collisions[0].surface.material = 1;
+    small.description.models.edit(0).links[0].collisions[0].surface.material = 1;
     description::Model robot = physics.robot();
     const auto slippery = small.add(robot, at(0, 1, 0));
     for (description::Link& link : robot.links)

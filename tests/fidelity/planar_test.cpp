@@ -176,7 +176,7 @@ TEST(Planar, APairOfMaterialsHasItsOwnFriction) {
   SmallWorld small(planar.world());
   small.description.materials = {"", "ice", "felt"};
   small.description.material_pairs = {{1, 2, 0.1, 0.0, 0.0}};
-  small.description.models[0].links[0].collisions[0].surface.material = 1;
+  small.description.models.edit(0).links[0].collisions[0].surface.material = 1;
   description::Surface felt;
   felt.material = 2;
   const auto puck = small.add(disc(0.5, 0.04, felt), at(0, 0, 0.02));

@@ -130,7 +130,8 @@ TEST(Scenes, ARobotDrivesOverALooseBoard) {
 TEST(Scenes, ARobotThatSetsOffOnALooseBoardPushesItBack) {
   SmallWorld small(world_with_floor(0.0));
   const auto plank = small.add(board({0.0, 0.0}), at(0, 0, 0.005));
-  small.description.models.back().links[0].collisions[0].surface.friction = 1.0;  // the floor has none
+  small.description.models.edit(small.description.models.size() - 1).links[0].collisions[0].surface.friction =
+      1.0;  // the floor has none
   const auto robot = small.add(tracked_robot(), at(0, 0, 0.01));
   small.run(0.5);
   small.drive(robot, 0.1, 0.1);
@@ -158,8 +159,8 @@ TEST(Scenes, SmallThingsLieOnAVeryLargeOneThatMoves) {
   SmallWorld small;
   const Vector3d raft_size(6.0, 6.0, 0.5);
   const auto raft = small.add(loose("raft", Box{raft_size}, solid_box(400.0, raft_size), {0.0, 0.0}), at(0, 0, 0.25));
-  small.description.models.back().links[0].collisions[0].surface.friction = 1.0;
-  small.description.models[0].links[0].collisions[0].surface.friction = 0.0;
+  small.description.models.edit(small.description.models.size() - 1).links[0].collisions[0].surface.friction = 1.0;
+  small.description.models.edit(0).links[0].collisions[0].surface.friction = 0.0;
   std::vector<std::uint32_t> balls;
   balls.reserve(20);
   for (int i = 0; i < 20; ++i)

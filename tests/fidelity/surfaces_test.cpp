@@ -202,7 +202,7 @@ TEST_P(Surfaces, ABoxOnSoftGroundSinksAsItsSpringsSay) {
   const Vector3d size(0.2, 0.2, 0.1);
   for (const double of_ground : {description::Surface{}.stiffness, 2e4}) {
     description::World world = GetParam().world();
-    world.models[0].links[0].collisions[0].surface.stiffness = of_ground;
+    world.models.edit(0).links[0].collisions[0].surface.stiffness = of_ground;
     SmallWorld small(std::move(world));
     Surface surface;
     surface.stiffness = 1e4;
@@ -219,7 +219,7 @@ TEST_P(Surfaces, ABoxOnSoftGroundSinksAsItsSpringsSay) {
 TEST_P(Surfaces, ABallOnASpringSwingsWithItsPeriod) {
   description::World world = GetParam().world();
   world.step = std::chrono::microseconds(100);
-  world.models[0].links[0].collisions[0].surface.damping = 0.0;
+  world.models.edit(0).links[0].collisions[0].surface.damping = 0.0;
   SmallWorld small(std::move(world));
   Surface surface;
   surface.stiffness = 2e3;
@@ -272,7 +272,7 @@ TEST_P(Surfaces, SpinningResistanceStopsABallThatTurnsOnTheSpot) {
 
 TEST_P(Surfaces, BounceOnlyAboveTheLargerThreshold) {
   description::World world = GetParam().world();
-  world.models[0].links[0].collisions[0].surface.bounce_threshold = 0.5;
+  world.models.edit(0).links[0].collisions[0].surface.bounce_threshold = 0.5;
   SmallWorld small(std::move(world));
   const auto ball = [&](double x, double height, std::optional<double> threshold) {
     Surface surface{1.0, 0.8};
@@ -339,7 +339,7 @@ TEST(PlanarSurfaces, CollideOnlyWithThoseOfTheirBitmask) {
 
 TEST(TreelSurfaces, BearTracksWhateverTheirBitmask) {
   description::World world = treel.world();
-  world.models[0].links[0].collisions[0].surface = with_bitmask(0);
+  world.models.edit(0).links[0].collisions[0].surface = with_bitmask(0);
   SmallWorld small(std::move(world));
   const auto robot = small.add(treel.robot(), at(0, 0, 0));
   small.drive(robot, 0.1, 0.1);

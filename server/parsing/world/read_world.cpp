@@ -74,7 +74,7 @@ std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptF
   world.materials = std::move(alone.materials);
   const auto before_seed_warnings = world.warnings.end() - static_cast<std::ptrdiff_t>(world.seed_warnings);
   world.warnings.insert(before_seed_warnings, alone.warnings.begin(), alone.warnings.end());
-  world.models.push_back(std::move(alone.models.front()));
+  world.models.push_back(alone.models.front());
   return world.models.size() - 1;
 }
 

@@ -77,7 +77,7 @@ void place_sources(description::World& world, const SensingScene& scene) {
 
 description::World describe(const SensingScene& scene, const std::vector<Device>& devices, bool is_driven) {
   description::World world = describe(scene.scene);
-  std::vector<Device>& of_robots = world.models.back().devices;
+  std::vector<Device>& of_robots = world.models.edit(world.models.size() - 1).devices;
   if (!is_driven) of_robots.clear();
   of_robots.insert(of_robots.end(), devices.begin(), devices.end());
   const double z = 0.5 * scene.obstacle_height;

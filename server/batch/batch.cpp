@@ -25,11 +25,12 @@ std::size_t worlds_a_chunk(std::size_t worlds, unsigned threads) {
 }  // namespace
 
 Batch::Batch(const description::Experiment& experiment, std::size_t worlds, unsigned threads)
-    : experiment_(experiment), last_tick_(last_tick_of(experiment)), workers_(threads) {
+    : first_(experiment, 1), last_tick_(last_tick_of(experiment)), workers_(threads) {
   if (worlds == 0) throw std::invalid_argument("a batch needs at least one world");
   std::vector<Pose> X_WM;
   for (const description::Instance& instance : experiment.world.instances) X_WM.push_back(instance.X_WM);
-  for (std::size_t world = 0; world < worlds; ++world) worlds_.push_back(begin(experiment.seed, X_WM));
+  for (std::size_t world = 0; world < worlds; ++world)
+    worlds_.push_back(std::make_unique<Simulation>(first_, experiment.seed, X_WM));
   robots_ = worlds_[0]->robot_count();
   for (const RobotKind& kind : kinds()) {
     observation_size_ = std::max(observation_size_, kind.observation_size);
@@ -48,20 +49,11 @@ Batch::Batch(const description::Experiment& experiment, std::size_t worlds, unsi
 
 Batch::~Batch() = default;
 
-std::unique_ptr<Simulation> Batch::begin(std::uint64_t seed, std::span<const Pose> X_WM) const {
-  description::Experiment experiment = experiment_;
-  experiment.seed = seed;
-  if (X_WM.size() != experiment.world.instances.size())
-    throw std::invalid_argument("got " + std::to_string(X_WM.size()) + " poses, expected one for each of the " +
-                                std::to_string(experiment.world.instances.size()) + " objects of the experiment");
-  for (std::size_t object = 0; object < X_WM.size(); ++object) experiment.world.instances[object].X_WM = X_WM[object];
-  return std::make_unique<Simulation>(experiment, 1);
-}
-
 std::vector<Pose> Batch::placed(std::uint64_t seed) const {
   std::vector<Pose> X_WM;
+  const description::Experiment& experiment = first_.experiment();
   const description::Experiment read =
-      experiment_.inputs ? parsing::read_experiment(experiment_.inputs, seed, experiment_.duration) : experiment_;
+      experiment.inputs ? parsing::read_experiment(experiment.inputs, seed, experiment.duration) : experiment;
   for (const description::Instance& instance : read.world.instances) X_WM.push_back(instance.X_WM);
   return X_WM;
 }
@@ -73,7 +65,7 @@ void Batch::reset(std::size_t world, std::uint64_t seed) {
 
 void Batch::reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X_WM) {
   expect_world(world);
-  worlds_[world] = begin(seed, X_WM);
+  worlds_[world] = std::make_unique<Simulation>(first_, seed, X_WM);
   failures_[world].clear();
   done_[world] = 0;
   std::ranges::fill(std::span(observations_).subspan(world * robots_ * observation_size_, robots_ * observation_size_),

@@ -83,7 +83,6 @@ class Batch {
 
  private:
   std::vector<Pose> placed(std::uint64_t seed) const;
-  std::unique_ptr<Simulation> begin(std::uint64_t seed, std::span<const Pose> X_WM) const;
   void expect_world(std::size_t world) const;
   void take(std::size_t world);
   void fill_neutral(std::size_t world);
@@ -92,7 +91,7 @@ class Batch {
   bool stands_still(std::size_t world) const { return (done_[world] & (stopped | timed_out | failed)) != 0; }
   std::span<const double> command(std::size_t world, std::uint32_t robot) const;
 
-  description::Experiment experiment_;
+  Simulation first_;  // is never stepped; all worlds are built like it
   std::uint64_t last_tick_;
   WorkerPool workers_;
   std::vector<std::unique_ptr<Simulation>> worlds_;

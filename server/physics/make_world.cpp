@@ -5,10 +5,10 @@
 
 namespace cohort::physics {
 
-std::unique_ptr<World> make_world(const description::World& description, WorkerPool& workers) {
+std::unique_ptr<World> make_world(const description::World& description, WorkerPool& workers, const World* like) {
   if (description.physics.fidelity == description::Fidelity::planar)
-    return std::make_unique<PlanarWorld>(description, workers);
-  return std::make_unique<MultibodyWorld>(description, workers);
+    return std::make_unique<PlanarWorld>(description, workers, dynamic_cast<const PlanarWorld*>(like));
+  return std::make_unique<MultibodyWorld>(description, workers, dynamic_cast<const MultibodyWorld*>(like));
 }
 
 }  // namespace cohort::physics

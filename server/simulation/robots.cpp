@@ -56,8 +56,12 @@ void observe(const sensing::Sensor& sensor, sensing::SignalChain& chain, std::ui
 
 }  // namespace
 
-Robots::Robots(const Surroundings& around)
-    : around_(around), described_(around.experiment.world.robots.size()), scratch_(around.workers.threads()) {
+Robots::Robots(const Surroundings& around, const Robots* like)
+    : around_(around),
+      kinds_(like != nullptr ? like->kinds_ : std::make_shared<const Kinds>()),
+      described_(around.experiment.world.robots.size()),
+      scratch_(around.workers.threads()) {
+  robots_.reserve(described_);
   while (robots_.size() < described_) add();
 }
 
@@ -71,46 +75,73 @@ void Robots::add() {
   robot.team = find_team(around_.experiment, id);
   if (robot.team < around_.experiment.teams.size()) robot.policy = around_.experiment.teams[robot.team].policy;
 
-  const description::Model& model = description.robot_model(id);
-  RobotKind kind{model.name, {}, {}, 0, 0};
+  DevicesOfRobot devices = make_devices(robot);
+  robot.kind = find_or_add_kind(description.robot(id).model, devices);
+  const KindParts& parts = kinds_->parts[robot.kind];
+  robot.sensors.reserve(devices.sensors.size());
+  for (auto& [sensor, device] : devices.sensors) {
+    const std::size_t place = robot.sensors.size();
+    if (sensor->has_shared_view()) sharing_views_.push_back({id, place});
+    robot.sensors.push_back({std::move(sensor),
+                             sensing::SignalChain(parts.signal_plans[place], around_.experiment.seed, name(id),
+                                                  description::name_of(*device)),
+                             parts.sensor_sizes[place]});
+  }
+  robot.actuators.reserve(devices.actuators.size());
+  for (std::unique_ptr<actuation::Actuator>& actuator : devices.actuators)
+    robot.actuators.push_back({std::move(actuator), parts.actuator_sizes[robot.actuators.size()]});
+  robot.observation_offset = observations_.size();
+  observations_.resize(observations_.size() + kinds()[robot.kind].observation_size);
+  robot.command = parts.neutral;
+}
+
+Robots::DevicesOfRobot Robots::make_devices(const Robot& robot) {
+  const description::World& description = around_.experiment.world;
+  const description::Model& model = description.models[description.instances[robot.body].model];
+  DevicesOfRobot made;
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     if (auto sensor = sensing::make_sensor({around_.world, around_.emitters, description, around_.grippers, views_,
                                             robot.body, device, around_.experiment.seed})) {
       if (sensor->needs_record()) around_.world.record(robot.body);
-      append(kind.observation, sensor->channels());
-      add_sensor(id, std::move(sensor), model.devices[device]);
+      made.sensors.emplace_back(std::move(sensor), &model.devices[device]);
     }
     if (auto actuator = actuation::make_actuator({around_.world, around_.emitters, description, around_.grippers,
-                                                  around_.detachable_joints, around_.actions, robot.body, device})) {
-      const std::vector<Channel> channels = actuator->channels();
-      append(kind.command, channels);
-      robot.actuators.push_back({std::move(actuator), total_size(channels)});
-    }
+                                                  around_.detachable_joints, around_.actions, robot.body, device}))
+      made.actuators.push_back(std::move(actuator));
   }
-  kind_of_model_.resize(description.models.size(), none);
-  std::uint32_t& known = kind_of_model_[description.robot(id).model];
-  if (known == none) {
-    known = static_cast<std::uint32_t>(kinds_.size());
-    kind.observation_size = total_size(kind.observation);
-    kind.command_size = total_size(kind.command);
-    kinds_.push_back(std::move(kind));
-  }
-  robot.kind = known;
-  robot.observation_offset = observations_.size();
-  observations_.resize(observations_.size() + kinds_[known].observation_size);
-  robot.command = neutral_values(kinds_[known]);
+  return made;
 }
 
-void Robots::add_sensor(std::uint32_t id, std::unique_ptr<sensing::Sensor> sensor, const description::Device& device) {
-  std::vector<SensorOfRobot>& sensors = robots_[id].sensors;
-  if (sensor->has_shared_view()) sharing_views_.push_back({id, sensors.size()});
-  const std::vector<Channel> channels = sensor->channels();
-  const description::Readout* const readout = description::readout_of(device);
-  sensors.push_back(
-      {std::move(sensor),
-       sensing::SignalChain(readout != nullptr ? *readout : description::Readout{}, channels, around_.experiment.seed,
-                            name(id), description::name_of(device), around_.experiment.world.step),
-       total_size(channels)});
+std::uint32_t Robots::find_or_add_kind(std::size_t model, const DevicesOfRobot& devices) {
+  if (model < kinds_->of_model.size() && kinds_->of_model[model] != none) return kinds_->of_model[model];
+  const description::World& description = around_.experiment.world;
+  RobotKind kind{description.models[model].name, {}, {}, 0, 0};
+  KindParts parts;
+  for (const auto& [sensor, device] : devices.sensors) {
+    const std::vector<Channel> channels = sensor->channels();
+    const description::Readout* const readout = description::readout_of(*device);
+    parts.signal_plans.push_back(std::make_shared<const sensing::SignalPlan>(
+        readout != nullptr ? *readout : description::Readout{}, channels, description.step));
+    parts.sensor_sizes.push_back(total_size(channels));
+    append(kind.observation, channels);
+  }
+  for (const std::unique_ptr<actuation::Actuator>& actuator : devices.actuators) {
+    const std::vector<Channel> channels = actuator->channels();
+    parts.actuator_sizes.push_back(total_size(channels));
+    append(kind.command, channels);
+  }
+  kind.observation_size = total_size(kind.observation);
+  kind.command_size = total_size(kind.command);
+  parts.neutral = neutral_values(kind);
+
+  auto more = std::make_shared<Kinds>(*kinds_);
+  const auto known = static_cast<std::uint32_t>(more->described.size());
+  more->of_model.resize(description.models.size(), none);
+  more->of_model[model] = known;
+  more->described.push_back(std::move(kind));
+  more->parts.push_back(std::move(parts));
+  kinds_ = std::move(more);
+  return known;
 }
 
 bool Robots::is_due(std::uint32_t robot, std::uint64_t tick) const {
@@ -119,11 +150,12 @@ bool Robots::is_due(std::uint32_t robot, std::uint64_t tick) const {
 }
 
 std::span<const double> Robots::observation(std::uint32_t robot) const {
-  return {observations_.data() + robots_[robot].observation_offset, kinds_[robots_[robot].kind].observation_size};
+  return {observations_.data() + robots_[robot].observation_offset,
+          kinds_->described[robots_[robot].kind].observation_size};
 }
 
 std::optional<CommandFault> Robots::check_command(std::uint32_t robot, std::span<const double> values) const {
-  const RobotKind& kind = kinds_[robots_[robot].kind];
+  const RobotKind& kind = kinds_->described[robots_[robot].kind];
   if (values.size() != kind.command_size) return wrong_size(robot, values.size());
   std::size_t i = 0;
   for (const Channel& channel : kind.command) {
@@ -138,7 +170,7 @@ std::optional<CommandFault> Robots::check_command(std::uint32_t robot, std::span
 CommandFault Robots::wrong_size(std::uint32_t robot, std::size_t size) const {
   std::ostringstream text;
   text << "the command of " << name(robot) << " has " << size << " values, expected "
-       << kinds_[robots_[robot].kind].command_size;
+       << kinds_->described[robots_[robot].kind].command_size;
   return {CommandFault::Reason::wrong_size, "", text.str()};
 }
 
@@ -160,13 +192,13 @@ bool Robots::set_command(std::uint32_t robot, std::span<const double> values) {
 }
 
 bool Robots::set_neutral_command(std::uint32_t robot) {
-  return set_command(robot, neutral_values(kinds_[robots_[robot].kind]));
+  return set_command(robot, kinds_->parts[robots_[robot].kind].neutral);
 }
 
 void Robots::actuate() {
   for (Robot& robot : robots_) {
     if (std::ranges::any_of(robot.sensors, [](const SensorOfRobot& each) { return each.sensor->disables_robot(); }))
-      robot.command = neutral_values(kinds_[robot.kind]);
+      robot.command = kinds_->parts[robot.kind].neutral;
     std::span<const double> values = robot.command;
     for (const ActuatorOfRobot& each : robot.actuators) {
       each.actuator->apply(values.first(each.size));
@@ -193,7 +225,7 @@ void Robots::sense(std::uint64_t tick) {
           const bool is_asked = is_due(id, tick);
           const bool was_asked = tick == 0 || is_due(id, tick - 1);
           std::span<double> values(observations_.data() + robot.observation_offset,
-                                   kinds_[robot.kind].observation_size);
+                                   kinds_->described[robot.kind].observation_size);
           for (SensorOfRobot& each : robot.sensors) {
             each.sensor->remember(tick, was_asked);
             observe(*each.sensor, each.signal_chain, tick, is_asked, values.first(each.size), scratch_[worker]);

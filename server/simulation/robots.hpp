@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/actuation/actuator.hpp"
@@ -52,15 +53,15 @@ class Robots {
     const Objects& objects;
     WorkerPool& workers;
   };
-  /// Those of the experiment.
-  explicit Robots(const Surroundings& around);
+  /// Those of the experiment. `like`: of another world of it, with which they share what is the same; null: none.
+  explicit Robots(const Surroundings& around, const Robots* like = nullptr);
 
   /// The next robot of the experiment's world, which has come to it and to one of its teams, and which all others that
   /// know of bodies were told of. Nobody has asked it yet.
   void add();
   std::uint32_t size() const { return static_cast<std::uint32_t>(robots_.size()); }
   const std::string& name(std::uint32_t robot) const { return around_.experiment.world.robot(robot).name; }
-  std::span<const RobotKind> kinds() const { return kinds_; }
+  std::span<const RobotKind> kinds() const { return kinds_->described; }
   std::uint32_t kind_of(std::uint32_t robot) const { return robots_[robot].kind; }
   /// By its index in the experiment.
   std::uint32_t team_of(std::uint32_t robot) const { return robots_[robot].team; }
@@ -113,7 +114,24 @@ class Robots {
     std::size_t sensor = 0;
   };
 
-  void add_sensor(std::uint32_t id, std::unique_ptr<sensing::Sensor> sensor, const description::Device& device);
+  struct KindParts {
+    std::vector<std::shared_ptr<const sensing::SignalPlan>> signal_plans;  // of each sensor
+    std::vector<std::size_t> sensor_sizes;
+    std::vector<std::size_t> actuator_sizes;
+    std::vector<double> neutral;  // command
+  };
+  struct Kinds {
+    std::vector<RobotKind> described;
+    std::vector<KindParts> parts;
+    std::vector<std::uint32_t> of_model;  // `none`: of a model without a robot so far
+  };
+  struct DevicesOfRobot {  // in the order of the model
+    std::vector<std::pair<std::unique_ptr<sensing::Sensor>, const description::Device*>> sensors;
+    std::vector<std::unique_ptr<actuation::Actuator>> actuators;
+  };
+
+  DevicesOfRobot make_devices(const Robot& robot);
+  std::uint32_t find_or_add_kind(std::size_t model, const DevicesOfRobot& devices);
   CommandFault wrong_size(std::uint32_t robot, std::size_t size) const;
   CommandFault unfit(std::uint32_t robot, const Channel& channel, double value) const;
   void update_shared_views(std::uint64_t tick);
@@ -121,9 +139,8 @@ class Robots {
   Surroundings around_;
   sensing::SharedViews views_;
   std::vector<Place> sharing_views_;
-  std::vector<RobotKind> kinds_;
-  std::vector<std::uint32_t> kind_of_model_;
-  std::size_t described_;  // robots that there were at first
+  std::shared_ptr<const Kinds> kinds_;  // shared by worlds of one experiment
+  std::size_t described_;               // robots that there were at first
   std::vector<Robot> robots_;
   std::vector<std::uint32_t> of_body_;
   std::vector<double> observations_;

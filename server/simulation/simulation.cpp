@@ -19,16 +19,23 @@ constexpr std::uint64_t snapshot_mark = 0x746f6873'74726f68u;
 }  // namespace
 
 Simulation::Simulation(const description::Experiment& experiment, unsigned threads)
-    : experiment_(experiment),
+    : Simulation(experiment, threads, nullptr) {}
+
+Simulation::Simulation(const Simulation& like, std::uint64_t seed, std::span<const Pose> X_WM)
+    : Simulation(like.again_with(seed, X_WM), 1, &like) {}
+
+Simulation::Simulation(description::Experiment experiment, unsigned threads, const Simulation* like)
+    : experiment_(std::move(experiment)),
       workers_(threads),
-      world_(physics::make_world(experiment_.world, workers_)),
+      world_(physics::make_world(experiment_.world, workers_, like != nullptr ? like->world_.get() : nullptr)),
       breakable_joints_(experiment_.world, *world_),
       emitters_(experiment_.world, *world_),
       grippers_(experiment_.world, *world_),
       detachable_joints_(experiment_.world, *world_),
       actions_(experiment_.world, *world_),
       objects_(experiment_, *world_),
-      robots_({experiment_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_}),
+      robots_({experiment_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_},
+              like != nullptr ? &like->robots_ : nullptr),
       schedule_(experiment_, *world_, objects_, emitters_, actions_),
       spawned_models_(experiment_) {
   note_bodies();
@@ -37,6 +44,19 @@ Simulation::Simulation(const description::Experiment& experiment, unsigned threa
 }
 
 Simulation::~Simulation() = default;
+
+description::Experiment Simulation::again_with(std::uint64_t seed, std::span<const Pose> X_WM) const {
+  if (objects_.size() != objects_.described() || spawned_models_.size() > 0)
+    throw std::invalid_argument("objects have been added to this world: it cannot be built again");
+  const std::vector<description::Instance>& instances = experiment_.world.instances;
+  if (X_WM.size() != instances.size())
+    throw std::invalid_argument("got " + std::to_string(X_WM.size()) + " poses, expected one for each of the " +
+                                std::to_string(instances.size()) + " objects of the experiment");
+  description::Experiment again = experiment_;
+  again.seed = seed;
+  for (std::size_t object = 0; object < X_WM.size(); ++object) again.world.instances[object].X_WM = X_WM[object];
+  return again;
+}
 
 void Simulation::step() {
   note_change();
@@ -63,8 +83,7 @@ void Simulation::on_action(const std::string& name, ActionHandler handler) {
 void Simulation::handle_actions() {
   for (const actuation::ActionOfRobot& action : actions_.all()) {
     bool is_handled = false;
-    for (std::size_t i = 0; i < handlers_.size(); ++i) {  // NOLINT(modernize-loop-convert): a handler may add one
-      const auto& [name, handler] = handlers_[i];
+    for (const auto& [name, handler] : handlers_) {  // to which a handler may add one
       if (name != action.name || !world_->is_active(action.body)) continue;
       handler(action.robot, action.value);
       is_handled = true;

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -51,6 +51,11 @@ class Simulation {
   /// Builds the world, of a copy of the experiment, and senses tick 0. Throws std::invalid_argument for a world that
   /// cannot be simulated.
   Simulation(const description::Experiment& experiment, unsigned threads);
+  /// Builds the world again with another seed, on one thread, and each object of the experiment at `X_WM[object]`. Has
+  /// the same bits as one of the same experiment with that seed and those poses, and shares with `like` what is the
+  /// same in both. Throws std::invalid_argument also if there is not one pose for each object, or if objects or models
+  /// have been added to `like`.
+  Simulation(const Simulation& like, std::uint64_t seed, std::span<const Pose> X_WM);
   ~Simulation();
 
   std::uint64_t tick() const { return tick_; }
@@ -162,6 +167,8 @@ class Simulation {
   const TouchCounts& touches() const { return touches_; }
 
  private:
+  Simulation(description::Experiment experiment, unsigned threads, const Simulation* like);
+  description::Experiment again_with(std::uint64_t seed, std::span<const Pose> X_WM) const;
   // Whatever is part of the state hash is about to change, or has just done so.
   void note_change() { state_hash_.reset(); }
   bool note_if(bool has_changed) {
@@ -199,7 +206,7 @@ class Simulation {
   TouchCounts touches_;
   std::vector<std::string> quarantined_;
   std::vector<std::string> happened_;
-  std::deque<std::pair<std::string, ActionHandler>> handlers_;  // a handler may add one
+  std::list<std::pair<std::string, ActionHandler>> handlers_;  // a handler may add one
   mutable std::vector<std::uint64_t> body_hashes_;
   mutable std::optional<std::uint64_t> state_hash_;
 };

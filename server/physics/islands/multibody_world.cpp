@@ -23,7 +23,7 @@ IslandSolver& solver_of_this_thread() {
 
 }  // namespace
 
-MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool& workers)
+MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like)
     : description_(description),
       workers_(workers),
       mechanisms_(description.models.size()),
@@ -32,6 +32,11 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
       large_island_solver_(workers),
       sleep_(assembly_),
       memory_(workers.threads()) {
+  if (like != nullptr) {
+    mechanisms_ = like->mechanisms_;
+    shapes_ = like->shapes_;
+    assembly_.fluid_models = like->assembly_.fluid_models;
+  }
   bodies_.reserve(description.instances.size());
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
   assembly_.scene.build();
@@ -74,10 +79,10 @@ std::uint32_t MultibodyWorld::create_body(std::size_t model_index, const Pose& X
 std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_index, const Pose& X_WM,
                                                           std::uint32_t body) {
   const description::Model& model = description_.models[model_index];
-  std::unique_ptr<Mechanism>& known = mechanisms_[model_index];
+  std::shared_ptr<const Mechanism>& known = mechanisms_[model_index];
   try {
-    std::unique_ptr<Mechanism> made =
-        known ? nullptr : std::make_unique<Mechanism>(model, description_.physics.fidelity);
+    std::shared_ptr<const Mechanism> made =
+        known ? nullptr : std::make_shared<const Mechanism>(model, description_.physics.fidelity);
     auto multibody = std::make_unique<Multibody>(made ? *made : *known, description_.physics.dynamics, X_WM, body);
     if (made) known = std::move(made);
     return multibody;

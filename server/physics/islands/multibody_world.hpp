@@ -18,7 +18,8 @@ namespace cohort::physics {
 /// other, so it does not matter which worker has which.
 class MultibodyWorld final : public World {
  public:
-  MultibodyWorld(const description::World& description, WorkerPool& workers);
+  /// `like`: as make_world has it.
+  MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like = nullptr);
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
@@ -136,7 +137,7 @@ class MultibodyWorld final : public World {
 
   const description::World& description_;
   WorkerPool& workers_;
-  std::vector<std::unique_ptr<Mechanism>> mechanisms_;                   // by model, null for what is static
+  std::vector<std::shared_ptr<const Mechanism>> mechanisms_;             // by model, null for what is static
   std::vector<std::vector<std::shared_ptr<const BulletShape>>> shapes_;  // by model, of its collisions in their order
   std::vector<PlacedBody> bodies_;
   Assembly assembly_;

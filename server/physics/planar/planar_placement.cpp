@@ -36,13 +36,14 @@ double mean_distance(const geometry::Footprint& outline, const Eigen::Vector2d& 
 
 }  // namespace
 
-PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& workers)
+PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like)
     : description_(description),
       workers_(workers),
       step_(std::chrono::duration<double>(description.step).count()),
       surfaces_(description),
       models_(description.models.size()),
       collision_(scene_) {
+  if (like != nullptr) models_ = like->models_;
   const Vector3d& gravity = description.gravity;
   if (gravity.head<2>().norm() > -most_lean * gravity.z())
     throw std::invalid_argument("planar physics needs gravity along -z");
@@ -101,7 +102,7 @@ std::uint32_t PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM
   const description::Model& model = description_.models[model_index];
   if (model_index >= models_.size()) models_.resize(model_index + 1);  // it has come since
   try {
-    if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_unique<PlanarModel>(model);
+    if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_shared<const PlanarModel>(model);
     const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
     if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
       throw std::invalid_argument("a robot that leans cannot be planar");

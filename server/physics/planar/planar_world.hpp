@@ -37,8 +37,8 @@ class PlanarWorld final : public World {
  public:
   /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, water,
   /// ground that is not level, none under a body, a joint that moves against the world, a belt, a rotor, a fin, drag,
-  /// a link that feels a wind, or a robot that leans by more than a milliradian.
-  PlanarWorld(const description::World& description, WorkerPool& workers);
+  /// a link that feels a wind, or a robot that leans by more than a milliradian. `like`: as make_world has it.
+  PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like = nullptr);
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
@@ -173,7 +173,7 @@ class PlanarWorld final : public World {
   double step_;
   SurfacePairs surfaces_;
   geometry::Scene scene_;
-  std::vector<std::unique_ptr<PlanarModel>> models_;  // null for what is static
+  std::vector<std::shared_ptr<const PlanarModel>> models_;  // null for what is static
   std::vector<PlacedBody> bodies_;
   std::vector<Member> members_;
   std::vector<Part> parts_;

@@ -78,11 +78,15 @@ void Batch::step(std::uint64_t ticks) {
   if (ticks == 0) throw std::invalid_argument("a batch is stepped by at least one tick");
   for (std::size_t world = 0; world < worlds(); ++world)
     if (!stands_still(world)) check_commands(world);
-  workers_.for_each_chunk(worlds(), worlds_a_chunk(worlds(), workers_.threads()),
-                          [&](std::size_t begin, std::size_t end, unsigned) {
-                            for (std::size_t world = begin; world < end; ++world)
-                              if (!stands_still(world)) run(world, ticks);
-                          });
+  // There and back again: those that were visited last are still in the cache.
+  is_on_its_way_back_ = !is_on_its_way_back_;
+  const auto visit = [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t world = is_on_its_way_back_ ? worlds() - 1 - i : i;
+      if (!stands_still(world)) run(world, ticks);
+    }
+  };
+  workers_.for_each_chunk(worlds(), worlds_a_chunk(worlds(), workers_.threads()), visit);
   for (std::size_t world = 0; world < worlds(); ++world)
     if (!failures_[world].empty())
       throw std::runtime_error("world " + std::to_string(world) + ": " + std::exchange(failures_[world], {}));

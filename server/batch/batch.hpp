@@ -95,6 +95,7 @@ class Batch {
   std::uint64_t last_tick_;
   WorkerPool workers_;
   std::vector<std::unique_ptr<Simulation>> worlds_;
+  bool is_on_its_way_back_ = false;  // through the worlds, from the last one
   std::uint32_t robots_ = 0;
   std::size_t observation_size_ = 0;
   std::size_t command_size_ = 0;

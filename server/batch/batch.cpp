@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/description/input_error.hpp"
 
 namespace cohort {
 namespace {
@@ -25,12 +25,11 @@ std::size_t worlds_a_chunk(std::size_t worlds, unsigned threads) {
 }  // namespace
 
 Batch::Batch(const description::Experiment& experiment, std::size_t worlds, unsigned threads)
-    : first_(experiment, 1), last_tick_(last_tick_of(experiment)), workers_(threads) {
+    : first_(experiment, 1), placer_(experiment.world), last_tick_(last_tick_of(experiment)), workers_(threads) {
   if (worlds == 0) throw std::invalid_argument("a batch needs at least one world");
-  std::vector<Pose> X_WM;
-  for (const description::Instance& instance : experiment.world.instances) X_WM.push_back(instance.X_WM);
+  for (const description::Instance& instance : experiment.world.instances) described_poses_.push_back(instance.X_WM);
   for (std::size_t world = 0; world < worlds; ++world)
-    worlds_.push_back(std::make_unique<Simulation>(first_, experiment.seed, X_WM));
+    worlds_.push_back(std::make_unique<Simulation>(first_, experiment.seed, described_poses_));
   robots_ = worlds_[0]->robot_count();
   for (const RobotKind& kind : kinds()) {
     observation_size_ = std::max(observation_size_, kind.observation_size);
@@ -50,11 +49,14 @@ Batch::Batch(const description::Experiment& experiment, std::size_t worlds, unsi
 Batch::~Batch() = default;
 
 std::vector<Pose> Batch::placed(std::uint64_t seed) const {
-  std::vector<Pose> X_WM;
-  const description::Experiment& experiment = first_.experiment();
-  const description::Experiment read =
-      experiment.inputs ? parsing::read_experiment(experiment.inputs, seed, experiment.duration) : experiment;
-  for (const description::Instance& instance : read.world.instances) X_WM.push_back(instance.X_WM);
+  std::vector<Pose> X_WM = described_poses_;
+  try {
+    if (!placer_.place(seed, std::span(X_WM).subspan(placer_.first(), placer_.count())))
+      throw std::invalid_argument("seed " + std::to_string(seed) + " gives populations other numbers of objects than " +
+                                  std::to_string(first_.experiment().seed));
+  } catch (const description::InputError& error) {
+    throw std::invalid_argument("seed " + std::to_string(seed) + ": " + error.what());
+  }
   return X_WM;
 }
 

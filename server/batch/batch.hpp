@@ -10,6 +10,7 @@
 #include "server/core/pose.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/experiment.hpp"
+#include "server/placement/placer.hpp"
 #include "server/simulation/simulation.hpp"
 
 namespace cohort {
@@ -92,6 +93,8 @@ class Batch {
   std::span<const double> command(std::size_t world, std::uint32_t robot) const;
 
   Simulation first_;  // is never stepped; all worlds are built like it
+  placement::Placer placer_;
+  std::vector<Pose> described_poses_;  // X_WM of each object by the experiment's own seed
   std::uint64_t last_tick_;
   WorkerPool workers_;
   std::vector<std::unique_ptr<Simulation>> worlds_;

@@ -1,6 +1,7 @@
 #include "server/batch/batch.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "tests/support/robots.hpp"
 
@@ -165,6 +166,18 @@ TEST(Batch, AStopConditionEndsAWorldAtItsTick) {
   EXPECT_GT(batch.poses()[0], 0.002);
   EXPECT_EQ(batch.done()[1], 0);
   EXPECT_EQ(batch.tick(1), 9u);
+}
+
+TEST(Batch, NothingGrowsWithResets) {
+  Batch batch(two_kinds(), 4, 1);
+  const auto allocated = [] { return mallinfo2().uordblks; };
+  std::size_t before = 0;
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    if (i == 1000) before = allocated();
+    batch.reset(i % 4, i);
+    if (i % 100 == 99) batch.step(2);
+  }
+  EXPECT_LE(allocated(), before + 4096);
 }
 
 // The robot falls beside the floor that is taken away.

@@ -68,7 +68,6 @@ void Batch::reset(std::size_t world, std::uint64_t seed) {
 void Batch::reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X_WM) {
   expect_world(world);
   worlds_[world] = std::make_unique<Simulation>(first_, seed, X_WM);
-  failures_[world].clear();
   done_[world] = 0;
   std::ranges::fill(std::span(observations_).subspan(world * robots_ * observation_size_, robots_ * observation_size_),
                     0.0);
@@ -89,9 +88,11 @@ void Batch::step(std::uint64_t ticks) {
     }
   };
   workers_.for_each_chunk(worlds(), worlds_a_chunk(worlds(), workers_.threads()), visit);
-  for (std::size_t world = 0; world < worlds(); ++world)
-    if (!failures_[world].empty())
-      throw std::runtime_error("world " + std::to_string(world) + ": " + std::exchange(failures_[world], {}));
+  const auto first_failure = std::ranges::find_if(failures_, [](const std::string& text) { return !text.empty(); });
+  if (first_failure == failures_.end()) return;
+  const std::string text = "world " + std::to_string(first_failure - failures_.begin()) + ": " + *first_failure;
+  for (std::string& each : failures_) each.clear();
+  throw std::runtime_error(text);
 }
 
 void Batch::run(std::size_t world, std::uint64_t ticks) {

@@ -106,7 +106,7 @@ class Batch {
   std::vector<double> commands_;
   std::vector<double> poses_;
   std::vector<std::uint8_t> done_;
-  std::vector<std::string> failures_;  // by world; empty: none
+  std::vector<std::string> failures_;  // of the step under way, by world; empty: none
 };
 
 }  // namespace cohort

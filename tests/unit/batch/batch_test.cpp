@@ -214,5 +214,14 @@ TEST(Batch, AWorldThatFailsIsNamedAndTheOthersGoOn) {
   EXPECT_EQ(batch.tick(1), 0u);
 }
 
+TEST(Batch, OfWorldsThatFailAtOnceTheFirstIsNamedAndAllStandStill) {
+  Batch batch(without_ground(true), 3, 1);
+  std::string message;
+  for (int step = 0; step < 100 && message.empty(); ++step) message = message_of([&] { batch.step(); });
+  EXPECT_EQ(message, "world 0: 'team/b' has left the world");
+  for (const std::uint8_t done : batch.done()) EXPECT_EQ(done & Batch::failed, Batch::failed);
+  EXPECT_EQ(message_of([&] { batch.step(); }), "");
+}
+
 }  // namespace
 }  // namespace cohort

@@ -11,6 +11,7 @@
 
 #include "server/description/event.hpp"
 #include "server/description/kept_files.hpp"
+#include "server/description/parsed_model.hpp"
 #include "server/description/world.hpp"
 
 namespace cohort::description {
@@ -93,6 +94,9 @@ struct Experiment {
   /// the world has got other instances with another seed. Throws InputError; null if the experiment was made in a
   /// program. Callable from any thread.
   std::function<void(Experiment&)> select_again{};
+  /// Reads models that come as text while the world runs. They may name only files that are in `inputs`. Null if the
+  /// experiment was made in a program that reads none.
+  ModelReader read_model{};
 };
 
 }  // namespace cohort::description

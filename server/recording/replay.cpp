@@ -68,7 +68,7 @@ void Replay::take_actions() {
   actions.reserve(recorded_->actions.size());
   try {
     for (const ActionTaken& taken : recorded_->actions)
-      actions.push_back(action_from_bytes(std::as_bytes(std::span(taken.action))));
+      actions.push_back(action_from_bytes(std::as_bytes(std::span(taken.action)), experiment_->read_model));
   } catch (const std::invalid_argument& error) {
     throw McapError(recording_.file(), 0,
                     "an action at tick " + std::to_string(recorded_->tick) + " cannot be read: " + error.what());

@@ -81,6 +81,8 @@ class Inbox {
   bool add_gone_requester(const wire::Sender& sender);
   bool add_failure(const std::string& error);
   bool add_foreign_version(std::uint32_t major);
+  /// Of something that is not in here.
+  bool note_news() { return has_news_ = true; }
   /// Only counted, and told when the thread of the run next looks: a flood must not wake it for each message.
   /// `tick`: of the frame that a rejected answer answers.
   void reject(std::uint64_t who, const char* reason, std::string_view text, std::optional<std::uint64_t> tick = {});

@@ -27,21 +27,22 @@ std::string answer_to(std::uint64_t tick) { return "an answer to tick " + std::t
 
 }  // namespace
 
-Server::Server(std::span<wire::Participant> participants)
-    : next_epoch_(first_epoch()),
-      world_state_(participants.front(), view_partition),
-      scenes_(participants.front(), view_partition) {
-  for (wire::Participant& participant : participants) endpoints_.emplace_back(participant, callbacks(participant));
-}
-
-Server::~Server() = default;
-
 // `add` is true if the thread of the run has to look.
 template <class Add>
 void Server::put_aside(const Add& add) {
   const std::lock_guard lock(mutex_);
   if (add()) wake_.notify_all();
 }
+
+Server::Server(std::span<wire::Participant> participants)
+    : next_epoch_(first_epoch()),
+      control_(recordings_, [this] { put_aside([this] { return inbox_.note_news(); }); }),
+      world_state_(participants.front(), view_partition),
+      scenes_(participants.front(), view_partition) {
+  for (wire::Participant& participant : participants) endpoints_.emplace_back(participant, callbacks(participant));
+}
+
+Server::~Server() = default;
 
 Endpoints::Callbacks Server::callbacks(wire::Participant& participant) {
   return {

@@ -95,7 +95,7 @@ class Server {
   Clients clients_{mutex_};
   std::map<std::uint32_t, wire::RobotDescription> descriptions_;  // on the wire so far, by number
   LiveRecordings recordings_;
-  Control control_{recordings_};
+  Control control_;
   WorldStateBroadcast world_state_;
   SceneBroadcast scenes_;
   // Last, so that no callback comes before all else is there or after it is gone. A list, since they stay where they

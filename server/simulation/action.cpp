@@ -10,7 +10,13 @@
 namespace cohort {
 namespace {
 
-// Each kind's members in the order in which they are written; a kind's number is its place in the variant.
+// Each kind's members in the order in which they are written; a kind's number is its place in the variant. But a spawn
+// says by its number what its model is. Recordings of older versions have its place in the variant instead, and either
+// a name or a text.
+constexpr std::uint8_t spawn_of_name_or_text = 0;
+constexpr std::uint8_t spawn_of_name = 0x80;
+constexpr std::uint8_t spawn_of_text = 0x81;
+
 template <class Self, class Visit>
 void visit_members(Self& self, Visit&& visit) {
   using Kind = std::remove_const_t<Self>;
@@ -46,6 +52,10 @@ struct Writer {
     bytes.add_count(text.size());
     bytes.add_all(text.data(), text.size());
   }
+  void operator()(const ModelChoice& model) const {
+    const auto* const parsed = std::get_if<description::ParsedModelPtr>(&model);
+    (*this)(parsed == nullptr ? std::get<std::string>(model) : (*parsed)->text);
+  }
   void operator()(double number) const { bytes.add(number); }
   void operator()(bool flag) const { bytes.add(static_cast<std::uint8_t>(flag)); }
   void operator()(const Eigen::Vector3d& vector) const { bytes.add_all(vector.data(), 3); }
@@ -72,6 +82,7 @@ struct Reader {
     text.resize(bytes.read_count(1));
     bytes.read_all(text.data(), text.size());
   }
+  void operator()(ModelChoice& model) const { (*this)(model.emplace<std::string>()); }
   void operator()(double& number) const { bytes.read(number); }
   void operator()(bool& flag) const {
     std::uint8_t byte = 0;
@@ -108,27 +119,52 @@ Action empty_action(std::size_t kind, std::index_sequence<Kinds...>) {
   return action;
 }
 
+std::uint8_t number_of(const Action& action) {
+  const auto* const spawn = std::get_if<SpawnObject>(&action);
+  if (spawn == nullptr) return static_cast<std::uint8_t>(action.index());
+  return std::holds_alternative<std::string>(spawn->model) ? spawn_of_name : spawn_of_text;
+}
+
+void read_text(ModelChoice& model, const description::ModelReader& read_model) {
+  if (!read_model) throw std::invalid_argument("the model is a text, and this experiment reads none");
+  model = read_model(std::get<std::string>(model));
+}
+
+// What was done was one of the two. No name has these characters but by intention.
+void read_name_or_text(ModelChoice& model, const description::ModelReader& read_model) {
+  if (std::get<std::string>(model).find_first_of("<:\n{") == std::string::npos) return;
+  try {
+    read_text(model, read_model);
+  } catch (const std::invalid_argument&) {
+    // a name, then
+  }
+}
+
 }  // namespace
 
 std::vector<std::byte> to_bytes(const Action& action) {
   SnapshotWriter bytes;
-  bytes.add(static_cast<std::uint8_t>(action.index()));
+  bytes.add(number_of(action));
   std::visit([&](const auto& kind) { visit_members(kind, Writer{bytes}); }, action);
   return bytes.bytes();
 }
 
-Action action_from_bytes(std::span<const std::byte> bytes) {
+Action action_from_bytes(std::span<const std::byte> bytes, const description::ModelReader& read_model) {
+  std::uint8_t number = 0;
+  Action action;
   try {
     SnapshotReader reader(bytes);
-    std::uint8_t kind = 0;
-    reader.read(kind);
-    Action action = empty_action(kind, std::make_index_sequence<std::variant_size_v<Action>>());
+    reader.read(number);
+    const bool is_spawn = number == spawn_of_name || number == spawn_of_text;
+    action = empty_action(is_spawn ? 0 : number, std::make_index_sequence<std::variant_size_v<Action>>());
     std::visit([&](auto& empty) { visit_members(empty, Reader{reader}); }, action);
     if (!reader.is_at_end()) throw SnapshotError("they go on after its end");
-    return action;
   } catch (const SnapshotError& error) {
     throw std::invalid_argument(std::string("these bytes are no action: ") + error.what());
   }
+  if (number == spawn_of_text) read_text(std::get<SpawnObject>(action).model, read_model);
+  if (number == spawn_of_name_or_text) read_name_or_text(std::get<SpawnObject>(action).model, read_model);
+  return action;
 }
 
 }  // namespace cohort

@@ -9,16 +9,20 @@
 #include <vector>
 
 #include "server/core/pose.hpp"
+#include "server/description/parsed_model.hpp"
 
 /// What a person or a program may do to a running world, at a boundary, as plain data. Objects are called by their
 /// scoped names; poses, forces and velocities are of the world frame W, in SI units. `Simulation::act` does it and says
 /// why it cannot be done. Names follow simulation_interfaces (ros-simulation).
 namespace cohort {
 
+/// The name of one of the world's models, or a model that somebody has read: a world that runs reads none.
+using ModelChoice = std::variant<std::string, description::ParsedModelPtr>;
+
 /// A new object, at rest. A robot gets the next id, which was never another's, and joins a team.
 struct SpawnObject {
-  std::string name;             ///< scoped; empty: that of the model
-  std::string model;            ///< the name of one of the world's models, or the text of one in SDF, URDF or YAML
+  std::string name;  ///< scoped; empty: that of the model
+  ModelChoice model;
   Pose X_WM;                    ///< of the model
   bool allow_renaming = false;  ///< a name that is taken gets a number
   std::string team{};           ///< of a robot; empty: the only team, or the only one with robots of this model
@@ -57,8 +61,8 @@ using Action = std::variant<SpawnObject, RemoveObject, SetPose, SetVelocity, Set
 
 /// For recordings and the wire: little-endian, and the same bytes for the same action.
 std::vector<std::byte> to_bytes(const Action& action);
-/// Throws std::invalid_argument if `bytes` are not exactly one action. Whether its values make sense, `Simulation::act`
-/// says.
-Action action_from_bytes(std::span<const std::byte> bytes);
+/// Reads an action, and by `read_model` the text of a model in it. Throws std::invalid_argument if `bytes` are not
+/// exactly one action, or the text is no model. Whether the action's values make sense, `Simulation::act` says.
+Action action_from_bytes(std::span<const std::byte> bytes, const description::ModelReader& read_model);
 
 }  // namespace cohort

@@ -21,14 +21,6 @@ constexpr std::chrono::nanoseconds longest_push = std::chrono::hours(24 * 365);
 
 std::string quoted(const std::string& name) { return "'" + name + "'"; }
 
-// What is no name is not repeated in a message either.
-void check_name(const std::string& name, const std::string& what) {
-  check_utf8(name, what);
-  if (name.size() > longest_name) refuse(what + " is longer than " + std::to_string(longest_name) + " bytes");
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-  if (std::ranges::any_of(name, is_control)) refuse(what + " has a control character in it");
-}
-
 std::vector<std::string> names_in_world(const Objects& objects) {
   std::vector<std::string> names;
   names.reserve(objects.size());
@@ -160,6 +152,14 @@ description::Event event_of_kind(const SetLight& set, const ActionScope& scope) 
 }
 
 }  // namespace
+
+// What is no name is not repeated in a message either.
+void check_name(const std::string& name, const std::string& what) {
+  check_utf8(name, what);
+  if (name.size() > longest_name) refuse(what + " is longer than " + std::to_string(longest_name) + " bytes");
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  if (std::ranges::any_of(name, is_control)) refuse(what + " has a control character in it");
+}
 
 void check_utf8(const std::string& text, const std::string& what) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };

@@ -36,6 +36,10 @@ std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t mod
 /// With a unit quaternion. Throws std::invalid_argument if it is no pose, or beyond what is simulated.
 Pose checked_pose(const Pose& X_WM);
 
+/// Throws std::invalid_argument if `name` is not UTF-8, has a control character or more than 255 bytes. `what`: for the
+/// message.
+void check_name(const std::string& name, const std::string& what);
+
 /// Throws std::invalid_argument if `text` is not UTF-8. `what`: for the message.
 void check_utf8(const std::string& text, const std::string& what);
 

@@ -197,7 +197,6 @@ std::string Simulation::act_unsensed(const Action& action) {
 
 std::string Simulation::spawn_object(const SpawnObject& spawn) {
   const Pose X_WM = checked_pose(spawn.X_WM);
-  check_utf8(spawn.model, "the model");
   const std::size_t models_before = spawned_models_.size();
   try {
     const std::size_t model = spawned_models_.find_or_add(spawn.model);

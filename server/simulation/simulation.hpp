@@ -151,7 +151,8 @@ class Simulation {
   /// Everything that decides how the run goes on from this boundary, for `restore` in this process or another. Bytes
   /// are little-endian; the format is that of this version of Cohort.
   std::vector<std::byte> save() const;
-  /// Of a simulation of the same experiment, right after the construction of this one. Throws SnapshotError if the
+  /// Of a simulation of the same experiment, right after the construction of this one. Models that came to it as text
+  /// are read first, by `Experiment::read_model`. Throws SnapshotError if the
   /// snapshot is of something else, cut short, or of another version; this is then not to be used.
   void restore(std::span<const std::byte> snapshot);
 

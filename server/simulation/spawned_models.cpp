@@ -5,50 +5,60 @@
 
 #include "server/core/random.hpp"
 #include "server/core/text.hpp"
-#include "server/parsing/world/read_world.hpp"
+#include "server/simulation/action_events.hpp"
 
 namespace cohort {
 namespace {
 
-bool is_text(const std::string& name_or_text) { return name_or_text.find_first_of("<:\n{") != std::string::npos; }
+std::uint32_t find_or_append(std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::ranges::find(names, name);
+  const auto index = static_cast<std::uint32_t>(found - names.begin());
+  if (found == names.end()) names.push_back(name);
+  return index;
+}
 
 }  // namespace
 
-std::size_t SpawnedModels::find_or_add(const std::string& name_or_text) {
-  const auto& models = experiment_.world.models;
-  const auto named = std::ranges::find(models, name_or_text, &description::Model::name);
-  if (named != models.end()) return static_cast<std::size_t>(named - models.begin());
-  if (!is_text(name_or_text)) {
-    constexpr std::size_t longest_name = 255;
-    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-    if (name_or_text.empty() || name_or_text.size() > longest_name || std::ranges::any_of(name_or_text, is_control))
-      throw std::invalid_argument("expected the name of one of the world's models, or a text in SDF, URDF or YAML");
-    std::vector<std::string> names;
-    names.reserve(models.size());
-    for (const description::Model& model : models) names.push_back(model.name);
-    throw std::invalid_argument("the world has no model '" + name_or_text + "'" + suggestion(name_or_text, names) +
-                                " (or give its text, in SDF, URDF or YAML)");
-  }
-  const auto known = std::ranges::find(texts_, name_or_text, &Text::text);
-  if (known == texts_.end()) {
-    add(name_or_text);
-    return models.size() - 1;
-  }
-  return described_ + static_cast<std::size_t>(known - texts_.begin());
+std::size_t SpawnedModels::find_or_add(const ModelChoice& choice) {
+  if (const auto* const name = std::get_if<std::string>(&choice)) return find(*name);
+  const auto& parsed = std::get<description::ParsedModelPtr>(choice);
+  if (parsed == nullptr) throw std::invalid_argument("expected a model");
+  return find_or_add(*parsed);
 }
 
-void SpawnedModels::add(const std::string& text) {
-  const std::size_t materials = experiment_.world.materials.size();
-  try {
-    parsing::add_model(text, experiment_.inputs, experiment_.world);
-  } catch (const description::InputError& error) {
-    std::string flaws;
-    for (const description::Problem& problem : error.problems())
-      flaws += (flaws.empty() ? "" : "; ") + (problem.line > 0 ? "line " + std::to_string(problem.line) + ": " : "") +
-               (problem.element.empty() ? "" : problem.element + ": ") + problem.message;
-    throw std::invalid_argument("the text of the model: " + flaws);
-  }
-  texts_.push_back({text, materials});
+std::size_t SpawnedModels::find(const std::string& name) const {
+  const auto& models = experiment_.world.models;
+  if (name.empty()) throw std::invalid_argument("expected the name of one of the world's models, or a model");
+  check_name(name, "the name of the model");
+  const auto named = std::ranges::find(models, name, &description::Model::name);
+  if (named != models.end()) return static_cast<std::size_t>(named - models.begin());
+  std::vector<std::string> names;
+  names.reserve(models.size());
+  for (const description::Model& model : models) names.push_back(model.name);
+  throw std::invalid_argument("the world has no model '" + name + "'" + suggestion(name, names));
+}
+
+std::size_t SpawnedModels::find_or_add(const description::ParsedModel& parsed) {
+  const auto known = std::ranges::find(texts_, parsed.text, &Text::text);
+  if (known != texts_.end()) return described_ + static_cast<std::size_t>(known - texts_.begin());
+  check_utf8(parsed.text, "the text of the model");
+  add(parsed);
+  return experiment_.world.models.size() - 1;
+}
+
+// Names of materials that the world has not known are added in their order.
+void SpawnedModels::add(const description::ParsedModel& parsed) {
+  description::World& world = experiment_.world;
+  texts_.push_back({parsed.text, world.materials.size()});
+  std::vector<std::uint32_t> in_world;
+  for (const std::string& material : parsed.materials) in_world.push_back(find_or_append(world.materials, material));
+  description::Model model = parsed.model;
+  for (description::Link& link : model.links)
+    for (description::Collision& collision : link.collisions)
+      collision.surface.material = in_world.at(collision.surface.material);
+  world.models.push_back(std::move(model));
+  const auto before_seed_warnings = world.warnings.end() - static_cast<std::ptrdiff_t>(world.seed_warnings);
+  world.warnings.insert(before_seed_warnings, parsed.warnings.begin(), parsed.warnings.end());
 }
 
 void SpawnedModels::shrink(std::size_t count) {
@@ -76,7 +86,8 @@ void SpawnedModels::restore(SnapshotReader& reader) {
     std::string text(reader.read_count(1), ' ');
     reader.read_all(text.data(), text.size());
     try {
-      add(text);
+      if (!experiment_.read_model) throw std::invalid_argument("this experiment reads no texts of models");
+      add(*experiment_.read_model(text));
     } catch (const std::invalid_argument& error) {
       throw SnapshotError(std::string("the snapshot has a model that cannot be read: ") + error.what());
     }

@@ -41,7 +41,7 @@ void act(cohort::Simulation& simulation) {
   cohort::Pose above = simulation.robot_pose(0);
   above.position.z() += 0.4;
   const std::vector<cohort::Action> actions = {
-      cohort::SpawnObject{"crate", crate, above},
+      cohort::SpawnObject{"crate", simulation.experiment().read_model(crate), above},
       cohort::ApplyForce{"crate", "", {2, 0, 0}, {0, 0, 0.1}, std::chrono::seconds(2)},
       cohort::SetVelocity{near, {0.1, 0, 0}, {0, 0, 1}}, cohort::RemoveObject{other}};
   for (const cohort::ActionResult& result : simulation.act(actions))

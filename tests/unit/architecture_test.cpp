@@ -225,6 +225,31 @@ TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
   EXPECT_GT(seen.size(), 14u);
 }
 
+// A stage is a folder of server/. What its files may include and what it links are the same.
+TEST(Architecture, EachStageLinksOnlyStagesThatItsRowsName) {
+  const auto stage_of = [](const std::string& folder) {
+    const std::regex pattern("server/([a-z_]+).*");
+    std::smatch name;
+    return std::regex_match(folder, name, pattern) ? name[1].str() : std::string();
+  };
+  Graph named;
+  for (const auto& [folder, row] : read_table())
+    for (const std::string& other : row.includes) named[stage_of(folder)].insert(stage_of(other));
+  std::stringstream text;
+  text << std::ifstream(COHORT_SOURCE_DIR "/server/CMakeLists.txt").rdbuf();
+  std::size_t stages = 0;
+  for (const std::string& arguments : matches_in(text.str(), std::regex("\ncohort_stage\\(([^)]*)\\)"))) {
+    const std::string stage = arguments.substr(0, arguments.find(' '));
+    ++stages;
+    for (const std::string& linked : matches_in(arguments, std::regex("cohort_([a-z_]+)")))
+      if (std::filesystem::exists(COHORT_SOURCE_DIR "/server/" + linked)) {
+        EXPECT_TRUE(named[stage].contains(linked))
+            << "server/" << stage << " links server/" << linked << ", which no row of server/" << stage << " names";
+      }
+  }
+  EXPECT_GT(stages, 14u);
+}
+
 TEST(Architecture, NoTwoHeadersHaveTheSameName) {
   std::map<std::string, std::string> paths;
   for (const Source& source : read_sources()) {

@@ -177,6 +177,12 @@ void ExperimentReader::read_step(const YamlMap& top) {
   experiment_.world.step = *step;
 }
 
+// What was read from it is kept, for itself and for texts that come while its world runs.
+void keep_inputs(Experiment& experiment, std::shared_ptr<const KeptFiles> kept) {
+  experiment.read_model = model_reader(kept, experiment.world.file.parent_path());
+  experiment.inputs = std::move(kept);
+}
+
 }  // namespace
 
 Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> seed,
@@ -190,7 +196,7 @@ Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> s
   KeptFiles kept = disk.kept();
   kept.experiment = file.string();
   for (const fs::path& folder : last_model_folders) kept.last_model_folders.push_back(folder.string());
-  experiment.inputs = std::make_shared<const KeptFiles>(std::move(kept));
+  keep_inputs(experiment, std::make_shared<const KeptFiles>(std::move(kept)));
   return experiment;
 }
 
@@ -199,7 +205,7 @@ Experiment read_experiment(std::shared_ptr<const KeptFiles> kept, std::optional<
   InputFiles input(kept);
   const std::vector<fs::path> last_model_folders(kept->last_model_folders.begin(), kept->last_model_folders.end());
   Experiment experiment = ExperimentReader(input, kept->experiment, last_model_folders).read(seed, duration);
-  experiment.inputs = std::move(kept);
+  keep_inputs(experiment, std::move(kept));
   return experiment;
 }
 

@@ -1,6 +1,7 @@
 #include "server/parsing/world/read_world.hpp"
 
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "server/core/text.hpp"
@@ -25,6 +26,29 @@ World read_or_input_error(const std::filesystem::path& file, Read&& read) {
   if (wrong) throw *wrong;
   if (failure) throw InputError({{file, 0, "", "cannot be read: " + *failure}});
   return *std::move(world);
+}
+
+ParsedModelPtr read_model_text(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs,
+                               const std::filesystem::path& folder) {
+  InputFiles input(inputs);
+  const std::filesystem::path file = folder / (trimmed(text).starts_with('<') ? "(model).sdf" : "(model).yaml");
+  input.add(file, text);
+  constexpr std::uint64_t no_seed = 0;  // nothing is drawn
+  const std::vector<std::filesystem::path> folders(inputs->last_model_folders.begin(),
+                                                   inputs->last_model_folders.end());
+  World alone = read_or_input_error(file, [&] { return WorldReader(input, file, no_seed, folders).read_model_file(); });
+  if (alone.models.size() > 1)
+    throw InputError({{file, 0, "", "the model has several roots, which are bodies of their own; expected one"}});
+  return std::make_shared<const ParsedModel>(
+      ParsedModel{text, alone.models.front(), std::move(alone.materials), std::move(alone.warnings)});
+}
+
+std::string flaws_of(const InputError& error) {
+  std::string flaws;
+  for (const Problem& problem : error.problems())
+    flaws += (flaws.empty() ? "" : "; ") + (problem.line > 0 ? "line " + std::to_string(problem.line) + ": " : "") +
+             (problem.element.empty() ? "" : problem.element + ": ") + problem.message;
+  return flaws;
 }
 
 }  // namespace
@@ -59,23 +83,15 @@ World read_world_or_standing_model(InputFiles& input, const std::filesystem::pat
       file, [&] { return WorldReader(input, file, seed, last_model_folders).read(LoneModel::on_plane, {}); });
 }
 
-std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world) {
-  const std::shared_ptr<const KeptFiles> kept = inputs ? inputs : std::make_shared<const KeptFiles>();
-  InputFiles input(kept);
-  const std::filesystem::path file =
-      world.file.parent_path() / (trimmed(text).starts_with('<') ? "(model).sdf" : "(model).yaml");
-  input.add(file, text);
-  constexpr std::uint64_t no_seed = 0;  // nothing is drawn
-  const std::vector<std::filesystem::path> folders(kept->last_model_folders.begin(), kept->last_model_folders.end());
-  World alone = read_or_input_error(
-      file, [&] { return WorldReader(input, file, no_seed, folders).read_model_file(world.materials); });
-  if (alone.models.size() > 1)
-    throw InputError({{file, 0, "", "the model has several roots, which are bodies of their own; expected one"}});
-  world.materials = std::move(alone.materials);
-  const auto before_seed_warnings = world.warnings.end() - static_cast<std::ptrdiff_t>(world.seed_warnings);
-  world.warnings.insert(before_seed_warnings, alone.warnings.begin(), alone.warnings.end());
-  world.models.push_back(alone.models.front());
-  return world.models.size() - 1;
+ModelReader model_reader(std::shared_ptr<const KeptFiles> inputs, std::filesystem::path folder) {
+  if (inputs == nullptr) inputs = std::make_shared<const KeptFiles>();
+  return [inputs = std::move(inputs), folder = std::move(folder)](const std::string& text) {
+    try {
+      return read_model_text(text, inputs, folder);
+    } catch (const InputError& error) {
+      throw std::invalid_argument("the text of the model: " + flaws_of(error));
+    }
+  };
 }
 
 }  // namespace cohort::parsing

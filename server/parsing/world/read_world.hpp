@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/description/parsed_model.hpp"
 #include "server/description/world.hpp"
 #include "server/parsing/files/input_file.hpp"
 #include "server/parsing/files/xacro.hpp"
@@ -39,9 +40,8 @@ World read_world_or_model(const std::filesystem::path& file, std::uint64_t seed,
 World read_world_or_standing_model(InputFiles& input, const std::filesystem::path& file, std::uint64_t seed,
                                    const std::vector<std::filesystem::path>& last_model_folders);
 
-/// Adds to `world` the model that a text in SDF, URDF or YAML describes, and the materials that it names. Returns its
-/// index. What the text includes or names, such as a mesh, has to be in `inputs`, from which `world` was read; null is
-/// nothing. Throws InputError with every problem found; `world` is then as it was.
-std::size_t add_model(const std::string& text, const std::shared_ptr<const KeptFiles>& inputs, World& world);
+/// Returns what reads models by their text, with errors that name lines of the text. What a text includes or names,
+/// such as a mesh, has to be in `inputs`; null is nothing. `folder`: where relative paths in the text begin.
+ModelReader model_reader(std::shared_ptr<const KeptFiles> inputs, std::filesystem::path folder);
 
 }  // namespace cohort::parsing

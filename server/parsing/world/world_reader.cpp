@@ -62,8 +62,7 @@ World WorldReader::read(LoneModel lone, const std::vector<LaterObject>& later) {
   return finished();
 }
 
-World WorldReader::read_model_file(std::vector<std::string> materials) {
-  world_.materials = std::move(materials);
+World WorldReader::read_model_file() {
   const SdfFile& file = files_.world();
   if (file.loaded && file.root.Model() == nullptr)
     problems_.push_back({file.shown, file.tree.line, "", "expected one <model> or <robot>"});

@@ -36,8 +36,8 @@ class WorldReader {
   }
 
   World read(LoneModel lone, const std::vector<LaterObject>& later);
-  /// A world with nothing but the model of the file. Materials are numbered on from `materials`.
-  World read_model_file(std::vector<std::string> materials);
+  /// A world with nothing but the model of the file.
+  World read_model_file();
 
  private:
   World finished();

@@ -68,6 +68,7 @@ void Control::begin(ControlledRun run) {
   ending_.reset();
   playback_ = Playback(run_->monitor.options().state);
   queries_.begin(*run_);
+  texts_.begin(run_->experiment.read_model);
   if (!std::exchange(goes_back_, false))
     kept_ =
         KeptSnapshots(static_cast<std::uint64_t>(run_->monitor.options().keep_interval / run_->experiment.world.step),
@@ -272,6 +273,7 @@ const std::string& Control::account_of(std::uint64_t client) const {
 bool Control::is_unlimited() const { return playback_.holds() || run_->monitor.is_over(); }
 
 bool Control::may_be_done(const Request& request) {
+  if (text_of_model(request) != nullptr && texts_.find(key_of(request)) == nullptr) return false;
   if (takes_no_time(request) || is_unlimited()) return true;
   if (request.code() == OperationCode::save_snapshot && saved_) return true;
   const std::string& account = account_of(request.client);
@@ -282,7 +284,32 @@ void Control::charge(const Request& request, RequestBudget::Time took) {
   if (!is_unlimited()) budget_.charge(account_of(request.client), took, now());
 }
 
+// The texts of models that wait to be read, one of each client in turn.
+void Control::read_texts() {
+  if (const auto read = texts_.collect(); read && !is_unlimited())
+    budget_.charge(account_of(read->first), texts_.find(*read)->took, now());
+  while (texts_.is_free()) {
+    const Request* const next = next_to_read();
+    if (next == nullptr) return;
+    last_read_for_ = next->client;
+    texts_.take(key_of(*next), *text_of_model(*next));
+  }
+}
+
+const Request* Control::next_to_read() {
+  std::map<std::uint64_t, const Request*> first_of;  // client
+  for (const Request& request : ledger_.waiting()) {
+    if (text_of_model(request) == nullptr || texts_.find(key_of(request)) != nullptr) continue;
+    if (is_unlimited() || budget_.allows(account_of(request.client), now()))
+      first_of.try_emplace(request.client, &request);
+  }
+  if (first_of.empty()) return nullptr;
+  const auto next = first_of.upper_bound(last_read_for_);
+  return next == first_of.end() ? first_of.begin()->second : next->second;
+}
+
 bool Control::has_work() {
+  read_texts();
   return std::ranges::any_of(ledger_.waiting(), [this](const Request& request) { return may_be_done(request); });
 }
 
@@ -313,6 +340,7 @@ std::vector<Request> Control::take_next(Moment moment) {
 bool Control::perform(Moment moment) {
   saved_.reset();
   drop_what_is_too_much();
+  read_texts();
   while (!ending_) {
     const std::vector<Request> next = take_next(moment);
     if (next.empty()) break;

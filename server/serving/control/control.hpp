@@ -14,6 +14,7 @@
 #include "server/serving/control/controlled_run.hpp"
 #include "server/serving/control/kept_snapshots.hpp"
 #include "server/serving/control/live_recordings.hpp"
+#include "server/serving/control/model_texts.hpp"
 #include "server/serving/control/received_request.hpp"
 #include "server/serving/control/request_budget.hpp"
 #include "server/serving/control/request_ledger.hpp"
@@ -27,8 +28,8 @@ class Control {
  public:
   using Clock = RunMonitor::Clock;
 
-  /// `recordings` must outlive this.
-  explicit Control(LiveRecordings& recordings) : recordings_(recordings) {}
+  /// `recordings` must outlive this. `wake` is called from any thread when there may be work.
+  Control(LiveRecordings& recordings, std::function<void()> wake) : recordings_(recordings), texts_(std::move(wake)) {}
 
   void begin(ControlledRun run);
   /// Tells those who wait for something that it will not come, unless the next run brings it.
@@ -81,6 +82,8 @@ class Control {
   bool is_unlimited() const;
   bool may_be_done(const wire::Request& request);
   void charge(const wire::Request& request, RequestBudget::Time took);
+  void read_texts();
+  const wire::Request* next_to_read();
   std::vector<wire::Request> take_next(Moment moment);
   void drop_what_is_too_much();
 
@@ -119,7 +122,9 @@ class Control {
   bool goes_back_ = false;  // the next run is this one's past
   RequestLedger ledger_;
   RequestBudget budget_;
-  std::uint64_t first_tick_ = 0;  // of this run
+  ModelTexts texts_;
+  std::uint64_t last_read_for_ = 0;  // a client
+  std::uint64_t first_tick_ = 0;     // of this run
   RequesterSlots slots_;
   std::map<std::uint64_t, Requester> requesters_;            // by client
   std::map<std::uint64_t, std::uint64_t> client_of_writer_;  // of requests

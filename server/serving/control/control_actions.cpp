@@ -32,9 +32,8 @@ void add_actions(const wire::SetEntityState& operation, std::vector<Action>& act
     actions.emplace_back(SetVelocity{entity, from_wire(operation.twist->linear), from_wire(operation.twist->angular)});
 }
 void add_actions(const wire::SpawnEntity& operation, std::vector<Action>& actions) {
-  actions.emplace_back(SpawnObject{operation.entity,
-                                   operation.resource_string.empty() ? operation.uri : operation.resource_string,
-                                   from_wire(operation.pose), operation.allow_renaming, operation.team});
+  actions.emplace_back(SpawnObject{operation.entity, operation.uri, from_wire(operation.pose), operation.allow_renaming,
+                                   operation.team});
 }
 void add_actions(const wire::DeleteEntity& operation, std::vector<Action>& actions) {
   actions.emplace_back(RemoveObject{operation.entity});
@@ -54,13 +53,15 @@ constexpr bool is_kind_of_action = requires(const Operation& operation, std::vec
   add_actions(operation, actions);
 };
 
-std::vector<Action> actions_of(const Request& request) {
+std::vector<Action> actions_of(const Request& request, const ModelTexts& texts) {
   std::vector<Action> actions;
   std::visit(
       [&]<class One>(const One& operation) {
         if constexpr (is_kind_of_action<One>) add_actions(operation, actions);
       },
       request.operation);
+  if (text_of_model(request) != nullptr)
+    std::get<SpawnObject>(actions.front()).model = texts.find(key_of(request))->model;
   return actions;
 }
 
@@ -81,7 +82,7 @@ struct Refusal {
   ResultCode result;
   std::string text;
 };
-std::optional<Refusal> refusal_of(const Request& request) {
+std::optional<Refusal> refusal_of(const Request& request, const ModelTexts& texts) {
   constexpr const char* no_orientation = "the orientation is no unit quaternion";
   if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation)) {
     if (spawn->uri.empty() && spawn->resource_string.empty())
@@ -90,6 +91,9 @@ std::optional<Refusal> refusal_of(const Request& request) {
   }
   if (const auto* state = std::get_if<wire::SetEntityState>(&request.operation))
     if (state->pose && !has_orientation(*state->pose)) return Refusal{ResultCode::invalid_pose, no_orientation};
+  if (text_of_model(request) == nullptr) return std::nullopt;
+  if (const ModelTexts::Reading& reading = *texts.find(key_of(request)); reading.model == nullptr)
+    return Refusal{ResultCode::operation_failed, reading.why_not};
   return std::nullopt;
 }
 
@@ -108,16 +112,21 @@ bool is_action(const Request& request) {
   return std::visit([]<class One>(const One&) { return is_kind_of_action<One>; }, request.operation);
 }
 
-std::vector<ActionOutcome> act(Simulation& simulation, std::span<const Request> requests) {
+const std::string* text_of_model(const Request& request) {
+  const auto* const spawn = std::get_if<wire::SpawnEntity>(&request.operation);
+  return spawn == nullptr || spawn->resource_string.empty() ? nullptr : &spawn->resource_string;
+}
+
+std::vector<ActionOutcome> act(Simulation& simulation, std::span<const Request> requests, const ModelTexts& texts) {
   std::vector<ActionOutcome> outcomes;
   std::vector<Action> actions;
   std::vector<const Request*> origins;  // of each action
   for (const Request& request : requests) {
-    if (const auto refusal = refusal_of(request)) {
+    if (const auto refusal = refusal_of(request, texts)) {
       outcomes.push_back({&request, refusal->result, refusal->text});
       continue;
     }
-    for (Action& action : actions_of(request)) {
+    for (Action& action : actions_of(request, texts)) {
       actions.push_back(std::move(action));
       origins.push_back(&request);
     }

@@ -195,7 +195,8 @@ void Control::rewind(const std::string& why) {
 
 void Control::do_actions(std::span<const Request> requests) {
   saved_.reset();  // the world is another now
-  for (ActionOutcome& outcome : act(run_->simulation, requests)) {
+  for (ActionOutcome& outcome : act(run_->simulation, requests, texts_)) {
+    texts_.forget(key_of(*outcome.request));
     for (ActionOutcome::Done& done : outcome.done) tell(*outcome.request, done.text, std::move(done.action));
     Reply reply = reply_to(*outcome.request);
     reply.result = outcome.result;

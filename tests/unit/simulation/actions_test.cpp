@@ -5,6 +5,7 @@
 
 #include "server/core/infinity.hpp"
 #include "server/simulation/simulation.hpp"
+#include "tests/support/model_text.hpp"
 #include "tests/support/small_world.hpp"
 
 /// What is done to a running simulation from outside.
@@ -78,6 +79,7 @@ class Actions : public ::testing::TestWithParam<description::Fidelity> {
     late_ = place(world, static_shape("wall", description::Box{{0.1, 1.0, 0.4}}), "late", at(3, 0, 0.2));
     world.instances[late_].is_present = false;
     experiment_.seed = 5;
+    experiment_.read_model = model_of_text;
     experiment_.duration = 10s;
     description::Team team{"team", {0, 1}, "none", {}};
     team.policy.period = 2;
@@ -140,7 +142,7 @@ TEST_P(Actions, ChangeAStateHashThatSomebodyHasAskedFor) {
         simulation.change_emitter(post_, 1, {false, {}, {}, {}, {}, {}});
       },
       [](Simulation& simulation) {
-        simulation.act(SpawnObject{"more", crate_sdf, at(4, 4, 0.2)});
+        simulation.act(SpawnObject{"more", model_of_text(crate_sdf), at(4, 4, 0.2)});
       },
       [&](Simulation& simulation) {
         simulation.add_object("second_box", experiment_.world.instances[box_].model, at(5, 5, 0.1));
@@ -221,10 +223,10 @@ TEST_P(Actions, ObjectsAreSpawnedByTheNameOfAModel) {
 TEST_P(Actions, ObjectsAreSpawnedFromTheTextOfAModelInAnyFormat) {
   Simulation simulation(experiment_, 1);
   const std::size_t models = simulation.description().models.size();
-  simulation.act(SpawnObject{"a", crate_sdf, at(-2, 0, 0.1)});
-  simulation.act(SpawnObject{"b", crate_yaml, at(-2, 1, 0.1)});
-  simulation.act(SpawnObject{"c", crate_urdf, at(-2, 2, 0.1)});
-  simulation.act(SpawnObject{"d", crate_sdf, at(-2, 3, 0.1)});
+  simulation.act(SpawnObject{"a", model_of_text(crate_sdf), at(-2, 0, 0.1)});
+  simulation.act(SpawnObject{"b", model_of_text(crate_yaml), at(-2, 1, 0.1)});
+  simulation.act(SpawnObject{"c", model_of_text(crate_urdf), at(-2, 2, 0.1)});
+  simulation.act(SpawnObject{"d", model_of_text(crate_sdf), at(-2, 3, 0.1)});
   simulation.act(SpawnObject{"e", "crate", at(-2, 4, 0.1)});
   EXPECT_EQ(simulation.description().models.size(), models + 3);
   simulation.act(SetVelocity{"d", {1, 0, 0}, Eigen::Vector3d::Zero()});
@@ -235,18 +237,26 @@ TEST_P(Actions, ObjectsAreSpawnedFromTheTextOfAModelInAnyFormat) {
 }
 
 TEST_P(Actions, ATextThatIsNoModelIsRefusedWithLineAndReason) {
-  Simulation simulation(experiment_, 1);
-  const auto reason = [&](const std::string& text) { return why_not(simulation, SpawnObject{"x", text, at(0, 0, 1)}); };
+  const auto reason = [&](const std::string& text) -> std::string {
+    try {
+      model_of_text(text);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "it is one";
+  };
   const std::string ours = "<sdf version='1.9' xmlns:cohort='https://cohort-sim.org/sdf/1'>";
   EXPECT_NE(reason(ours + "\n<model name='m'>\n<lnk name='l'/></model></sdf>").find("line 3: "), std::string::npos);
   EXPECT_NE(reason("<sdf version='1.9'><world name='w'/></sdf>").find("expected one <model>"), std::string::npos);
   EXPECT_NE(reason("<a").find("the text of the model"), std::string::npos);
   EXPECT_NE(reason("a: [").find("the text of the model"), std::string::npos);
-  EXPECT_EQ(reason("\xff<"), "the model is not UTF-8");
+  EXPECT_NE(reason("\xff<").find("the text of the model"), std::string::npos);
   EXPECT_NE(reason("<sdf version='1.9'><model name='m'><include><uri>/etc/hostname</uri></include></model></sdf>")
                 .find("there is no '/etc/hostname'"),
             std::string::npos);
-  EXPECT_EQ(reason("bax").substr(0, 46), "the world has no model 'bax'; did you mean 'bo");
+  Simulation simulation(experiment_, 1);
+  EXPECT_EQ(why_not(simulation, SpawnObject{"x", "bax", at(0, 0, 1)}).substr(0, 46),
+            "the world has no model 'bax'; did you mean 'bo");
 }
 
 TEST_P(Actions, RobotsComeWithTheNextIdAndTheirTeamsPolicyAndAreSensedAtOnce) {
@@ -278,7 +288,7 @@ TEST_P(Actions, RobotsThatComeAreTheSameOnAnyThreadsAndAfterRestore) {
   const auto with_newcomers = [&](unsigned threads) {
     auto simulation = std::make_unique<Simulation>(experiment_, threads);
     run(*simulation, 11);
-    simulation->act(SpawnObject{"crate", crate_sdf, at(4, 4, 0.2)});
+    simulation->act(SpawnObject{"crate", model_of_text(crate_sdf), at(4, 4, 0.2)});
     simulation->act(SpawnObject{"team/late", "tracked_robot", at(0.2, 0.15, 0)});
     run(*simulation, 20);
     simulation->act(SpawnObject{"team/later", "tracked_robot", at(1, 0.3, 0)});
@@ -317,7 +327,8 @@ TEST_P(Actions, ARobotJoinsTheTeamThatIsSaid) {
             "'tracked_robot' is a robot: say which team it joins, of team, others");
   EXPECT_EQ(why_not(simulation, spawn("b", "box", "others")), "the model 'box' is no robot, so it is in no team");
   EXPECT_EQ(simulation.robot_count(), 3u);
-  const auto again = std::get<SpawnObject>(action_from_bytes(to_bytes(spawn("a", "tracked_robot", "others"))));
+  const auto again =
+      std::get<SpawnObject>(action_from_bytes(to_bytes(spawn("a", "tracked_robot", "others")), model_of_text));
   EXPECT_EQ(again.team, "others");
 }
 
@@ -392,9 +403,8 @@ TEST_P(Actions, ThatCannotBeDoneSayWhyAndChangeNothing) {
       {SetLight{"post", true, -1.0}, "expected an intensity of at least 0"},
       {SetLight{"post", true, {}, Eigen::Vector3d(2, 0, 0)}, "expected red, green and blue from 0 to 1"},
       {SpawnObject{"/x", "box", at(0, 0, 1)}, "'/x' is no name: expected parts with a slash between them"},
-      {SpawnObject{"", "", at(0, 0, 1)},
-       "expected the name of one of the world's models, or a text in SDF, URDF or YAML"},
-      {SpawnObject{"post", crate_sdf, at(0, 0, 1)}, "another object has the name 'post'"},
+      {SpawnObject{"", "", at(0, 0, 1)}, "expected the name of one of the world's models, or a model"},
+      {SpawnObject{"post", model_of_text(crate_sdf), at(0, 0, 1)}, "another object has the name 'post'"},
   };
   const std::uint64_t hash = simulation.state_hash();
   const std::vector<std::byte> saved = simulation.save();
@@ -420,11 +430,12 @@ TEST_P(Actions, OnWhatIsQuarantinedAreRefusedButItCanBeRemoved) {
 TEST_P(Actions, AreTheSameOnAnyThreadsAndAfterRestore) {
   const auto act = [](Simulation& simulation) {
     const std::vector<Action> actions = {
-        SpawnObject{"crate", crate_sdf, at(-0.4, 0, 0.1)},
-        SpawnObject{"ramp",
-                    "<sdf version='1.9'><model name='m'><static>1</static><link name='l'><collision name='c'>"
-                    "<geometry><box><size>1 1 0.1</size></box></geometry></collision></link></model></sdf>",
-                    at(0.5, 3, 0.05)},
+        SpawnObject{"crate", model_of_text(crate_sdf), at(-0.4, 0, 0.1)},
+        SpawnObject{
+            "ramp",
+            model_of_text("<sdf version='1.9'><model name='m'><static>1</static><link name='l'><collision name='c'>"
+                          "<geometry><box><size>1 1 0.1</size></box></geometry></collision></link></model></sdf>"),
+            at(0.5, 3, 0.05)},
         SpawnObject{"lamp", "post", at(-2, -2, 0.2)},
         SetLight{"lamp/top", true, 2.0},
         RemoveObject{"post"},
@@ -481,12 +492,12 @@ TEST(PlanarActions, WhereThereIsNoGroundNothingIsChanged) {
   const std::vector<std::byte> saved = simulation.save();
   EXPECT_THROW(simulation.act(SetPose{"box", at(5, 0, 0.1)}), std::invalid_argument);
   EXPECT_THROW(simulation.act(SpawnObject{"other", "box", at(5, 0, 0.1)}), std::invalid_argument);
-  EXPECT_THROW(simulation.act(SpawnObject{"other", crate_sdf, at(5, 0, 0.1)}), std::invalid_argument);
+  EXPECT_THROW(simulation.act(SpawnObject{"other", model_of_text(crate_sdf), at(5, 0, 0.1)}), std::invalid_argument);
   EXPECT_EQ(simulation.state_hash(), hash);
   EXPECT_TRUE(simulation.save() == saved);
   Simulation untouched(experiment, 1);
-  simulation.act(SpawnObject{"other", crate_yaml, at(0.5, 0, 0.1)});
-  untouched.act(SpawnObject{"other", crate_yaml, at(0.5, 0, 0.1)});
+  simulation.act(SpawnObject{"other", model_of_text(crate_yaml), at(0.5, 0, 0.1)});
+  untouched.act(SpawnObject{"other", model_of_text(crate_yaml), at(0.5, 0, 0.1)});
   for (int i = 0; i < 20; ++i) {
     simulation.step();
     untouched.step();
@@ -497,7 +508,7 @@ TEST(PlanarActions, WhereThereIsNoGroundNothingIsChanged) {
 // ---- As bytes ----
 
 std::vector<Action> one_of_each() {
-  return {SpawnObject{"a/b", crate_yaml, at(1, 2, 3, 0.5), true},
+  return {SpawnObject{"a/b", model_of_text(crate_yaml), at(1, 2, 3, 0.5), true},
           RemoveObject{"x"},
           SetPose{"y", at(-1, 0, 2)},
           SetVelocity{"z", {1, 2, 3}, {4, 5, 6}},
@@ -509,36 +520,64 @@ std::vector<Action> one_of_each() {
 TEST(ActionBytes, ComeBackAsTheSameAction) {
   for (const Action& action : one_of_each()) {
     const std::vector<std::byte> bytes = to_bytes(action);
-    const Action again = action_from_bytes(bytes);
+    const Action again = action_from_bytes(bytes, model_of_text);
     EXPECT_EQ(again.index(), action.index());
     EXPECT_TRUE(to_bytes(again) == bytes);
   }
-  const auto spawn = std::get<SpawnObject>(action_from_bytes(to_bytes(one_of_each()[0])));
+  const auto spawn = std::get<SpawnObject>(action_from_bytes(to_bytes(one_of_each()[0]), model_of_text));
   EXPECT_EQ(spawn.name, "a/b");
-  EXPECT_EQ(spawn.model, crate_yaml);
+  EXPECT_EQ(std::get<description::ParsedModelPtr>(spawn.model)->text, crate_yaml);
   EXPECT_EQ(spawn.X_WM.position, Eigen::Vector3d(1, 2, 3));
   EXPECT_TRUE(spawn.allow_renaming);
-  const auto light = std::get<SetLight>(action_from_bytes(to_bytes(one_of_each()[5])));
+  const auto light = std::get<SetLight>(action_from_bytes(to_bytes(one_of_each()[5]), model_of_text));
   EXPECT_TRUE(light.on);
   EXPECT_EQ(light.intensity, 2.5);
   EXPECT_EQ(light.color, Eigen::Vector3d(0.1, 0.2, 0.3));
-  EXPECT_EQ(std::get<ApplyForce>(action_from_bytes(to_bytes(one_of_each()[6]))).duration, 250ms);
+  EXPECT_EQ(std::get<ApplyForce>(action_from_bytes(to_bytes(one_of_each()[6]), model_of_text)).duration, 250ms);
+}
+
+// Older recordings do not say whether a model is a name or a text.
+TEST(ActionBytes, OfOlderRecordingsAreNamesAndTexts) {
+  const auto again = [](const SpawnObject& spawn) {
+    std::vector<std::byte> bytes = to_bytes(spawn);
+    bytes[0] = std::byte{0};
+    return std::get<SpawnObject>(action_from_bytes(bytes, model_of_text)).model;
+  };
+  EXPECT_EQ(std::get<std::string>(again({"a", "tracked_robot", at(0, 0, 0)})), "tracked_robot");
+  EXPECT_EQ(std::get<std::string>(again({"a", "colon: in a name", at(0, 0, 0)})), "colon: in a name");
+  EXPECT_EQ(std::get<description::ParsedModelPtr>(again({"a", model_of_text(crate_sdf), at(0, 0, 0)}))->text,
+            crate_sdf);
+}
+
+TEST(ActionBytes, TellNamesFromTextsWhateverTheyContain) {
+  for (const std::string name : {"<sdf/>", "a: b", "x\ny", "{}"})
+    EXPECT_EQ(std::get<std::string>(
+                  std::get<SpawnObject>(action_from_bytes(to_bytes(SpawnObject{"a", name, at(0, 0, 0)}), {})).model),
+              name);
+}
+
+TEST(ActionBytes, WithATextThatIsNoModelAreRefused) {
+  auto broken = std::make_shared<description::ParsedModel>();
+  broken->text = "<sdf version='1.9'/>";
+  const std::vector<std::byte> bytes = to_bytes(SpawnObject{"a", broken, at(0, 0, 0)});
+  EXPECT_THROW(action_from_bytes(bytes, model_of_text), std::invalid_argument);
+  EXPECT_THROW(action_from_bytes(bytes, {}), std::invalid_argument);
 }
 
 TEST(ActionBytes, AreRefusedIfTheyAreCutShortOrGoOnOrAreOfAnotherKind) {
   for (const Action& action : one_of_each()) {
     std::vector<std::byte> bytes = to_bytes(action);
     for (std::size_t size = 0; size < bytes.size(); ++size)
-      EXPECT_THROW(action_from_bytes(std::span(bytes).first(size)), std::invalid_argument) << size;
+      EXPECT_THROW(action_from_bytes(std::span(bytes).first(size), model_of_text), std::invalid_argument) << size;
     bytes.push_back(std::byte{0});
-    EXPECT_THROW(action_from_bytes(bytes), std::invalid_argument);
+    EXPECT_THROW(action_from_bytes(bytes, model_of_text), std::invalid_argument);
     bytes.pop_back();
     bytes[0] = std::byte{99};
-    EXPECT_THROW(action_from_bytes(bytes), std::invalid_argument);
+    EXPECT_THROW(action_from_bytes(bytes, model_of_text), std::invalid_argument);
   }
   std::vector<std::byte> light = to_bytes(SetLight{"lamp", false});
   light[light.size() - 3] = std::byte{2};
-  EXPECT_THROW(action_from_bytes(light), std::invalid_argument);
+  EXPECT_THROW(action_from_bytes(light, model_of_text), std::invalid_argument);
 }
 
 }  // namespace

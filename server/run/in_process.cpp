@@ -1,6 +1,8 @@
 #include "server/run/in_process.hpp"
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <span>
@@ -40,15 +42,44 @@ void ask_again(Exchange& exchange, const description::Experiment& experiment, st
   for (const auto& [tick, unanswered] : robots_of) ask(exchange, frame, experiment, unanswered, tick, host);
 }
 
+// Controllers of robots of one team that came together: at first, or later at one boundary.
+struct Driven {
+  std::size_t team = 0;
+  std::vector<std::uint32_t> robots;
+  std::unique_ptr<ControllerHost> host;
+};
+
+// Of each team, its robots from the id `first` on, if there are any.
+std::vector<Driven> start_controllers(const Simulation& simulation, std::uint32_t first,
+                                      const std::vector<ControllerKind>& controllers, wire::StartReason reason) {
+  const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
+  const description::Experiment& experiment = simulation.experiment();
+  std::vector<Driven> all;
+  for (std::size_t team = 0; team < experiment.teams.size(); ++team) {
+    const std::vector<std::uint32_t>& robots = experiment.teams[team].robots;
+    Driven driven{team, {std::ranges::lower_bound(robots, first), robots.end()}, {}};
+    if (driven.robots.empty() && first > 0) continue;
+    wire::Admit admit;
+    admit.client = team;
+    admit.step_ns = experiment.world.step.count();
+    admit.tick = simulation.tick();
+    admit.start_reason = reason;
+    admit_robots(admit, experiment, simulation, driven.robots);
+    driven.host = std::make_unique<ControllerHost>(controllers[team]);
+    driven.host->start(admit, descriptions);
+    all.push_back(std::move(driven));
+  }
+  return all;
+}
+
 // Throws SnapshotError if a controller cannot save.
-ControllerStates states_of(const std::vector<std::unique_ptr<ControllerHost>>& hosts, const Simulation& simulation,
-                           RunMonitor& monitor) {
+ControllerStates states_of(const std::vector<Driven>& all, const Simulation& simulation, RunMonitor& monitor) {
   ControllerStates states(simulation.robot_count());
-  for (std::size_t team = 0; team < hosts.size(); ++team) {
+  for (const Driven& driven : all) {
     try {
-      for (auto& [robot, state] : hosts[team]->save()) states[robot] = std::move(state);
+      for (auto& [robot, state] : driven.host->save()) states[robot] = std::move(state);
     } catch (const SaveFailure& failure) {
-      const std::string whose = "team '" + simulation.experiment().teams[team].name + "'";
+      const std::string whose = "team '" + simulation.experiment().teams[driven.team].name + "'";
       monitor.add_unsaved(whose, whose + ": " + failure.what());
       throw SnapshotError(whose + ": " + failure.what());
     }
@@ -73,45 +104,43 @@ RunResult run_in_process(const description::Experiment& experiment, Simulation& 
   RunMonitor monitor(experiment, simulation, options, listener);
   Exchange exchange(simulation);
   if (options.from) restore(*options.from, exchange);
-  const std::vector<wire::RobotDescription> descriptions = describe_kinds(simulation);
-
   const auto fail = [&](const std::string& why) {
     monitor.add_event("failed", why);
     return monitor.finish(RunResult::End::failed, why);
   };
   if (listener.can_fail) listener.can_fail(fail);
-  std::vector<std::unique_ptr<ControllerHost>> hosts;
   const std::vector<description::Team>& teams = simulation.experiment().teams;
   try {
-    for (std::size_t team = 0; team < teams.size(); ++team) {
-      wire::Admit admit;
-      admit.client = team;
-      admit.step_ns = experiment.world.step.count();
-      admit.tick = simulation.tick();
-      admit_robots(admit, simulation.experiment(), simulation, teams[team].robots);
-      hosts.push_back(std::make_unique<ControllerHost>(controllers[team]));
-      if (options.from) admit.start_reason = wire::StartReason::restored;
-      hosts.back()->start(admit, descriptions);
-      if (!options.from) continue;
-      const auto& robots = teams[team].robots;
-      for (const std::string& notice : hosts.back()->load(states_of(*options.from, robots)))
-        monitor.add_event("unsaved", "team '" + teams[team].name + "': " + notice);
-      ask_again(exchange, experiment, robots, simulation.tick(), *hosts.back());
+    std::vector<Driven> all = start_controllers(simulation, 0, controllers,
+                                                options.from ? wire::StartReason::restored : wire::StartReason::first);
+    std::uint32_t admitted = simulation.robot_count();
+    if (options.from) {
+      for (const Driven& driven : all) {
+        for (const std::string& notice : driven.host->load(states_of(*options.from, driven.robots)))
+          monitor.add_event("unsaved", "team '" + teams[driven.team].name + "': " + notice);
+        ask_again(exchange, experiment, driven.robots, simulation.tick(), *driven.host);
+      }
+      monitor.note_left_out(*options.from);
     }
-    if (options.from) monitor.note_left_out(*options.from);
 
     monitor.start();
     Exchange::Frame frame;  // reused
     while (!monitor.is_over()) {
       if (stop) return monitor.finish(RunResult::End::interrupted);
+      if (simulation.robot_count() > admitted) {  // some have come
+        exchange.add_newcomers();
+        std::ranges::move(start_controllers(simulation, admitted, controllers, wire::StartReason::first),
+                          std::back_inserter(all));
+        admitted = simulation.robot_count();
+      }
       offer_snapshot(listener, [&] {
-        return take_snapshot(experiment, simulation, exchange, states_of(hosts, simulation, monitor));
+        return take_snapshot(experiment, simulation, exchange, states_of(all, simulation, monitor));
       });
       const auto begin = RunMonitor::Clock::now();
       exchange.open(begin.time_since_epoch());
       monitor.at_boundary();
-      for (std::size_t team = 0; team < hosts.size(); ++team) {
-        const auto taken = ask(exchange, frame, experiment, teams[team].robots, simulation.tick(), *hosts[team]);
+      for (const Driven& driven : all) {
+        const auto taken = ask(exchange, frame, experiment, driven.robots, simulation.tick(), *driven.host);
         if (!taken.is_fault) continue;
         monitor.add_event("rejected", taken.rejection->reason + ": " + taken.rejection->text);
         for (const lockstep::Barrier::Miss& miss : exchange.barrier().take_refused()) monitor.add_miss(miss);

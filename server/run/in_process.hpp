@@ -9,8 +9,9 @@
 namespace cohort::session {
 
 /// Runs an experiment with its controllers in this process, without a network: the same barrier, the same frames and
-/// the same answers as over DDS. `controllers`: one for each team, in order. Returns when the run is over or soon after
-/// `stop` is set.
+/// the same answers as over DDS. `controllers`: one for each team, in order. Robots that come while it runs are
+/// admitted at that boundary: `RunListener::stepped` may spawn them by `Simulation::act`. Returns when the run is over
+/// or soon after `stop` is set.
 RunResult run_in_process(const description::Experiment& experiment, Simulation& simulation,
                          const std::vector<ControllerKind>& controllers, const RunOptions& options,
                          const RunListener& listener, const std::atomic<bool>& stop);

@@ -18,22 +18,19 @@ Objects::Objects(description::Experiment& experiment, physics::World& world)
       described_(static_cast<std::uint32_t>(experiment.world.instances.size())),
       history_ticks_(ticks_of(experiment.history.every, experiment.world.step)),
       histories_(experiment.history.objects.size()) {
-  for (const description::Instance& instance : experiment.world.instances)
-    present_.push_back(instance.is_present ? 1 : 0);
+  while (present_.size() < experiment.world.instances.size()) note_instance();
+}
+
+// The next one that the description has, if it has a name that is new.
+void Objects::note_instance() {
+  const description::Instance& instance = experiment_.world.instances[present_.size()];
+  by_name_.emplace(instance.name, static_cast<std::uint32_t>(present_.size()));
+  present_.push_back(instance.is_present ? 1 : 0);
 }
 
 std::optional<std::uint32_t> Objects::find(const std::string& name) const {
-  const auto& instances = experiment_.world.instances;
-  const auto found = std::ranges::find(instances, name, &description::Instance::name);
-  if (found == instances.end()) return std::nullopt;
-  return static_cast<std::uint32_t>(found - instances.begin());
-}
-
-std::vector<std::uint32_t> Objects::in_scope(const std::string& scope) const {
-  std::vector<std::uint32_t> found;
-  for (std::uint32_t object = 0; object < size(); ++object)
-    if (scope.empty() || name(object).starts_with(scope + "/")) found.push_back(object);
-  return found;
+  const auto found = by_name_.find(name);
+  return found == by_name_.end() ? std::nullopt : std::optional(found->second);
 }
 
 void Objects::set_present(std::uint32_t object, bool present) {
@@ -51,7 +48,7 @@ std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pos
     throw std::invalid_argument("no more than " + std::to_string(most_added) + " objects come in one run");
   const std::uint32_t body = world_.add_body(model, X_WM);
   experiment_.world.instances.push_back({name, model, X_WM});
-  present_.push_back(1);
+  note_instance();
   return body;
 }
 
@@ -124,7 +121,7 @@ void Objects::restore_added(SnapshotReader& reader) {
       throw SnapshotError("the snapshot has an object that cannot be simulated: " + std::string(error.what()));
     }
     experiment_.world.instances.push_back(std::move(instance));
-    present_.push_back(1);
+    note_instance();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "server/core/hash.hpp"
@@ -29,8 +30,6 @@ class Objects {
   std::uint32_t size() const { return static_cast<std::uint32_t>(present_.size()); }
   const std::string& name(std::uint32_t object) const { return experiment_.world.instances[object].name; }
   std::optional<std::uint32_t> find(const std::string& name) const;
-  /// All whose names begin with `scope` and a slash, ascending; all there are if it is empty.
-  std::vector<std::uint32_t> in_scope(const std::string& scope) const;
 
   /// In the world: neither taken out nor still to come. A quarantined one is.
   bool is_present(std::uint32_t object) const { return present_[object] != 0; }
@@ -56,6 +55,7 @@ class Objects {
   void restore(SnapshotReader& reader);
 
  private:
+  void note_instance();
   // Each may be a robot's, and a stranger's request may bring it.
   static constexpr std::size_t most_added = 100'000;
 
@@ -63,6 +63,7 @@ class Objects {
   physics::World& world_;
   std::uint32_t described_;
   std::vector<char> present_;
+  std::unordered_map<std::string, std::uint32_t> by_name_;  // to find one; nobody goes through it
   std::uint64_t history_ticks_ = 1;
   std::vector<std::deque<PastPose>> histories_;  // in the order of History::objects
 };

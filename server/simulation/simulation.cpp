@@ -99,14 +99,9 @@ void Simulation::begin_tick() {
   schedule_.check_stops();
 }
 
-std::uint32_t Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM, std::size_t team) {
-  note_change();
-  if (experiment_.world.models[model].is_robot() && team >= experiment_.teams.size())
-    throw std::invalid_argument("a robot joins a team, and there is none of that index");
-  const std::uint32_t object = objects_.add(name, model, X_WM);
-  enrol(object, team);
+void Simulation::add_object(const std::string& name, std::size_t model, const Pose& X_WM, std::size_t team) {
+  enrol(objects_.add(name, model, X_WM), team);
   note_bodies();
-  return object;
 }
 
 // All who know of bodies and robots are told of one that has come.

@@ -40,7 +40,8 @@ struct ActionResult {
   std::string text;  ///< a sentence: what was done, or why it cannot be
 };
 
-/// What a program does when robots do something. The value is that of the step that has just ended, from 0 to 1.
+/// What a program does when robots do something. `value`: of the action in the step that has just ended, from 0 to 1
+/// and without a unit; above 0.5 the robot acts.
 using ActionHandler = std::function<void(std::uint32_t robot, double value)>;
 
 /// One world, advancing tick by tick. Between calls it stands at a boundary: the state of tick() is complete, and the
@@ -81,11 +82,12 @@ class Simulation {
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const {
     return robots_.check_command(robot, values);
   }
-  /// From now on `handler` is called at the boundary after each step, before the events, for every robot in the world
-  /// that has an action of this name, in the order of the robots; if there are several, in the order of their coming.
-  /// On the thread that steps. It may do what may be done between steps; what it keeps itself is no part of a snapshot,
-  /// and what it throws comes out of `step`, after which this is not to be used. Throws std::invalid_argument if no
-  /// robot has such an action.
+  /// For programs that embed a simulation: from now on `step` calls `handler`, on its own thread, at the boundary after
+  /// the step and before the events. It does so for every robot in the world that has an action of this name
+  /// (docs/devices.md, `cohort:action`), in the order of the robots; several handlers in the order of their coming. A
+  /// handler may call `act` and add handlers. It must depend on nothing but the simulation, or runs are no longer the
+  /// same; what it keeps itself is no part of a snapshot. What it throws comes out of `step`, and the simulation must
+  /// not be used after that. Throws std::invalid_argument if no robot has such an action.
   void on_action(const std::string& name, ActionHandler handler);
 
   /// From this tick on the robot does this, until told otherwise. `values` must have passed `check_command`. Until the
@@ -121,29 +123,6 @@ class Simulation {
   const description::World& description() const { return experiment_.world; }
   /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
-  /// The next five between steps. They act on any object, at once; what is sensed changes with the next step. An object
-  /// of one of the description's models; a robot joins a team, by its index. Throws std::invalid_argument if the name
-  /// is taken or the model cannot be simulated.
-  std::uint32_t add_object(const std::string& name, std::size_t model, const Pose& X_WM, std::size_t team = 0);
-  void remove_object(std::uint32_t object) {
-    note_change();
-    objects_.set_present(object, false);
-  }
-  /// One that was removed comes back as it was.
-  void put_back_object(std::uint32_t object) {
-    note_change();
-    objects_.set_present(object, true);
-  }
-  /// At rest. Throws std::invalid_argument where a planar body has no ground.
-  void place_object(std::uint32_t object, const Pose& X_WM) {
-    note_change();
-    world_->place_body(object, X_WM);
-  }
-  /// `emitter`: index among those of its model. Throws std::invalid_argument if there is none.
-  void change_emitter(std::uint32_t object, std::size_t emitter, const description::EmitterChange& change) {
-    note_change();
-    emitters_.change(object, emitter, change);
-  }
   Pose object_pose(std::uint32_t object) const { return world_->link_pose(object, 0); }  ///< of its root link, X_WL
   /// What the last step took out of the world: a sentence for each body, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }
@@ -179,6 +158,7 @@ class Simulation {
   std::uint64_t computed_state_hash() const;
   std::string act_unsensed(const Action& action);
   std::string spawn_object(const SpawnObject& spawn);
+  void add_object(const std::string& name, std::size_t model, const Pose& X_WM, std::size_t team);
   void sense();
   void count_touches();
   void name_quarantined();

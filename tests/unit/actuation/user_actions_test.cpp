@@ -57,12 +57,12 @@ TEST_F(UserActions, HaveAChannelFromNothingToOne) {
 
 TEST_F(UserActions, MakeEventsHappenAfterTheStepInWhichTheyRiseAndAgainOnceTheyHaveFallen) {
   close_gate_when_opened();
+  world_.experiment.events.push_back({30ms, gate_, description::SetPresence{true}, "enable"});
   EXPECT_EQ(step_with(0.5), Sentences{}) << "not above a half";
   EXPECT_TRUE(has_gate());
   EXPECT_EQ(step_with(0.51), Sentences{"open of 'a': disable 'gate'"});
   EXPECT_FALSE(has_gate());
-  world_.simulation().put_back_object(gate_);
-  EXPECT_EQ(step_with(1.0), Sentences{}) << "it goes on, and does not begin";
+  EXPECT_EQ(step_with(1.0), Sentences{"enable 'gate'"}) << "the action goes on, and does not begin";
   EXPECT_EQ(step_with(0.5), Sentences{});
   EXPECT_TRUE(has_gate());
   EXPECT_EQ(step_with(0.7).size(), 1u);
@@ -88,9 +88,10 @@ TEST_F(UserActions, OfOtherRobotsOrOfAnotherNameDoNothing) {
 
 TEST_F(UserActions, OfARobotThatIsNotInTheWorldDoNothingUntilItIsBack) {
   close_gate_when_opened();
-  world_.simulation().remove_object(1);
+  world_.experiment.events.push_back({0ms, 1, description::SetPresence{false}, "disable"});
+  world_.experiment.events.push_back({20ms, 1, description::SetPresence{true}, "enable"});
   EXPECT_EQ(step_with(1.0), Sentences{});
-  world_.simulation().put_back_object(1);
+  EXPECT_EQ(step_with(1.0), Sentences{"enable 'a'"});
   EXPECT_EQ(step_with(1.0).size(), 1u);
 }
 
@@ -150,7 +151,7 @@ TEST_F(UserActions, CallTheirHandlersInTheOrderOfTheRobotsBeforeTheEvents) {
   EXPECT_EQ(ticks, (std::vector<std::uint64_t>{1, 1}));
   EXPECT_TRUE(gate_was_there);
   calls.clear();
-  simulation.remove_object(1);  // robot 0
+  simulation.act(RemoveObject{"a"});
   world_.step();
   EXPECT_EQ(calls, (std::vector<std::pair<std::uint32_t, double>>{{1, 0.75}})) << "every step, of those in the world";
   EXPECT_THROW(simulation.on_action("opn", [](std::uint32_t, double) {}), std::invalid_argument);
@@ -159,7 +160,7 @@ TEST_F(UserActions, CallTheirHandlersInTheOrderOfTheRobotsBeforeTheEvents) {
 TEST_F(UserActions, LetHandlersChangeTheWorld) {
   Simulation& simulation = world_.simulation();
   simulation.on_action("call", [&](std::uint32_t robot, double value) {
-    if (value > 0.0) simulation.place_object(box_, at(-2, robot, 0.1));
+    if (value > 0.0) simulation.act(SetPose{"box", at(-2, robot, 0.1)});
   });
   step_with(1.0, 1, "call");
   EXPECT_EQ(simulation.object_pose(box_).position, Eigen::Vector3d(-2, 1, 0.1));
@@ -316,16 +317,15 @@ TEST_F(EventsForEmitters, ArePartOfHashAndSnapshot) {
     ASSERT_EQ(restored.state_hash(), straight.state_hash()) << "saved at tick " << tick;
   }
   // Intensity, temperature and humidity count although nobody senses them now.
-  Simulation other(world_.experiment, 1);
-  std::uint64_t before = other.state_hash();
+  const std::uint64_t before = Simulation(world_.experiment, 1).state_hash();
   for (const EmitterChange& change :
        {changed(&EmitterChange::intensity, 3.0), changed(&EmitterChange::temperature, 3.0),
         changed(&EmitterChange::humidity, 0.3)}) {
-    other.change_emitter(stand_, change.intensity ? 0 : 3, change);
-    EXPECT_NE(other.state_hash(), before);
-    before = other.state_hash();
+    description::Experiment changed_at_first = world_.experiment;
+    const std::size_t emitter = change.intensity ? 0 : 3;
+    changed_at_first.events = {{0ms, stand_, description::SetEmitters{{emitter}, change}, "set_emitter"}};
+    EXPECT_NE(Simulation(changed_at_first, 1).state_hash(), before);
   }
-  EXPECT_THROW(other.change_emitter(stand_, 4, {}), std::invalid_argument);
 }
 
 }  // namespace

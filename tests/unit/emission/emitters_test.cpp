@@ -58,10 +58,9 @@ TEST(LightSensors, SeeNoLampBehindAWall) {
   SensingWorld world;
   world.add(beacon_robot(), "robot", at(0, 0, 0));
   world.add_emitter("lamp", Light{}, at(1.0, 0.0, sensor_height));
-  const std::uint32_t wall =
-      world.add(static_shape("wall", description::Box{{0.1, 1.0, 0.4}}), "wall", at(0.5, 0, 0.2));
+  world.add(static_shape("wall", description::Box{{0.1, 1.0, 0.4}}), "wall", at(0.5, 0, 0.2));
   EXPECT_EQ(world.read(0, "light/0/reading"), 0.0);
-  world.simulation().remove_object(wall);
+  world.simulation().act(RemoveObject{"wall"});
   world.step();
   EXPECT_GT(world.read(0, "light/0/reading"), 0.1);
 }

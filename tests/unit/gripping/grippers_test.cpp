@@ -223,7 +223,8 @@ TEST(Grippers, LetGoOfWhatLeavesTheWorld) {
   pair.close(0);
   pair.world.step(closing_ticks);
   ASSERT_TRUE(pair.grips(0));
-  pair.world.simulation().remove_object(static_cast<std::uint32_t>(pair.second_body));
+  Simulation& simulation = pair.world.simulation();
+  simulation.act(RemoveObject{simulation.objects().name(static_cast<std::uint32_t>(pair.second_body))});
   pair.world.step();
   EXPECT_FALSE(pair.grips(0));
 }

@@ -135,17 +135,15 @@ TEST_P(Actions, ChangeAStateHashThatSomebodyHasAskedFor) {
       [](Simulation& simulation) {
         simulation.act(SetLight{"post/top", false});
       },
-      [&](Simulation& simulation) { simulation.place_object(box_, at(-0.5, 0, 0.1)); },
-      [&](Simulation& simulation) { simulation.remove_object(box_); },
-      [&](Simulation& simulation) { simulation.put_back_object(box_); },
-      [&](Simulation& simulation) {
-        simulation.change_emitter(post_, 1, {false, {}, {}, {}, {}, {}});
+      [](Simulation& simulation) { simulation.act(RemoveObject{"things/box"}); },
+      [](Simulation& simulation) {
+        simulation.act(SetLight{"post/foot", false});
       },
       [](Simulation& simulation) {
         simulation.act(SpawnObject{"more", model_of_text(crate_sdf), at(4, 4, 0.2)});
       },
-      [&](Simulation& simulation) {
-        simulation.add_object("second_box", experiment_.world.instances[box_].model, at(5, 5, 0.1));
+      [](Simulation& simulation) {
+        simulation.act(SpawnObject{"second_box", "box", at(5, 5, 0.1)});
       },
       [](Simulation& simulation) {
         simulation.act(SpawnObject{"team/late", "tracked_robot", at(1, 0.3, 0)});

@@ -200,24 +200,19 @@ TEST_P(CourseOfARun, KeepsTheLastPosesOfThoseItIsAskedFor) {
 
 TEST_P(CourseOfARun, HasItsObjectsInAHierarchyThatGrowsAndShrinks) {
   Simulation simulation(experiment_, 1);
-  EXPECT_EQ(simulation.objects().in_scope("team"), (std::vector<std::uint32_t>{first_, second_}));
   EXPECT_EQ(simulation.objects().find("things/box"), box_);
-  const std::size_t model = experiment_.world.instances[box_].model;
-  const std::uint32_t added = simulation.add_object("things/another", model, at(-1, 1, 0.1));
-  EXPECT_EQ(simulation.objects().in_scope("things"), (std::vector<std::uint32_t>{box_, added}));
-  EXPECT_THROW(simulation.add_object("things/box", model, at(-1, 2, 0.1)), std::invalid_argument);
-  EXPECT_THROW(simulation.add_object("r", experiment_.world.instances[first_].model, at(5, 5, 0), 9),
-               std::invalid_argument);
+  const std::string& model = experiment_.world.models[experiment_.world.instances[box_].model].name;
+  simulation.act(SpawnObject{"things/another", model, at(-1, 1, 0.1)});
+  const std::uint32_t added = *simulation.objects().find("things/another");
+  EXPECT_EQ(added, simulation.objects().size() - 1);
+  EXPECT_THROW(simulation.act(SpawnObject{"things/box", model, at(-1, 2, 0.1)}), std::invalid_argument);
   run(simulation, 10);
   EXPECT_TRUE(simulation.objects().is_present(added));
   EXPECT_NEAR(simulation.object_pose(added).position.z(), 0.1, 1e-3);
   const std::uint64_t before = simulation.state_hash();
-  simulation.remove_object(added);
+  simulation.act(RemoveObject{"things/another"});
   EXPECT_NE(simulation.state_hash(), before);
   EXPECT_FALSE(simulation.objects().is_present(added));
-  run(simulation, 10);
-  simulation.put_back_object(added);
-  EXPECT_TRUE(simulation.objects().is_present(added));
 }
 
 // ---- Guarantees ----
@@ -258,9 +253,9 @@ TEST_P(EventfulRun, GivesTheSameBitsWithAnyNumberOfThreads) {
 
 TEST_P(EventfulRun, GoesOnFromASnapshotOfAnyTickWithTheSameBits) {
   Simulation straight(experiment_, 1);
-  const std::size_t model = experiment_.world.instances[box_].model;
+  const std::string& model = experiment_.world.models[experiment_.world.instances[box_].model].name;
   for (std::uint64_t saved = 0; saved < 80; saved += 7) {
-    if (saved == 7) straight.add_object("extra", model, at(-1, 2, 0.1));
+    if (saved == 7) straight.act(SpawnObject{"extra", model, at(-1, 2, 0.1)});
     Simulation restored(experiment_, 1);
     restored.restore(straight.save());
     ASSERT_EQ(restored.state_hash(), straight.state_hash()) << "tick " << saved;

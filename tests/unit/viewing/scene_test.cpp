@@ -150,9 +150,10 @@ TEST(SceneOfAWorld, WhatComesLaterNeedsAnotherMaker) {
   const SceneMaker maker(simulation, 1);
   EXPECT_FALSE(maker.is_outdated());
   const std::size_t pillar = simulation.world().model_of(*simulation.objects().find("pillar_0"));
+  const std::string& model = simulation.description().models[pillar].name;
   Pose X_WM;
   X_WM.position = {0.0, 0.0, 3.0};
-  simulation.add_object("another", pillar, X_WM);
+  simulation.act(SpawnObject{"another", model, X_WM});
   EXPECT_TRUE(maker.is_outdated());
   const messages::Scene scene = SceneMaker(simulation, 2).scene();
   EXPECT_EQ(scene.entities.back().name, "another");

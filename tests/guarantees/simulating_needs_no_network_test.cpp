@@ -6,7 +6,8 @@
 
 #include "tests/support/process.hpp"
 
-// Programs that link a simulation, or a batch of them, are free of DDS and of all else that speaks to a network.
+// Programs that link a simulation, a batch of them, or whole runs with controllers in their process, are free of DDS
+// and of all else that speaks to a network.
 namespace cohort::test {
 namespace {
 
@@ -28,7 +29,7 @@ std::set<std::string> symbols_of_network(const fs::path& program) {
   std::set<std::string> found;
   for (std::string line; std::getline(lines, line);) {
     const std::string name = line.substr(0, line.find_first_of(" @"));
-    const bool is_of_dds = name.starts_with("dds") || name.starts_with("nn_") || name.find("cohort4wire") != name.npos;
+    const bool is_of_dds = name.starts_with("dds") || name.starts_with("nn_") || name.find("cohort4wire11Participant") != name.npos;
     if (is_of_dds || name.starts_with("SSL_") || calls.contains(name)) found.insert(name);
   }
   return found;
@@ -52,12 +53,27 @@ TEST_P(SimulatingNeedsNoNetwork, AndHasNoneInIt) {
   EXPECT_EQ(symbols_of_network(programs / GetParam()), std::set<std::string>());
   EXPECT_EQ(libraries_of_network(programs / GetParam()), std::set<std::string>());
 }
-INSTANTIATE_TEST_SUITE_P(Programs, SimulatingNeedsNoNetwork, ::testing::Values("step_world", "step_batch"),
+INSTANTIATE_TEST_SUITE_P(Programs, SimulatingNeedsNoNetwork, ::testing::Values("step_world", "step_batch", "run_alone"),
                          [](const auto& program) { return program.param; });
 
 TEST(SimulatingNeedsNoNetwork, ButAServerDoesAndIsFoundTo) {
   const std::set<std::string> symbols = symbols_of_network(programs / "send_bad_commands");
   EXPECT_TRUE(symbols.contains("dds_write")) << symbols.size();
+}
+
+TEST(SimulatingNeedsNoNetwork, ARunInAProgramOfItsOwnHasTheBitsOfCohortRun) {
+  const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml";
+  const std::string embedded =
+      output_of({programs / "run_alone", experiment, COHORT_BUILD_DIR "/lib/controllers/obstacle_avoidance.so"});
+  const ScratchFolder folder;
+  std::string expected;
+  for (const char* seed : {"1", "2"}) {
+    const fs::path summary = folder / (std::string(seed) + ".json");
+    output_of({cohort_program(), "run", experiment, "--controllers", "inprocess", "--seed", seed, "--summary", summary,
+               "--quiet"});
+    expected += hash_in(summary) + "\n";
+  }
+  EXPECT_EQ(embedded, expected);
 }
 
 TEST(SimulatingNeedsNoNetwork, ABatchHasTheSameBitsInAProgramOfItsOwn) {

@@ -7,7 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "idl/dds/transport.hpp"
+#include "idl/dds/identity.hpp"
+#include "idl/dds/wire_error.hpp"
 
 /// What the files of idl/ share. Not for others: the only header that includes Cyclone's.
 namespace cohort::wire {
@@ -35,7 +36,7 @@ class Entity {
   dds_entity_t handle_ = 0;
 };
 
-struct Participant::State {
+struct ParticipantState {
   std::optional<Identity> identity;
   Entity domain;
   Entity participant;

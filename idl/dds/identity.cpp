@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-#include "idl/dds/transport.hpp"
+#include "idl/dds/wire_error.hpp"
 
 namespace cohort::wire {
 namespace {

@@ -1,3 +1,5 @@
+#include "idl/dds/participant.hpp"
+
 #include <arpa/inet.h>
 #include <ifaddrs.h>
 #include <net/if.h>
@@ -192,7 +194,7 @@ std::string configuration(std::uint32_t domain, in_addr own_address, const std::
 // Cyclone allows one participant configuration for each domain number in a process. Others of the same domain use a
 // number of their own inside; on the network the domain is the one in the configuration. Null if DDS cannot, or does
 // not accept the identity: then its log says why.
-std::unique_ptr<Participant::State> join(std::uint32_t domain, const std::string& configuration,
+std::unique_ptr<ParticipantState> join(std::uint32_t domain, const std::string& configuration,
                                          const std::optional<Identity>& identity) {
   std::uint32_t number = domain;
   dds_entity_t handle = dds_create_domain(number, configuration.c_str());
@@ -203,7 +205,7 @@ std::unique_ptr<Participant::State> join(std::uint32_t domain, const std::string
     handle = dds_create_domain(number, configuration.c_str());
   }
   if (handle < 0) return nullptr;
-  auto state = std::make_unique<Participant::State>();
+  auto state = std::make_unique<ParticipantState>();
   state->identity = identity;
   state->domain = Entity(handle);
   const Qos qos = make_qos();
@@ -292,7 +294,7 @@ Participant Participant::client(std::uint32_t domain, const std::string& address
   return Participant(std::move(state));
 }
 
-Participant::Participant(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Participant::Participant(std::unique_ptr<ParticipantState> state) : state_(std::move(state)) {}
 Participant::Participant(Participant&&) noexcept = default;
 Participant& Participant::operator=(Participant&&) noexcept = default;
 Participant::~Participant() = default;

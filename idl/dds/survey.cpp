@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "idl/dds/dds.hpp"
+#include "idl/dds/transport.hpp"
 
 namespace cohort::wire {
 namespace {

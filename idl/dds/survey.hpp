@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "idl/dds/transport.hpp"
+#include "idl/dds/participant.hpp"
 
 /// What there is on a domain, for whoever looks for what is wrong.
 namespace cohort::wire {

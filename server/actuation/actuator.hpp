@@ -41,7 +41,4 @@ struct Mount {
   const description::Joint& joint(std::size_t index) const { return model().joints[index]; }
 };
 
-/// The actuator of the device at `mount`, or null if it only senses.
-std::unique_ptr<Actuator> make_actuator(const Mount& mount);
-
 }  // namespace cohort::actuation

@@ -66,7 +66,4 @@ class Sensor {
   virtual void restore(SnapshotReader& /*reader*/) {}
 };
 
-/// The sensor of the device at `mount`, or null if it senses nothing.
-std::unique_ptr<Sensor> make_sensor(const Mount& mount);
-
 }  // namespace cohort::sensing

@@ -59,6 +59,8 @@ class Server {
   void on_state(const wire::ControllerState& state, const wire::Sender& sender);
   void on_command(const wire::Command& command, const wire::Sender& sender);
   bool take_answer(const wire::Command& command, const wire::Sender& sender);
+  // On the thread that reads texts of models: control has something to do.
+  void note_news();
 
   // On the thread of `run`; those that take the lock must not hold it.
   void begin_run(const description::Experiment& experiment, Simulation& simulation, const RunOptions& options,

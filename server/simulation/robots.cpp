@@ -5,6 +5,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "server/actuation/make_actuator.hpp"
+#include "server/sensing/make_sensor.hpp"
+
 namespace cohort {
 namespace {
 

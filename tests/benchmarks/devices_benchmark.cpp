@@ -6,6 +6,7 @@
 
 #include "server/core/random.hpp"
 #include "server/physics/make_world.hpp"
+#include "server/sensing/make_sensor.hpp"
 #include "server/sensing/sensor.hpp"
 #include "tests/support/robots.hpp"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/sensing/make_sensor.hpp"
 #include "server/sensing/readings/signal_chain.hpp"
 #include "server/sensing/sensor.hpp"
 #include "tests/support/small_world.hpp"

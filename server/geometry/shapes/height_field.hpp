@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/geometry/shapes/shapes.hpp"
+#include "server/geometry/shapes/bounds.hpp"
 
 /// Rays on a height map.
 namespace cohort::geometry {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/geometry/shapes/shapes.hpp"
+#include "server/geometry/shapes/bounds.hpp"
 
 namespace cohort::geometry {
 

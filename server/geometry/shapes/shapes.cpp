@@ -178,16 +178,6 @@ RayEntry enter(const Closed& shape, const Vector3d& origin, const Vector3d& dire
 
 }  // namespace
 
-double Bounds::last_along(const Vector3d& origin, const Vector3d& direction) const {
-  double last = infinity;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double d = direction[axis];
-    if (d != 0.0) last = std::min(last, ((d > 0.0 ? upper[axis] : lower[axis]) - origin[axis]) / d);
-  }
-  constexpr double rounding = 1e-9;
-  return last + rounding * (1.0 + std::abs(last) + origin.cwiseAbs().maxCoeff());
-}
-
 Bounds bounds_of_disc(const Pose& X_WS, double radius) {
   constexpr double rounding = 1e-9;
   const Vector3d normal_W = X_WS.orientation * Vector3d::UnitZ();

@@ -11,7 +11,6 @@
 #include "server/core/text.hpp"
 #include "server/description/select_robots.hpp"
 #include "server/parsing/experiment/read_effects.hpp"
-#include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/experiment/read_recorded.hpp"
 #include "server/parsing/experiment/schedule_entry.hpp"
 #include "server/parsing/keys/choices.hpp"

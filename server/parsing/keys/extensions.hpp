@@ -1,68 +1,13 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <string_view>
 
-#include "server/parsing/parsing.hpp"
+#include "server/parsing/keys/extension.hpp"
 
 /// The `cohort:` elements that extend SDFormat, as a table: the reader checks files against it, and manuals and help
 /// are made from it.
 namespace cohort::parsing {
-
-enum class ExtensionValue {
-  name,          ///< of a link, joint or device of the same model, or of a material
-  object,        ///< scoped name of an object of the world, or of a link of it
-  uri,           ///< model://NAME or a path
-  choice,        ///< one of ExtensionKey::choices
-  flag,          ///< `true` or `false`
-  real,          ///< any finite number
-  non_negative,  ///< a finite number >= 0
-  positive,      ///< a finite number > 0
-  fraction,      ///< a number from 0 to 1
-  count,         ///< a whole number from 1 to 1 000 000
-  whole,         ///< a whole number >= 0 of at most 64 bits
-  point,         ///< "x y"
-  vector,        ///< "x y z"
-  place,         ///< "x y heading"
-  pose,          ///< "x y z roll pitch yaw", rotated about the fixed axes x, then y, then z; or "x y z qx qy qz qw"
-  group          ///< an extension of its own, described by its own entry
-};
-
-/// The fallback of a key that may be absent and then has no value.
-inline constexpr std::string_view no_value = "none";
-
-struct ExtensionKey {
-  std::string_view name;  ///< without the prefix
-  ExtensionValue value = ExtensionValue::real;
-  std::string_view unit;      ///< `1` if dimensionless, empty if not a quantity
-  std::string_view fallback;  ///< what holds if the element is absent; empty if it must be there
-  std::string_view doc;
-  bool repeats = false;  ///< may be given any number of times
-  std::span<const std::string_view> choices{};
-
-  bool required() const { return fallback.empty(); }
-};
-
-struct Extension {
-  std::string_view name;    ///< without the prefix
-  std::string_view parent;  ///< the element that it stands in: one of SDF's or another extension
-  bool has_name = false;    ///< carries the attribute `name`
-  std::string_view doc;
-  std::span<const ExtensionKey> keys;
-  std::string_view topic;                        ///< under which help has it
-  ExtensionValue value = ExtensionValue::group;  ///< `group`: it holds keys; otherwise, a value itself
-};
-
-/// Without the colon.
-inline constexpr std::string_view extension_prefix = "cohort";
-/// With both.
-inline std::string prefixed(std::string_view name) { return std::string(extension_prefix) + ":" + std::string(name); }
-inline bool has_prefix(std::string_view name) { return name.starts_with(prefixed("")); }
-/// As it is if it has none.
-inline std::string_view without_prefix(std::string_view name) {
-  return has_prefix(name) ? name.substr(extension_prefix.size() + 1) : name;
-}
 
 std::span<const Extension> extensions();
 

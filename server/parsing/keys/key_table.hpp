@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "server/description/readout.hpp"
-#include "server/parsing/keys/extensions.hpp"
+#include "server/parsing/keys/extension.hpp"
 
 /// How a struct of a description is spelled in files is said once, by its table in device_keys.hpp:
 ///

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/core/text.hpp"
+#include "server/parsing/plugins/plugin.hpp"
 
 namespace cohort::parsing {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "server/description/model.hpp"
-#include "server/parsing/model/read_model.hpp"
+#include "server/parsing/model/model_places.hpp"
 
 namespace cohort::parsing {
 

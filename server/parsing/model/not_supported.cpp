@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "server/core/text.hpp"
-#include "server/parsing/model/read_model.hpp"
+#include "server/parsing/model/model_places.hpp"
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 
 namespace cohort::parsing {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "server/description/model.hpp"
+#include "server/parsing/model/model_places.hpp"
 #include "server/parsing/model/shape_files.hpp"
 #include "server/parsing/plugins/plugin.hpp"
 #include "server/parsing/sdf/sdf_report.hpp"
@@ -63,27 +64,9 @@ std::vector<Joint> read_joints(const sdf::Model& sdf_model, const std::vector<Li
 std::vector<Coupling> read_couplings(const sdf::Model& sdf_model, const Model& model, const std::string& scope,
                                      const ModelReading& reading);
 
-/// Where `cohort:` devices stand: a model, or one inside of it.
-struct DeviceScope {
-  sdf::ElementPtr model_element;
-  std::string prefix;                     ///< of all names in it, such as `arm::`
-  std::set<sdf::ElementPtr> elsewhere{};  ///< children that belong to another body
-};
-
 /// The devices of a model whose links and joints are read: those of `cohort:` elements, then those of plugins.
 std::vector<Device> read_devices(const std::vector<DeviceScope>& scopes, const std::vector<Counterpart>& of_plugins,
                                  const Model& model, const SdfReport& report, ShapeFiles& files);
-
-/// Where one of SDF's own sensors stands.
-struct SensorPlace {
-  const sdf::Sensor* sensor = nullptr;
-  bool is_on_joint = false;
-  std::string owner;   ///< scoped name of the link or joint
-  std::string prefix;  ///< of all names in its model
-};
-
-/// Whether a <sensor> is of a type that is simulated where it stands.
-bool is_sensor(const sdf::ElementPtr& element);
 
 /// Those that are simulated, of a model whose links, joints and other devices are read: in the order of the links, then
 /// of the joints.

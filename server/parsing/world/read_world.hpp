@@ -4,16 +4,9 @@
 #include "server/description/world.hpp"
 #include "server/parsing/files/input_file.hpp"
 #include "server/parsing/files/xacro.hpp"
+#include "server/parsing/world/later_object.hpp"
 
 namespace cohort::parsing {
-
-/// An object that an event of an experiment brings into the world.
-struct LaterObject {
-  std::string uri;  ///< of its model
-  std::string name;
-  Pose X_WM;
-  Problem where;  ///< of the event, without a message
-};
 
 /// Reads a world, in SDF or YAML, with libsdformat and expands its includes and, by `seed`, its `cohort:population`
 /// elements. The instances are the models and includes in document order, then the populations in theirs.

@@ -15,8 +15,8 @@
 #include "server/parsing/model/read_model.hpp"
 #include "server/parsing/sdf/extension_values.hpp"
 #include "server/parsing/sdf/sdf_files.hpp"
+#include "server/parsing/world/later_object.hpp"
 #include "server/parsing/world/read_population.hpp"
-#include "server/parsing/world/read_world.hpp"
 
 namespace cohort::parsing {
 

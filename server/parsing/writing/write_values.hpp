@@ -9,8 +9,8 @@
 
 #include "server/core/pose.hpp"
 #include "server/description/model.hpp"
+#include "server/parsing/files/xml_outline.hpp"
 #include "server/parsing/keys/extensions.hpp"
-#include "server/parsing/writing/write_world.hpp"
 
 /// What writing a world as XML is made of.
 namespace cohort::parsing {

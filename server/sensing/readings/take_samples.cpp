@@ -5,6 +5,7 @@
 
 #include "server/description/world_in_code.hpp"
 #include "server/physics/make_world.hpp"
+#include "server/sensing/make_sensor.hpp"
 #include "server/sensing/sensor.hpp"
 
 namespace cohort::sensing {

@@ -6,6 +6,7 @@
 #include "server/description/world_in_code.hpp"
 #include "server/physics/make_world.hpp"
 #include "server/sensing/exteroceptive/lamp_view.hpp"
+#include "server/sensing/make_sensor.hpp"
 #include "server/sensing/readings/take_samples.hpp"
 #include "server/sensing/sensor.hpp"
 #include "server/simulation/simulation.hpp"

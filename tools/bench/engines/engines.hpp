@@ -1,9 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <string>
+
 #include "server/description/world.hpp"
 #include "tools/bench/engines/engine.hpp"
 
-/// What each engine's source file provides; engine.cpp picks those that are in this build.
+/// What each engine's source file provides; engine_kinds.cpp picks those that are in this build.
 namespace cohort::bench {
 
 std::unique_ptr<Engine> make_cohort_engine(const Scene& scene, unsigned threads,

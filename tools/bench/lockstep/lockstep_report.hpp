@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/lockstep/lockstep.hpp"
+#include "tools/bench/lockstep/lockstep_rows.hpp"
 
 /// Lines of tables for people, and JSON; docs/bench.md lists the keys.
 namespace cohort::bench {

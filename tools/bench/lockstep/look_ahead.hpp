@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "tools/bench/lockstep/lockstep.hpp"
+#include "tools/bench/lockstep/lockstep_rows.hpp"
 
 namespace cohort::bench {
 

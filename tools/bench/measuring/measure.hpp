@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/bench/engines/engine.hpp"
+#include "tools/bench/engines/engine_kinds.hpp"
 
 namespace cohort::bench {
 

@@ -7,8 +7,6 @@
 #include <string_view>
 #include <utility>
 
-#include "tools/cohort/running/team_controllers.hpp"
-
 namespace cohort::tool {
 namespace {
 

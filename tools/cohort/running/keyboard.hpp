@@ -9,6 +9,9 @@
 
 namespace cohort::tool {
 
+/// The name by which an experiment says that people drive a team.
+inline constexpr const char* keyboard_controller = "keyboard";
+
 /// What a key does: it gives channels values, which hold until another key changes them.
 struct KeyBinding {
   struct Setting {

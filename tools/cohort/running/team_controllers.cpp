@@ -8,7 +8,6 @@
 #include "client_sdk/hosting/plugin_file.hpp"
 #include "server/description/input_error.hpp"
 #include "server/run/roster.hpp"
-#include "tools/cohort/running/keyboard.hpp"
 
 namespace cohort::tool {
 namespace {

@@ -7,6 +7,7 @@
 #include "client_sdk/hosting/plugin_loader.hpp"
 #include "server/description/experiment.hpp"
 #include "server/simulation/simulation.hpp"
+#include "tools/cohort/running/keyboard.hpp"
 
 namespace cohort::tool {
 
@@ -17,9 +18,6 @@ struct TeamController {
   bool is_started() const { return plugin.has_value(); }
   ControllerKind kind() const;
 };
-
-/// The name by which an experiment says that people drive a team.
-inline constexpr const char* keyboard_controller = "keyboard";
 
 bool has_keyboard(const description::Experiment& experiment);
 

@@ -2,7 +2,7 @@
 
 #include <queue>
 
-#include "server/recording/mcap/reading/mcap_reader.hpp"
+#include "server/recording/mcap/reading/message_stream.hpp"
 
 namespace cohort::recording {
 

@@ -1,4 +1,4 @@
-#include "tools/bench/engines/engine.hpp"
+#include "tools/bench/engines/engine_kinds.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "server/actuation/actuator.hpp"
+#include "server/actuation/make_actuator.hpp"
 
 #include "server/actuation/actuator_kinds.hpp"
 

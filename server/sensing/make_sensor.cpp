@@ -1,4 +1,4 @@
-#include "server/sensing/sensor.hpp"
+#include "server/sensing/make_sensor.hpp"
 
 #include "server/sensing/sensor_kinds.hpp"
 

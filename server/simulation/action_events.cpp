@@ -87,6 +87,11 @@ description::Event event_of_kind(const ApplyForce& apply, const ActionScope& sco
   return {{}, object, description::ApplyForce{link, apply.force_W, apply.torque_W, apply.duration}, "apply_force"};
 }
 
+// With a slash between each two.
+bool has_parts(const std::string& name) {
+  return !name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos;
+}
+
 // ---- Lights ----
 
 std::vector<std::size_t> lights_of(const description::Model& model) {
@@ -191,11 +196,19 @@ Pose checked_pose(const Pose& X_WM) {
   return {X_WM.position, norm == 1.0 ? X_WM.orientation : X_WM.orientation.normalized()};
 }
 
+bool is_object_name(const std::string& name) {
+  try {
+    check_name(name, "");
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  return has_parts(name);
+}
+
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects) {
   const std::string& wanted = spawn.name.empty() ? model : spawn.name;
   check_name(wanted, "the name of the object");
-  if (wanted.empty() || wanted.front() == '/' || wanted.back() == '/' || wanted.find("//") != std::string::npos)
-    refuse(quoted(wanted) + " is no name: expected parts with a slash between them");
+  if (!has_parts(wanted)) refuse(quoted(wanted) + " is no name: expected parts with a slash between them");
   if (!objects.find(wanted)) return wanted;
   if (!spawn.allow_renaming)
     refuse(objects.is_present(*objects.find(wanted)) ? "another object has the name " + quoted(wanted)

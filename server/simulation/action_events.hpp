@@ -25,6 +25,10 @@ struct ActionScope {
 /// not finite.
 description::Event event_of(const Action& action, const ActionScope& scope);
 
+/// Returns whether a new object can be called so: parts of UTF-8 with a slash between them,
+/// without control characters and not too long.
+bool is_object_name(const std::string& name);
+
 /// The name that a new object gets. Throws std::invalid_argument if it is no name, or is taken.
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects);
 

@@ -156,6 +156,11 @@ TEST(ControlAtTickBoundariesOnly, ActionsThatCannotBeAreRefusedWithTheReasonAndC
   spawn.pose.orientation = {0, 0, 0, 1};
   spawn.entity = "swarm/sbot_0";
   EXPECT_EQ(result_of(spawn), ResultCode::name_not_unique);
+  for (const char* no_name : {"/crate", "crates//crate", "crate/"}) {
+    spawn.entity = no_name;
+    EXPECT_EQ(result_of(spawn), ResultCode::name_invalid) << no_name;
+  }
+  spawn.entity = "swarm/sbot_0";
   const std::string nobody = "swarm/nobody";
   EXPECT_EQ(result_of(wire::DeleteEntity{nobody}), ResultCode::not_found);
   EXPECT_EQ(result_of(wire::ApplyForce{.entity = nobody, .force = {1, 0, 0}}), ResultCode::not_found);

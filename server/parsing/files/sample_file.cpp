@@ -10,7 +10,6 @@
 #include <string_view>
 #include <utility>
 
-#include "server/core/atomic_file.hpp"
 #include "server/core/text.hpp"
 #include "server/description/input_error.hpp"
 
@@ -193,12 +192,6 @@ std::string samples_as_text(const Samples& samples) {
       text += '\n';
     }
   return text;
-}
-
-void write_samples(const Samples& samples, const std::filesystem::path& file) {
-  AtomicFile out("the samples", file);
-  out.write(samples_as_text(samples));
-  out.commit();
 }
 
 }  // namespace cohort::parsing

@@ -24,7 +24,4 @@ Samples read_samples(InputFiles& input, const std::filesystem::path& file);
 /// The same as text: read again, it gives the same bits.
 std::string samples_as_text(const Samples& samples);
 
-/// Throws WriteError if the file cannot be written.
-void write_samples(const Samples& samples, const std::filesystem::path& file);
-
 }  // namespace cohort::parsing

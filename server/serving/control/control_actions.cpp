@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "server/simulation/action_events.hpp"
+
 namespace cohort::session {
 namespace {
 
@@ -100,8 +102,10 @@ std::optional<Refusal> refusal_of(const Request& request, const ModelTexts& text
 // Why it could not be done, in simulation_interfaces's numbers.
 ResultCode code_of_failure(const Request& request, const Objects& objects) {
   const bool is_known = objects.find(entity_of(request)).has_value();
-  if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation))
+  if (const auto* spawn = std::get_if<wire::SpawnEntity>(&request.operation)) {
+    if (!spawn->entity.empty() && !is_object_name(spawn->entity)) return ResultCode::name_invalid;
     return is_known && !spawn->allow_renaming ? ResultCode::name_not_unique : ResultCode::operation_failed;
+  }
   return is_known || std::holds_alternative<wire::SetLight>(request.operation) ? ResultCode::operation_failed
                                                                                : ResultCode::not_found;
 }

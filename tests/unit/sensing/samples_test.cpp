@@ -62,8 +62,7 @@ TEST(SampleFile, IsWrittenSoThatItIsReadBackWithTheSameBits) {
   samples.readings[0] = -0.0;
   samples.readings[1] = std::numeric_limits<double>::denorm_min();
   samples.readings[2] = std::numeric_limits<double>::max();
-  const std::filesystem::path file = written("");
-  parsing::write_samples(samples, file);
+  const std::filesystem::path file = written(parsing::samples_as_text(samples));
   const Samples again = read_samples(file);
   EXPECT_EQ(again.distances, samples.distances);
   EXPECT_EQ(again.angles, samples.angles);

@@ -2,16 +2,24 @@
 #include <cstdlib>
 
 #include "client_sdk/include/cohort/client.hpp"
+#include "client_sdk/include/cohort/control.hpp"
 #include "client_sdk/src/domains.hpp"
 
 namespace cohort {
+namespace {
 
-void take_environment(ClientOptions& options) {
+template <class Options>
+void take(Options& options) {
   if (const char* server = std::getenv("COHORT_SERVER"); server != nullptr) options.server = server;
   if (const char* domain = std::getenv("COHORT_DOMAIN"); domain != nullptr)
     options.domain = domain_of_this_process(parse_domains(domain));
   if (const char* secure = std::getenv("COHORT_SECURE"); secure != nullptr) options.secure = secure;
 }
+
+}  // namespace
+
+void take_environment(ClientOptions& options) { take(options); }
+void take_environment(ControlOptions& options) { take(options); }
 
 std::vector<std::string> split_selectors(std::string_view list) {
   std::vector<std::string> parts;

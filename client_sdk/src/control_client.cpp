@@ -99,6 +99,10 @@ struct ControlClient::State {
 ControlClient::ControlClient(const ControlOptions& options) : state_(std::make_unique<State>(options)) {}
 ControlClient::~ControlClient() = default;
 
+wire::Participant& ControlClient::participant() { return state_->participant; }
+
+bool ControlClient::sees_server() const { return state_->sees_server(); }
+
 bool ControlClient::server_is_gone() const {
   return state_->seen_at && !state_->sees_server() && Clock::now() - *state_->seen_at > server_may_be_away;
 }
@@ -138,74 +142,6 @@ std::optional<wire::Reply> ControlClient::ask(wire::Operation operation, std::ch
       return std::exchange(state.received, std::nullopt);
   }
   return std::nullopt;
-}
-
-wire::Reply ControlClient::expect(wire::Operation operation, std::chrono::milliseconds at_most,
-                                  const std::atomic<bool>& stop) {
-  const std::string what = wire::name_of(wire::code_of(operation));
-  auto reply = ask(std::move(operation), at_most, stop);
-  if (!reply && stop) throw ControlError("interrupted");
-  if (!reply && server_is_gone()) throw ControlError("the server has gone");
-  if (!reply) throw ControlError("the server does not answer " + what);
-  if (reply->result != wire::ResultCode::ok) throw ControlError(reply->error_message, reply->result);
-  return std::move(*reply);
-}
-
-wire::DataPart ControlClient::fetch(wire::Operation operation, std::chrono::milliseconds at_most,
-                                    const std::atomic<bool>& stop, std::string& text) {
-  wire::Reply reply = expect(std::move(operation), at_most, stop);
-  text = std::move(reply.error_message);
-  if (auto* const part = std::get_if<wire::DataPart>(&reply.returned)) return std::move(*part);
-  throw ControlError("the server sends no data");
-}
-
-ControlClient::SavedSnapshot ControlClient::save(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
-  std::string text;
-  const std::uint64_t size = fetch(wire::SaveSnapshot{}, at_most, stop, text).size;
-  if (size > wire::largest_data) throw ControlError("the server says that its snapshot is larger than may be");
-  std::vector<std::byte> bytes;
-  bytes.reserve(size);
-  while (bytes.size() < size) {
-    std::string ignored;
-    const wire::DataPart part = fetch(wire::GetData{.offset = bytes.size()}, at_most, stop, ignored);
-    if (part.offset != bytes.size() || part.size != size || part.data.empty() || part.data.size() > size - bytes.size())
-      throw ControlError("the server sends another part of the snapshot than it was asked for");
-    const auto data = std::as_bytes(std::span(part.data));
-    bytes.insert(bytes.end(), data.begin(), data.end());
-  }
-  return {std::move(bytes), std::move(text)};
-}
-
-wire::Reply ControlClient::load(std::span<const std::byte> snapshot, std::chrono::milliseconds at_most,
-                                const std::atomic<bool>& stop) {
-  for (std::uint64_t offset = 0; offset < snapshot.size(); offset += wire::largest_part) {
-    const auto part = snapshot.subspan(offset, std::min<std::size_t>(wire::largest_part, snapshot.size() - offset));
-    const auto* const begin = reinterpret_cast<const std::uint8_t*>(part.data());
-    expect(wire::PutData{.size = snapshot.size(), .offset = offset, .data = {begin, begin + part.size()}}, at_most,
-           stop);
-  }
-  return expect(wire::LoadSnapshot{}, at_most, stop);
-}
-
-std::string ControlClient::start_recording(const std::string& recorded, std::chrono::milliseconds at_most,
-                                           const std::atomic<bool>& stop) {
-  return expect(wire::StartRecording{recorded}, at_most, stop).error_message;
-}
-
-ControlClient::RecordingPart ControlClient::get_recording(std::uint64_t offset, std::chrono::milliseconds at_most,
-                                                          const std::atomic<bool>& stop) {
-  std::string problem;
-  wire::DataPart data = fetch(wire::GetRecording{offset}, at_most, stop, problem);
-  RecordingPart part{std::move(data.data), false, std::move(problem)};
-  const std::uint64_t end = offset + part.bytes.size();
-  if (data.offset != offset || (data.size != 0 && data.size < end))
-    throw ControlError("the server sends another part of the recording than it was asked for");
-  part.is_last = data.size != 0 && data.size == end;
-  return part;
-}
-
-void ControlClient::stop_recording(std::chrono::milliseconds at_most, const std::atomic<bool>& stop) {
-  expect(wire::StopRecording{}, at_most, stop);
 }
 
 }  // namespace cohort

@@ -117,9 +117,8 @@ TEST_F(LiveRecordings, AreClosedHereWhenTheirServerIsKilled) {
 TEST_F(LiveRecordings, ThatNobodyFetchesHoldUpNothing) {
   const FieldOfRobots field(4, 20.0);
   ControlledRun run(field, {"--paused"});
-  ControlClient client = client_of(run);
-  EXPECT_EQ(client.start_recording(R"({"poses": 100, "observations": 100})", patience, never),
-            "recorded from tick 0 on");
+  Control control = control_of(run);
+  EXPECT_EQ(control.start_recording(R"({"poses": 100, "observations": 100})").message, "recorded from tick 0 on");
   run.done({"resume"});
   EXPECT_EQ(run.finish()["state_hash"], reference(field));
 }
@@ -135,12 +134,12 @@ TEST_F(LiveRecordings, AreRefusedWithTheReason) {
   EXPECT_NE(refused({"--robots", "nobody"}).find("nobody"), std::string::npos);
   EXPECT_NE(refused({"--poses", "-1"}).find("--poses"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(*this / "no.mcap"));
-  ControlClient client = client_of(run);
+  Control control = control_of(run);
   for (const char* text : {"{pose: 3}", "[", "{snapshots: soon}", "{robots: [nobody]}", "7"})
-    EXPECT_THROW(client.start_recording(text, patience, never), ControlError) << text;
-  client.start_recording("", patience, never);
-  EXPECT_THROW(client.start_recording("", patience, never), ControlError) << "one at a time";
-  EXPECT_THROW(client.get_recording(1'000'000'000, patience, never), ControlError);
+    EXPECT_THROW(control.start_recording(text), ControlError) << text;
+  control.start_recording();
+  EXPECT_THROW(control.start_recording(), ControlError) << "one at a time";
+  EXPECT_THROW(control.fetch_recording(1'000'000'000), ControlError);
   std::vector<std::unique_ptr<Process>> more;
   for (int i = 0; i < 3; ++i) {
     more.push_back(std::make_unique<Process>(record(run, std::to_string(i) + ".mcap")));

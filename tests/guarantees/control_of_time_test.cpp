@@ -145,16 +145,16 @@ TEST(ControlAtTickBoundariesOnly, GoesBackToNothingThatIsNotKept) {
 TEST(ControlAtTickBoundariesOnly, DataOfManyMegabytesGoesInPartsAndIsBounded) {
   const FieldOfRobots field(2, 1e4);
   ControlledRun run(field, {"--paused"});
-  ControlClient client = client_of(run);
+  Control control = control_of(run);
   const std::vector<std::byte> nonsense(20'000'000, std::byte{'x'});
   try {
-    client.load(nonsense, patience, never);
+    control.load_snapshot(nonsense);
     ADD_FAILURE() << "it loads anything";
   } catch (const ControlError& error) {
     EXPECT_NE(std::string(error.what()).find("this is no snapshot"), std::string::npos) << error.what();
   }
   const std::vector<std::byte> too_large(wire::largest_data + 1);
-  EXPECT_THROW(client.load(too_large, patience, never), ControlError);
+  EXPECT_THROW(control.load_snapshot(too_large), ControlError);
   EXPECT_EQ(run.done({"step"}), "paused at tick 1\n");
   run.done({"shutdown"});
   run.finish();

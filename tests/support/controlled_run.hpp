@@ -51,6 +51,11 @@ class ControlledRun {
 
 inline const std::atomic<bool> never = false;
 
+/// As programs have it.
+inline Control control_of(const ControlledRun& run) {
+  return Control({.domain = run.domain().number(), .time_limit = patience});
+}
+/// What it stands on: any request, well-formed or not.
 inline ControlClient client_of(const ControlledRun& run) { return ControlClient({.domain = run.domain().number()}); }
 
 /// The hash of the field's run with its controllers in the server's process.

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include <cohort/control.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "client_sdk/src/control_client.hpp"
 #include "server/recording/mcap/reading/recover.hpp"
 #include "server/recording/mcap/writing/disk_file.hpp"
 #include "tools/cohort/cli/output_file.hpp"
@@ -45,16 +45,19 @@ class LiveRecording {
       : command_(command),
         log_(log),
         stop_(stop),
-        client_({.server = command.connection.server,
-                 .domain = command.connection.domain(),
-                 .secure = command.connection.secure.string(),
-                 .label = "cohort record"}) {}
+        control_({.server = command.connection.server,
+                  .domain = command.connection.domain(),
+                  .secure = command.connection.secure.string(),
+                  .label = "cohort record",
+                  .time_limit = for_ever}) {
+    control_.stop_on(&stop_);
+  }
 
   int run() {
     if (!find_server()) return exit_interrupted;
     std::string text;
     try {
-      text = client_.start_recording(recorded_text(command_.record), for_ever, stop_);
+      text = control_.start_recording(recorded_text(command_.record)).message;
     } catch (const std::exception&) {
       if (stop_) return exit_interrupted;
       throw;
@@ -66,19 +69,21 @@ class LiveRecording {
 
  private:
   bool find_server() {
-    if (!client_.wait_for_server(until_a_notice, stop_) && !stop_)
+    if (!control_.wait_for_server(until_a_notice) && !stop_)
       log_.notice(fmt::format("waiting for a server at {}, domain {}", command_.connection.server,
                               command_.connection.domain()));
-    return client_.wait_for_server(for_ever, stop_);
+    return control_.wait_for_server(for_ever);
   }
 
   // All of the file, to its end; a signal brings that about.
   int fetch() {
+    control_.stop_on(nullptr);
+    control_.set_time_limit(for_a_reply);
     try {
       for (;;) {
-        if (stop_ && !std::exchange(is_stopped_, true)) client_.stop_recording(for_a_reply, never_);
-        const ControlClient::RecordingPart part = client_.get_recording(size_, for_a_reply, never_);
-        file_->write(std::as_bytes(std::span(part.bytes)));
+        if (stop_ && !std::exchange(is_stopped_, true)) control_.stop_recording();
+        const cohort::RecordingPart part = control_.fetch_recording(size_);
+        file_->write(part.bytes);
         size_ += part.bytes.size();
         sync_if_due();
         if (part.is_last) return finish(part);
@@ -100,11 +105,12 @@ class LiveRecording {
     next_sync_ = now + std::chrono::seconds(1);
   }
 
-  int finish(const ControlClient::RecordingPart& last) {
+  int finish(const cohort::RecordingPart& last) {
     file_->finish();
     try {
-      client_.get_recording(size_, until_it_knows, never_);  // so that the server may go
-    } catch (const ControlError&) {                          // it has gone already
+      control_.set_time_limit(until_it_knows);
+      control_.fetch_recording(size_);  // so that the server may go
+    } catch (const ControlError&) {     // it has gone already
     }
     log_.notice(fmt::format("{}: {:.1f} MB, {}", command_.file.string(), 1e-6 * static_cast<double>(size_),
                             is_stopped_ ? "stopped" : "to the end of the run"));
@@ -125,8 +131,7 @@ class LiveRecording {
   const RecordCommand& command_;
   Log& log_;
   const std::atomic<bool>& stop_;
-  const std::atomic<bool> never_{false};
-  ControlClient client_;
+  Control control_;
   std::optional<recording::DiskFile> file_;
   std::uint64_t size_ = 0;
   std::chrono::steady_clock::time_point next_sync_{};

@@ -17,22 +17,16 @@ double seconds_at(std::uint64_t tick, std::chrono::nanoseconds step) {
   return static_cast<double>(tick) * std::chrono::duration<double>(step).count();
 }
 
-}  // namespace
-
-void add(messages::RunHistory& history, messages::RunHistory later) {
-  std::vector<messages::HistoryEvent> events = std::move(history.events);
-  for (messages::HistoryEvent& event : later.events) {
-    std::erase_if(events, [&](const auto& known) { return known.kind == event.kind && known.text == event.text; });
-    events.push_back(std::move(event));
-  }
-  std::ranges::stable_sort(events, {}, &messages::HistoryEvent::tick);
-  history = std::move(later);
-  history.events = std::move(events);
+std::vector<RunEvent> by_first_time(std::vector<RunEvent> events) {
+  std::ranges::stable_sort(events, {}, &RunEvent::tick);
+  return events;
 }
 
-std::string history_text(const messages::RunHistory& history, std::chrono::nanoseconds step) {
+}  // namespace
+
+std::string history_text(const RunHistory& history, std::chrono::nanoseconds step) {
   std::string text;
-  for (const messages::HistoryEvent& event : history.events) {
+  for (const RunEvent& event : by_first_time(history.events)) {
     text += fmt::format("{:10.3f} s  {:<11} {}", seconds_at(event.tick, step), event.kind, event.text);
     if (event.count > 1)
       text += fmt::format(" ({} times, last at {:.3f} s)", event.count, seconds_at(event.last_tick, step));
@@ -44,9 +38,9 @@ std::string history_text(const messages::RunHistory& history, std::chrono::nanos
                             seconds_at(history.keep_interval, step));
 }
 
-std::string history_json(const messages::RunHistory& history, std::chrono::nanoseconds step) {
+std::string history_json(const RunHistory& history, std::chrono::nanoseconds step) {
   ordered_json events = ordered_json::array();
-  for (const messages::HistoryEvent& event : history.events)
+  for (const RunEvent& event : by_first_time(history.events))
     events.push_back({{"tick", event.tick},
                       {"last_tick", event.last_tick},
                       {"count", event.count},

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <string>
@@ -14,8 +16,6 @@
 
 namespace cohort::tool {
 namespace {
-
-using wire::SimulationState;
 
 constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
 
@@ -33,18 +33,18 @@ std::vector<double> numbers_in(const std::string& text) {
   return numbers;
 }
 
-wire::Vector3 vector_in(const std::string& text) {
+Vector3 vector_in(const std::string& text) {
   const std::vector<double> numbers = numbers_in(text);
   if (numbers.size() != 3) throw UsageError("expected three numbers, \"x y z\", not '" + text + "'");
   return {numbers[0], numbers[1], numbers[2]};
 }
 
 // As in SDF: roll about x, then pitch about y, then yaw about z, all of the world.
-wire::Pose pose_in(const std::string& text) {
+WorldPose pose_in(const std::string& text) {
   const std::vector<double> numbers = numbers_in(text);
   if (numbers.size() != 3 && numbers.size() != 6)
     throw UsageError("expected \"x y z\" or \"x y z roll pitch yaw\", not '" + text + "'");
-  wire::Pose pose;
+  WorldPose pose;
   pose.position = {numbers[0], numbers[1], numbers[2]};
   if (numbers.size() == 3) return pose;
   const double cr = std::cos(numbers[3] / 2), sr = std::sin(numbers[3] / 2);
@@ -55,12 +55,21 @@ wire::Pose pose_in(const std::string& text) {
   return pose;
 }
 
-// A subcommand that is one request, and the operation that its options fill in.
-template <class Operation>
+std::string printed(const ControlReply& reply) { return reply.message + "\n"; }
+std::string printed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += name + "\n";
+  return text;
+}
+
+// A subcommand that is one request, and what its options fill in.
+template <class Asked>
 struct RequestLine {
   CommandLine line;
-  Operation& operation;
+  Asked& asked;
 };
+
+struct Nothing {};
 
 // Subcommands that are one request.
 class Requests {
@@ -68,12 +77,15 @@ class Requests {
   // `command` must outlive the command line.
   Requests(CommandLine line, CtlCommand& command) : line_(std::move(line)), command_(command) {}
 
-  template <class Operation>
-  RequestLine<Operation> add(const std::string& name, const std::string& text, Operation as_it_is = {}) {
-    const auto operation = std::make_shared<Operation>(std::move(as_it_is));
+  // `ask` takes the control and what was asked for, and returns what is printed.
+  template <class Asked, class Ask>
+  RequestLine<Asked> add(const std::string& name, const std::string& text, Ask ask) {
+    const auto asked = std::make_shared<Asked>();
     CommandLine sub = line_.add_subcommand(name, text);
-    sub.callback([&command = command_, operation] { command.operation = *operation; });
-    return {sub, *operation};
+    sub.callback([&command = command_, asked, ask] {
+      command.request = [asked, ask](Control& control) { return printed(ask(control, *asked)); };
+    });
+    return {sub, *asked};
   }
 
  private:
@@ -85,14 +97,14 @@ void add_name(CommandLine sub, std::string& entity) {
   sub.add_option("NAME", entity, "Of an object, with its scope").required().type_name("");
 }
 
-Option add_vector(CommandLine sub, const std::string& name, wire::Vector3& vector, const std::string& text) {
+Option add_vector(CommandLine sub, const std::string& name, Vector3& vector, const std::string& text) {
   return sub
       .add_option_function<std::string>(
           name, [&vector](const std::string& value) { vector = vector_in(value); }, text)
       .type_name("\"X Y Z\"");
 }
 
-void add_pose(CommandLine sub, wire::Pose& pose) {
+void add_pose(CommandLine sub, WorldPose& pose) {
   sub.add_option_function<std::string>(
          "--pose", [&pose](const std::string& value) { pose = pose_in(value); }, "Metres and radians, in the world")
       .type_name("\"X Y Z [ROLL PITCH YAW]\"")
@@ -100,65 +112,99 @@ void add_pose(CommandLine sub, wire::Pose& pose) {
 }
 
 void add_time_commands(Requests& requests) {
-  using wire::SetSimulationState;
-  requests.add("pause", "Hold the run at the next boundary", SetSimulationState{SimulationState::paused});
-  requests.add("resume", "Let it go on", SetSimulationState{SimulationState::playing});
+  requests.add<Nothing>("pause", "Hold the run at the next boundary",
+                        [](Control& control, const Nothing&) { return control.pause(); });
+  requests.add<Nothing>("resume", "Let it go on", [](Control& control, const Nothing&) { return control.play(); });
   auto [step, steps] =
-      requests.add<wire::StepSimulation>("step", "Let a paused run make so many ticks, and wait for them");
-  step.add_option("N", steps.steps, "How many; 1 if it is not said")
+      requests.add<std::uint64_t>("step", "Let a paused run make so many ticks, and wait for them",
+                                  [](Control& control, std::uint64_t count) { return control.step(count); });
+  steps = 1;
+  step.add_option("N", steps, "How many; 1 if it is not said")
       .check(whole_number(1, std::uint64_t{1} << 62))
       .type_name("");
-  auto [speed, set_speed] = requests.add<wire::SetSpeed>("speed", "Simulated seconds per second at the most");
+  auto [speed, set_speed] =
+      requests.add<double>("speed", "Simulated seconds per second at the most",
+                           [](Control& control, double factor) { return control.set_speed(factor); });
   speed
       .add_option_function<std::string>(
-          "X", [&set = set_speed](const std::string& text) { set.speed = text == "max" ? 0.0 : *parse_real(text); },
+          "X", [&set = set_speed](const std::string& text) { set = text == "max" ? 0.0 : *parse_real(text); },
           "max, or a number")
       .required()
       .check(max_or_number_above_zero(1e9))
       .type_name("");
-  auto [reset, to_reset] = requests.add<wire::ResetSimulation>("reset", "Begin anew, the controllers attached");
+  using Seed = std::optional<std::uint64_t>;
+  auto [reset, to_reset] = requests.add<Seed>("reset", "Begin anew, the controllers attached",
+                                              [](Control& control, const Seed& seed) { return control.reset(seed); });
   reset
       .add_option_function<std::uint64_t>(
-          "--seed", [&to = to_reset](const std::uint64_t& seed) { to.seed = seed; }, "Another seed")
+          "--seed", [&to = to_reset](const std::uint64_t& seed) { to = seed; }, "Another seed")
       .check(whole_number(0, most))
       .type_name("N");
-  auto [back, go_back] = requests.add<wire::GoBack>("back", "Go back to the last kept snapshot at or before a time");
-  back.add_option_function<double>(
-          "T", [&go = go_back](const double& seconds) { go.duration_ns = nanoseconds(seconds).count(); },
-          "Simulated seconds from the run's beginning")
+  auto [back, go_back] =
+      requests.add<double>("back", "Go back to the last kept snapshot at or before a time",
+                           [](Control& control, double seconds) { return control.back(nanoseconds(seconds)); });
+  back.add_option("T", go_back, "Simulated seconds from the run's beginning")
       .required()
       .check(number_from_zero(most_seconds))
       .type_name("");
-  requests.add("shutdown", "End the run and the server", SetSimulationState{SimulationState::quitting});
+  requests.add<Nothing>("shutdown", "End the run and the server",
+                        [](Control& control, const Nothing&) { return control.quit(); });
 }
 
-void add_object_commands(Requests& requests, CtlCommand& command) {
-  auto [spawn, to_spawn] = requests.add<wire::SpawnEntity>("spawn", "Add an object or a robot to the world");
-  spawn.add_option("MODEL", command.model, "A model of the world, or a file with one (.sdf, .urdf, .yaml)")
+// Reads the file of that name, if there is one; else a model of the world is meant.
+void take_model(Spawn& spawn) {
+  if (!std::filesystem::is_regular_file(spawn.model)) return;
+  const std::vector<char> text = read_file(spawn.model);
+  spawn.text.assign(text.begin(), text.end());
+  spawn.model.clear();
+}
+
+void add_spawn_commands(Requests& requests) {
+  auto [spawn, to_spawn] =
+      requests.add<Spawn>("spawn", "Add an object or a robot to the world", [](Control& control, Spawn what) {
+        take_model(what);
+        control.spawn(what);
+        return control.last_reply();
+      });
+  spawn.add_option("MODEL", to_spawn.model, "A model of the world, or a file with one (.sdf, .urdf, .yaml)")
       .required()
       .type_name("");
-  spawn.add_option("--name", to_spawn.entity, "Its name in the world").required().type_name("NAME");
+  spawn.add_option("--name", to_spawn.name, "Its name in the world").required().type_name("NAME");
   spawn.add_option("--team", to_spawn.team, "That a robot joins, where several could be meant").type_name("NAME");
   spawn.add_flag("--rename", to_spawn.allow_renaming, "Take another name where this one is taken");
   add_pose(spawn, to_spawn.pose);
-  auto [remove, to_remove] = requests.add<wire::DeleteEntity>("remove", "Take an object out of the world");
-  add_name(remove, to_remove.entity);
-  auto [pose, new_pose] =
-      requests.add("set-pose", "Put an object elsewhere, at rest", wire::SetEntityState{.pose = wire::Pose{}});
+  auto [remove, to_remove] =
+      requests.add<std::string>("remove", "Take an object out of the world",
+                                [](Control& control, const std::string& entity) { return control.remove(entity); });
+  add_name(remove, to_remove);
+}
+
+void add_motion_commands(Requests& requests) {
+  auto [pose, new_pose] = requests.add<EntityState>(
+      "set-pose", "Put an object elsewhere, at rest",
+      [](Control& control, const auto& state) { return control.set_pose(state.entity, state.pose); });
   add_name(pose, new_pose.entity);
-  add_pose(pose, *new_pose.pose);
-  auto [velocity, new_twist] =
-      requests.add("set-velocity", "Give an object a velocity", wire::SetEntityState{.twist = wire::Twist{}});
+  add_pose(pose, new_pose.pose);
+  auto [velocity, new_twist] = requests.add<EntityState>(
+      "set-velocity", "Give an object a velocity",
+      [](Control& control, const auto& state) { return control.set_twist(state.entity, state.twist); });
   add_name(velocity, new_twist.entity);
-  add_vector(velocity, "--linear", new_twist.twist->linear, "Metres per second, in the world").required();
-  add_vector(velocity, "--angular", new_twist.twist->angular, "Radians per second, in the world");
-  auto [force, push] = requests.add<wire::ApplyForce>("apply-force", "Push an object for a while");
-  add_name(force, push.entity);
+  add_vector(velocity, "--linear", new_twist.twist.linear, "Metres per second, in the world").required();
+  add_vector(velocity, "--angular", new_twist.twist.angular, "Radians per second, in the world");
+  struct Push {
+    std::string entity;
+    AppliedForce force;
+  };
+  auto [force, to_push] = requests.add<Push>(
+      "apply-force", "Push an object for a while",
+      [](Control& control, const Push& push) { return control.apply_force(push.entity, push.force); });
+  AppliedForce& push = to_push.force;
+  add_name(force, to_push.entity);
   add_vector(force, "--force", push.force, "Newtons, in the world");
   add_vector(force, "--torque", push.torque, "Newton metres, in the world");
   force
       .add_option_function<double>(
-          "--duration", [&to = push](const double& seconds) { to.duration_ns = std::llround(seconds * 1e9); },
+          "--duration", [&push](const double& seconds) { push.duration = nanoseconds(seconds); },
           "Simulated seconds (default: one step)")
       .check(number_above_zero(9e9))
       .type_name("S");
@@ -166,9 +212,15 @@ void add_object_commands(Requests& requests, CtlCommand& command) {
 }
 
 void add_light_command(Requests& requests) {
-  auto [light, to] = requests.add<wire::SetLight>("set-light", "Switch a light");
-  wire::SetLight& set = to;
-  add_name(light, set.entity);
+  struct Switched {
+    std::string light;
+    LightSetting setting;
+  };
+  auto [light, switched] = requests.add<Switched>(
+      "set-light", "Switch a light",
+      [](Control& control, const Switched& to) { return control.set_light(to.light, to.setting); });
+  LightSetting& set = switched.setting;
+  add_name(light, switched.light);
   light
       .add_option_function<std::string>(
           "STATE", [&set](const std::string& state) { set.on = state == "on"; }, "on or off")
@@ -181,12 +233,23 @@ void add_light_command(Requests& requests) {
       .type_name("X");
   light
       .add_option_function<std::string>(
-          "--color", [&set](const std::string& value) { set.color = vector_in(value); },
+          "--color",
+          [&set](const std::string& value) {
+            const Vector3 color = vector_in(value);
+            set.color = Color{color.x, color.y, color.z};
+          },
           "Red, green and blue from 0 to 1")
       .type_name("\"X Y Z\"");
 }
 
 }  // namespace
+
+std::vector<char> read_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::vector<char> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in.is_open() || in.bad()) throw std::runtime_error("cannot read " + file.string());
+  return bytes;
+}
 
 void add_ctl_options(CommandLine line, CtlCommand& command) {
   add_domain_option(line, command.connection.domains, domain_of_server);
@@ -201,7 +264,8 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
       .type_name("S");
   Requests requests(line, command);
   add_time_commands(requests);
-  add_object_commands(requests, command);
+  add_spawn_commands(requests);
+  add_motion_commands(requests);
   add_light_command(requests);
 
   const auto add_file = [&](const std::string& name, const std::string& text, CtlCommand::What what) {
@@ -218,8 +282,10 @@ void add_ctl_options(CommandLine line, CtlCommand& command) {
   CommandLine history = line.add_subcommand("history", "Say what has happened, and how far back the run can go");
   history.add_flag("--json", command.json, "As JSON");
   history.callback([&] { command.what = CtlCommand::What::history; });
-  auto [entities, get_entities] = requests.add<wire::GetEntities>("entities", "List what is in the world");
-  entities.add_option("FILTER", get_entities.filter, "POSIX extended regular expression").type_name("");
+  auto [entities, filter] = requests.add<std::string>(
+      "entities", "List what is in the world",
+      [](Control& control, const std::string& expression) { return control.entities(expression); });
+  entities.add_option("FILTER", filter, "POSIX extended regular expression").type_name("");
   line.footer(
       "Examples: cohort ctl pause; cohort ctl step 10; cohort ctl spawn box --name crate_1 --pose \"1 0 0.1\";\n"
       "cohort ctl --server 10.0.0.5 --domain 7 status --watch");

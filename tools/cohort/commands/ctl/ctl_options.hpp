@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cohort/control.hpp>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "idl/wire/control_messages.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 
 namespace cohort::tool {
@@ -11,21 +14,23 @@ namespace cohort::tool {
 /// What the command line says of `cohort ctl`: docs/cli.md.
 struct CtlCommand {
   enum class What {
-    request,  ///< `operation`, and its reply
+    request,
     status,
     history,
     save,
     load,
   };
   What what = What::request;
-  wire::Operation operation{};  ///< of a request
+  std::function<std::string(Control&)> request{};  ///< asks, and returns what is printed
   Connection connection{};
   std::filesystem::path file{};     ///< of a snapshot
-  std::filesystem::path model{};    ///< of what is spawned: a file, or the name of a model of the world
   std::optional<double> timeout{};  ///< [s]; none: by operation
   bool watch = false;
   bool json = false;
 };
+
+/// Throws std::runtime_error if the file cannot be read.
+std::vector<char> read_file(const std::filesystem::path& file);
 
 /// `command` must outlive the command line.
 void add_ctl_options(CommandLine line, CtlCommand& command);

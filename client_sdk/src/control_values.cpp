@@ -1,0 +1,95 @@
+#include "client_sdk/src/control_values.hpp"
+
+namespace cohort {
+namespace {
+
+Vector3 from_wire(const wire::Vector3& vector) { return {vector.x, vector.y, vector.z}; }
+
+ControllerStatus from_wire(const wire::ControllerStatus& status) {
+  return {status.label,
+          status.client,
+          status.robots,
+          status.alive,
+          status.awaited,
+          std::chrono::nanoseconds(status.awaited_ns),
+          status.due_tick,
+          status.answers,
+          status.late,
+          status.rejected,
+          status.resent,
+          std::chrono::nanoseconds(status.answer_p50_ns),
+          std::chrono::nanoseconds(status.answer_p99_ns)};
+}
+
+SimulationState from_wire(wire::SimulationState state) {
+  return static_cast<SimulationState>(state);  // both have the numbers of simulation_interfaces
+}
+
+}  // namespace
+
+wire::Vector3 to_wire(const Vector3& vector) { return {vector.x, vector.y, vector.z}; }
+
+wire::Pose to_wire(const WorldPose& pose) {
+  const Quaternion& q = pose.orientation;
+  return {to_wire(pose.position), {q.x, q.y, q.z, q.w}};
+}
+
+wire::Twist to_wire(const Twist& twist) { return {to_wire(twist.linear), to_wire(twist.angular)}; }
+
+EntityState from_wire(const wire::EntityState& state) {
+  const wire::Quaternion& q = state.pose.orientation;
+  return {state.entity,
+          {from_wire(state.pose.position), {q.x, q.y, q.z, q.w}},
+          {from_wire(state.twist.linear), from_wire(state.twist.angular)}};
+}
+
+ControlReply reply_from_wire(const wire::Reply& reply) {
+  return {from_wire(reply.state), reply.run, reply.tick, std::chrono::nanoseconds(reply.time_ns), reply.error_message};
+}
+
+SimulationStatus status_from_wire(const wire::Reply& reply, const wire::SimulationStatus& status) {
+  SimulationStatus all{.state = from_wire(reply.state),
+                       .run = reply.run,
+                       .tick = reply.tick,
+                       .time = std::chrono::nanoseconds(reply.time_ns),
+                       .experiment = status.experiment,
+                       .seed = status.seed,
+                       .started = status.started,
+                       .step = std::chrono::nanoseconds(status.step_ns),
+                       .duration = std::chrono::nanoseconds(status.duration_ns),
+                       .speed = status.speed,
+                       .real_time_factor = status.real_time_factor,
+                       .state_hash = status.state_hash,
+                       .robots = status.robots,
+                       .awaited_count = status.awaited_count,
+                       .awaited = status.awaited,
+                       .waiting = std::chrono::nanoseconds(status.waiting_ns),
+                       .controllers = {}};
+  for (const wire::ControllerStatus& controller : status.controllers) all.controllers.push_back(from_wire(controller));
+  return all;
+}
+
+ControlResult from_wire(wire::ResultCode result, wire::OperationCode operation) {
+  using wire::ResultCode;
+  const bool spawns = operation == wire::OperationCode::spawn_entity;
+  switch (result) {
+    case ResultCode::feature_unsupported: return ControlResult::feature_unsupported;
+    case ResultCode::not_found: return ControlResult::not_found;
+    case ResultCode::incorrect_state: return ControlResult::incorrect_state;
+    case ResultCode::name_not_unique:  // 101
+      if (spawns) return ControlResult::name_not_unique;
+      return operation == wire::OperationCode::set_entity_state ? ControlResult::invalid_pose
+                                                                : ControlResult::incorrect_state;
+    case ResultCode::name_invalid: return ControlResult::name_invalid;
+    case ResultCode::no_resource: return ControlResult::no_resource;
+    case ResultCode::invalid_spawn_pose: return ControlResult::invalid_pose;
+    case ResultCode::malformed: return ControlResult::malformed;
+    case ResultCode::not_permitted: return ControlResult::not_permitted;
+    case ResultCode::forgotten: return ControlResult::forgotten;
+    case ResultCode::ok:
+    case ResultCode::operation_failed: break;
+  }
+  return ControlResult::operation_failed;
+}
+
+}  // namespace cohort

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <functional>
+
+#include "client_sdk/include/cohort/types.hpp"
+#include "idl/wire/control_messages.hpp"
+
+namespace cohort {
+
+/// Asks for all that has happened since a revision, part by part; `ask` returns the reply to a GetHistory that was
+/// done. Throws ControlError (`bad_reply`) if a reply has no history.
+RunHistory query_history(std::uint64_t since, const std::function<wire::Reply(const wire::GetHistory&)>& ask);
+
+}  // namespace cohort

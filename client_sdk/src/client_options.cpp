@@ -3,6 +3,7 @@
 
 #include "client_sdk/include/cohort/client.hpp"
 #include "client_sdk/include/cohort/control.hpp"
+#include "client_sdk/include/cohort/observer.hpp"
 #include "client_sdk/src/domains.hpp"
 
 namespace cohort {
@@ -20,6 +21,7 @@ void take(Options& options) {
 
 void take_environment(ClientOptions& options) { take(options); }
 void take_environment(ControlOptions& options) { take(options); }
+void take_environment(ObserverOptions& options) { take(options); }
 
 std::vector<std::string> split_selectors(std::string_view list) {
   std::vector<std::string> parts;

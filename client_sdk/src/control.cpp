@@ -22,14 +22,6 @@ constexpr milliseconds for_last_word{1'000};
 
 enum class Takes { a_moment, as_long_as_the_run };
 
-ControlClient attach(const ControlOptions& options) {
-  try {
-    return ControlClient(options);
-  } catch (const wire::WireError& error) {
-    throw ControlError(error.what(), ControlResult::no_attachment);
-  }
-}
-
 }  // namespace
 
 struct Control::State {

@@ -144,4 +144,12 @@ std::optional<wire::Reply> ControlClient::ask(wire::Operation operation, std::ch
   return std::nullopt;
 }
 
+ControlClient attach(const ControlOptions& options) {
+  try {
+    return ControlClient(options);
+  } catch (const wire::WireError& error) {
+    throw ControlError(error.what(), ControlResult::no_attachment);
+  }
+}
+
 }  // namespace cohort

@@ -39,4 +39,7 @@ class ControlClient {
   std::unique_ptr<State> state_;
 };
 
+/// Makes one. Throws ControlError (`no_attachment`) if the server's address or the identity cannot be used.
+ControlClient attach(const ControlOptions& options);
+
 }  // namespace cohort

@@ -1,42 +1,14 @@
 #include "client_sdk/src/hand_over.hpp"
 
-#include <sys/eventfd.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdint>
-#include <system_error>
 #include <utility>
 
 #include "client_sdk/hosting/frame_handler.hpp"
 
 namespace cohort {
-namespace {
-
-int open_event_descriptor() {
-  const int descriptor = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "cannot make an event descriptor");
-  return descriptor;
-}
-
-}  // namespace
-
-HandOver::HandOver() : descriptor_(open_event_descriptor()) {}
-HandOver::~HandOver() { ::close(descriptor_); }
-
-void HandOver::set_readable(bool readable) const {
-  std::uint64_t count = 1;
-  // Cannot fail but where it is so already.
-  if (readable)
-    static_cast<void>(!::write(descriptor_, &count, sizeof count));
-  else
-    static_cast<void>(!::read(descriptor_, &count, sizeof count));
-}
-
 void HandOver::offer(const ClientEvent& event) {
   Lock lock(mutex_);
   event_ = event;
-  set_readable(true);
+  descriptor_.set_readable(true);
   changed_.notify_all();
   changed_.wait(lock, [&] { return !event_ || left_; });
   if (event_) throw LeaveRun{};
@@ -48,7 +20,7 @@ void HandOver::end(ClientEnded ended) {
   event_.reset();
   taken_ = false;
   ended_ = std::move(ended);
-  set_readable(true);
+  descriptor_.set_readable(true);
   changed_.notify_all();
 }
 
@@ -59,7 +31,7 @@ std::optional<ClientEvent> HandOver::take(std::optional<std::chrono::steady_cloc
   if (!deadline) changed_.wait(lock, is_there);
   if (ended_) return *ended_;
   taken_ = true;
-  set_readable(false);
+  descriptor_.set_readable(false);
   return event_;
 }
 

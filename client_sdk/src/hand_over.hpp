@@ -7,6 +7,7 @@
 #include <string>
 
 #include "client_sdk/include/cohort/client.hpp"
+#include "client_sdk/src/event_descriptor.hpp"
 
 namespace cohort {
 
@@ -14,11 +15,6 @@ namespace cohort {
 /// takes and answers.
 class HandOver {
  public:
-  HandOver();
-  HandOver(const HandOver&) = delete;
-  HandOver& operator=(const HandOver&) = delete;
-  ~HandOver();
-
   // On the client's thread.
 
   /// Returns when the loop has answered. Throws LeaveRun if the loop has left, and ControllerFailure if it has failed.
@@ -36,13 +32,12 @@ class HandOver {
   void leave();
 
   /// Readable while there is something to take.
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.get(); }
 
  private:
   using Lock = std::unique_lock<std::mutex>;
-  void set_readable(bool readable) const;
 
-  const int descriptor_;
+  EventDescriptor descriptor_;
   std::mutex mutex_;  // guards all below
   std::condition_variable changed_;
   std::optional<ClientEvent> event_;  // is on offer, or was taken and waits for its answer

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cohort/control.hpp>
+#include <cohort/observer.hpp>
 #include <memory>
 
 #include "idl/dds/transport.hpp"
@@ -216,8 +218,13 @@ TEST(OnlyIdentitiesDrive, AndObserversLookOnAndRecord) {
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_NE(refused.err.find("the identity 'observer' may not control the run"), std::string::npos) << refused.err;
   }
+  Observer observer({.domain = domain.number(), .secure = keys + "/clients/observer"});
+  EXPECT_EQ(observer.robots(patience).value_or(std::vector<ObservedRobot>{}).size(), 16u);
+  EXPECT_TRUE(observer.events(patience));
+  EXPECT_THROW(Observer({.secure = keys + "/clients/operator"}), ControlError) << "it may control, not look on";
   EXPECT_EQ(run_to_end(as("operator", {"ctl", "shutdown"})).exit_code, 0);
   EXPECT_EQ(server.wait_for_exit(), 0) << server.output();
+  EXPECT_TRUE(eventually([&] { return observer.ended().has_value(); }));
   EXPECT_EQ(recording.wait_for_exit(), 0) << recording.output();
   EXPECT_TRUE(std::filesystem::exists(file));
 }

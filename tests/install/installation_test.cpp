@@ -188,6 +188,37 @@ TEST_F(Installation, AnOutsideBridgeIsAProgramOfItsOwnInCppAndInC) {
   EXPECT_EQ(hashes[0], hashes[2]);
 }
 
+TEST_F(Installation, OutsideProgramsControlAndObserveARunInCppAndInC) {
+  const ScratchFolder folder;
+  const ReservedDomain domain;
+  const Process::Environment its_domain = {{"COHORT_DOMAIN", domain.text()}};
+  const auto serve = [&] {
+    return std::make_unique<Process>(std::vector<std::string>{cohort(), "serve", outside / "one_robot.yaml", "--paused",
+                                                              "--keep-snapshots", "0.5", "--domain", domain.text()},
+                                     environment);
+  };
+  const auto drive = [&] {
+    return std::make_unique<Process>(std::vector<std::string>{outside / "build/weaver"}, its_domain);
+  };
+  {
+    const auto server = serve();
+    const auto controller = drive();
+    Process experimenter({outside / "in_c/build/experimenter", folder / "run.mcap"}, its_domain);
+    EXPECT_EQ(experimenter.wait_for_exit(), 0) << experimenter.output();
+    EXPECT_EQ(server->wait_for_exit(), 0) << server->output();
+    for (const char* line : {"crate at 2.5 2 0.5\n", "event control\n", "with seed 5: 1 robot at tick 0, step 10 ms\n",
+                             " of sbot\n", "the end: told\n"})
+      EXPECT_NE(experimenter.output().find(line), std::string::npos) << line << experimenter.output();
+    EXPECT_TRUE(fs::exists(folder / "run.mcap"));
+  }
+  const auto server = serve();
+  const auto controller = drive();
+  Process repeat({outside / "build/repeat_until_good", "0.01", "0.2", "3"}, its_domain);
+  EXPECT_EQ(repeat.wait_for_exit(), 0) << repeat.output();
+  EXPECT_NE(repeat.output().find("is good"), std::string::npos) << repeat.output();
+  EXPECT_EQ(server->wait_for_exit(), 0) << server->output();
+}
+
 TEST_F(Installation, AnOutsidePluginShowsNothingButItself) {
   const std::string plugin = outside / "build/weaver.so";
   void* const library = dlopen(plugin.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -25,7 +25,7 @@ namespace {
 
 std::chrono::milliseconds limit_of(int milliseconds) { return std::chrono::milliseconds(std::max(milliseconds, 0)); }
 
-// Takes what `ask` brings as a list of `kept`, and returns its size; -1 if it brings nothing, with the last error.
+// Returns the count that `ask` brings; -1 if it brings none, with the last error.
 template <class Ask>
 int64_t count_of(const Ask& ask) {
   try {

@@ -10,7 +10,7 @@ using namespace cohort;
 constexpr std::size_t links_of_scene = 100;  // any number
 
 struct Encoded {
-  recording::Bytes scene, frame, signals, contacts, robot;
+  messages::Bytes scene, frame, signals, contacts, robot;
 };
 
 Encoded encoded() {
@@ -23,8 +23,8 @@ Encoded encoded() {
 }
 
 template <class Message, class Check>
-void decode_any(const recording::Bytes& bytes, std::span<const std::uint8_t> input, Check&& check) {
-  const recording::Bytes changed = fuzz::edited(bytes, input);
+void decode_any(const messages::Bytes& bytes, std::span<const std::uint8_t> input, Check&& check) {
+  const messages::Bytes changed = fuzz::edited(bytes, input);
   try {
     check(messages::decode<Message>(changed));
   } catch (const messages::CdrError&) {

@@ -264,5 +264,85 @@ TEST(Architecture, NoTwoHeadersHaveTheSameName) {
   }
 }
 
+std::string text_of(const std::string& path) {
+  std::stringstream text;
+  text << std::ifstream(COHORT_SOURCE_DIR "/" + path).rdbuf();
+  return text.str();
+}
+
+// Those of the register in description/devices.hpp.
+Names device_kinds() {
+  const std::string text = text_of("server/description/devices.hpp");
+  const std::size_t begin = text.find("using DeviceKinds");
+  const std::vector<std::string> words =
+      matches_in(text.substr(begin, text.find(';', begin) - begin), std::regex("([A-Z]\\w+)[,>]"));
+  return {words.begin(), words.end()};
+}
+
+// The device kinds that code names, in neither comments nor strings.
+Names kinds_named_in(std::string code, const Names& kinds) {
+  code = std::regex_replace(code, std::regex("//[^\n]*|\"(\\\\.|[^\"\\\\\n])*\""), " ");
+  Names named;
+  for (const std::string& word : matches_in(code, std::regex("\\b([A-Z]\\w+)\\b")))
+    if (kinds.contains(word)) named.insert(word);
+  return named;
+}
+
+// What a device does is asked by general properties (description/device_properties.hpp), so that a new kind is a struct
+// in description/, a reader in parsing/ and one file in sensing/ or actuation/.
+TEST(Architecture, ConcreteKindsOfDevicesAreNamedWhereTheyAreDescribedReadSensedAndMovedAlone) {
+  const Names kinds = device_kinds();
+  ASSERT_GT(kinds.size(), 30u);
+  const Names homes = {"description", "parsing", "sensing", "actuation"};
+  std::map<std::string, Names> exceptions = {
+      // and why
+      {"server/emission/emitters.cpp", {"LedRing", "Loudspeaker", "RangeAndBearing"}},
+      {"server/gripping/detachable_joints.cpp", {"DetachableJoint"}},
+      {"server/gripping/grippers.cpp", {"Gripper"}},
+      {"server/gripping/grippers.hpp", {"Gripper"}},
+      {"server/physics/fluid/fluid_body.cpp", {"Rotor"}},
+      {"server/physics/fluid/fluid_model.cpp", {"Rotor"}},
+      {"server/physics/fluid/fluid_model.hpp", {"Rotor"}},
+      {"server/physics/mechanism/mechanism.cpp", {"TreelDrive"}},
+      {"server/physics/multibody/belts.cpp", {"Belt"}},
+      {"server/physics/multibody/belts.hpp", {"Belt"}},
+      {"server/physics/multibody/multibody.cpp", {"TreelDrive"}},
+      {"server/physics/multibody/multibody.hpp", {"TreelDrive"}},
+      {"server/physics/multibody/track_rows.hpp", {"TreelDrive"}},
+      {"server/physics/planar/planar_ground.cpp", {"TreelDrive"}},
+      {"server/physics/planar/planar_ground.hpp", {"TreelDrive"}},
+      {"server/physics/planar/planar_model.cpp", {"Rotor", "TreelDrive"}},
+      {"server/physics/planar/planar_model.hpp", {"TreelDrive"}},
+      {"server/physics/planar/planar_placement.cpp", {"TreelDrive"}},
+      {"server/physics/world/surface_pairs.cpp", {"TreelDrive"}},
+      {"server/physics/world/surface_pairs.hpp", {"TreelDrive"}},
+      {"server/placement/check_detachable_joints.cpp", {"DetachableJoint"}},
+      {"server/placement/room.cpp", {"TreelDrive"}},
+      {"server/simulation/build_identity.cpp", {"VelocityMotor"}},
+      {"server/viewing/scene_maker.cpp", {"LedRing"}},
+      {"server/viewing/scene_models.cpp", {"GroundSensors", "Lidar", "LightSensors", "ProximityRing"}},
+  };
+  for (const Source& source : read_sources()) {
+    if (!source.path.starts_with("server/")) continue;
+    const std::filesystem::path within = std::filesystem::path(source.path).lexically_relative("server");
+    if (homes.contains(*within.begin())) continue;
+    const auto exception = exceptions.find(source.path);
+    for (const std::string& kind : kinds_named_in(text_of(source.path), kinds)) {
+      const bool is_excepted = exception != exceptions.end() && exception->second.erase(kind) == 1;
+      EXPECT_TRUE(is_excepted) << source.path << " names the device kind " << kind
+                               << "; expected a property of devices in its place";
+    }
+  }
+  for (const auto& [path, unused] : exceptions)
+    for (const std::string& kind : unused)
+      ADD_FAILURE() << path << " does not name " << kind << "; expected no exception for it";
+}
+
+TEST(Architecture, ADeviceKindIsNotNamedByACommentOrAString) {
+  EXPECT_EQ(kinds_named_in("// Belt\nstd::get_if<description::Rotor>(&x); \"a \\\" Lidar\" Belts TreelDrive;",
+                           {"Belt", "Rotor", "Lidar", "TreelDrive"}),
+            (Names{"Rotor", "TreelDrive"}));
+}
+
 }  // namespace
 }  // namespace cohort

@@ -1,5 +1,6 @@
 #include "server/description/devices.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace cohort::description {
@@ -16,6 +17,19 @@ struct FindReadout {
   }
 };
 
+// What the kind of a device answers, or nothing if it cannot be asked.
+template <class Answer, class Ask>
+Answer answer_of(const Device& device, const Ask& ask) {
+  return std::visit(
+      [&](const auto& kind) -> Answer {
+        if constexpr (requires { ask(kind); })
+          return ask(kind);
+        else
+          return {};
+      },
+      device);
+}
+
 // Of the wheels alone: the fastest is that on the outside of a turn.
 template <class Drive>
 std::vector<MotorLimits> wheel_motors(const Drive& drive) {
@@ -26,7 +40,77 @@ std::vector<MotorLimits> wheel_motors(const Drive& drive) {
   return motors;
 }
 
+Pose on_ring(const Pose& X_LS, double bearing, double radius) {
+  const Pose X_SE{{radius * std::cos(bearing), radius * std::sin(bearing), 0.0},
+                  Eigen::Quaterniond(Eigen::AngleAxisd(bearing, Eigen::Vector3d::UnitZ()))};
+  return X_LS * X_SE;
+}
+
 }  // namespace
+
+std::vector<MotorLimits> VelocityMotor::motors() const { return {{joint, max_velocity, max_effort, rotor_inertia}}; }
+
+std::vector<MotorLimits> PositionMotor::motors() const { return {{joint, max_velocity, max_effort, rotor_inertia}}; }
+
+std::vector<MotorLimits> EffortMotor::motors() const {
+  return {{joint, std::numeric_limits<double>::infinity(), max_effort, rotor_inertia}};
+}
+
+std::vector<MotorLimits> DifferentialDrive::motors() const { return wheel_motors(*this); }
+
+std::vector<MotorLimits> AckermannDrive::motors() const {
+  std::vector<MotorLimits> motors = wheel_motors(*this);
+  for (const std::size_t joint : {left_steering_joint, right_steering_joint})
+    motors.push_back({joint, max_steering_velocity, max_steering_torque, 0.0});
+  return motors;
+}
+
+TrackPair TreelDrive::tracks() const {
+  return {link,         half_gauge, half_contact_length, ground_height, wheel_radius, max_torque,
+          max_velocity, friction,   left_wheels,         right_wheels};
+}
+
+std::vector<BeltPlace> Belt::belts() const { return {{link, axis_L.normalized()}}; }
+
+std::vector<BeltPlace> TrackedDrive::belts() const {
+  std::vector<BeltPlace> belts;
+  for (const std::vector<std::size_t>* links : {&left_links, &right_links})
+    for (const std::size_t link : *links) belts.push_back({link, Eigen::Vector3d::UnitY()});
+  return belts;
+}
+
+Thruster Rotor::thruster() const {
+  return {.link = link,
+          .X_LR = X_LR,
+          .reaction_sense = direction == Direction::ccw ? -1.0 : 1.0,
+          .motor_constant = motor_constant,
+          .moment_constant = moment_constant,
+          .drag_coefficient = drag_coefficient,
+          .rolling_moment_coefficient = rolling_moment_coefficient,
+          .time_constant_up = time_constant_up,
+          .time_constant_down = time_constant_down,
+          .density = density};
+}
+
+std::vector<DeviceEmitter> LedRing::emitters() const {
+  std::vector<DeviceEmitter> emitters;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pose X_LE = on_ring(X_LS, first_bearing + static_cast<double>(i) * spacing, ring_radius);
+    emitters.push_back({link, X_LE, Marker{Eigen::Vector3d::Zero()}});
+    if (!(intensity > 0.0)) continue;
+    Light light;
+    light.color.setZero();
+    light.intensity = intensity;
+    emitters.push_back({link, X_LE, light});
+  }
+  return emitters;
+}
+
+std::vector<DeviceEmitter> Loudspeaker::emitters() const { return {{link, X_LE, Sound{0.0, 0.0}}}; }
+
+std::vector<DeviceEmitter> RangeAndBearing::emitters() const { return {{link, X_LS, Beacon{range, message_size}}}; }
+
+HeldChild DetachableJoint::held_child() const { return {link, child, child_link, may_be_missing, child_place}; }
 
 Device::Device() = default;
 Device::Device(const Device& other) = default;
@@ -43,29 +127,39 @@ const std::string& name_of(const Device& device) {
 }
 
 std::vector<MotorLimits> motor_limits(const Device& device) {
-  if (const auto* motor = std::get_if<VelocityMotor>(&device))
-    return {{motor->joint, motor->max_velocity, motor->max_effort, motor->rotor_inertia}};
-  if (const auto* motor = std::get_if<PositionMotor>(&device))
-    return {{motor->joint, motor->max_velocity, motor->max_effort, motor->rotor_inertia}};
-  if (const auto* motor = std::get_if<EffortMotor>(&device))
-    return {{motor->joint, std::numeric_limits<double>::infinity(), motor->max_effort, motor->rotor_inertia}};
-  if (const auto* drive = std::get_if<DifferentialDrive>(&device)) return wheel_motors(*drive);
-  if (const auto* drive = std::get_if<AckermannDrive>(&device)) {
-    std::vector<MotorLimits> motors = wheel_motors(*drive);
-    for (const std::size_t joint : {drive->left_steering_joint, drive->right_steering_joint})
-      motors.push_back({joint, drive->max_steering_velocity, drive->max_steering_torque, 0.0});
-    return motors;
-  }
-  return {};
+  return answer_of<std::vector<MotorLimits>>(device,
+                                             [](const auto& kind) -> decltype(kind.motors()) { return kind.motors(); });
 }
 
 std::vector<BeltPlace> belts_of(const Device& device) {
-  if (const auto* belt = std::get_if<Belt>(&device)) return {{belt->link, belt->axis_L.normalized()}};
-  std::vector<BeltPlace> belts;
-  if (const auto* drive = std::get_if<TrackedDrive>(&device))
-    for (const std::vector<std::size_t>* links : {&drive->left_links, &drive->right_links})
-      for (const std::size_t link : *links) belts.push_back({link, Eigen::Vector3d::UnitY()});
-  return belts;
+  return answer_of<std::vector<BeltPlace>>(device,
+                                           [](const auto& kind) -> decltype(kind.belts()) { return kind.belts(); });
+}
+
+std::optional<TrackPair> tracks_of(const Device& device) {
+  return answer_of<std::optional<TrackPair>>(device,
+                                             [](const auto& kind) -> decltype(kind.tracks()) { return kind.tracks(); });
+}
+
+std::optional<Thruster> thruster_of(const Device& device) {
+  return answer_of<std::optional<Thruster>>(
+      device, [](const auto& kind) -> decltype(kind.thruster()) { return kind.thruster(); });
+}
+
+std::vector<DeviceEmitter> emitters_of(const Device& device) {
+  return answer_of<std::vector<DeviceEmitter>>(
+      device, [](const auto& kind) -> decltype(kind.emitters()) { return kind.emitters(); });
+}
+
+std::optional<HeldChild> held_child_of(const Device& device) {
+  return answer_of<std::optional<HeldChild>>(
+      device, [](const auto& kind) -> decltype(kind.held_child()) { return kind.held_child(); });
+}
+
+std::string reason_against_planar(const Device& device) {
+  const std::string what = answer_of<std::string>(
+      device, [](const auto& kind) -> decltype(std::string(kind.not_planar)) { return kind.not_planar; });
+  return what.empty() ? what : what + " '" + name_of(device) + "' cannot be planar";
 }
 
 }  // namespace cohort::description

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "server/core/pose.hpp"
+#include "server/description/device_properties.hpp"
 #include "server/description/fluid_devices.hpp"
-#include "server/description/input_error.hpp"
 #include "server/description/readout.hpp"
 #include "server/description/samples.hpp"
 #include "server/description/sdf_sensors.hpp"
@@ -36,6 +36,8 @@ struct TreelDrive {
   /// motors are the drive; elsewhere they are welded to the link, and their collisions are none.
   std::vector<std::size_t> left_wheels{};
   std::vector<std::size_t> right_wheels{};
+
+  TrackPair tracks() const;
 };
 
 /// A motor with a velocity loop on one joint, on the first axis of a universal one. Command `NAME/0/velocity` [rad/s]
@@ -46,6 +48,8 @@ struct VelocityMotor {
   double max_velocity = 0.0;
   double max_effort = 0.0;     ///< [N m] or [N]
   double rotor_inertia = 0.0;  ///< of what turns in the motor, as the joint feels it [kg m^2] or [kg]
+
+  std::vector<MotorLimits> motors() const;
 };
 
 /// A motor that takes a joint to a position and holds it there. Command `NAME/0/position` [rad] or [m].
@@ -55,6 +59,8 @@ struct PositionMotor {
   double max_velocity = 0.0;
   double max_effort = 0.0;
   double rotor_inertia = 0.0;
+
+  std::vector<MotorLimits> motors() const;
 };
 
 /// A motor that gives a torque or a force. Command `NAME/0/effort` [N m] or [N].
@@ -63,6 +69,8 @@ struct EffortMotor {
   std::size_t joint = 0;
   double max_effort = 0.0;
   double rotor_inertia = 0.0;
+
+  std::vector<MotorLimits> motors() const;
 };
 
 /// A motor on each wheel of a vehicle that turns by their difference. Commands `NAME/0/linear` [m/s], forward, and
@@ -76,6 +84,8 @@ struct DifferentialDrive {
   double max_torque = 0.0;        ///< of the motor of each wheel [N m]
   double max_linear = 0.0;        ///< [m/s]
   double max_angular = 0.0;       ///< [rad/s]
+
+  std::vector<MotorLimits> motors() const;
 };
 
 /// A vehicle that steers two wheels as a car: all of them roll about one centre. Commands as of a DifferentialDrive;
@@ -96,6 +106,8 @@ struct AckermannDrive {
   double max_angular = 0.0;            ///< [rad/s]
   double max_steering_velocity = 0.0;  ///< of each steering joint [rad/s]
   double max_steering_torque = 0.0;    ///< [N m]
+
+  std::vector<MotorLimits> motors() const;
 };
 
 /// A link whose surface runs round it, as that of a conveyor or of the track of a vehicle. At a positive velocity it
@@ -108,6 +120,9 @@ struct Belt {
   Eigen::Vector3d axis_L = Eigen::Vector3d::UnitY();  ///< of any length but 0
   double max_velocity = 0.0;                          ///< [m/s]
   double velocity = 0.0;                              ///< where nobody commands it [m/s]
+
+  static constexpr const char* not_planar = "the belts of";
+  std::vector<BeltPlace> belts() const;
 };
 
 /// Belts on both sides of a vehicle that turns by their difference, about the y axes of their links. Commands as of a
@@ -121,6 +136,9 @@ struct TrackedDrive {
   double max_velocity = std::numeric_limits<double>::infinity();  ///< of each track [m/s]
   double max_linear = 0.0;                                        ///< [m/s]
   double max_angular = 0.0;                                       ///< [rad/s]
+
+  static constexpr const char* not_planar = "the belts of";
+  std::vector<BeltPlace> belts() const;
 };
 
 /// Position and velocity of one joint: observations `NAME/0/position` and `NAME/0/velocity`.
@@ -221,6 +239,8 @@ struct LedRing {
   double spacing = 0.0;        ///< [rad]
   double ring_radius = 0.0;    ///< [m]
   double intensity = 0.0;      ///< of each as a lamp for light sensors, at full brightness [1]
+
+  std::vector<DeviceEmitter> emitters() const;
 };
 
 /// Commands `NAME/0/frequency` [Hz] and `NAME/0/intensity` [1].
@@ -230,6 +250,8 @@ struct Loudspeaker {
   Pose X_LE;
   double max_frequency = 0.0;  ///< [Hz]
   double max_intensity = 0.0;  ///< what arrives at 1 m [1]
+
+  std::vector<DeviceEmitter> emitters() const;
 };
 
 /// Messages to the robots around, as ARGoS's range-and-bearing system has them: whoever is near enough and in sight
@@ -244,6 +266,8 @@ struct RangeAndBearing {
   std::size_t message_size = 0;  ///< values of a message
   std::size_t capacity = 0;      ///< messages that are reported at a time
   Readout readout{};
+
+  std::vector<DeviceEmitter> emitters() const;
 };
 
 /// Temperature [K] and relative humidity [1] of the air: observations `NAME/0/temperature` and `NAME/0/humidity`.
@@ -327,6 +351,8 @@ struct DetachableJoint {
   std::string child_link{};     ///< of it; empty: its root link
   bool may_be_missing = false;  ///< that there is no such object is no mistake
   Problem child_place{};        ///< where a file says so, without a message
+
+  HeldChild held_child() const;
 };
 
 /// Of a joint's motor: observation `NAME/0/torque` [N m], or of a sliding one `NAME/0/force` [N].
@@ -375,21 +401,17 @@ Readout* readout_of(Device& device);
 const Readout* readout_of(const Device& device);
 const std::string& name_of(const Device& device);
 
-/// What any motor on a joint has.
-struct MotorLimits {
-  std::size_t joint = 0;
-  double max_velocity = 0.0;  ///< infinite of a motor that does not limit it
-  double max_effort = 0.0;
-  double rotor_inertia = 0.0;
-};
-/// Of all motors on joints that the device is; those of a TreelDrive depend on the fidelity and are not among them.
-std::vector<MotorLimits> motor_limits(const Device& device);
+// What the stages ask of a device, whatever its kind: see device_properties.hpp.
 
-/// A link whose surface a device drives.
-struct BeltPlace {
-  std::size_t link = 0;
-  Eigen::Vector3d axis_L;  ///< unit
-};
+/// Of all motors on joints that the device is; those of tracks with wheels depend on the fidelity and are not among
+/// them.
+std::vector<MotorLimits> motor_limits(const Device& device);
 std::vector<BeltPlace> belts_of(const Device& device);
+std::optional<TrackPair> tracks_of(const Device& device);
+std::optional<Thruster> thruster_of(const Device& device);
+std::vector<DeviceEmitter> emitters_of(const Device& device);
+std::optional<HeldChild> held_child_of(const Device& device);
+/// Why no planar world can have the device, as `rotor 'NAME' cannot be planar`; empty if one can.
+std::string reason_against_planar(const Device& device);
 
 }  // namespace cohort::description

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "server/core/pose.hpp"
+#include "server/description/device_properties.hpp"
 #include "server/description/readout.hpp"
 
 /// What pushes air or water, or is pushed by them, as plain data. Frames: L a link.
@@ -33,6 +34,9 @@ struct Rotor {
   double time_constant_down = 0.0;          ///< while it falls [s]
   double density = 0.0;                     ///< of the fluid that the coefficients are of [kg/m^3]; 0: the same in any
   Readout readout{};
+
+  static constexpr const char* not_planar = "rotor";
+  Thruster thruster() const;
 };
 
 /// A surface that gives lift and drag: a wing, a rudder, a sail, a keel. Coefficients as of Gazebo's LiftDrag. In F, at

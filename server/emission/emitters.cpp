@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "server/core/overloaded.hpp"
 #include "server/core/state_visitors.hpp"
 
 namespace cohort::emission {
@@ -15,12 +16,6 @@ constexpr double marker_cell = 0.5;
 constexpr double beacon_cell = 1.0;
 
 std::uint32_t count_of(const auto& emitters) { return static_cast<std::uint32_t>(emitters.size()); }
-
-Pose on_ring(const Pose& X_LS, double bearing, double radius) {
-  const Pose X_SE{{radius * std::cos(bearing), radius * std::sin(bearing), 0.0},
-                  Eigen::Quaterniond(Eigen::AngleAxisd(bearing, Eigen::Vector3d::UnitZ()))};
-  return X_LS * X_SE;
-}
 
 }  // namespace
 
@@ -102,27 +97,28 @@ void Emitters::change(std::uint32_t body, std::size_t emitter, const description
 void Emitters::add_devices(std::uint32_t body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const OfDevice first{count_of(lamps_), count_of(tones_), count_of(markers_), count_of(beacons_)};
-    if (const auto* leds = std::get_if<description::LedRing>(&model.devices[device])) {
-      for (std::size_t i = 0; i < leds->count; ++i) {
-        const double bearing = leds->first_bearing + static_cast<double>(i) * leds->spacing;
-        const Mount mount{body, leds->link, on_ring(leds->X_LS, bearing, leds->ring_radius)};
-        markers_.push_back({mount, Eigen::Vector3d::Zero()});
-        if (!(leds->intensity > 0.0)) continue;
-        description::Light light;
-        light.color.setZero();
-        light.intensity = leds->intensity;
-        lamps_.push_back({mount, light});
-      }
-    } else if (const auto* speaker = std::get_if<description::Loudspeaker>(&model.devices[device])) {
-      tones_.push_back({{body, speaker->link, speaker->X_LE}, {0.0, 0.0}});
-    } else if (const auto* beacon = std::get_if<description::RangeAndBearing>(&model.devices[device])) {
-      beacons_.push_back(
-          {{body, beacon->link, beacon->X_LS}, beacon->range, false, std::vector<double>(beacon->message_size)});
-    } else {
-      continue;
-    }
+    const std::vector<description::DeviceEmitter> emitters = description::emitters_of(model.devices[device]);
+    if (emitters.empty()) continue;
+    for (const description::DeviceEmitter& emitter : emitters)
+      add_to_device({body, emitter.link, emitter.X_LE}, emitter);
     devices_.push_back({body, device, first});
   }
+}
+
+void Emitters::add_to_device(const Mount& mount, const description::DeviceEmitter& emitter) {
+  std::visit(Overloaded{
+                 [&](const description::Light& light) { lamps_.push_back({.mount = mount, .light = light}); },
+                 [&](const description::Sound& sound) {
+                   tones_.push_back({mount, sound});
+                 },
+                 [&](const description::Marker& marker) {
+                   markers_.push_back({mount, marker.color});
+                 },
+                 [&](const description::Beacon& beacon) {
+                   beacons_.push_back({mount, beacon.range, false, std::vector<double>(beacon.message_size)});
+                 },
+             },
+             emitter.what);
 }
 
 Emitters::OfDevice Emitters::of_device(std::uint32_t body, std::size_t device) const {

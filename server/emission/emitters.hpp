@@ -141,6 +141,7 @@ class Emitters {
   };
   void add(std::uint32_t body, std::size_t place, const description::Emitter& emitter);
   void add_devices(std::uint32_t body, const description::Model& model);
+  void add_to_device(const Mount& mount, const description::DeviceEmitter& emitter);
   std::size_t emitter_count() const;
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);

@@ -13,8 +13,8 @@ DetachableJoints::DetachableJoints(const description::World& description, physic
 void DetachableJoints::add_body(std::uint32_t body, const description::Model& model) {
   const auto& instances = description_.instances;
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
-    const auto* const its = std::get_if<description::DetachableJoint>(&model.devices[device]);
-    if (its == nullptr) continue;
+    const auto its = description::held_child_of(model.devices[device]);
+    if (!its) continue;
     numbers_[{body, device}] = static_cast<std::uint32_t>(joints_.size());
     Joint& joint = joints_.emplace_back(Joint{.body = body, .link = its->link});
     const auto child = std::ranges::find(instances, its->child, &description::Instance::name);

@@ -47,8 +47,8 @@ Extent extent_of(const Model& model) {
     extent.highest = std::max(extent.highest, part.highest);
   }
   for (const Device& device : model.devices)
-    if (const auto* const drive = std::get_if<TreelDrive>(&device))
-      extent.lowest = std::min(extent.lowest, model.links[drive->link].X_ML.position.z() + drive->ground_height);
+    if (const auto tracks = tracks_of(device))
+      extent.lowest = std::min(extent.lowest, model.links[tracks->link].X_ML.position.z() + tracks->ground_height);
   if (!std::isfinite(extent.lowest)) extent.lowest = 0.0;
   extent.highest = std::max(extent.highest, extent.lowest);
   return extent;

@@ -63,10 +63,12 @@ void SceneMaker::choose_lamps() {
   for (const std::size_t instance : world.robots) {
     const auto& devices = world.models[world.instances[instance].model].devices;
     for (std::size_t device = 0; device < devices.size(); ++device) {
-      const auto* const ring = std::get_if<description::LedRing>(&devices[device]);
-      if (ring == nullptr || !(ring->intensity > 0.0)) continue;
+      const auto lamps = std::ranges::count_if(description::emitters_of(devices[device]), [](const auto& emitter) {
+        return std::holds_alternative<description::Light>(emitter.what);
+      });
+      if (lamps == 0) continue;
       const std::uint32_t first = emitters.of_device(static_cast<std::uint32_t>(instance), device).lamp;
-      std::fill_n(is_led.begin() + first, ring->count, char{1});
+      std::fill_n(is_led.begin() + first, lamps, char{1});
     }
   }
   lamps_.reserve(is_led.size());

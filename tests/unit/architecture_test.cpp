@@ -295,31 +295,12 @@ TEST(Architecture, ConcreteKindsOfDevicesAreNamedWhereTheyAreDescribedReadSensed
   ASSERT_GT(kinds.size(), 30u);
   const Names homes = {"description", "parsing", "sensing", "actuation"};
   std::map<std::string, Names> exceptions = {
-      // and why
-      {"server/emission/emitters.cpp", {"LedRing", "Loudspeaker", "RangeAndBearing"}},
-      {"server/gripping/detachable_joints.cpp", {"DetachableJoint"}},
+      // What a gripper does, on which its actuator and its sensor build.
       {"server/gripping/grippers.cpp", {"Gripper"}},
       {"server/gripping/grippers.hpp", {"Gripper"}},
-      {"server/physics/fluid/fluid_body.cpp", {"Rotor"}},
-      {"server/physics/fluid/fluid_model.cpp", {"Rotor"}},
-      {"server/physics/fluid/fluid_model.hpp", {"Rotor"}},
-      {"server/physics/mechanism/mechanism.cpp", {"TreelDrive"}},
-      {"server/physics/multibody/belts.cpp", {"Belt"}},
-      {"server/physics/multibody/belts.hpp", {"Belt"}},
-      {"server/physics/multibody/multibody.cpp", {"TreelDrive"}},
-      {"server/physics/multibody/multibody.hpp", {"TreelDrive"}},
-      {"server/physics/multibody/track_rows.hpp", {"TreelDrive"}},
-      {"server/physics/planar/planar_ground.cpp", {"TreelDrive"}},
-      {"server/physics/planar/planar_ground.hpp", {"TreelDrive"}},
-      {"server/physics/planar/planar_model.cpp", {"Rotor", "TreelDrive"}},
-      {"server/physics/planar/planar_model.hpp", {"TreelDrive"}},
-      {"server/physics/planar/planar_placement.cpp", {"TreelDrive"}},
-      {"server/physics/world/surface_pairs.cpp", {"TreelDrive"}},
-      {"server/physics/world/surface_pairs.hpp", {"TreelDrive"}},
-      {"server/placement/check_detachable_joints.cpp", {"DetachableJoint"}},
-      {"server/placement/room.cpp", {"TreelDrive"}},
+      // A model of any kind of motor, whose bits tell builds apart.
       {"server/simulation/build_identity.cpp", {"VelocityMotor"}},
-      {"server/viewing/scene_maker.cpp", {"LedRing"}},
+      // Viewers draw the rays of some sensors; one of another kind is not drawn, but for its channels.
       {"server/viewing/scene_models.cpp", {"GroundSensors", "Lidar", "LightSensors", "ProximityRing"}},
   };
   for (const Source& source : read_sources()) {

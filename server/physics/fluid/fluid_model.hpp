@@ -26,7 +26,7 @@ struct FluidModel {
     FloatingShape shape;
   };
   struct RotorPlace : Place {
-    const description::Rotor* rotor = nullptr;
+    description::Thruster thruster;
     std::size_t device = 0;
   };
   struct FinPlace : Place {

@@ -10,7 +10,7 @@ Belts::Belts(const Mechanism& mechanism) {
   for (const description::Device& device : mechanism.model().devices)
     for (const description::BeltPlace& place : description::belts_of(device)) {
       const Mechanism::LinkPlace& link = mechanism.link(place.link);
-      if (std::ranges::any_of(belts_, [&](const Belt& other) { return other.link == place.link; }))
+      if (std::ranges::any_of(belts_, [&](const RunningLink& other) { return other.link == place.link; }))
         throw std::invalid_argument("'" + description::name_of(device) + "' drives the link '" +
                                     mechanism.model().links[place.link].name + "', whose belt is driven already");
       belts_.push_back({place.link, static_cast<std::size_t>(link.segment), link.X_SL.orientation * place.axis_L});
@@ -18,11 +18,11 @@ Belts::Belts(const Mechanism& mechanism) {
 }
 
 bool Belts::set_velocity(std::size_t link, double velocity) {
-  return std::exchange(std::ranges::find(belts_, link, &Belt::link)->velocity, velocity) != velocity;
+  return std::exchange(std::ranges::find(belts_, link, &RunningLink::link)->velocity, velocity) != velocity;
 }
 
 RunningSurface Belts::of_link(std::size_t link, const std::vector<Pose>& X_WS) const {
-  for (const Belt& belt : belts_)
+  for (const RunningLink& belt : belts_)
     if (belt.link == link) return {X_WS[belt.segment].orientation * belt.axis_S, belt.velocity};
   return {};
 }

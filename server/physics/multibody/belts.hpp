@@ -25,13 +25,13 @@ class Belts {
   }
 
  private:
-  struct Belt {
+  struct RunningLink {
     std::size_t link = 0;
     std::size_t segment = 0;
     Eigen::Vector3d axis_S = Eigen::Vector3d::Zero();
     double velocity = 0.0;
   };
-  std::vector<Belt> belts_;
+  std::vector<RunningLink> belts_;
 };
 
 }  // namespace cohort::physics

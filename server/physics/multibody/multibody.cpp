@@ -40,7 +40,7 @@ void Multibody::build_devices() {
                                     "'");
       add_motor(mechanism_->joint(motor.joint).first_dof, motor.max_effort, motor.max_velocity, name);
     }
-    if (const auto* drive = std::get_if<description::TreelDrive>(&model.devices[device])) add_drive(device, *drive);
+    if (const auto drive = description::tracks_of(model.devices[device])) add_drive(device, *drive);
   }
 }
 
@@ -50,11 +50,11 @@ void Multibody::add_motor(int dof, double max_effort, double max_velocity, const
   joints_.add_motor(dof, max_effort, max_velocity);
 }
 
-void Multibody::add_drive(std::size_t device, const description::TreelDrive& drive) {
+void Multibody::add_drive(std::size_t device, const description::TrackPair& drive) {
   const description::Model& model = mechanism_->model();
+  const std::string& name = description::name_of(model.devices[device]);
   if (mechanism_->link(drive.link).segment != 0)
-    throw std::invalid_argument("treel drive '" + drive.name + "' is not on the root link '" + model.links[0].name +
-                                "'");
+    throw std::invalid_argument("treel drive '" + name + "' is not on the root link '" + model.links[0].name + "'");
   if (!mechanism_->has_wheels() || (drive.left_wheels.empty() && drive.right_wheels.empty())) {
     drives_[device].treel = static_cast<int>(treels_.size());
     treels_.emplace_back(model, drive, mechanism_->link(drive.link).X_SL);
@@ -71,7 +71,7 @@ void Multibody::add_drive(std::size_t device, const description::TreelDrive& dri
       const Segment& wheel = mechanism_->segments()[static_cast<std::size_t>(place.segment)];
       const Eigen::Vector3d axis = wheel.X_PS.orientation * wheel.axis_S;
       add_motor(place.first_dof, drive.max_torque / static_cast<double>(joints.size()),
-                drive.max_velocity / drive.wheel_radius, drive.name);
+                drive.max_velocity / drive.wheel_radius, name);
       wheels.dofs[s].push_back(place.first_dof);
       wheels.senses[s].push_back(axis.y() < 0.0 ? -1.0 : 1.0);
     }

@@ -121,7 +121,7 @@ class Multibody {
   void move_joints(double step);
   void turn_freely(double step);
   void build_devices();
-  void add_drive(std::size_t device, const description::TreelDrive& drive);
+  void add_drive(std::size_t device, const description::TrackPair& drive);
   void add_motor(int dof, double max_effort, double max_velocity, const std::string& device);
 
   const Mechanism* mechanism_;

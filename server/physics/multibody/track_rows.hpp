@@ -20,7 +20,7 @@ class Problem;
 class TrackRows {
  public:
   /// `X_SL`: the drive's link in the root segment.
-  TrackRows(const description::Model& model, const description::TreelDrive& drive, const Pose& X_SL)
+  TrackRows(const description::Model& model, const description::TrackPair& drive, const Pose& X_SL)
       : drive_(drive), surface_(surface_of_tracks(model, drive)), X_SL_(X_SL) {}
 
   /// Whether that is something new.
@@ -100,7 +100,7 @@ class TrackRows {
   const Track& side_of(Side side) const { return tracks_[static_cast<std::size_t>(side)]; }
   double y_of(Side side) const { return side == Side::left ? drive_.half_gauge : -drive_.half_gauge; }
 
-  description::TreelDrive drive_;
+  description::TrackPair drive_;
   description::Surface surface_;
   Pose X_SL_;
   std::array<Track, 2> tracks_;

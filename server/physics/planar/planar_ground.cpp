@@ -21,7 +21,7 @@ void push(double impulse, const Vector2d& direction, double lever, const PlanarI
 
 }  // namespace
 
-PlanarGround::PlanarGround(const description::TreelDrive& drive, const Pose& X_BL, double friction, double weight,
+PlanarGround::PlanarGround(const description::TrackPair& drive, const Pose& X_BL, double friction, double weight,
                            const PlanarInertia& inertia, double step)
     : is_drive_(true), motor_limit_(drive.max_torque / drive.wheel_radius * step) {
   forward_B_ = (X_BL.orientation * Eigen::Vector3d::UnitX()).head<2>().normalized();

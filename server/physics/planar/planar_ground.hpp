@@ -15,7 +15,7 @@ class PlanarGround {
   /// Nothing acts.
   PlanarGround() = default;
   /// A drive whose link has X_BL in the body; `weight` [N].
-  PlanarGround(const description::TreelDrive& drive, const Pose& X_BL, double friction, double weight,
+  PlanarGround(const description::TrackPair& drive, const Pose& X_BL, double friction, double weight,
                const PlanarInertia& inertia, double step);
   /// A body that lies on a patch whose points are at the mean distance `arm` from its centre of mass [m].
   PlanarGround(double friction, double weight, double arm, double step);

@@ -1,6 +1,7 @@
 #include "server/physics/planar/planar_model.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace cohort::physics {
 
@@ -21,16 +22,14 @@ PlanarModel::PlanarModel(const description::Model& model)
   for (const description::Device& device : model.devices) {
     for (const description::MotorLimits& motor : description::motor_limits(device))
       add_motor(motor, description::name_of(device));
-    if (!description::belts_of(device).empty())
-      throw std::invalid_argument("the belts of '" + description::name_of(device) + "' cannot be planar");
-    if (const auto* drive = std::get_if<description::TreelDrive>(&device)) {
-      if (drive_ != nullptr) throw std::invalid_argument("more than one treel drive cannot be planar");
+    if (const std::string reason = description::reason_against_planar(device); !reason.empty())
+      throw std::invalid_argument(reason);
+    if (auto drive = description::tracks_of(device)) {
+      if (drive_) throw std::invalid_argument("more than one treel drive cannot be planar");
       if (mechanism_.link(drive->link).segment != 0)
-        throw std::invalid_argument("treel drive '" + drive->name + "' is not on the root link '" +
+        throw std::invalid_argument("treel drive '" + description::name_of(device) + "' is not on the root link '" +
                                     model.links[0].name + "'");
-      drive_ = drive;
-    } else if (const auto* rotor = std::get_if<description::Rotor>(&device)) {
-      throw std::invalid_argument("rotor '" + rotor->name + "' cannot be planar");
+      drive_ = std::move(drive);
     }
   }
   add_masses();

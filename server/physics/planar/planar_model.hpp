@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ class PlanarModel {
   int motor_of_joint(std::size_t joint) const { return motor_of_joint_[joint]; }
   int motor_of_segment(int segment) const { return motor_of_segment_[static_cast<std::size_t>(segment)]; }
   /// Null if it has none.
-  const description::TreelDrive* drive() const { return drive_; }
+  const description::TrackPair* drive() const { return drive_ ? &*drive_ : nullptr; }
 
   // Of the whole model with all its joints at zero.
   double mass() const { return mass_; }
@@ -49,7 +50,7 @@ class PlanarModel {
   std::vector<Motor> motors_;
   std::vector<int> motor_of_joint_;
   std::vector<int> motor_of_segment_;
-  const description::TreelDrive* drive_ = nullptr;
+  std::optional<description::TrackPair> drive_;
   double mass_ = 0.0;
   Eigen::Vector3d centre_M_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d inertia_M_ = Eigen::Matrix3d::Zero();

@@ -191,7 +191,7 @@ void PlanarWorld::put_on_ground(std::uint32_t index) {
   }
   member.has_ground = true;
   const description::Surface& under = scene_.solid(ground).surface;
-  if (const description::TreelDrive* drive = model.drive()) {
+  if (const description::TrackPair* drive = model.drive()) {
     const description::Surface tracks = surface_of_tracks(model.mechanism().model(), *drive);
     const Mechanism::LinkPlace& place = model.mechanism().link(drive->link);
     grounds_[index] = PlanarGround(*drive, planar_.segment_in_body(index, place.segment) * place.X_SL,

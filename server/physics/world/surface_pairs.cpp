@@ -49,7 +49,7 @@ SurfacePair SurfacePairs::of(const description::Surface& a, const description::S
   return both;
 }
 
-description::Surface surface_of_tracks(const description::Model& model, const description::TreelDrive& drive) {
+description::Surface surface_of_tracks(const description::Model& model, const description::TrackPair& drive) {
   std::size_t link = drive.link;
   for (const std::vector<std::size_t>* wheels : {&drive.right_wheels, &drive.left_wheels})
     if (!wheels->empty()) link = model.joints[wheels->front()].child;

@@ -38,6 +38,6 @@ class SurfacePairs {
 
 /// Tracks are made of what the first wheel that they stand for is made of or, if they name none, their link: the first
 /// collision of it says so.
-description::Surface surface_of_tracks(const description::Model& model, const description::TreelDrive& drive);
+description::Surface surface_of_tracks(const description::Model& model, const description::TrackPair& drive);
 
 }  // namespace cohort::physics

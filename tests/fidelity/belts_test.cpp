@@ -66,6 +66,17 @@ void run_tracks(SmallWorld& small, std::uint32_t body, double left, double right
   small.world().set_belt_velocity_target(body, 2, right);
 }
 
+// That the body's belts do in this time [J].
+double work_of(SmallWorld& small, std::uint32_t body, double time) {
+  const double step = std::chrono::duration<double>(small.description.step).count();
+  double work = 0.0;
+  for (auto steps = std::lround(time / step); steps > 0; --steps) {
+    small.world().step();
+    work += step * small.world().driven_power(body);
+  }
+  return work;
+}
+
 TEST_P(Belts, BringWhatTheyCarryToTheirSpeedWithNoMoreThanFrictionGives) {
   constexpr double friction = 0.3, speed = 0.9;
   for (const double yaw : {0.0, 0.6, -2.0}) {
@@ -225,6 +236,60 @@ TEST_P(Belts, ClimbASlopeUpToTheFrictionAngle) {
     else
       EXPECT_NEAR(up, -g * (std::sin(slope) - friction * std::cos(slope)), 0.05);
   }
+}
+
+// Half of the work is the crate's kinetic energy, m v^2 / 2; while it slips friction turns as much into heat.
+TEST_P(Belts, DoTheWorkThatBringsWhatTheyCarryToTheirSpeed) {
+  constexpr double friction = 0.3, speed = 0.9, mass = 2.0;
+  for (const double sense : {1.0, -1.0}) {
+    SmallWorld small(GetParam().world());
+    const auto belt = small.add(conveyor(friction), at(0, 0, 1));
+    small.add(crate(), at(0, 0, 1.05));
+    small.run(0.1);
+    EXPECT_EQ(small.world().driven_power(belt), 0.0) << "it stands";
+    small.world().set_belt_velocity_target(belt, 0, sense * speed);
+    const double work = work_of(small, belt, 1.0);
+    EXPECT_NEAR(work, mass * speed * speed, 0.03 * mass * speed * speed);
+    EXPECT_LT(work_of(small, belt, 0.5), 1e-3) << "it only goes along";
+  }
+}
+
+TEST_P(Belts, OfAVehicleDoTheWorkOfLiftingIt) {
+  constexpr double slope = 0.3, speed = 0.3, mass = 14.0;
+  for (const double sense : {1.0, -1.0}) {
+    SmallWorld small(GetParam().world());
+    const Pose X_WG = turned(0, 0, 3, Vector3d::UnitY(), -slope);
+    small.add(static_shape("slope", Box{{8, 2, 0.2}}), X_WG * Pose{{0, 0, -0.1}});
+    const auto vehicle = small.add(tracked_vehicle(0.8), on(X_WG, 0, 0.05));
+    run_tracks(small, vehicle, sense * speed, sense * speed);
+    small.run(1.0);
+    const double lifted = mass * g * std::sin(slope) * speed;
+    EXPECT_NEAR(work_of(small, vehicle, 1.0), sense > 0.0 ? lifted : 0.0, 0.02 * lifted) << "downhill it brakes";
+  }
+}
+
+// A restored world continues with the load of the belt. With the direct solver all bodies sleep.
+TEST_P(Belts, GoOnRubbingWhatIsJammedThroughASnapshot) {
+  constexpr double friction = 0.3, speed = 0.5, mass = 2.0;
+  std::uint32_t belt = 0;
+  const auto jammed = [&] {
+    auto small = std::make_unique<SmallWorld>(GetParam().world());
+    belt = small->add(conveyor(friction), at(0, 0, 1));
+    small->add(crate(), at(0, 0, 1.05));
+    small->add(static_shape("stop", Box{{0.1, 1, 1}}, with_friction(0.0)), at(0.15, 0, 1.51));
+    return small;
+  };
+  const auto first = jammed();
+  first->world().set_belt_velocity_target(belt, 0, speed);
+  first->run(3.0);
+  const double power = first->world().driven_power(belt);
+  EXPECT_NEAR(power, friction * mass * g * speed, 0.02 * friction * mass * g * speed);
+  const auto second = jammed();
+  restore_from(first->world(), second->world());
+  EXPECT_EQ(second->world().driven_power(belt), power);
+  first->run(0.1);
+  second->run(0.1);
+  EXPECT_EQ(second->world().driven_power(belt), first->world().driven_power(belt));
 }
 
 TEST_P(Belts, OnBeltsAddUp) {

@@ -26,6 +26,15 @@ std::size_t FluidBody::rotor_of(std::size_t device) const {
   return index;
 }
 
+// One after the other, so that the sum does not depend on who has begun it.
+void FluidBody::add_power(double& power) const {
+  for (std::size_t i = 0; i < rotors_.size(); ++i) {
+    const description::Thruster& rotor = model_->rotors[i].thruster;
+    const double speed = std::abs(rotors_[i].velocity);
+    power += rotor.moment_constant * rotor.motor_constant * speed * speed * speed;
+  }
+}
+
 void FluidBody::finish_step() {
   for (RotorState& rotor : rotors_) rotor.velocity = rotor.after;
 }

@@ -30,6 +30,9 @@ class FluidBody {
   double rotor_velocity(std::size_t device) const { return rotors_[rotor_of(device)].velocity; }
   void set_rotor_target(std::size_t device, double velocity) { rotors_[rotor_of(device)].target = velocity; }
 
+  /// Adds what each rotor gives to its own fluid [W].
+  void add_power(double& power) const;
+
   /// What acted in the last step, on a link at a point [N s, N m s].
   struct Impulse {
     std::size_t link = 0;

@@ -76,6 +76,7 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
   Member& member = members.emplace_back();
   member.body = body.body();
   member.multibody = std::move(multibody);
+  has_belts = has_belts || member.multibody->has_belts();
   if (!fluid->is_empty()) member.fluid = std::make_unique<FluidBody>(fluid);
   anchors.index_of_member.push_back(-1);
   ++revision;

@@ -74,6 +74,7 @@ struct Assembly {
   Pushes pushes;
   Media media;
   bool has_records = false;  ///< of any member
+  bool has_belts = false;    ///< the same
   std::map<const Mechanism*, std::shared_ptr<const FluidModel>> fluid_models;
 
   /// One thread alone. `shapes`: of the model's collisions, in their order. Returns the solids.
@@ -96,6 +97,8 @@ struct Assembly {
   /// Tells the records what acted on their bodies in this step; after it, before anything is released or taken out. One
   /// thread alone.
   void record_outside();
+  /// Tells belts what they bore in this step; as `record_outside`.
+  void load_belts();
   /// Whether an end is on a light part of its body.
   bool is_light(const Connection::End& end) const {
     return end.member != Anchors::nobody && members[end.member].multibody->mechanism().is_light(end.segment);
@@ -177,6 +180,7 @@ struct Assembly {
     return member == Anchors::nobody ? nullptr : members[member].record.get();
   }
   void record_pair(const SolidPair& pair) const;
+  void load_belt(std::uint32_t solid, const Eigen::Vector3d& outward_W, const Eigen::Vector3d& impulse_W);
   void record_connection(const Connection& connection) const;
 };
 

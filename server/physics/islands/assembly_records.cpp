@@ -71,6 +71,37 @@ void Assembly::record_pair(const SolidPair& pair) const {
   }
 }
 
+// The force on a belt along its surface is what it gives to others, turned round. One that sleeps bears what it bore.
+void Assembly::load_belts() {
+  if (!has_belts) return;
+  for (const Member& member : members)
+    if (!member.is_asleep) member.multibody->unload_belts();
+  for (std::uint32_t index = 0; index < members.size(); ++index) {
+    const Member& member = members[index];
+    if (!member.is_awake() || !member.is_finite) continue;
+    for_each_pair(index, [&](const SolidPair& pair) {
+      const std::uint32_t member_b = anchors.member(pair.b);
+      if (member_b != Anchors::nobody && !members[member_b].is_finite) return;
+      for (const ContactPoint& point : pair.contact) {
+        const Eigen::Vector3d impulse_W = impulse_of(pair.contact, point).linear_W;
+        load_belt(pair.a, -point.normal_W, impulse_W);
+        load_belt(pair.b, point.normal_W, -impulse_W);
+      }
+    });
+    for (const TrackRows& treel : member.multibody->treels()) {
+      const Eigen::Vector3d up_W = treel.up();
+      treel.for_each_impulse([&](std::uint32_t solid, const Eigen::Vector3d&, const Eigen::Vector3d& impulse_W) {
+        load_belt(solid, up_W, -impulse_W);
+      });
+    }
+  }
+}
+
+void Assembly::load_belt(std::uint32_t solid, const Eigen::Vector3d& outward_W, const Eigen::Vector3d& impulse_W) {
+  if (!anchors.moves(solid)) return;
+  members[anchors.member(solid)].multibody->load_belt(scene.solid(solid).link, outward_W, impulse_W / step);
+}
+
 void Assembly::record_connection(const Connection& connection) const {
   const Connection::End& end_a = connection.a();
   const Connection::End& end_b = connection.b();

@@ -111,6 +111,13 @@ bool MultibodyWorld::is_active(std::uint32_t body) const {
   return is_static(body) ? !bodies_[body].is_out : assembly_.members[bodies_[body].member].is_active;
 }
 
+double MultibodyWorld::driven_power(std::uint32_t body) const {
+  if (is_static(body)) return 0.0;
+  double power = multibody(body).driven_power();
+  if (const FluidBody* const fluid = assembly_.members[bodies_[body].member].fluid.get()) fluid->add_power(power);
+  return power;
+}
+
 Pose MultibodyWorld::link_pose(std::uint32_t body, std::size_t link) const {
   if (!is_static(body)) return multibody(body).link_pose(link);
   return bodies_[body].X_WM * description_.models[bodies_[body].model].links[link].X_ML;
@@ -165,6 +172,7 @@ void MultibodyWorld::step() {
     report_contacts();
     assembly_.connections.settle([&](const Connection::End& end) { return assembly_.pose_of(end); }, assembly_.step);
     assembly_.record_outside();
+    assembly_.load_belts();
   }
   assembly_.connections.break_overloaded(assembly_.step);
   assembly_.pushes.clear();

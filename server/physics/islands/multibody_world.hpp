@@ -59,6 +59,7 @@ class MultibodyWorld final : public World {
   double joint_effort(std::uint32_t body, std::size_t joint) const override {
     return is_static(body) ? 0.0 : multibody(body).joint_effort(joint);
   }
+  double driven_power(std::uint32_t body) const override;
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;

@@ -37,6 +37,7 @@ void MultibodyWorld::save(SnapshotWriter& writer) const {
     save(member.is_asleep);
     save(member.next_asleep);
     Multibody::visit_state(*member.multibody, save);
+    Multibody::visit_loads(*member.multibody, save);
     if (const FluidBody* fluid = member.fluid.get()) FluidBody::visit_state(*fluid, save);
   }
   assembly_.connections.save(writer);
@@ -59,6 +60,7 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
     restore(member.next_asleep);
     const StateRestorer restore_body{reader, is_active ? Numbers::finite : Numbers::broken};
     Multibody::visit_state(*member.multibody, restore_body);
+    Multibody::visit_loads(*member.multibody, restore_body);
     if (member.fluid) FluidBody::visit_state(*member.fluid, restore_body);
     member.multibody->update_poses();
     if (is_active) {

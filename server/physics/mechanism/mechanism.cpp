@@ -55,9 +55,11 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   }
   for (std::size_t link = 0; link < model.links.size(); ++link) add_link(link, welded);
   for (const description::Device& device : model.devices)
-    for (const description::MotorLimits& motor : description::motor_limits(device))
+    for (const description::MotorLimits& motor : description::motor_limits(device)) {
+      motor_joints_.push_back(motor.joint);
       if (joints_[motor.joint].dofs > 0)
         dofs_[static_cast<std::size_t>(joints_[motor.joint].first_dof)].rotor_inertia = motor.rotor_inertia;
+    }
   for (const description::Coupling& coupling : model.couplings) {
     const JointPlace& follower = joints_[coupling.follower];
     const JointPlace& leader = joints_[coupling.leader];

@@ -71,6 +71,8 @@ class Mechanism {
     double offset = 0.0;
   };
   const std::vector<Follower>& followers() const { return followers_; }
+  /// The joints that motors drive, but for those of tracks, in the order of the devices.
+  const std::vector<std::size_t>& motor_joints() const { return motor_joints_; }
 
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<Dof>& dofs() const { return dofs_; }
@@ -114,6 +116,7 @@ class Mechanism {
   std::vector<LinkPlace> links_;
   std::vector<JointPlace> joints_;
   std::vector<Follower> followers_;
+  std::vector<std::size_t> motor_joints_;
   std::vector<double> zero_coordinates_;
   std::vector<int> parents_;
   std::vector<char> is_light_;  // by segment

@@ -21,6 +21,25 @@ bool Belts::set_velocity(std::size_t link, double velocity) {
   return std::exchange(std::ranges::find(belts_, link, &RunningLink::link)->velocity, velocity) != velocity;
 }
 
+void Belts::unload() {
+  for (RunningLink& belt : belts_) belt.force = 0.0;
+}
+
+void Belts::load(std::size_t link, const std::vector<Pose>& X_WS, const Eigen::Vector3d& outward_W,
+                 const Eigen::Vector3d& force_W) {
+  for (RunningLink& belt : belts_) {
+    if (belt.link != link) continue;
+    const RunningSurface at_unit_velocity{X_WS[belt.segment].orientation * belt.axis_S, 1.0};
+    belt.force -= force_W.dot(at_unit_velocity.velocity_at(outward_W));
+  }
+}
+
+double Belts::power() const {
+  double power = 0.0;
+  for (const RunningLink& belt : belts_) power += std::max(0.0, belt.force * belt.velocity);
+  return power;
+}
+
 RunningSurface Belts::of_link(std::size_t link, const std::vector<Pose>& X_WS) const {
   for (const RunningLink& belt : belts_)
     if (belt.link == link) return {X_WS[belt.segment].orientation * belt.axis_S, belt.velocity};

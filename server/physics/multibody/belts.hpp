@@ -18,10 +18,24 @@ class Belts {
   /// How the surface of a link runs, which is in its segment at `X_WS`.
   RunningSurface of_link(std::size_t link, const std::vector<Pose>& X_WS) const;
 
+  bool is_empty() const { return belts_.empty(); }
+  void unload();
+  /// Adds a force on a link, where its surface looks towards `outward_W`; nothing if it has no belt [N].
+  void load(std::size_t link, const std::vector<Pose>& X_WS, const Eigen::Vector3d& outward_W,
+            const Eigen::Vector3d& force_W);
+  /// What they give to what they carry: force along the surface times its velocity; one that is driven gives 0 [W].
+  double power() const;
+
   /// Calls `visit` for each number of the state, always in the same order.
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit) {
     for (auto& belt : self.belts_) visit(belt.velocity);
+  }
+  /// The same for what they bore in the last step, which belts that sleep still bear. It decides nothing of how the
+  /// body goes on.
+  template <class Self, class Visit>
+  static void visit_loads(Self& self, Visit&& visit) {
+    for (auto& belt : self.belts_) visit(belt.force);
   }
 
  private:
@@ -30,6 +44,7 @@ class Belts {
     std::size_t segment = 0;
     Eigen::Vector3d axis_S = Eigen::Vector3d::Zero();
     double velocity = 0.0;
+    double force = 0.0;  // on what it carries, along its surface over the last step [N]
   };
   std::vector<RunningLink> belts_;
 };

@@ -207,6 +207,20 @@ double Multibody::joint_effort(std::size_t joint) const {
   return joints_.motor_impulse(place.first_dof) / last_step_;
 }
 
+double Multibody::driven_power() const {
+  double power = 0.0;
+  for (const std::size_t joint : mechanism_->motor_joints())
+    power += std::max(0.0, joint_effort(joint) * joint_velocity(joint));
+  for (std::size_t device = 0; device < drives_.size(); ++device) {
+    if (drives_[device].treel < 0 && drives_[device].wheels < 0) continue;
+    for (const Side side : {Side::left, Side::right}) {
+      const TrackState state = track(device, side);
+      power += std::max(0.0, state.traction * state.velocity);
+    }
+  }
+  return power + belts_.power();
+}
+
 bool Multibody::set_track_velocity_target(std::size_t device, Side side, double velocity) {
   const Drive& drive = drives_[device];
   if (drive.treel >= 0) return treels_[static_cast<std::size_t>(drive.treel)].set_target(side, velocity);

@@ -63,6 +63,8 @@ class Multibody {
   bool set_joint_target(std::size_t joint, JointRows::Control control, double target);
   /// Of the joint's motor over the last step [N m] or [N], 0 if it has none.
   double joint_effort(std::size_t joint) const;
+  /// Of joints, tracks and belts over the last step, as World::driven_power [W].
+  double driven_power() const;
   /// Whether that is something new. The device has to be a treel drive.
   bool set_track_velocity_target(std::size_t device, Side side, double velocity);
   TrackState track(std::size_t device, Side side) const;
@@ -70,6 +72,14 @@ class Multibody {
   /// The link has to have a belt. Whether it is another one than before.
   bool set_belt_velocity(std::size_t link, double velocity) { return belts_.set_velocity(link, velocity); }
   RunningSurface surface_of(std::size_t link) const { return belts_.of_link(link, X_WS_); }
+
+  bool has_belts() const { return !belts_.is_empty(); }
+  /// Forgets what the belts of this body bear.
+  void unload_belts() { belts_.unload(); }
+  /// Adds what a link with a belt bears, over the last step, where its surface looks towards `outward_W`.
+  void load_belt(std::size_t link, const Eigen::Vector3d& outward_W, const Eigen::Vector3d& force_W) {
+    belts_.load(link, X_WS_, outward_W, force_W);
+  }
 
   const LoopRows& loops() const { return loops_; }
   /// X_WM where it was placed: what joints to the world hold on to.
@@ -102,6 +112,11 @@ class Multibody {
     for (auto& treel : self.treels_) TrackRows::visit_state(treel, visit);
     Belts::visit_state(self.belts_, visit);
     visit(self.last_step_);
+  }
+  /// The same for what its belts bear, which is saved but not part of the state.
+  template <class Self, class Visit>
+  static void visit_loads(Self& self, Visit&& visit) {
+    Belts::visit_loads(self.belts_, visit);
   }
   /// After the state was changed through `visit_state`.
   void update_poses();

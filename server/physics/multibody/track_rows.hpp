@@ -51,6 +51,12 @@ class TrackRows {
   template <class Visit>
   void for_each_impulse(Visit&& visit) const;
 
+  /// The mean normal of what was found, up from it; zero if nothing was.
+  Eigen::Vector3d up() const {
+    const std::optional<Directions> along = directions();
+    return along ? Eigen::Vector3d(along->forward_W.cross(along->left_W)) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  }
+
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
   /// Takes over what the tracks do from the solved rows.
   void read_rows(const Problem& problem, double step);

@@ -49,6 +49,16 @@ void PlanarWorld::set_joint_state(std::uint32_t body, std::size_t joint, std::sp
   scene_.update();
 }
 
+// Joints move by command and take no effort.
+double PlanarWorld::driven_power(std::uint32_t body) const {
+  if (bodies_[body].member == Anchors::nobody) return 0.0;
+  const PlanarGround& ground = grounds_[bodies_[body].member];
+  double power = 0.0;
+  for (const Side side : {Side::left, Side::right})
+    power += std::max(0.0, ground.track(side).traction * ground.track(side).velocity);
+  return power;
+}
+
 void PlanarWorld::record(std::uint32_t body) {
   if (bodies_[body].member == Anchors::nobody) return;
   std::unique_ptr<MotionRecord>& record = members_[bodies_[body].member].record;

@@ -74,6 +74,7 @@ class PlanarWorld final : public World {
   }
   Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const override;
   double joint_effort(std::uint32_t, std::size_t) const override { return 0.0; }
+  double driven_power(std::uint32_t body) const override;
 
   std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
                         std::size_t link_b, const ConnectionLimits& limits) override;

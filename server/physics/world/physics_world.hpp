@@ -136,6 +136,9 @@ class World {
                                             const Eigen::Vector3d& p_LP) const = 0;
   /// Of the joint's motor over the last step [N m] or [N]; 0 if it has none, and for a planar body.
   virtual double joint_effort(std::uint32_t body, std::size_t joint) const = 0;
+  /// Mechanical power that the body's devices gave to what they move over the last step, joints, tracks, belts and
+  /// rotors, each at its velocity at the end of the step; one that brakes counts as 0 [W].
+  virtual double driven_power(std::uint32_t body) const = 0;
 
   /// Holds a link of `body_a`, which moves, to one of `body_b` as they are now, around the frame P of link a; from the
   /// next step on. Returns the connection's number, which counts up from 0. Between steps.

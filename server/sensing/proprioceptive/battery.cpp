@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "server/core/state_visitors.hpp"
 #include "server/sensing/sensor_kinds.hpp"
@@ -7,9 +6,8 @@
 namespace cohort::sensing {
 namespace {
 
-/// Charge and power of a robot's battery (description::Battery). Over each step it gives its idle power and, for every
-/// motor, track and rotor that moves its load, force times velocity / efficiency; a motor that brakes gives nothing
-/// back.
+/// Charge and power of a robot's battery (description::Battery). Over each step it gives its idle power and the
+/// mechanical power of all that the robot drives / efficiency; a motor that brakes gives nothing back.
 class Battery final : public SensorOf<description::Battery> {
  public:
   Battery(const description::Battery& battery, const Mount& mount);
@@ -23,7 +21,6 @@ class Battery final : public SensorOf<description::Battery> {
   void restore(SnapshotReader& reader) override { visit_memory(*this, StateRestorer{reader}); }
 
  private:
-  double mechanical_power() const;
   template <class Self, class Visit>
   static void visit_memory(Self& self, Visit&& visit) {
     visit(self.energy_);
@@ -31,57 +28,25 @@ class Battery final : public SensorOf<description::Battery> {
     visit(self.noted_tick_);
   }
 
-  std::vector<std::size_t> motor_joints_;
-  std::vector<std::size_t> drives_;  // devices of the model
-  std::vector<std::size_t> rotors_;  // the same
-  double step_ = 0.0;                // [s]
-  double energy_ = 0.0;              // that is left [J]
-  double power_ = 0.0;               // over the last step [W]
+  double step_ = 0.0;    // [s]
+  double energy_ = 0.0;  // that is left [J]
+  double power_ = 0.0;   // over the last step [W]
   std::uint64_t noted_tick_ = 0;
 };
 
 Battery::Battery(const description::Battery& battery, const Mount& mount)
     : SensorOf(battery, mount),
       step_(std::chrono::duration<double>(mount.description.step).count()),
-      energy_(battery.capacity * battery.charge) {
-  const std::vector<description::Device>& devices = mount.model().devices;
-  for (std::size_t device = 0; device < devices.size(); ++device) {
-    for (const description::MotorLimits& motor : description::motor_limits(devices[device]))
-      motor_joints_.push_back(motor.joint);
-    if (std::holds_alternative<description::TreelDrive>(devices[device]))
-      drives_.push_back(device);
-    else if (std::holds_alternative<description::Rotor>(devices[device]))
-      rotors_.push_back(device);
-  }
-}
+      energy_(battery.capacity * battery.charge) {}
 
 std::vector<Channel> Battery::channels() const {
   return {{device_.name + "/0/charge", "1", 1, 0.0, 1.0, 0.0}, {device_.name + "/0/power", "W", 1, 0.0, infinity, 0.0}};
 }
 
-double Battery::mechanical_power() const {
-  double power = 0.0;
-  for (const std::size_t joint : motor_joints_)
-    power +=
-        std::max(0.0, mount_.world.joint_effort(mount_.body, joint) * mount_.world.joint_velocity(mount_.body, joint));
-  for (const std::size_t drive : drives_) {
-    for (const physics::Side side : {physics::Side::left, physics::Side::right}) {
-      const physics::TrackState track = mount_.world.track(mount_.body, drive, side);
-      power += std::max(0.0, track.traction * track.velocity);
-    }
-  }
-  for (const std::size_t device : rotors_) {
-    const auto& rotor = std::get<description::Rotor>(mount_.model().devices[device]);
-    const double velocity = std::abs(mount_.world.rotor_velocity(mount_.body, device));
-    power += rotor.moment_constant * rotor.motor_constant * velocity * velocity * velocity;
-  }
-  return power;
-}
-
 void Battery::remember(std::uint64_t tick, bool) {
   if (tick == noted_tick_) return;  // nothing has moved since, or at all yet
   noted_tick_ = tick;
-  power_ = energy_ > 0.0 ? device_.idle_power + mechanical_power() / device_.motor_efficiency : 0.0;
+  power_ = energy_ > 0.0 ? device_.idle_power + mount_.world.driven_power(mount_.body) / device_.motor_efficiency : 0.0;
   energy_ = std::max(0.0, energy_ - power_ * step_);
 }
 

@@ -22,7 +22,8 @@ class AckermannDrive final : public ActuatorOf<description::AckermannDrive> {
     const auto steer = [&](std::size_t joint, double side) {
       const double ahead = device_.wheel_base * curvature;
       const double aside = 1.0 - side * 0.5 * device_.kingpin_width * curvature;
-      mount_.world.set_joint_position_target(mount_.body, joint, std::atan2(ahead, aside));
+      mount_.world.set_joint_target(mount_.body, JointId{joint},
+                                    physics::JointTarget::position(std::atan2(ahead, aside)));
     };
     steer(device_.left_steering_joint, 1.0);
     steer(device_.right_steering_joint, -1.0);

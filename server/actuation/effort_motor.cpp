@@ -12,7 +12,7 @@ class EffortMotor final : public ActuatorOf<description::EffortMotor> {
     return {{device_.name + "/0/effort", unit, 1, -device_.max_effort, device_.max_effort, 0.0}};
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_joint_effort_target(mount_.body, device_.joint, values[0]);
+    mount_.world.set_joint_target(mount_.body, JointId{device_.joint}, physics::JointTarget::effort(values[0]));
   }
 };
 

@@ -15,7 +15,7 @@ class PositionMotor final : public ActuatorOf<description::PositionMotor> {
     return {{device_.name + "/0/position", unit, 1, axis.lower, axis.upper, std::clamp(0.0, axis.lower, axis.upper)}};
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_joint_position_target(mount_.body, device_.joint, values[0]);
+    mount_.world.set_joint_target(mount_.body, JointId{device_.joint}, physics::JointTarget::position(values[0]));
   }
 };
 

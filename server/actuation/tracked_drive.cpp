@@ -20,7 +20,7 @@ class TrackedDrive final : public ActuatorOf<description::TrackedDrive> {
  private:
   void run(const std::vector<std::size_t>& links, double velocity) {
     for (const std::size_t link : links)
-      mount_.world.set_belt_velocity_target(mount_.body, link,
+      mount_.world.set_belt_velocity_target(mount_.body, LinkId{link},
                                             std::clamp(velocity, -device_.max_velocity, device_.max_velocity));
   }
 };

@@ -18,7 +18,7 @@ namespace cohort::actuation {
 struct ActionOfRobot {
   std::string name;
   std::uint32_t robot = 0;  ///< its id
-  std::uint32_t body = 0;
+  BodyId body;
   double value = 0.0;    ///< commanded for the last step; 0 if the robot was not in the world
   bool is_done = false;  ///< the value is above `UserActions::threshold`
   bool begins = false;   ///< it was not in the step before
@@ -34,9 +34,9 @@ class UserActions {
   UserActions(const description::World& description, const physics::World& world);
 
   /// A robot has come, with the next id.
-  void add_robot(std::uint32_t robot, std::uint32_t body, const description::Model& model);
+  void add_robot(std::uint32_t robot, BodyId body, const description::Model& model);
   /// The number of the action that is a device of a robot.
-  std::uint32_t of_device(std::uint32_t body, std::size_t device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, std::size_t device) const { return numbers_.at({body, device}); }
   void command(std::uint32_t action, double value) { actions_[action].value = value; }
   /// After each step: which of them begin.
   void finish_step();
@@ -51,7 +51,7 @@ class UserActions {
  private:
   const physics::World& world_;
   std::vector<ActionOfRobot> actions_;
-  std::map<std::pair<std::uint32_t, std::size_t>, std::uint32_t> numbers_;
+  std::map<std::pair<BodyId, std::size_t>, std::uint32_t> numbers_;
 };
 
 }  // namespace cohort::actuation

@@ -12,7 +12,7 @@ class VelocityMotor final : public ActuatorOf<description::VelocityMotor> {
     return {{device_.name + "/0/velocity", unit, 1, -device_.max_velocity, device_.max_velocity, 0.0}};
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_joint_velocity_target(mount_.body, device_.joint, values[0]);
+    mount_.world.set_joint_target(mount_.body, JointId{device_.joint}, physics::JointTarget::velocity(values[0]));
   }
 };
 

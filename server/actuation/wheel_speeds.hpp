@@ -18,9 +18,11 @@ template <class Drive>
 void set_wheel_speeds(const Drive& drive, const Mount& mount, double linear, double angular) {
   const double difference = 0.5 * drive.wheel_separation * angular;
   for (const std::size_t joint : drive.left_joints)
-    mount.world.set_joint_velocity_target(mount.body, joint, (linear - difference) / drive.wheel_radius);
+    mount.world.set_joint_target(mount.body, JointId{joint},
+                                 physics::JointTarget::velocity((linear - difference) / drive.wheel_radius));
   for (const std::size_t joint : drive.right_joints)
-    mount.world.set_joint_velocity_target(mount.body, joint, (linear + difference) / drive.wheel_radius);
+    mount.world.set_joint_target(mount.body, JointId{joint},
+                                 physics::JointTarget::velocity((linear + difference) / drive.wheel_radius));
 }
 
 }  // namespace cohort::actuation

@@ -141,7 +141,7 @@ void Batch::take(std::size_t world) {
     const double numbers[pose_size] = {
         X_WL.position.x(), X_WL.position.y(), X_WL.position.z(), q.w(), q.x(), q.y(), q.z()};
     std::ranges::copy(numbers, poses_.data() + row * pose_size);
-    if (simulation.objects().is_quarantined(simulation.body_of(robot))) done_[world] |= quarantined;
+    if (simulation.objects().is_quarantined(simulation.body_of(robot).value)) done_[world] |= quarantined;
   }
 }
 

@@ -22,17 +22,17 @@ std::uint32_t count_of(const auto& emitters) { return static_cast<std::uint32_t>
 Emitters::Emitters(const description::World& description, const physics::World& world) : world_(world) {
   marker_grid_.set_cell_size(marker_cell);
   beacon_grid_.set_cell_size(beacon_cell);
-  for (std::uint32_t body = 0; body < description.instances.size(); ++body)
-    add_body(body, description.models[description.instances[body].model]);
+  for (std::size_t body = 0; body < description.instances.size(); ++body)
+    add_body(BodyId{body}, description.models[description.instances[body].model]);
 }
 
-void Emitters::add_body(std::uint32_t body, const description::Model& model) {
+void Emitters::add_body(BodyId body, const description::Model& model) {
   for (std::size_t i = 0; i < model.emitters.size(); ++i) add(body, i, model.emitters[i]);
   add_devices(body, model);
 }
 
-void Emitters::add(std::uint32_t body, std::size_t place, const description::Emitter& emitter) {
-  const Mount mount{body, emitter.link, emitter.X_LE};
+void Emitters::add(BodyId body, std::size_t place, const description::Emitter& emitter) {
+  const Mount mount{body, LinkId{emitter.link}, emitter.X_LE};
   const bool is_on = emitter.is_on;
   const auto note = [&](Kind kind, const auto& emitters) {
     entries_.push_back({body, place, kind, count_of(emitters) - 1});
@@ -53,9 +53,9 @@ void Emitters::add(std::uint32_t body, std::size_t place, const description::Emi
   }
 }
 
-void Emitters::change(std::uint32_t body, std::size_t emitter, const description::EmitterChange& change) {
+void Emitters::change(BodyId body, std::size_t emitter, const description::EmitterChange& change) {
   const auto found = std::lower_bound(entries_.begin(), entries_.end(), std::pair{body, emitter},
-                                      [](const Entry& entry, const std::pair<std::uint32_t, std::size_t>& key) {
+                                      [](const Entry& entry, const std::pair<BodyId, std::size_t>& key) {
                                         return std::pair{entry.body, entry.emitter} < key;
                                       });
   if (found == entries_.end() || found->body != body || found->emitter != emitter)
@@ -94,13 +94,13 @@ void Emitters::change(std::uint32_t body, std::size_t emitter, const description
   }
 }
 
-void Emitters::add_devices(std::uint32_t body, const description::Model& model) {
+void Emitters::add_devices(BodyId body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const OfDevice first{count_of(lamps_), count_of(tones_), count_of(markers_), count_of(beacons_)};
     const std::vector<description::DeviceEmitter> emitters = description::emitters_of(model.devices[device]);
     if (emitters.empty()) continue;
     for (const description::DeviceEmitter& emitter : emitters)
-      add_to_device({body, emitter.link, emitter.X_LE}, emitter);
+      add_to_device({body, LinkId{emitter.link}, emitter.X_LE}, emitter);
     devices_.push_back({body, device, first});
   }
 }
@@ -121,9 +121,9 @@ void Emitters::add_to_device(const Mount& mount, const description::DeviceEmitte
              emitter.what);
 }
 
-Emitters::OfDevice Emitters::of_device(std::uint32_t body, std::size_t device) const {
+Emitters::OfDevice Emitters::of_device(BodyId body, std::size_t device) const {
   const auto found = std::lower_bound(devices_.begin(), devices_.end(), std::pair{body, device},
-                                      [](const DeviceEntry& entry, const std::pair<std::uint32_t, std::size_t>& key) {
+                                      [](const DeviceEntry& entry, const std::pair<BodyId, std::size_t>& key) {
                                         return std::pair{entry.body, entry.device} < key;
                                       });
   if (found == devices_.end() || found->body != body || found->device != device)
@@ -146,7 +146,8 @@ void Emitters::update(WorkerPool& workers) {
     workers.for_each_chunk(emitters.size(), emitters_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
       for (std::size_t i = begin; i < end; ++i) {
         if (!is_in_world(emitters[i].mount)) continue;
-        const Pose X_WE = world_.link_pose(emitters[i].mount.body, emitters[i].mount.link) * emitters[i].mount.X_LE;
+        const Pose X_WE =
+            world_.link_pose(emitters[i].mount.body, LinkId{emitters[i].mount.link}) * emitters[i].mount.X_LE;
         emitters[i].p_W = X_WE.position;
         more(emitters[i], X_WE);
       }

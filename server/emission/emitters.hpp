@@ -16,8 +16,8 @@ namespace cohort::emission {
 
 /// Where an emitter is.
 struct Mount {
-  std::uint32_t body = 0;
-  std::size_t link = 0;
+  BodyId body;
+  LinkId link;
   Pose X_LE;
 };
 
@@ -71,7 +71,7 @@ class Emitters {
   Emitters(const description::World& description, const physics::World& world);
 
   /// A body has come, of one of the description's models.
-  void add_body(std::uint32_t body, const description::Model& model);
+  void add_body(BodyId body, const description::Model& model);
   /// Takes the poses of this boundary and what is on.
   void update(WorkerPool& workers);
 
@@ -111,9 +111,9 @@ class Emitters {
     std::uint32_t beacon = 0;
   };
   /// `device`: index in the body's model, of one that emits.
-  OfDevice of_device(std::uint32_t body, std::size_t device) const;
+  OfDevice of_device(BodyId body, std::size_t device) const;
   /// Of an emitter of a body's model, by its index there. Throws std::invalid_argument if there is none.
-  void change(std::uint32_t body, std::size_t emitter, const description::EmitterChange& change);
+  void change(BodyId body, std::size_t emitter, const description::EmitterChange& change);
   void set_lamp(std::uint32_t lamp, const Eigen::Vector3d& color) { lamps_[lamp].light.color = color; }
   void set_tone(std::uint32_t tone, double frequency, double intensity);
   void set_marker(std::uint32_t marker, const Eigen::Vector3d& color) { markers_[marker].color = color; }
@@ -128,19 +128,19 @@ class Emitters {
 
  private:
   struct DeviceEntry {
-    std::uint32_t body = 0;
+    BodyId body;
     std::size_t device = 0;
     OfDevice first;
   };
   enum class Kind : std::uint8_t { lamp, tone, marker, climate_source };
   struct Entry {
-    std::uint32_t body = 0;
+    BodyId body;
     std::size_t emitter = 0;
     Kind kind = Kind::lamp;
     std::uint32_t index = 0;  // among those of its kind
   };
-  void add(std::uint32_t body, std::size_t place, const description::Emitter& emitter);
-  void add_devices(std::uint32_t body, const description::Model& model);
+  void add(BodyId body, std::size_t place, const description::Emitter& emitter);
+  void add_devices(BodyId body, const description::Model& model);
   void add_to_device(const Mount& mount, const description::DeviceEmitter& emitter);
   std::size_t emitter_count() const;
   template <class Self, class Visit>

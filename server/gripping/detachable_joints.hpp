@@ -23,9 +23,9 @@ class DetachableJoints {
   DetachableJoints(const description::World& description, physics::World& world);
 
   /// A body has come, of one of the description's models: an instance of the description by now.
-  void add_body(std::uint32_t body, const description::Model& model);
+  void add_body(BodyId body, const description::Model& model);
   /// The number of the joint that is a device of a robot.
-  std::uint32_t of_device(std::uint32_t body, std::size_t device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, std::size_t device) const { return numbers_.at({body, device}); }
 
   /// Holds both links as they stand to each other, once both are in the world, or lets go. After what it held was torn
   /// away, by leaving the world or being moved, it holds again only once it has let go.
@@ -37,13 +37,14 @@ class DetachableJoints {
   void restore(SnapshotReader& reader);
 
  private:
-  static constexpr std::uint32_t nothing = 0xffffffffu;
+  static constexpr ConnectionId nothing{0xffffffffu};
+  static constexpr BodyId nobody{0xffffffffu};
   struct Joint {
-    std::uint32_t body = 0;
-    std::size_t link = 0;
-    std::uint32_t child = nothing;  // a body
-    std::size_t child_link = 0;
-    std::uint32_t connection = nothing;
+    BodyId body;
+    LinkId link;
+    BodyId child = nobody;
+    LinkId child_link{};
+    ConnectionId connection = nothing;
     std::uint32_t is_spent = 0;  // 1: it lost what it held, and has not let go since
   };
   template <class Self, class Visit>
@@ -52,7 +53,7 @@ class DetachableJoints {
   const description::World& description_;
   physics::World& world_;
   std::vector<Joint> joints_;
-  std::map<std::pair<std::uint32_t, std::size_t>, std::uint32_t> numbers_;
+  std::map<std::pair<BodyId, std::size_t>, std::uint32_t> numbers_;
 };
 
 }  // namespace cohort::gripping

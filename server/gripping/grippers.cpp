@@ -34,11 +34,11 @@ Eigen::Quaterniond axes_of(const Vector3d& axis_W, const Vector3d& forward_W) {
 
 Grippers::Grippers(const description::World& description, physics::World& world)
     : description_(description), world_(world), step_(std::chrono::duration<double>(description.step).count()) {
-  for (std::uint32_t body = 0; body < description.instances.size(); ++body)
-    add_body(body, description.models[description.instances[body].model]);
+  for (std::size_t body = 0; body < description.instances.size(); ++body)
+    add_body(BodyId{body}, description.models[description.instances[body].model]);
 }
 
-void Grippers::add_body(std::uint32_t body, const description::Model& model) {
+void Grippers::add_body(BodyId body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const auto* gripper = std::get_if<description::Gripper>(&model.devices[device]);
     if (gripper == nullptr) continue;
@@ -50,7 +50,7 @@ void Grippers::add_body(std::uint32_t body, const description::Model& model) {
 
 void Grippers::command(std::uint32_t number, double opening) {
   Gripper& gripper = grippers_[number];
-  if (gripper.connection != nothing && !world_.is_connected(gripper.connection)) {
+  if (gripper.connection != nothing && !world_.connections().holds(gripper.connection)) {
     gripper.connection = nothing;
     gripper.is_spent = 1;
   }
@@ -58,7 +58,7 @@ void Grippers::command(std::uint32_t number, double opening) {
   const double before = gripper.opening;
   gripper.opening += std::clamp(opening - before, -most, most);
   if (gripper.opening >= letting_go) {
-    if (gripper.connection != nothing) world_.disconnect(gripper.connection);
+    if (gripper.connection != nothing) world_.connections().disconnect(gripper.connection);
     gripper.connection = nothing;
     gripper.is_spent = 0;
   } else if (gripper.connection != nothing) {
@@ -71,9 +71,10 @@ void Grippers::command(std::uint32_t number, double opening) {
 void Grippers::grasp(Gripper& gripper, const Target& target) {
   const Vector3d forward_W = jaw_pose(gripper).orientation * Vector3d::UnitX();
   const Pose X_WP{target.p_W, axes_of(target.axis_W, forward_W)};
-  const Pose X_LP = world_.link_pose(gripper.body, gripper.device->link).inverse() * X_WP;
-  gripper.connection = world_.connect(gripper.body, gripper.device->link, X_LP, target.body, target.link,
-                                      {gripper.device->breaking_force, gripper.device->breaking_torque});
+  const Pose X_LP = world_.link_pose(gripper.body, LinkId{gripper.device->link}).inverse() * X_WP;
+  gripper.connection =
+      world_.connections().connect({gripper.body, LinkId{gripper.device->link}}, X_LP, {target.body, target.link},
+                                   {gripper.device->breaking_force, gripper.device->breaking_torque});
   set_give(gripper);
 }
 
@@ -82,20 +83,20 @@ void Grippers::set_give(const Gripper& gripper) {
   give.holding_force = gripper.device->holding_force;
   give.holding_torque.setConstant(gripper.device->holding_torque);
   give.holding_torque.z() *= 1.0 - gripper.opening / letting_go;
-  world_.set_connection_give(gripper.connection, give);
+  world_.connections().set_give(gripper.connection, give);
 }
 
 Pose Grippers::jaw_pose(const Gripper& gripper) const {
-  return world_.link_pose(gripper.body, gripper.device->link) * gripper.device->X_LG;
+  return world_.link_pose(gripper.body, LinkId{gripper.device->link}) * gripper.device->X_LG;
 }
 
 bool Grippers::is_gripping(std::uint32_t gripper) const {
-  const std::uint32_t connection = grippers_[gripper].connection;
-  return connection != nothing && world_.is_connected(connection);
+  const ConnectionId connection = grippers_[gripper].connection;
+  return connection != nothing && world_.connections().holds(connection);
 }
 
 double Grippers::force(std::uint32_t gripper) const {
-  return is_gripping(gripper) ? world_.connection_wrench(grippers_[gripper].connection).force_W.norm() : 0.0;
+  return is_gripping(gripper) ? world_.connections().wrench(grippers_[gripper].connection).force_W.norm() : 0.0;
 }
 
 bool Grippers::is_something_between(std::uint32_t number) const {
@@ -114,7 +115,7 @@ std::optional<Target> Grippers::find_target(std::uint32_t number) const {
   const Pose X_WG = jaw_pose(gripper);
   const Vector3d around = Vector3d::Constant(gripper.device->depth + gripper.device->height + largest_ring_);
   std::optional<Target> best;
-  std::vector<std::uint32_t> bodies;
+  std::vector<BodyId> bodies;
   world_.scene().for_each_overlap({X_WG.position - around, X_WG.position + around}, [&](std::uint32_t index) {
     const geometry::Solid& solid = world_.scene().solid(index);
     if (solid.body == gripper.body) return;
@@ -123,16 +124,16 @@ std::optional<Target> Grippers::find_target(std::uint32_t number) const {
   });
   std::sort(bodies.begin(), bodies.end());
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  for (const std::uint32_t body : bodies) consider_rings(gripper, X_WG, body, best);
+  for (const BodyId body : bodies) consider_rings(gripper, X_WG, body, best);
   return best;
 }
 
 // The nearest place of the circle; aside is where its middle is, as the jaw sees it.
-void Grippers::consider_rings(const Gripper& gripper, const Pose& X_WG, std::uint32_t body,
+void Grippers::consider_rings(const Gripper& gripper, const Pose& X_WG, BodyId body,
                               std::optional<Target>& best) const {
   const description::Gripper& device = *gripper.device;
   for (const description::GripRing& ring : description_.models[world_.model_of(body)].grip_rings) {
-    const Pose X_WR = world_.link_pose(body, ring.link) * ring.X_LR;
+    const Pose X_WR = world_.link_pose(body, LinkId{ring.link}) * ring.X_LR;
     const Vector3d axis_W = X_WR.orientation * Vector3d::UnitZ();
     if (std::abs(axis_W.dot(X_WG.orientation * Vector3d::UnitZ())) < least_parallel) continue;
     Vector3d outwards_W = X_WG.position - X_WR.position;
@@ -144,7 +145,7 @@ void Grippers::consider_rings(const Gripper& gripper, const Pose& X_WG, std::uin
     const double distance = std::sqrt(p_G.x() * p_G.x() + p_G.y() * p_G.y());
     if (distance > device.depth || std::abs(p_G.z()) > device.height) continue;
     if (std::abs(std::atan2(middle_G.y(), middle_G.x())) > device.half_angle) continue;
-    improve(best, {body, ring.link, X_WR.position, axis_W, distance});
+    improve(best, {body, LinkId{ring.link}, X_WR.position, axis_W, distance});
   }
 }
 
@@ -159,7 +160,8 @@ void Grippers::consider_solid(const Gripper& gripper, const Pose& X_WG, std::uin
       const double bearing = device.half_angle * (2.0 * i / (rays_a_height - 1) - 1.0);
       const Vector3d direction_W = X_WG.orientation * Vector3d(std::cos(bearing), std::sin(bearing), 0.0);
       const auto hit = world_.scene().cast_ray_among({&index, 1}, from_W, direction_W, device.depth);
-      if (hit) improve(best, {solid.body, solid.link, from_W + hit->distance * direction_W, axis_W, hit->distance});
+      if (hit)
+        improve(best, {solid.body, LinkId{solid.link}, from_W + hit->distance * direction_W, axis_W, hit->distance});
     }
   }
 }
@@ -168,7 +170,7 @@ template <class Self, class Visit>
 void Grippers::visit_state(Self& self, Visit&& visit) {
   for (auto& gripper : self.grippers_) {
     visit(gripper.opening);
-    visit(gripper.connection);
+    visit(gripper.connection.value);
     visit(gripper.is_spent);
   }
 }
@@ -176,7 +178,7 @@ void Grippers::visit_state(Self& self, Visit&& visit) {
 void Grippers::hash(StateHash& hash) const {
   for (const Gripper& gripper : grippers_) {
     hash.add(gripper.opening);
-    hash.add(std::uint64_t{gripper.connection} << 1 | std::uint64_t{gripper.is_spent});
+    hash.add(std::uint64_t{gripper.connection.value} << 1 | std::uint64_t{gripper.is_spent});
   }
 }
 
@@ -189,7 +191,7 @@ void Grippers::restore(SnapshotReader& reader) {
   for (const Gripper& gripper : grippers_) {
     if (gripper.opening < 0.0 || gripper.opening > 1.0 || gripper.is_spent > 1)
       throw SnapshotError("the snapshot has a gripper that is opened as none can be");
-    if (gripper.connection != nothing && gripper.connection >= world_.connections_made())
+    if (gripper.connection != nothing && gripper.connection.value >= world_.connections().made())
       throw SnapshotError("the snapshot has a gripper that holds by a connection that never was");
   }
 }

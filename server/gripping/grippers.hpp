@@ -15,8 +15,8 @@ namespace cohort::gripping {
 
 /// What a gripper can grasp now.
 struct Target {
-  std::uint32_t body = 0;
-  std::size_t link = 0;
+  BodyId body;
+  LinkId link;
   Eigen::Vector3d p_W;     ///< what it gives about: the middle of a ring, or the nearest place of a collision
   Eigen::Vector3d axis_W;  ///< of its ring, or that of the jaw; unit
   double distance = 0.0;   ///< from the jaw [m]
@@ -33,9 +33,9 @@ class Grippers {
   Grippers(const description::World& description, physics::World& world);
 
   /// A body has come, of one of the description's models.
-  void add_body(std::uint32_t body, const description::Model& model);
+  void add_body(BodyId body, const description::Model& model);
   /// The number of the gripper that is a device of a robot.
-  std::uint32_t of_device(std::uint32_t body, std::size_t device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, std::size_t device) const { return numbers_.at({body, device}); }
 
   /// Moves the opening towards `opening` for one step, then grasps, holds or lets go. When it closes past half it
   /// grasps the nearest that is within its acceptance, and if there is nothing, what comes there while it is closed.
@@ -60,18 +60,18 @@ class Grippers {
   void restore(SnapshotReader& reader);
 
  private:
-  static constexpr std::uint32_t nothing = 0xffffffffu;
+  static constexpr ConnectionId nothing{0xffffffffu};
   struct Gripper {
-    std::uint32_t body = 0;
+    BodyId body;
     const description::Gripper* device = nullptr;
     double opening = 1.0;
-    std::uint32_t connection = nothing;
+    ConnectionId connection = nothing;
     std::uint32_t is_spent = 0;  // 1: it lost what it held, and has not been open since
   };
   Pose jaw_pose(const Gripper& gripper) const;
   void grasp(Gripper& gripper, const Target& target);
   void set_give(const Gripper& gripper);
-  void consider_rings(const Gripper& gripper, const Pose& X_WG, std::uint32_t body, std::optional<Target>& best) const;
+  void consider_rings(const Gripper& gripper, const Pose& X_WG, BodyId body, std::optional<Target>& best) const;
   void consider_solid(const Gripper& gripper, const Pose& X_WG, std::uint32_t index, std::optional<Target>& best) const;
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit);
@@ -81,7 +81,7 @@ class Grippers {
   double step_;
   double largest_ring_ = 0.0;
   std::vector<Gripper> grippers_;
-  std::map<std::pair<std::uint32_t, std::size_t>, std::uint32_t> numbers_;
+  std::map<std::pair<BodyId, std::size_t>, std::uint32_t> numbers_;
 };
 
 }  // namespace cohort::gripping

@@ -67,19 +67,19 @@ void compare_object(const Simulation& first, const Simulation& second, std::uint
   const Pose b = second.object_pose(object);
   found.compare_all("pose", {"x", "y", "z"}, a.position, b.position);
   found.compare_all("pose", {"qx", "qy", "qz", "qw"}, a.orientation.coeffs(), b.orientation.coeffs());
-  const physics::Twist twist_a = first.world().link_twist(object, 0);
-  const physics::Twist twist_b = second.world().link_twist(object, 0);
+  const physics::Twist twist_a = first.world().link_twist(BodyId{object}, LinkId{0});
+  const physics::Twist twist_b = second.world().link_twist(BodyId{object}, LinkId{0});
   found.compare_all("velocity", {"x", "y", "z"}, twist_a.linear_W, twist_b.linear_W);
   found.compare_all("velocity", {"about x", "about y", "about z"}, twist_a.angular_W, twist_b.angular_W);
 
-  const description::Model& model = first.description().models[first.world().model_of(object)];
-  const description::Model& other = second.description().models[second.world().model_of(object)];
+  const description::Model& model = first.description().models[first.world().model_of(BodyId{object})];
+  const description::Model& other = second.description().models[second.world().model_of(BodyId{object})];
   for (std::size_t joint = 0; joint < std::min(model.joints.size(), other.joints.size()); ++joint) {
     const std::string& name = model.joints[joint].name;
-    found.compare("joint", name + " position", first.world().joint_position(object, joint),
-                  second.world().joint_position(object, joint));
-    found.compare("joint", name + " velocity", first.world().joint_velocity(object, joint),
-                  second.world().joint_velocity(object, joint));
+    const physics::JointState joint_a = first.world().joint_state(BodyId{object}, JointId{joint});
+    const physics::JointState joint_b = second.world().joint_state(BodyId{object}, JointId{joint});
+    found.compare("joint", name + " position", joint_a.position, joint_b.position);
+    found.compare("joint", name + " velocity", joint_a.velocity, joint_b.velocity);
   }
 }
 
@@ -90,7 +90,7 @@ void compare_robot(const Simulation& first, const Simulation& second, std::uint3
 }
 
 std::string text_of(const physics::Contact& contact, const Simulation& simulation) {
-  return simulation.objects().name(contact.body_a) + " and " + simulation.objects().name(contact.body_b);
+  return simulation.objects().name(contact.body_a.value) + " and " + simulation.objects().name(contact.body_b.value);
 }
 
 void compare_contacts(const Simulation& first, const Simulation& second, Differences& found) {

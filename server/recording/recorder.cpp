@@ -45,9 +45,10 @@ ros::JointState joint_state(const description::Model& model, const physics::Worl
     const description::JointType type = model.joints[joint].type;
     if (type != description::JointType::revolute && type != description::JointType::prismatic) continue;
     state.name.push_back(model.joints[joint].name);
-    state.position.push_back(world.joint_position(body, joint));
-    state.velocity.push_back(world.joint_velocity(body, joint));
-    state.effort.push_back(world.joint_effort(body, joint));
+    const physics::JointState now = world.joint_state(BodyId{body}, JointId{joint});
+    state.position.push_back(now.position);
+    state.velocity.push_back(now.velocity);
+    state.effort.push_back(now.effort);
   }
   return state;
 }
@@ -264,11 +265,11 @@ void Recorder::write_joints() {
   ros::TFMessage places;
   const Objects& objects = simulation_->objects();
   for (std::uint32_t object = 0; object < objects.size(); ++object) {
-    const description::Model& model = simulation_->description().models[simulation_->world().model_of(object)];
+    const description::Model& model = simulation_->description().models[simulation_->world().model_of(BodyId{object})];
     if (!objects.is_present(object) || model.joints.empty()) continue;
     for (std::size_t link = 1; link < model.links.size(); ++link)
       places.transforms.push_back(transform(objects.name(object) + "/" + model.links[link].name,
-                                            simulation_->world().link_pose(object, link), now));
+                                            simulation_->world().link_pose(BodyId{object}, LinkId{link}), now));
     const ros::JointState state = joint_state(model, simulation_->world(), object, {now, objects.name(object)});
     if (!state.name.empty()) write(topic_of_joints(object), state, Importance::display);
   }
@@ -284,7 +285,7 @@ Recorder::Topic& Recorder::topic_of_joints(std::uint32_t object) {
 }
 
 bool Recorder::is_static(std::uint32_t object) const {
-  return simulation_->description().models[simulation_->world().model_of(object)].is_static;
+  return simulation_->description().models[simulation_->world().model_of(BodyId{object})].is_static;
 }
 
 void Recorder::write_observations() {
@@ -313,7 +314,7 @@ void Recorder::write_sensors(std::uint32_t robot, std::span<Topic> topics, ros::
     if (!sensor.place || (placed != nullptr && *placed == sensor.device)) continue;
     placed = &sensor.device;
     places.transforms.push_back(transform(header.frame_id, sensor.place([&](std::size_t link) {
-      return simulation_->world().link_pose(simulation_->body_of(robot), link);
+      return simulation_->world().link_pose(simulation_->body_of(robot), LinkId{link});
     }),
                                           header.stamp));
   }

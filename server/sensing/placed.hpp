@@ -7,21 +7,22 @@ namespace cohort::sensing {
 
 template <class Posed>
 Pose pose_of(const Posed& sensor, const Mount& mount) {
-  return mount.world.link_pose(mount.body, sensor.link) * sensor.X_LS;
+  return mount.world.link_pose(mount.body, LinkId{sensor.link}) * sensor.X_LS;
 }
 
 /// Velocity of the origin of S in world axes [m/s].
 template <class Posed>
 Eigen::Vector3d velocity_of(const Posed& sensor, const Mount& mount) {
-  const physics::Twist twist = mount.world.link_twist(mount.body, sensor.link);
-  const Eigen::Vector3d p_LS_W = mount.world.link_pose(mount.body, sensor.link).orientation * sensor.X_LS.position;
+  const physics::Twist twist = mount.world.link_twist(mount.body, LinkId{sensor.link});
+  const Eigen::Vector3d p_LS_W =
+      mount.world.link_pose(mount.body, LinkId{sensor.link}).orientation * sensor.X_LS.position;
   return twist.linear_W + twist.angular_W.cross(p_LS_W);
 }
 
 /// Acceleration of the origin of S less gravity, in S [m/s^2]: the mean over the last step.
 template <class Posed>
 Eigen::Vector3d proper_acceleration_of(const Posed& sensor, const Mount& mount) {
-  const Eigen::Vector3d a_W = mount.world.link_acceleration(mount.body, sensor.link, sensor.X_LS.position);
+  const Eigen::Vector3d a_W = mount.world.link_acceleration(mount.body, LinkId{sensor.link}, sensor.X_LS.position);
   return pose_of(sensor, mount).orientation.conjugate() * (a_W - mount.description.gravity);
 }
 

@@ -26,12 +26,12 @@ struct Mount {
   const description::World& description;
   const gripping::Grippers& grippers;
   SharedViews& views;
-  std::uint32_t body;  ///< the robot's, which is its index among the description's instances
+  BodyId body;         ///< the robot's, which is its index among the description's instances
   std::size_t device;  ///< index in the robot's model
   std::uint64_t seed;  ///< of the experiment; with the robot's name it fixes what is random
 
-  const std::string& robot_name() const { return description.instances[body].name; }
-  const description::Model& model() const { return description.models[description.instances[body].model]; }
+  const std::string& robot_name() const { return description.instances[body.value].name; }
+  const description::Model& model() const { return description.models[description.instances[body.value].model]; }
   const description::Joint& joint(std::size_t index) const { return model().joints[index]; }
 };
 

@@ -44,7 +44,7 @@ std::uint32_t find_working_object(const std::string& name, const ActionScope& sc
 }
 
 const description::Model& model_of(std::uint32_t object, const ActionScope& scope) {
-  return scope.description.models[scope.world.model_of(object)];
+  return scope.description.models[scope.world.model_of(BodyId{object})];
 }
 
 void check_finite(const Eigen::Vector3d& vector, const std::string& what) {

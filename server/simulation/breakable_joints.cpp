@@ -8,35 +8,37 @@ namespace cohort {
 BreakableJoints::BreakableJoints(const description::World& description, physics::World& world)
     : description_(description), world_(world) {
   for (const description::BreakableJoint& joint : description.breakable_joints) {
-    const auto first = static_cast<std::uint32_t>(joint.first);
-    const auto second = static_cast<std::uint32_t>(joint.second);
-    const Pose X_WLa = world.link_pose(first, joint.first_link);
-    const Pose X_WLb = world.link_pose(second, joint.second_link);
+    const physics::BodyLink first{BodyId{joint.first}, LinkId{joint.first_link}};
+    const physics::BodyLink second{BodyId{joint.second}, LinkId{joint.second_link}};
+    const Pose X_WLa = world.link_pose(first.body, first.link);
+    const Pose X_WLb = world.link_pose(second.body, second.link);
     const Pose X_WP = joint.X_LP ? X_WLa * *joint.X_LP : X_WLb;
     const physics::ConnectionLimits limits{joint.breaking_force, joint.breaking_torque};
-    const bool is_swapped = description.models[description.instances[first].model].is_static;
-    const std::uint32_t connection =
-        is_swapped ? world.connect(second, joint.second_link, X_WLb.inverse() * X_WP, first, joint.first_link, limits)
-                   : world.connect(first, joint.first_link, X_WLa.inverse() * X_WP, second, joint.second_link, limits);
-    if (!world.is_active(first) || !world.is_active(second)) world.disconnect(connection);
+    const bool is_swapped = description.models[description.instances[joint.first].model].is_static;
+    physics::WorldConnections& connections = world.connections();
+    const ConnectionId connection = is_swapped ? connections.connect(second, X_WLb.inverse() * X_WP, first, limits)
+                                               : connections.connect(first, X_WLa.inverse() * X_WP, second, limits);
+    if (!world.is_active(first.body) || !world.is_active(second.body)) connections.disconnect(connection);
     joints_.push_back({connection, is_swapped});
   }
 }
 
 physics::Wrench BreakableJoints::wrench_on_first(std::size_t joint) const {
   const Connected& its = joints_[joint];
-  return its.is_swapped ? world_.connection_reaction(its.connection) : world_.connection_wrench(its.connection);
+  using End = physics::ConnectionEnd;
+  return world_.connections().wrench(its.connection, its.is_swapped ? End::b : End::a);
 }
 
 physics::Wrench BreakableJoints::wrench_on_second(std::size_t joint) const {
   const Connected& its = joints_[joint];
-  return its.is_swapped ? world_.connection_wrench(its.connection) : world_.connection_reaction(its.connection);
+  using End = physics::ConnectionEnd;
+  return world_.connections().wrench(its.connection, its.is_swapped ? End::a : End::b);
 }
 
 std::vector<std::string> BreakableJoints::broken() const {
   std::vector<std::string> sentences;
   for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
-    const auto now = world_.broken_connections();
+    const auto now = world_.connections().broken();
     if (std::find(now.begin(), now.end(), joints_[joint].connection) == now.end()) continue;
     const physics::Wrench wrench = wrench_on_first(joint);
     const double force = wrench.force_W.norm();

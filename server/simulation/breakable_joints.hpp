@@ -20,7 +20,7 @@ class BreakableJoints {
   std::size_t size() const { return joints_.size(); }
   const std::string& name(std::size_t joint) const { return description_.breakable_joints[joint].name; }
   /// It has neither broken nor been released, which it is when one of its objects leaves the world or is moved.
-  bool holds(std::size_t joint) const { return world_.is_connected(joints_[joint].connection); }
+  bool holds(std::size_t joint) const { return world_.connections().holds(joints_[joint].connection); }
   /// On the first link, about the place of the joint on it, over the last step; zero once it does not hold, but for the
   /// step that broke it.
   physics::Wrench wrench_on_first(std::size_t joint) const;
@@ -31,7 +31,7 @@ class BreakableJoints {
 
  private:
   struct Connected {
-    std::uint32_t connection = 0;
+    ConnectionId connection;
     bool is_swapped = false;  // its end a, which has to move, is on the second link
   };
 

@@ -76,9 +76,9 @@ void add_world(StateHash& hash, description::Dynamics dynamics, description::Sol
   WorkerPool workers(1);
   const auto world = physics::make_world(description, workers);
   const auto driven = static_cast<std::uint32_t>(description.instances.size() - 1);
-  world->set_joint_velocity_target(driven, 0, 2.0);
+  world->set_joint_target(BodyId{driven}, JointId{0}, physics::JointTarget::velocity(2.0));
   for (int step = 0; step < steps; ++step) world->step();
-  for (std::uint32_t body = 0; body < world->body_count(); ++body) world->hash_body(body, hash);
+  for (std::uint32_t body = 0; body < world->body_count(); ++body) world->hash_body(BodyId{body}, hash);
   world->hash_contacts(hash);
 }
 

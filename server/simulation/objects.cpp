@@ -37,19 +37,19 @@ void Objects::set_present(std::uint32_t object, bool present) {
   if (is_present(object) == present) return;
   present_[object] = present ? 1 : 0;
   if (present)
-    world_.put_back_body(object);
+    world_.set_present(BodyId{object}, true);
   else
-    world_.remove_body(object);
+    world_.set_present(BodyId{object}, false);
 }
 
 std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pose& X_WM) {
   if (find(name)) throw std::invalid_argument("another object has the name '" + name + "'");
   if (size() - described_ == most_added)
     throw std::invalid_argument("no more than " + std::to_string(most_added) + " objects come in one run");
-  const std::uint32_t body = world_.add_body(model, X_WM);
+  const BodyId body = world_.add_body(model, X_WM);
   experiment_.world.instances.push_back({name, model, X_WM});
   note_instance();
-  return body;
+  return body.value;
 }
 
 void Objects::record(std::uint64_t tick) {
@@ -58,7 +58,7 @@ void Objects::record(std::uint64_t tick) {
     const auto object = static_cast<std::uint32_t>(experiment_.history.objects[i]);
     if (!is_present(object)) continue;
     if (histories_[i].size() == experiment_.history.length) histories_[i].pop_front();
-    histories_[i].push_back({tick, world_.link_pose(object, 0)});
+    histories_[i].push_back({tick, world_.link_pose(BodyId{object}, LinkId{0})});
   }
 }
 
@@ -116,7 +116,7 @@ void Objects::restore_added(SnapshotReader& reader) {
     if (instance.model >= experiment_.world.models.size())
       throw SnapshotError("the snapshot has a model that is not there");
     try {
-      world_.recreate_body(instance.model, instance.X_WM);
+      world_.add_body(instance.model, instance.X_WM, physics::Arrival::restored);
     } catch (const std::invalid_argument& error) {
       throw SnapshotError("the snapshot has an object that cannot be simulated: " + std::string(error.what()));
     }

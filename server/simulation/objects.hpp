@@ -33,7 +33,7 @@ class Objects {
 
   /// In the world: neither taken out nor still to come. A quarantined one is.
   bool is_present(std::uint32_t object) const { return present_[object] != 0; }
-  bool is_quarantined(std::uint32_t object) const { return is_present(object) && !world_.is_active(object); }
+  bool is_quarantined(std::uint32_t object) const { return is_present(object) && !world_.is_active(BodyId{object}); }
   void set_present(std::uint32_t object, bool present);
   /// Throws std::invalid_argument if the name is taken, or the model cannot be simulated.
   std::uint32_t add(const std::string& name, std::size_t model, const Pose& X_WM);

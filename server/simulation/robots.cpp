@@ -72,9 +72,9 @@ void Robots::add() {
   const auto id = size();
   const description::World& description = around_.experiment.world;
   Robot& robot = robots_.emplace_back();
-  robot.body = static_cast<std::uint32_t>(description.robots[id]);
+  robot.body = BodyId{description.robots[id]};
   of_body_.resize(description.instances.size(), none);
-  of_body_[robot.body] = id;
+  of_body_[robot.body.value] = id;
   robot.team = find_team(around_.experiment, id);
   if (robot.team < around_.experiment.teams.size()) robot.policy = around_.experiment.teams[robot.team].policy;
 
@@ -100,7 +100,7 @@ void Robots::add() {
 
 Robots::DevicesOfRobot Robots::make_devices(const Robot& robot) {
   const description::World& description = around_.experiment.world;
-  const description::Model& model = description.models[description.instances[robot.body].model];
+  const description::Model& model = description.models[description.instances[robot.body.value].model];
   DevicesOfRobot made;
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     if (auto sensor = sensing::make_sensor({around_.world, around_.emitters, description, around_.grippers, views_,

@@ -66,10 +66,10 @@ class Robots {
   /// By its index in the experiment.
   std::uint32_t team_of(std::uint32_t robot) const { return robots_[robot].team; }
   const description::Policy& policy(std::uint32_t robot) const { return robots_[robot].policy; }
-  std::uint32_t body_of(std::uint32_t robot) const { return robots_[robot].body; }
+  BodyId body_of(std::uint32_t robot) const { return robots_[robot].body; }
   /// `none` of a body that is no robot's.
-  std::uint32_t of_body(std::uint32_t body) const { return body < of_body_.size() ? of_body_[body] : none; }
-  bool is_present(std::uint32_t robot) const { return around_.objects.is_present(robots_[robot].body); }
+  std::uint32_t of_body(BodyId body) const { return body.value < of_body_.size() ? of_body_[body.value] : none; }
+  bool is_present(std::uint32_t robot) const { return around_.objects.is_present(robots_[robot].body.value); }
   bool is_due(std::uint32_t robot, std::uint64_t tick) const;
 
   std::optional<CommandFault> check_command(std::uint32_t robot, std::span<const double> values) const;
@@ -101,7 +101,7 @@ class Robots {
   };
   struct Robot {
     std::uint32_t kind = 0;
-    std::uint32_t body = 0;
+    BodyId body;
     std::uint32_t team = 0;
     description::Policy policy;
     std::vector<SensorOfRobot> sensors;

@@ -57,7 +57,7 @@ std::string Schedule::who_begins(const description::Reaction& reaction) const {
         !std::binary_search(reaction.robots.begin(), reaction.robots.end(), action.robot))
       continue;
     if (text.empty())
-      text = "'" + objects_.name(action.body) + "'";
+      text = "'" + objects_.name(action.body.value) + "'";
     else
       ++others;
   }
@@ -104,13 +104,14 @@ void Schedule::apply(const description::Event& event) {
   const auto object = static_cast<std::uint32_t>(event.object);
   std::visit(Overloaded{
                  [&](const description::SetPresence& presence) { objects_.set_present(object, presence.present); },
-                 [&](const description::PlaceAt& place) { world_.place_body(object, place.X_WM); },
+                 [&](const description::PlaceAt& place) { world_.place_body(BodyId{object}, place.X_WM); },
                  [&](const description::SetVelocity& velocity) {
-                   if (world_.is_active(object)) world_.set_root_twist(object, {velocity.angular_W, velocity.linear_W});
+                   if (world_.is_active(BodyId{object}))
+                     world_.set_root_twist(BodyId{object}, {velocity.angular_W, velocity.linear_W});
                  },
                  [](const description::ApplyForce&) {},  // acts in the steps that follow
                  [&](const description::SetEmitters& set) {
-                   for (const std::size_t emitter : set.emitters) emitters_.change(object, emitter, set.change);
+                   for (const std::size_t emitter : set.emitters) emitters_.change(BodyId{object}, emitter, set.change);
                  },
              },
              event.effect);
@@ -120,16 +121,16 @@ void Schedule::push(std::uint64_t tick) {
   const auto push_for = [&](const description::Event& event, auto&& end) {
     const auto* const force = std::get_if<description::ApplyForce>(&event.effect);
     const auto object = static_cast<std::uint32_t>(event.object);
-    if (force != nullptr && world_.is_active(object) && tick < end(*force))
-      world_.push_body(object, force->link, {force->force_W, force->torque_W});
+    if (force != nullptr && world_.is_active(BodyId{object}) && tick < end(*force))
+      world_.push_body(BodyId{object}, LinkId{force->link}, {force->force_W, force->torque_W});
   };
   for (std::size_t i = 0; i < next_event_; ++i)
     push_for(experiment_.events[i], [&](const description::ApplyForce& force) {
       return event_ticks_[i] + ticks_of(force.duration, experiment_.world.step);
     });
   for (const Push& push : pushes_)
-    if (world_.is_active(push.object))
-      world_.push_body(push.object, push.force.link, {push.force.force_W, push.force.torque_W});
+    if (world_.is_active(BodyId{push.object}))
+      world_.push_body(BodyId{push.object}, LinkId{push.force.link}, {push.force.force_W, push.force.torque_W});
   std::size_t i = 0;
   for (const description::Reaction& reaction : experiment_.reactions)
     for (const description::Event& event : reaction.events) {
@@ -163,7 +164,7 @@ std::optional<std::string> Schedule::why_it_holds(const description::StopConditi
     return std::to_string(present.size()) + (present.size() == 1 ? " object" : " objects");
   };
   const auto place = [&](std::uint32_t object) -> Eigen::Vector2d {
-    return world_.link_pose(object, 0).position.head<2>();
+    return world_.link_pose(BodyId{object}, LinkId{0}).position.head<2>();
   };
   return std::visit(
       Overloaded{
@@ -178,7 +179,7 @@ std::optional<std::string> Schedule::why_it_holds(const description::StopConditi
           },
           [&](const description::AllAtRest& rest) {
             return all([&](std::uint32_t object) {
-              const physics::Twist twist = world_.link_twist(object, 0);
+              const physics::Twist twist = world_.link_twist(BodyId{object}, LinkId{0});
               return twist.linear_W.norm() < rest.speed && twist.angular_W.norm() < rest.turn_rate;
             });
           },
@@ -251,7 +252,7 @@ void Schedule::restore(SnapshotReader& reader, std::uint64_t tick) {
     if (!push.force.force_W.allFinite() || !push.force.torque_W.allFinite())
       throw SnapshotError("the snapshot has a push that is not finite");
     if (push.object >= objects_.size()) throw SnapshotError("the snapshot has a push on something that is not there");
-    const description::Model& model = experiment_.world.models[world_.model_of(push.object)];
+    const description::Model& model = experiment_.world.models[world_.model_of(BodyId{push.object})];
     if (model.is_static || push.force.link >= model.links.size())
       throw SnapshotError("the snapshot has a push on something that does not move");
   }

@@ -108,14 +108,15 @@ void Simulation::add_object(const std::string& name, std::size_t model, const Po
 void Simulation::enrol(std::uint32_t object, std::size_t team) {
   description::World& world = experiment_.world;
   const description::Model& model = world.models[world.instances[object].model];
-  emitters_.add_body(object, model);
-  grippers_.add_body(object, model);
-  detachable_joints_.add_body(object, model);
+  const BodyId body{object};
+  emitters_.add_body(body, model);
+  grippers_.add_body(body, model);
+  detachable_joints_.add_body(body, model);
   if (!model.is_robot()) return;
   const auto robot = static_cast<std::uint32_t>(world.robots.size());
   world.robots.push_back(object);
   experiment_.teams[team].robots.push_back(robot);
-  actions_.add_robot(robot, object, model);
+  actions_.add_robot(robot, body, model);
   robots_.add();
 }
 
@@ -125,14 +126,14 @@ void Simulation::note_bodies() {
   const geometry::Scene& scene = world_->scene();
   is_ground_.resize(world_->body_count(), 0);
   for (; solids_noted_ < scene.size(); ++solids_noted_)
-    if (geometry::is_ground(scene.solid(solids_noted_).shape)) is_ground_[scene.solid(solids_noted_).body] = 1;
+    if (geometry::is_ground(scene.solid(solids_noted_).shape)) is_ground_[scene.solid(solids_noted_).body.value] = 1;
 }
 
 void Simulation::name_quarantined() {
   quarantined_.clear();
   for (const physics::Quarantine& event : world_->quarantined()) {
     const bool broke = event.reason == physics::Quarantine::Reason::not_finite;
-    quarantined_.push_back("'" + objects_.name(event.body) +
+    quarantined_.push_back("'" + objects_.name(event.body.value) +
                            (broke ? "': its state is no longer finite" : "' has left the world"));
   }
   if (experiment_.world.physics.strict && !quarantined_.empty()) throw std::runtime_error(quarantined_[0]);
@@ -147,9 +148,9 @@ void Simulation::sense() {
 void Simulation::count_touches() {
   std::vector<char> touches_obstacle(robots_.size(), 0);
   std::vector<char> touches_robot(robots_.size(), 0);
-  const auto note = [&](std::uint32_t body, std::uint32_t other) {
+  const auto note = [&](BodyId body, BodyId other) {
     const std::uint32_t robot = robots_.of_body(body);
-    if (robot == Robots::none || is_ground_[other]) return;
+    if (robot == Robots::none || is_ground_[other.value]) return;
     (robots_.of_body(other) == Robots::none ? touches_obstacle : touches_robot)[robot] = 1;
   };
   for (const physics::Contact& contact : world_->contacts()) {
@@ -265,7 +266,8 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
 void Simulation::save_added(SnapshotWriter& writer) const {
   objects_.save_added(writer);
   for (std::uint32_t object = objects_.described(); object < objects_.size(); ++object)
-    if (const std::uint32_t robot = robots_.of_body(object); robot != Robots::none) writer.add(robots_.team_of(robot));
+    if (const std::uint32_t robot = robots_.of_body(BodyId{object}); robot != Robots::none)
+      writer.add(robots_.team_of(robot));
 }
 
 void Simulation::restore_added(SnapshotReader& reader) {
@@ -291,9 +293,8 @@ std::uint64_t Simulation::computed_state_hash() const {
   workers_.for_each_chunk(body_hashes_.size(), bodies_a_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t body = begin; body < end; ++body) {
       StateHash hash;
-      world_->hash_body(static_cast<std::uint32_t>(body), hash);
-      if (const std::uint32_t robot = robots_.of_body(static_cast<std::uint32_t>(body)); robot != Robots::none)
-        robots_.hash(robot, hash);
+      world_->hash_body(BodyId{body}, hash);
+      if (const std::uint32_t robot = robots_.of_body(BodyId{body}); robot != Robots::none) robots_.hash(robot, hash);
       body_hashes_[body] = hash.value();
     }
   });

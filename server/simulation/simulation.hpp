@@ -69,7 +69,7 @@ class Simulation {
   std::uint32_t kind_of(std::uint32_t robot) const { return robots_.kind_of(robot); }
   const description::Policy& policy(std::uint32_t robot) const { return robots_.policy(robot); }
   /// Its body in `world()`, which is its index among `objects()`.
-  std::uint32_t body_of(std::uint32_t robot) const { return robots_.body_of(robot); }
+  BodyId body_of(std::uint32_t robot) const { return robots_.body_of(robot); }
   /// Whether the robot is in the world: an event of the experiment may bring it later, or take it out.
   bool is_present(std::uint32_t robot) const { return robots_.is_present(robot); }
   /// Whether the robot is asked at this tick, if it is in the world then.
@@ -123,7 +123,8 @@ class Simulation {
   const description::World& description() const { return experiment_.world; }
   /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
-  Pose object_pose(std::uint32_t object) const { return world_->link_pose(object, 0); }  ///< of its root link, X_WL
+  /// Returns the pose of its root link, X_WL.
+  Pose object_pose(std::uint32_t object) const { return world_->link_pose(BodyId{object}, LinkId{0}); }
   /// What the last step took out of the world: a sentence for each body, with its name.
   const std::vector<std::string>& quarantined() const { return quarantined_; }
 
@@ -139,7 +140,7 @@ class Simulation {
   /// changed since it was asked for last.
   std::uint64_t state_hash() const;
 
-  Pose robot_pose(std::uint32_t robot) const { return object_pose(body_of(robot)); }  ///< of its root link, X_WL
+  Pose robot_pose(std::uint32_t robot) const { return object_pose(body_of(robot).value); }  ///< of its root link, X_WL
   const physics::World& world() const { return *world_; }
   const emission::Emitters& emitters() const { return emitters_; }
   const gripping::Grippers& grippers() const { return grippers_; }

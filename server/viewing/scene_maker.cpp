@@ -37,7 +37,7 @@ SceneMaker::SceneMaker(const Simulation& simulation, std::uint32_t revision)
   std::vector<std::vector<std::uint32_t>> bodies_of_model(models.size());
   std::size_t count = 0;
   for (std::uint32_t body = 0; body < objects_; ++body) {
-    const std::size_t model = simulation.world().model_of(body);
+    const std::size_t model = simulation.world().model_of(BodyId{body});
     place_in_model_[body] = static_cast<std::uint32_t>(bodies_of_model[model].size());
     bodies_of_model[model].push_back(body);
     count += models[model].links.size();
@@ -47,7 +47,7 @@ SceneMaker::SceneMaker(const Simulation& simulation, std::uint32_t revision)
     first_of_link_[model].reserve(models[model].links.size());
     for (std::uint32_t link = 0; link < models[model].links.size(); ++link) {
       first_of_link_[model].push_back(static_cast<std::uint32_t>(links_.size()));
-      for (const std::uint32_t body : bodies_of_model[model]) links_.push_back({body, link});
+      for (const std::uint32_t body : bodies_of_model[model]) links_.push_back({BodyId{body}, LinkId{link}});
     }
   }
   choose_lamps();
@@ -67,7 +67,7 @@ void SceneMaker::choose_lamps() {
         return std::holds_alternative<description::Light>(emitter.what);
       });
       if (lamps == 0) continue;
-      const std::uint32_t first = emitters.of_device(static_cast<std::uint32_t>(instance), device).lamp;
+      const std::uint32_t first = emitters.of_device(BodyId{instance}, device).lamp;
       std::fill_n(is_led.begin() + first, lamps, char{1});
     }
   }
@@ -77,14 +77,14 @@ void SceneMaker::choose_lamps() {
 }
 
 messages::SceneEmitter SceneMaker::emitter(const emission::Mount& mount) const {
-  return {.entity = mount.body, .link = place_of(mount), .position = vector_of(mount.X_LE.position)};
+  return {.entity = mount.body.value, .link = place_of(mount), .position = vector_of(mount.X_LE.position)};
 }
 
 void SceneMaker::add_entities(messages::Scene& scene) const {
   scene.entities.reserve(objects_);
   for (std::uint32_t body = 0; body < objects_; ++body)
     scene.entities.push_back(
-        {simulation_.objects().name(body), static_cast<std::uint32_t>(simulation_.world().model_of(body))});
+        {simulation_.objects().name(body), static_cast<std::uint32_t>(simulation_.world().model_of(BodyId{body}))});
   const auto& robots = simulation_.description().robots;
   for (std::uint32_t robot = 0; robot < robots.size(); ++robot) scene.entities[robots[robot]].robot = robot;
   for (const description::Team& team : simulation_.experiment().teams)
@@ -180,8 +180,8 @@ messages::SceneContacts SceneMaker::contacts() const {
   for (const physics::Contact& contact : found) {
     append(contacts.positions, contact.position_W);
     append(contacts.forces, contact.normal_W * (contact.impulse / step));
-    contacts.entities.push_back(contact.body_a);
-    contacts.entities.push_back(contact.body_b);
+    contacts.entities.push_back(contact.body_a.value);
+    contacts.entities.push_back(contact.body_b.value);
   }
   const gripping::Grippers& grippers = simulation_.grippers();
   for (std::uint32_t gripper = 0; gripper < grippers.size(); ++gripper) {

@@ -26,11 +26,12 @@ class SceneMaker {
 
  private:
   struct PlacedLink {
-    std::uint32_t body = 0;
-    std::uint32_t link = 0;
+    BodyId body;
+    LinkId link;
   };
   std::uint32_t place_of(const emission::Mount& mount) const {
-    return first_of_link_[simulation_.world().model_of(mount.body)][mount.link] + place_in_model_[mount.body];
+    return first_of_link_[simulation_.world().model_of(mount.body)][mount.link.value] +
+           place_in_model_[mount.body.value];
   }
   messages::SceneEmitter emitter(const emission::Mount& mount) const;
   void add_entities(messages::Scene& scene) const;

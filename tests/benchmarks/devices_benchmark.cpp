@@ -41,8 +41,7 @@ class Swarm {
     grippers_ = std::make_unique<gripping::Grippers>(description_, *world_);
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        auto sensor = make_sensor(
-            {*world_, *emitters_, description_, *grippers_, views_, static_cast<std::uint32_t>(body), device, 1});
+        auto sensor = make_sensor({*world_, *emitters_, description_, *grippers_, views_, BodyId{body}, device, 1});
         if (!sensor) continue;
         sensors_.push_back(std::move(sensor));
         std::size_t size = 0;
@@ -55,8 +54,7 @@ class Swarm {
   void light_up() {
     for (std::size_t body : description_.robots)
       for (std::uint32_t led = 0; led < leds_a_robot; ++led)
-        emitters_->set_marker(emitters_->of_device(static_cast<std::uint32_t>(body), 1).marker + led,
-                              Eigen::Vector3d::Ones());
+        emitters_->set_marker(emitters_->of_device(BodyId{body}, 1).marker + led, Eigen::Vector3d::Ones());
   }
 
   void sense(std::uint64_t tick) {

@@ -25,12 +25,12 @@ constexpr double height = 0.1;
 struct Arena {
   explicit Arena(std::uint32_t count) : robots(count) {
     for (std::uint32_t robot = 0; robot < count; ++robot)
-      scene.add({description::Cylinder{radius, height}, {}, robot, true, pose_of(robot)});
+      scene.add({description::Cylinder{radius, height}, {}, BodyId{robot}, true, pose_of(robot)});
     std::uint32_t body = count;
-    scene.add({description::Plane{}, {}, body++, false, {}});
+    scene.add({description::Plane{}, {}, BodyId{body++}, false, {}});
     for (const double side : {-half_width, half_width}) {
-      scene.add({description::Box{{0.02, 2 * half_width, 0.3}}, {}, body++, false, {{side, 0, 0.15}}});
-      scene.add({description::Box{{2 * half_width, 0.02, 0.3}}, {}, body++, false, {{0, side, 0.15}}});
+      scene.add({description::Box{{0.02, 2 * half_width, 0.3}}, {}, BodyId{body++}, false, {{side, 0, 0.15}}});
+      scene.add({description::Box{{2 * half_width, 0.02, 0.3}}, {}, BodyId{body++}, false, {{0, side, 0.15}}});
     }
     scene.build();
   }
@@ -74,7 +74,7 @@ void see_lamps(benchmark::State& state) {
       lines[lamp].build(outlines, lamp_of(arena, lamp, 0.01 * static_cast<double>(state.range(0))),
                         std::numeric_limits<double>::infinity());
       for (std::uint32_t robot = 0; robot < arena.robots; ++robot)
-        seen += lines[lamp].is_free(sensors[robot], robot) ? 1 : 0;
+        seen += lines[lamp].is_free(sensors[robot], BodyId{robot}) ? 1 : 0;
     }
   }
   state.SetItemsProcessed(state.iterations() * lamps * arena.robots);
@@ -94,7 +94,7 @@ void see_lamps_robot_by_robot(benchmark::State& state) {
       lines[lamp].build(outlines, lamp_of(arena, lamp, 0.01 * static_cast<double>(state.range(0))),
                         std::numeric_limits<double>::infinity());
     for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
-      for (const SightLines& line : lines) seen += line.is_free(sensors[robot], robot) ? 1 : 0;
+      for (const SightLines& line : lines) seen += line.is_free(sensors[robot], BodyId{robot}) ? 1 : 0;
     }
   }
   state.SetItemsProcessed(state.iterations() * lamps * arena.robots);
@@ -133,7 +133,7 @@ void see_lamps_by_rays(benchmark::State& state) {
       for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
         const Vector3d offset = sensors[robot] - source;
         const double distance = offset.norm();
-        seen += arena.scene.cast_ray(source, offset / distance, distance, robot) ? 0 : 1;
+        seen += arena.scene.cast_ray(source, offset / distance, distance, BodyId{robot}) ? 0 : 1;
       }
     }
   }
@@ -151,11 +151,11 @@ void hear_robots(benchmark::State& state) {
     const Outlines outlines(arena.scene);
     for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
       const Vector3d source = arena.scene.solid(robot).X_WC.position;
-      lines.build(outlines, source, 1.0, robot);
+      lines.build(outlines, source, 1.0, BodyId{robot});
       const Bounds near = Bounds{source, source}.grown_by(1.0);
       arena.scene.for_each_overlap(near, [&](std::uint32_t other) {
         if (other >= arena.robots || other == robot) return;
-        benchmark::DoNotOptimize(lines.is_free(arena.scene.solid(other).X_WC.position, other));
+        benchmark::DoNotOptimize(lines.is_free(arena.scene.solid(other).X_WC.position, BodyId{other}));
         ++pairs;
       });
     }
@@ -177,7 +177,8 @@ void hear_robots_by_rays(benchmark::State& state) {
         const Vector3d offset = arena.scene.solid(other).X_WC.position - source;
         const double distance = offset.norm();
         if (distance <= 1.0)
-          benchmark::DoNotOptimize(arena.scene.is_free(source, offset / distance, distance, robot, other));
+          benchmark::DoNotOptimize(
+              arena.scene.is_free(source, offset / distance, distance, BodyId{robot}, BodyId{other}));
         ++pairs;
       });
     }
@@ -193,7 +194,8 @@ void cast_shadows(benchmark::State& state) {
   std::vector<double> distances(ring.size());
   for ([[maybe_unused]] auto iteration : state)
     for (std::uint32_t robot = 0; robot < arena.robots; ++robot) {
-      ring.cast(arena.scene, arena.scene.solid(robot).X_WC.position, 0.1 * robot, radius + 0.2, robot, distances);
+      ring.cast(arena.scene, arena.scene.solid(robot).X_WC.position, 0.1 * robot, radius + 0.2, BodyId{robot},
+                distances);
       benchmark::DoNotOptimize(distances.data());
     }
   state.SetItemsProcessed(state.iterations() * arena.robots);  // rings
@@ -222,7 +224,7 @@ void see_panorama(benchmark::State& state) {
   const Outlines outlines(arena.scene);
   std::uint32_t robot = 0;
   for ([[maybe_unused]] auto iteration : state) {
-    panorama.cast(outlines, camera_of(arena, robot), camera_range, robot, image);
+    panorama.cast(outlines, camera_of(arena, robot), camera_range, BodyId{robot}, image);
     benchmark::DoNotOptimize(image.data());
     robot = (robot + 1) % arena.robots;
   }
@@ -239,7 +241,7 @@ void see_panorama_by_rays(benchmark::State& state) {
     const Pose X_WS = camera_of(arena, robot);
     for (std::size_t i = 0; i < columns * rows; ++i)
       benchmark::DoNotOptimize(
-          arena.scene.cast_ray(X_WS.position, X_WS.orientation * panorama.direction(i), camera_range, robot));
+          arena.scene.cast_ray(X_WS.position, X_WS.orientation * panorama.direction(i), camera_range, BodyId{robot}));
     robot = (robot + 1) % arena.robots;
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(columns * rows));

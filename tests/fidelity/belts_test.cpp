@@ -61,9 +61,9 @@ description::Model tracked_vehicle(double friction) {
   model.devices.push_back(drive);
   return model;
 }
-void run_tracks(SmallWorld& small, std::uint32_t body, double left, double right) {
-  small.world().set_belt_velocity_target(body, 1, left);
-  small.world().set_belt_velocity_target(body, 2, right);
+void run_tracks(SmallWorld& small, BodyId body, double left, double right) {
+  small.world().set_belt_velocity_target(body, LinkId{1}, left);
+  small.world().set_belt_velocity_target(body, LinkId{2}, right);
 }
 
 // That the body's belts do in this time [J].
@@ -88,7 +88,7 @@ TEST_P(Belts, BringWhatTheyCarryToTheirSpeedWithNoMoreThanFrictionGives) {
       const Vector3d along = X_WB.orientation * Vector3d(sense, 0, 0);
       small.run(0.1);
       EXPECT_LT(small.velocity(box).head<2>().norm(), 1e-6) << "it stands";
-      small.world().set_belt_velocity_target(belt, 0, sense * speed);
+      small.world().set_belt_velocity_target(belt, LinkId{0}, sense * speed);
       for (const double time : {0.1, 0.2}) {
         small.run(0.1);
         EXPECT_NEAR(along.dot(small.velocity(box)), friction * g * time, 0.01 * friction * g * time) << yaw;
@@ -111,7 +111,7 @@ TEST_P(Belts, CarryUpASlopeAndDownWhatFrictionHolds) {
     const Pose X_WB = turned(0, 0, 2, Vector3d::UnitY(), -slope);  // x goes up
     const auto belt = small.add(conveyor(friction), X_WB);
     const auto box = small.add(crate(), on(X_WB, 0, 0.05));
-    small.world().set_belt_velocity_target(belt, 0, sense * speed);
+    small.world().set_belt_velocity_target(belt, LinkId{0}, sense * speed);
     const Vector3d along = X_WB.orientation * Vector3d(sense, 0, 0);
     small.run(0.1);
     const double acceleration = g * (friction * std::cos(slope) - sense * std::sin(slope));
@@ -128,7 +128,7 @@ TEST_P(Belts, DoNotCarryWhatIsTooSteep) {
   const Pose X_WB = turned(0, 0, 2, Vector3d::UnitY(), -slope);
   const auto belt = small.add(conveyor(friction), X_WB);
   const auto box = small.add(crate(), on(X_WB, 1, 0.05));
-  small.world().set_belt_velocity_target(belt, 0, 5.0);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 5.0);
   small.run(0.5);
   const double acceleration = g * (std::sin(slope) - friction * std::cos(slope));
   EXPECT_NEAR(-(X_WB.orientation.conjugate() * small.velocity(box)).x(), 0.5 * acceleration, 0.02 * acceleration);
@@ -144,7 +144,7 @@ TEST_P(Belts, CarryWithTheFrictionThatIsAlongThem) {
   surface.second_friction = across;
   const auto belt = small.add(model, at(0, 0, 1));
   const auto box = small.add(crate(), at(0, 0, 1.05));
-  small.world().set_belt_velocity_target(belt, 0, 2.0);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 2.0);
   small.run(0.2);
   EXPECT_NEAR(small.velocity(box).x(), along * g * 0.2, 0.01 * along * g);
 }
@@ -155,7 +155,7 @@ TEST_P(Belts, OfAnyAxisRunAboutIt) {
   std::get<description::Belt>(model.devices[0]).axis_L = {-3.0, 0, 0};  // y of the world on top
   const auto belt = small.add(model, at(0, 0, 1));
   const auto box = small.add(crate(), at(0, -0.3, 1.05));
-  small.world().set_belt_velocity_target(belt, 0, 0.4);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.4);
   small.run(0.5);
   EXPECT_LT((small.velocity(box) - Vector3d(0, 0.4, 0)).norm(), 1e-3) << small.velocity(box).transpose();
 }
@@ -164,7 +164,7 @@ TEST_P(Belts, CarryRobotsWhoseTracksMeasureWhatTheyRollOnThem) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const auto robot = small.add(GetParam().robot(), at(-1, 0, 1));
-  small.world().set_belt_velocity_target(belt, 0, 0.15);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.15);
   small.run(1.0);
   EXPECT_NEAR(small.velocity(robot).x(), 0.15, 2e-3) << "it stands on the belt";
   EXPECT_NEAR(small.world().track(robot, 0, physics::Side::left).velocity, 0.0, 2e-3);
@@ -201,7 +201,7 @@ TEST_P(LongBelts, TurnAVehicleOnTheSpotToTheSideOfTheSlowerTrack) {
     const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 0.05));
     run_tracks(small, vehicle, -0.3 * sense, 0.3 * sense);
     small.run(4.0);
-    EXPECT_NEAR(sense * small.world().link_twist(vehicle, 0).angular_W.z(), 0.57, 0.03);
+    EXPECT_NEAR(sense * small.world().link_twist(vehicle, LinkId{0}).angular_W.z(), 0.57, 0.03);
     EXPECT_LT(small.position(vehicle).head<2>().norm(), 0.01) << "it does not wander";
   }
 }
@@ -215,7 +215,7 @@ TEST_P(Belts, TurnAWideVehicleWithEverySolver) {
     const auto vehicle = small.add(wide, at(0, 0, 0.05));
     run_tracks(small, vehicle, -0.3 * sense, 0.3 * sense);
     small.run(2.0);
-    const double rate = sense * small.world().link_twist(vehicle, 0).angular_W.z();
+    const double rate = sense * small.world().link_twist(vehicle, LinkId{0}).angular_W.z();
     EXPECT_GT(rate, 0.7 * 0.3 / 0.6);
     EXPECT_LT(rate, 0.3 / 0.6 + 1e-6) << "no faster than tracks that roll";
   }
@@ -296,7 +296,7 @@ TEST_P(Belts, OnBeltsAddUp) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 1.05));
-  small.world().set_belt_velocity_target(belt, 0, -0.4);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, -0.4);
   run_tracks(small, vehicle, 0.4, 0.4);
   small.run(1.0);
   EXPECT_LT(small.velocity(vehicle).norm(), 4e-3) << "it runs and stays where it is";
@@ -316,12 +316,12 @@ struct Hall {
   }
   void command() {
     for (std::size_t i = 0; i < belts.size(); ++i)
-      small.world().set_belt_velocity_target(belts[i], 0, i % 2 == 0 ? 0.5 : -0.7);
+      small.world().set_belt_velocity_target(belts[i], LinkId{0}, i % 2 == 0 ? 0.5 : -0.7);
     run_tracks(small, vehicle, 0.5, 0.4);
   }
   SmallWorld small;
-  std::vector<std::uint32_t> belts;
-  std::uint32_t vehicle = 0;
+  std::vector<BodyId> belts;
+  BodyId vehicle;
 };
 
 TEST_P(Belts, AreTheSameOnAnyThreadsAndAfterRestore) {
@@ -342,9 +342,9 @@ TEST_P(Belts, AreToldApartByTheirSpeedAlone) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const std::uint64_t before = hash_of(small.world());
-  small.world().set_belt_velocity_target(belt, 0, 0.0);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.0);
   EXPECT_EQ(hash_of(small.world()), before) << "the same again is no change";
-  small.world().set_belt_velocity_target(belt, 0, 0.1);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.1);
   EXPECT_NE(hash_of(small.world()), before);
 }
 
@@ -354,10 +354,10 @@ TEST_P(Belts, WakeWhatSleepsOnThem) {
   const auto box = small.add(crate(), at(0, 0, 1.05));
   small.run(2.0);
   const std::uint64_t asleep = hash_of(small.world());
-  small.world().set_belt_velocity_target(belt, 0, 0.0);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.0);
   small.run(0.1);
   EXPECT_EQ(hash_of(small.world()), asleep) << "the same again wakes nobody";
-  small.world().set_belt_velocity_target(belt, 0, 0.3);
+  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.3);
   small.run(0.5);
   EXPECT_NEAR(small.velocity(box).x(), 0.3, 1e-3);
 }

@@ -113,7 +113,7 @@ TEST(Contacts, APairOfMaterialsHasItsOwnFriction) {
 TEST(Contacts, AStackOfBoxesStands) {
   SmallWorld small;
   const Vector3d size(0.2, 0.2, 0.2);
-  std::vector<std::uint32_t> boxes;
+  std::vector<BodyId> boxes;
   boxes.reserve(6);
   for (int i = 0; i < 6; ++i)
     boxes.push_back(small.add(loose("box", Box{size}, solid_box(1.0, size)), at(0, 0, 0.1 + 0.2 * i)));
@@ -132,7 +132,7 @@ TEST(Contacts, ReportPartnersPointsAndForces) {
   double force = 0.0;
   for (const physics::Contact& contact : small.world().contacts()) {
     EXPECT_EQ(contact.body_a, box);
-    EXPECT_EQ(contact.body_b, 0u);
+    EXPECT_EQ(contact.body_b, BodyId{0});
     EXPECT_TRUE(contact.normal_W.isApprox(Vector3d::UnitZ(), 1e-9));
     EXPECT_NEAR(contact.position_W.z(), 0.0, 1e-3);
     force += contact.impulse / 0.01;

@@ -25,12 +25,12 @@ class DetachableJoints : public ::testing::TestWithParam<std::pair<Fidelity, Dyn
     crate_ = world.add(loose("crate", description::Box{{0.04, 0.04, 0.04}}, solid_box(0.05, {0.04, 0.04, 0.04})),
                        "crate", at(0.2, 0, 0.1));
   }
-  Pose pose_of_crate(SensingWorld& world) { return world.simulation().world().link_pose(crate_, 0); }
+  Pose pose_of_crate(SensingWorld& world) { return world.simulation().world().link_pose(BodyId{crate_}, LinkId{0}); }
   Vector3d crate() { return pose_of_crate(world_).position; }
   // As the turret sees it.
   Vector3d held_at() {
-    const std::uint32_t body = world_.simulation().body_of(0);
-    return world_.simulation().world().link_pose(body, turret).inverse() * crate();
+    const BodyId body = world_.simulation().body_of(0);
+    return world_.simulation().world().link_pose(body, LinkId{turret}).inverse() * crate();
   }
   void attach(double value) { world_.command(0, "hook/0/attached", {value}); }
   void drive(SensingWorld& world, double left, double right) {

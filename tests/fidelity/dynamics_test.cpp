@@ -109,8 +109,8 @@ TEST(Dynamics, BulletsAndOursAgreeOnRandomMechanisms) {
     if (mechanism.dof_count() == 0) continue;
     ++mechanisms;
     const Pose X_WM{model_draws.vector(5.0), model_draws.rotation()};
-    physics::Multibody bullets(mechanism, Dynamics::bullet, X_WM, 0);
-    physics::Multibody ours(mechanism, Dynamics::cohort, X_WM, 0);
+    physics::Multibody bullets(mechanism, Dynamics::bullet, X_WM, BodyId{0});
+    physics::Multibody ours(mechanism, Dynamics::cohort, X_WM, BodyId{0});
     physics::Equations of_bullets;
     physics::Equations of_ours;
     for (std::uint64_t state = 0; state < 4; ++state) {

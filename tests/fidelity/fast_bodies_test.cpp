@@ -125,9 +125,9 @@ TEST_P(FastBodies, PushWhatIsSlow) {
     SmallWorld small(space());
     const Vector3d size(0.01, 0.2, 0.2);
     const description::Model plate = loose("plate", Box{size}, solid_box(0.15, size));
-    std::uint32_t body = 0;
+    BodyId body;
     if (is_first) body = small.add(ball(0.01), at(0, 0, 0));
-    const std::uint32_t target = small.add(plate, at(0.47, 0, 0));
+    const BodyId target = small.add(plate, at(0.47, 0, 0));
     if (!is_first) body = small.add(ball(0.01), at(0, 0, 0));
     small.world().set_root_twist(body, {Vector3d::Zero(), Vector3d(8.0, 0, 0)});
     small.run(0.3);
@@ -155,7 +155,7 @@ TEST_P(FastBodies, StayInABoxAndAreTheSameForAnyThreadsAndAfterASnapshot) {
     for (std::uint32_t body = 6; body < 46; ++body) {
       const double angle = 2.4 * body;
       small->world().set_root_twist(
-          body, {Vector3d::Zero(), 8.0 * Vector3d(std::cos(angle), std::sin(angle), std::sin(3.0 * angle))});
+          BodyId{body}, {Vector3d::Zero(), 8.0 * Vector3d(std::cos(angle), std::sin(angle), std::sin(3.0 * angle))});
     }
     return small;
   };
@@ -169,7 +169,7 @@ TEST_P(FastBodies, StayInABoxAndAreTheSameForAnyThreadsAndAfterASnapshot) {
   for (SmallWorld* small : {one.get(), four.get(), later.get()}) small->run(1.0);
   EXPECT_EQ(hash_of(one->world()), hash_of(four->world()));
   EXPECT_EQ(hash_of(one->world()), hash_of(later->world()));
-  for (std::uint32_t body = 6; body < 46; ++body) EXPECT_LT(one->position(body).cwiseAbs().maxCoeff(), 0.25);
+  for (std::uint32_t body = 6; body < 46; ++body) EXPECT_LT(one->position(BodyId{body}).cwiseAbs().maxCoeff(), 0.25);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class FirstWeek : public EveryPhysics {
   // Boxes of these masses [kg] and of 100 mm, one on the other.
   struct Stack {
     SmallWorld small;
-    std::vector<std::uint32_t> boxes;
+    std::vector<BodyId> boxes;
 
     Stack(const Physics& physics, const std::vector<double>& masses) : small(awake(physics)) {
       const Vector3d size = Vector3d::Constant(0.1);
@@ -32,7 +32,7 @@ class FirstWeek : public EveryPhysics {
     }
     double furthest_aside() {
       double furthest = 0.0;
-      for (const std::uint32_t box : boxes) furthest = std::max(furthest, small.position(box).head<2>().norm());
+      for (const BodyId box : boxes) furthest = std::max(furthest, small.position(box).head<2>().norm());
       return furthest;
     }
     double top() { return small.position(boxes.back()).z(); }
@@ -63,7 +63,7 @@ TEST_P(FirstWeek, WallsAndPyramidsStand) {
   for (const Heap& heap : {Heap{7, true, 30.0, 1e-3}, Heap{5, false, 30.0, 1e-3}, Heap{10, false, 5.0, 0.05}}) {
     SCOPED_TRACE((heap.is_pyramid ? "pyramid of " : "wall of ") + std::to_string(heap.rows) + " rows");
     SmallWorld small(awake(GetParam()));
-    std::vector<std::pair<std::uint32_t, Vector3d>> bricks;
+    std::vector<std::pair<BodyId, Vector3d>> bricks;
     for (int row = 0; row < heap.rows; ++row)
       for (int i = 0; i < (heap.is_pyramid ? heap.rows - row : heap.rows); ++i) {
         const double x = heap.is_pyramid ? 0.22 * (i + 0.5 * row) : 0.2 * i + 0.06 * (row % 2);
@@ -113,14 +113,14 @@ TEST_P(FirstWeek, AFootOnARailSticksToTheFloor) {
     const auto body = small.add(hopper, at(0, 0, 0, heading));
     const Vector3d along(std::cos(heading), std::sin(heading), 0);
     for (int tick = 0; tick < 100; ++tick) {
-      small.world().push_body(body, 1, {3.0 * along, Vector3d::Zero()});
+      small.world().push_body(body, LinkId{1}, {3.0 * along, Vector3d::Zero()});
       small.world().step();
     }
     EXPECT_LT(small.position(body, 1).head<2>().norm(), 1e-3) << "held by at most 10 N";
 
     const double speed[] = {1.0};
     const double place[] = {0.0};
-    small.world().set_joint_state(body, 0, place, speed);
+    small.world().set_joint_state(body, JointId{0}, place, speed);
     small.run(1.0);
     EXPECT_LT(small.velocity(body, 1).norm(), 1e-6) << "friction stops it";
     EXPECT_NEAR(small.position(body, 1).head<2>().norm(), 1.0 / (2.0 * 9.81), 0.007);
@@ -151,18 +151,18 @@ TEST_P(FirstWeek, AnArmStopsAtItsLimit) {
     const auto body = small.add(arm, at(0, 0, 0.5));
     const double place[] = {0.5 - 0.02};
     const double rest[] = {0.0};
-    small.world().set_joint_state(body, 0, place, rest);
+    small.world().set_joint_state(body, JointId{0}, place, rest);
     if (has_motor)
-      small.world().set_joint_velocity_target(body, 0, 100.0);
+      small.world().set_joint_target(body, JointId{0}, physics::JointTarget::velocity(100.0));
     else
-      small.world().set_joint_effort_target(body, 0, 1.0);
+      small.world().set_joint_target(body, JointId{0}, physics::JointTarget::effort(1.0));
     double furthest = 0.0;
     for (int tick = 0; tick < 100; ++tick) {
       small.world().step();
-      furthest = std::max(furthest, small.world().joint_position(body, 0));
+      furthest = std::max(furthest, small.world().joint_state(body, JointId{0}).position);
     }
     EXPECT_LT(furthest, 0.5 + 0.002);
-    EXPECT_NEAR(small.world().joint_position(body, 0), 0.5, 0.002);
+    EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 0.5, 0.002);
   }
 }
 
@@ -191,7 +191,8 @@ TEST_P(FirstWeek, FingersHoldABox) {
   const auto body = small.add(gripper, at(0, 0, 0));
   const Vector3d size = Vector3d::Constant(0.05);
   const auto box = small.add(loose("box", Box{size}, solid_box(0.2, size)), at(0, 0, 0.4));
-  for (const std::size_t joint : {1, 2}) small.world().set_joint_effort_target(body, joint, 5.0);
+  for (const std::size_t joint : {1, 2})
+    small.world().set_joint_target(body, JointId{joint}, physics::JointTarget::effort(5.0));
   small.run(0.5);
   const Vector3d before = small.position(box);
   small.run(10.0);
@@ -239,7 +240,7 @@ TEST_P(FirstWeek, TracksHoldOnToMaterialsAsTheirPairSays) {
     for (description::Link& link : robot.links)
       for (description::Collision& collision : link.collisions) collision.surface.material = 2;
     const auto on_rubber = small.add(robot, at(0, 0, 0));
-    for (const std::uint32_t body : {slippery, on_rubber}) small.drive(body, 0.2, 0.2);
+    for (const BodyId body : {slippery, on_rubber}) small.drive(body, 0.2, 0.2);
     small.run(0.2);
     EXPECT_NEAR(small.velocity(slippery).x(), 0.2, 0.01) << "no pair of its material";
     EXPECT_NEAR(small.velocity(on_rubber).x(), 0.05 * 9.81 * 0.2, 0.01);
@@ -270,11 +271,12 @@ TEST_P(FirstWeek, GripsThatWereReleasedLeaveNothingBehind) {
   const auto other = small.add(loose("box", Box{size}, solid_box(1.0, size)), at(0.11, 0, 0.05));
   const auto bytes_after = [&](int grips) {
     for (int i = 0; i < grips; ++i) {
-      const std::uint32_t grip = small.world().connect(one, 0, {{0.055, 0, 0}}, other, 0);
+      const ConnectionId grip =
+          small.world().connections().connect({one, LinkId{0}}, {{0.055, 0, 0}}, {other, LinkId{0}});
       small.world().step();
-      EXPECT_TRUE(small.world().is_connected(grip));
-      small.world().disconnect(grip);
-      EXPECT_FALSE(small.world().is_connected(grip));
+      EXPECT_TRUE(small.world().connections().holds(grip));
+      small.world().connections().disconnect(grip);
+      EXPECT_FALSE(small.world().connections().holds(grip));
       if (i % 100 == 0) small.world().step();
     }
     small.world().step();

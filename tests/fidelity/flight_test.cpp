@@ -33,7 +33,7 @@ class Flight : public EveryPhysics {
     hinge.axis.direction = axis;
     return model;
   }
-  static void expect_kept(SmallWorld& small, std::uint32_t body, double share_of_energy) {
+  static void expect_kept(SmallWorld& small, BodyId body, double share_of_energy) {
     const WholeMotion before = whole_motion(small, body);
     double least = before.kinetic_energy;
     double most = before.kinetic_energy;
@@ -59,7 +59,7 @@ TEST_P(Flight, AHullWithAWheelThatSpinsKeepsItsEnergy) {
   small.world().set_root_twist(body, {Vector3d(0.5, 0.2, 0.1), Vector3d(0.1, 0, 0)});
   const double angle[] = {0.0};
   const double speed[] = {100.0};
-  small.world().set_joint_state(body, 0, angle, speed);
+  small.world().set_joint_state(body, JointId{0}, angle, speed);
   expect_kept(small, body, 0.01);
 }
 
@@ -85,9 +85,9 @@ TEST_P(Flight, PushesAndGravityChangeTheMomentumOfTheWhole) {
                               at(0, 0, 0));
   const double angle[] = {0.0};
   const double speed[] = {50.0};
-  small.world().set_joint_state(body, 0, angle, speed);
+  small.world().set_joint_state(body, JointId{0}, angle, speed);
   const WholeMotion before = whole_motion(small, body);
-  small.world().push_body(body, 0, {Vector3d(3, 0, 0), Vector3d(0, 0.2, 0)});
+  small.world().push_body(body, LinkId{0}, {Vector3d(3, 0, 0), Vector3d(0, 0.2, 0)});
   small.world().step();
   const WholeMotion after = whole_motion(small, body);
   EXPECT_LT((after.momentum - before.momentum - Vector3d(0.03, 0, -0.01 * 1.2 * 9.81)).norm(), 1e-12);

@@ -73,7 +73,7 @@ Model quadcopter(double time_constant = 0.0) {
 }
 const double hover = std::sqrt(copter_mass * g / (4.0 * motor_constant));
 
-void spin(physics::World& world, std::uint32_t body, double velocity) {
+void spin(physics::World& world, BodyId body, double velocity) {
   for (std::size_t device = 0; device < 4; ++device) world.set_rotor_velocity_target(body, device, velocity);
 }
 
@@ -89,7 +89,7 @@ TEST_P(Fluids, AQuadcopterHoversAtTheThrustThatItsWeightAsksFor) {
   small.run(1.0);
   const double climb = (1.005 * 1.005 - 1.0) * g;
   EXPECT_NEAR(small.velocity(body).z(), climb, 1e-6) << "one percent more thrust";
-  EXPECT_LT((small.world().link_acceleration(body, 0, {0.1, 0, 0}) - Vector3d(0, 0, climb)).norm(), 1e-6);
+  EXPECT_LT((small.world().link_acceleration(body, LinkId{0}, {0.1, 0, 0}) - Vector3d(0, 0, climb)).norm(), 1e-6);
 }
 
 TEST_P(Fluids, ReactionTorquesOfRotorsCancelOrTurnTheBody) {
@@ -103,7 +103,7 @@ TEST_P(Fluids, ReactionTorquesOfRotorsCancelOrTurnTheBody) {
   const double thrust = copter_mass * g / 4.0;
   const double torque = 2.0 * moment_constant * thrust * (more * more - less * less);
   const double inertia = copter_mass / 12.0 * (0.16 + 0.16);
-  EXPECT_NEAR(world.link_twist(body, 0).angular_W.z(), torque / inertia * 0.5, 1e-6)
+  EXPECT_NEAR(world.link_twist(body, LinkId{0}).angular_W.z(), torque / inertia * 0.5, 1e-6)
       << "what turns clockwise turns the body counter-clockwise";
   EXPECT_LT(small.velocity(body).norm(), 1e-9);
 }
@@ -170,10 +170,10 @@ Model anchored() {
   model.joints.push_back(joint);
   return model;
 }
-physics::Wrench wrench_on(SmallWorld& small, std::uint32_t body) {
+physics::Wrench wrench_on(SmallWorld& small, BodyId body) {
   small.world().record(body);
   small.run(0.02);
-  physics::Wrench wrench = small.world().joint_wrench(body, 0);
+  physics::Wrench wrench = small.world().joint_wrench(body, JointId{0});
   wrench.force_W = -wrench.force_W;
   wrench.torque_W = -wrench.torque_W;
   return wrench;
@@ -210,7 +210,7 @@ TEST_P(Fluids, ARotorThatComesBackAfterItsBodyWasLostStandsStill) {
   small.run(1.0);
   ASSERT_FALSE(small.world().is_active(body));
   EXPECT_GT(small.world().rotor_velocity(body, 0), 0.0);
-  small.world().put_back_body(body);
+  small.world().set_present(body, true);
   EXPECT_EQ(small.world().rotor_velocity(body, 0), 0.0);
   small.world().place_body(body, at(0, 0, 1));
   spin(small.world(), body, hover);
@@ -368,7 +368,7 @@ TEST_P(Fluids, ABoatReachesTheSpeedAtWhichItsDragIsItsThrust) {
   small.world().set_rotor_velocity_target(body, 0, 100.0);
   small.run(60.0);
   const Vector3d through_water =
-      small.world().link_pose(body, 0).orientation.conjugate() * (small.velocity(body) - current);
+      small.world().link_pose(body, LinkId{0}).orientation.conjugate() * (small.velocity(body) - current);
   EXPECT_NEAR(through_water.x(), std::sqrt(1e-3 * 100.0 * 100.0 / 8.0), 1e-3);
   EXPECT_NEAR(through_water.y(), 0.0, 1e-3);
 }
@@ -401,12 +401,12 @@ TEST_P(Fluids, ARudderTurnsABoatToItsSide) {
     drag.angular_damping = {2, 2, 2};
     boat.drags.push_back(drag);
     const auto body = small.add(boat, at(0, 0, 0));
-    small.world().set_joint_position_target(body, 0, 0.3 * side);
+    small.world().set_joint_target(body, JointId{0}, physics::JointTarget::position(0.3 * side));
     small.world().set_rotor_velocity_target(body, 1, 100.0);
     small.run(3.0);
-    EXPECT_NEAR(small.world().joint_position(body, 0), 0.3 * side, 0.02);
+    EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 0.3 * side, 0.02);
     // The end of the blade is on the right: the stern goes left.
-    EXPECT_LT(side * small.world().link_twist(body, 0).angular_W.z(), -0.1);
+    EXPECT_LT(side * small.world().link_twist(body, LinkId{0}).angular_W.z(), -0.1);
     EXPECT_GT(small.up(body).z(), 0.95);
   }
 }
@@ -443,7 +443,7 @@ TEST_P(Fluids, DragNeverTurnsTheMotionRound) {
   double before = 1e9;
   for (int i = 0; i < 200; ++i) {
     small.world().step();
-    const physics::Twist twist = small.world().link_twist(body, 0);
+    const physics::Twist twist = small.world().link_twist(body, LinkId{0});
     const double energy = 0.5e-3 * twist.linear_W.squaredNorm();
     ASSERT_LE(energy, before);
     before = energy;
@@ -628,7 +628,7 @@ struct Regatta {
   }
   void step(int tick) {
     for (std::uint32_t body = 0; body < copters; ++body)
-      spin(small.world(), body, hover * (1.0 + 0.05 * std::sin(0.1 * tick + body)));
+      spin(small.world(), BodyId{body}, hover * (1.0 + 0.05 * std::sin(0.1 * tick + body)));
     small.world().step();
   }
 };

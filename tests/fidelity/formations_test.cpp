@@ -13,22 +13,22 @@ using physics::Side;
 struct Chain {
   static constexpr double spacing = 0.13;
   SmallWorld small;
-  std::vector<std::uint32_t> robots;
-  std::vector<std::uint32_t> connections;
+  std::vector<BodyId> robots;
+  std::vector<ConnectionId> connections;
 
   Chain(const Physics& physics, int count, const physics::ConnectionLimits& limits = {}) : small(physics.world()) {
     for (int i = 0; i < count; ++i) robots.push_back(small.add(physics.robot(), at(spacing * i, 0, 0)));
     for (std::size_t i = 1; i < robots.size(); ++i)
-      connections.push_back(
-          small.world().connect(robots[i - 1], turret, {{0.5 * spacing, 0, 0.02}}, robots[i], turret, limits));
+      connections.push_back(small.world().connections().connect(
+          {robots[i - 1], LinkId{turret}}, {{0.5 * spacing, 0, 0.02}}, {robots[i], LinkId{turret}}, limits));
   }
 
   // The greatest distance between the two ends of a connection [m].
   double gap() {
     double greatest = 0.0;
     for (std::size_t i = 1; i < robots.size(); ++i) {
-      const Vector3d a = small.world().link_pose(robots[i - 1], turret) * Vector3d(0.5 * spacing, 0, 0.02);
-      const Vector3d b = small.world().link_pose(robots[i], turret) * Vector3d(-0.5 * spacing, 0, 0.02);
+      const Vector3d a = small.world().link_pose(robots[i - 1], LinkId{turret}) * Vector3d(0.5 * spacing, 0, 0.02);
+      const Vector3d b = small.world().link_pose(robots[i], LinkId{turret}) * Vector3d(-0.5 * spacing, 0, 0.02);
       greatest = std::max(greatest, (a - b).norm());
     }
     return greatest;
@@ -39,7 +39,8 @@ struct Chain {
       const auto draw = static_cast<std::uint32_t>(3 * i);
       small.drive(robots[i], 0.4 * random.uniform(tick / 20, draw) - 0.2,
                   0.4 * random.uniform(tick / 20, draw + 1) - 0.2);
-      small.world().set_joint_velocity_target(robots[i], 0, 2.0 * random.uniform(tick / 20, draw + 2) - 1.0);
+      small.world().set_joint_target(robots[i], JointId{0},
+                                     physics::JointTarget::velocity(2.0 * random.uniform(tick / 20, draw + 2) - 1.0));
     }
   }
 };
@@ -54,7 +55,7 @@ TEST_P(Formations, TwentyFiveInAChainThatAllPullElsewhereStayWithinTwoMillimetre
     chain.small.world().step();
     ASSERT_LT(chain.gap(), 2e-3) << "at tick " << tick;
   }
-  for (const std::uint32_t robot : chain.robots) EXPECT_GT(chain.small.up(robot).z(), 0.99);
+  for (const BodyId robot : chain.robots) EXPECT_GT(chain.small.up(robot).z(), 0.99);
 }
 
 TEST_P(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
@@ -69,36 +70,36 @@ TEST_P(Formations, AnIslandOfAHundredAndTwentyEightHoldsTogether) {
 TEST_P(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
   Chain chain(GetParam(), 2);
   // One pulls with all it has, the other is held by the world.
-  const auto held = chain.small.world().connect(chain.robots[0], 0, {}, 0, 0);
+  const auto held = chain.small.world().connections().connect({chain.robots[0], LinkId{0}}, {}, {BodyId{0}, LinkId{0}});
   chain.small.drive(chain.robots[1], 0.2, 0.2);
   chain.small.run(2.0);
   const double pull = 2.0 * 0.02 / 0.022;  // both motors' torque over the radius of the wheels
-  EXPECT_NEAR(chain.small.world().connection_wrench(chain.connections[0]).force_W.x(), pull, 0.01);
+  EXPECT_NEAR(chain.small.world().connections().wrench(chain.connections[0]).force_W.x(), pull, 0.01);
   // What holds the other is the world, and its own tracks, which are told to stand still.
   double own = 0.0;
   for (const Side side : {Side::left, Side::right}) own += chain.small.world().track(chain.robots[0], 0, side).traction;
-  EXPECT_NEAR(chain.small.world().connection_wrench(held).force_W.x() + own, -pull, 0.01);
+  EXPECT_NEAR(chain.small.world().connections().wrench(held).force_W.x() + own, -pull, 0.01);
 }
 
 TEST_P(Formations, AConnectionBreaksWhereItBearsLess) {
   Chain chain(GetParam(), 3, {.force = 1.0});
   chain.small.drive(chain.robots[0], -0.2, -0.2);
   chain.small.drive(chain.robots[2], 0.2, 0.2);
-  std::vector<std::uint32_t> broken;
+  std::vector<ConnectionId> broken;
   for (int tick = 0; tick < 200; ++tick) {
     chain.small.world().step();
-    const auto now = chain.small.world().broken_connections();
+    const auto now = chain.small.world().connections().broken();
     broken.insert(broken.end(), now.begin(), now.end());
   }
   EXPECT_FALSE(broken.empty());
-  for (const std::uint32_t connection : broken) EXPECT_FALSE(chain.small.world().is_connected(connection));
+  for (const ConnectionId connection : broken) EXPECT_FALSE(chain.small.world().connections().holds(connection));
   EXPECT_GT(chain.gap(), 0.1);
 }
 
 TEST_P(Formations, TwoThatLetGoOfEachOtherDriveApart) {
   Chain chain(GetParam(), 2);
   chain.small.run(0.5);
-  chain.small.world().disconnect(chain.connections[0]);
+  chain.small.world().connections().disconnect(chain.connections[0]);
   chain.small.drive(chain.robots[0], -0.1, -0.1);
   chain.small.drive(chain.robots[1], 0.1, 0.1);
   chain.small.run(2.0);
@@ -108,17 +109,17 @@ TEST_P(Formations, TwoThatLetGoOfEachOtherDriveApart) {
 TEST_P(Formations, AWallThatIsTakenOutOrMovedIsLetGoOf) {
   for (const bool is_moved : {false, true}) {
     SmallWorld small(GetParam().world());
-    const std::uint32_t wall = small.add(static_shape("wall", description::Box{{0.1, 1, 1}}), at(0.5, 0, 0.5));
-    const std::uint32_t robot = small.add(GetParam().robot(), at(0, 0, 0));
-    const std::uint32_t connection = small.world().connect(robot, 0, {}, wall, 0);
+    const BodyId wall = small.add(static_shape("wall", description::Box{{0.1, 1, 1}}), at(0.5, 0, 0.5));
+    const BodyId robot = small.add(GetParam().robot(), at(0, 0, 0));
+    const ConnectionId connection = small.world().connections().connect({robot, LinkId{0}}, {}, {wall, LinkId{0}});
     small.drive(robot, -0.1, -0.1);
     small.run(0.5);
     EXPECT_NEAR(small.position(robot).x(), 0.0, 0.01);
     if (is_moved)
       small.world().place_body(wall, at(0.6, 0, 0.5));
     else
-      small.world().remove_body(wall);
-    EXPECT_FALSE(small.world().is_connected(connection));
+      small.world().set_present(wall, false);
+    EXPECT_FALSE(small.world().connections().holds(connection));
     small.run(1.0);
     EXPECT_LT(small.position(robot).x(), -0.05);
   }

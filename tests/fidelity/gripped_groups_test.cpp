@@ -19,11 +19,11 @@ TEST(Motors, TheRotorResistsAsMuchInertiaMore) {
   model.joints[0].parent = description::Joint::world;
   model.devices.push_back(description::EffortMotor{"motor", 0, 1.0, rotor_inertia});
   const auto wheel = small.add(model, at(0, 0, 0));
-  small.world().set_joint_effort_target(wheel, 0, torque);
+  small.world().set_joint_target(wheel, JointId{0}, physics::JointTarget::effort(torque));
   small.run(1.0);
   const double inertia = 0.4 * 0.5 * 0.05 * 0.05;
-  EXPECT_NEAR(small.world().joint_velocity(wheel, 0), torque / (inertia + rotor_inertia), 1e-9);
-  EXPECT_NEAR(small.world().joint_effort(wheel, 0), torque, 1e-12);
+  EXPECT_NEAR(small.world().joint_state(wheel, JointId{0}).velocity, torque / (inertia + rotor_inertia), 1e-9);
+  EXPECT_NEAR(small.world().joint_state(wheel, JointId{0}).effort, torque, 1e-12);
 }
 
 struct Outcome {

@@ -116,8 +116,8 @@ TEST(Lifting, AloneTipsOver) {
 // The robot whose ring is in a robot's gripper.
 std::uint32_t held_by(const ShippedExperiment& run, std::uint32_t robot) {
   const auto X_WT = [&](std::uint32_t each) {
-    const auto body = *run.simulation.objects().find(run.simulation.robot_name(each));
-    return run.simulation.world().link_pose(body, turret);
+    const BodyId body{*run.simulation.objects().find(run.simulation.robot_name(each))};
+    return run.simulation.world().link_pose(body, LinkId{turret});
   };
   std::uint32_t nearest = robot;
   double least = 1e9;
@@ -227,7 +227,8 @@ TEST(GrippingSwarm, OfTwentyFiveThatPullAtRandomForTenMinutesStaysFiniteAndToget
   for (std::uint32_t robot = 0; robot < side * side; ++robot) {
     if (world.read(robot, "gripper/0/gripping") != 1.0) continue;
     const auto X_WT = [&](std::uint32_t each) {
-      return simulation.world().link_pose(*simulation.objects().find(simulation.robot_name(each)), turret);
+      const BodyId body{*simulation.objects().find(simulation.robot_name(each))};
+      return simulation.world().link_pose(body, LinkId{turret});
     };
     const Eigen::Vector3d jaw_W = X_WT(robot) * Eigen::Vector3d(0.058, 0.0, 0.02);
     double least = 1e9;

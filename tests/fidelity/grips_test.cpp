@@ -17,25 +17,25 @@ struct HeldBox {
   static constexpr double size = 0.1;
   static constexpr double inertia = mass * size * size / 6.0;
   SmallWorld small{empty_world()};
-  std::uint32_t box;
-  std::uint32_t connection;
+  BodyId box;
+  ConnectionId connection;
 
   explicit HeldBox(const ConnectionGive& give, const physics::ConnectionLimits& limits = {}) {
     small.description.gravity.setZero();
     const auto wall = small.add(static_shape("wall", description::Box{{0.1, 0.1, 0.1}}), at(0, 0, -5));
     box =
         small.add(loose("box", description::Box{{size, size, size}}, solid_box(mass, {size, size, size})), at(0, 0, 0));
-    connection = small.world().connect(box, 0, {}, wall, 0, limits);
-    small.world().set_connection_give(connection, give);
+    connection = small.world().connections().connect({box, LinkId{0}}, {}, {wall, LinkId{0}}, limits);
+    small.world().connections().set_give(connection, give);
   }
   void push(const Vector3d& force, const Vector3d& torque, double seconds) {
     for (int i = 0; i < std::lround(seconds / 0.01); ++i) {
-      small.world().push_body(box, 0, {force, torque});
+      small.world().push_body(box, LinkId{0}, {force, torque});
       small.world().step();
     }
   }
   double angle() {
-    const Eigen::Quaterniond q = small.world().link_pose(box, 0).orientation;
+    const Eigen::Quaterniond q = small.world().link_pose(box, LinkId{0}).orientation;
     return 2.0 * std::atan2(q.vec().norm(), std::abs(q.w()));
   }
 };
@@ -50,7 +50,7 @@ TEST(Give, ASpringYieldsByForceOverStiffness) {
   held.push({1.0, 0, 0}, {0, 0.1, 0}, 3.0);
   EXPECT_NEAR(held.small.position(held.box).x(), 1.0 / 200.0, 1e-6);
   EXPECT_NEAR(held.angle(), 0.1 / 5.0, 1e-5);
-  const Wrench wrench = held.small.world().connection_wrench(held.connection);
+  const Wrench wrench = held.small.world().connections().wrench(held.connection);
   EXPECT_NEAR(wrench.force_W.x(), -1.0, 1e-4);
   EXPECT_NEAR(wrench.torque_W.y(), -0.1, 1e-4);
   held.push(Vector3d::Zero(), {0, 0, 0.1}, 3.0);
@@ -109,7 +109,7 @@ TEST(Give, AboveItsHoldingForceItSlipsAndStaysWhereItCame) {
   held.push({3.0, 0, 0}, Vector3d::Zero(), 0.2);
   // (3 - 2) N on 0.5 kg for 0.2 s; then 2 N brake it: 40 mm and 20 mm.
   EXPECT_NEAR(held.small.velocity(held.box).x(), 0.4, 1e-6);
-  EXPECT_NEAR(held.small.world().connection_wrench(held.connection).force_W.x(), -2.0, 1e-6);
+  EXPECT_NEAR(held.small.world().connections().wrench(held.connection).force_W.x(), -2.0, 1e-6);
   held.small.run(1.0);
   EXPECT_NEAR(held.small.position(held.box).x(), 0.04 + 0.02, 3e-3);
   EXPECT_NEAR(held.small.velocity(held.box).x(), 0.0, 1e-9);
@@ -120,10 +120,10 @@ TEST(Give, WithoutATorqueAboutAnAxisItTurnsFreelyAboutThatAlone) {
   give.holding_torque.z() = 0.0;
   HeldBox held(give);
   held.push(Vector3d::Zero(), {0.01, 0, 0.01}, 0.5);
-  EXPECT_NEAR(held.small.world().link_twist(held.box, 0).angular_W.z(), 0.5 * 0.01 / HeldBox::inertia, 1e-3);
-  EXPECT_NEAR(held.small.world().link_twist(held.box, 0).angular_W.x(), 0.0, 1e-6);
+  EXPECT_NEAR(held.small.world().link_twist(held.box, LinkId{0}).angular_W.z(), 0.5 * 0.01 / HeldBox::inertia, 1e-3);
+  EXPECT_NEAR(held.small.world().link_twist(held.box, LinkId{0}).angular_W.x(), 0.0, 1e-6);
   EXPECT_GT(held.angle(), 1.0);
-  held.small.world().set_connection_give(held.connection, {});
+  held.small.world().connections().set_give(held.connection, {});
   held.small.run(0.1);
   const double angle = held.angle();
   held.small.run(1.0);
@@ -150,8 +150,8 @@ TEST(Give, IsSavedAndRestored) {
 TEST(Connections, BothEndsFeelTheSameAboutTheirOwnFrames) {
   HeldBox held({});
   held.push({1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, 0.5);
-  const Wrench on_a = held.small.world().connection_wrench(held.connection);
-  const Wrench on_b = held.small.world().connection_reaction(held.connection);
+  const Wrench on_a = held.small.world().connections().wrench(held.connection);
+  const Wrench on_b = held.small.world().connections().wrench(held.connection, physics::ConnectionEnd::b);
   EXPECT_LT((on_a.force_W + Vector3d(1, 2, 3)).norm(), 1e-4);
   EXPECT_LT((on_b.force_W - Vector3d(1, 2, 3)).norm(), 1e-4);
   EXPECT_LT((on_a.torque_W + Vector3d(0.1, 0.2, 0.3)).norm(), 1e-4);
@@ -161,11 +161,12 @@ TEST(Connections, BothEndsFeelTheSameAboutTheirOwnFrames) {
 TEST(Connections, TellWhatBrokeThemForOneStep) {
   HeldBox held({}, {.force = 2.0});
   held.push({3.0, 0, 0}, Vector3d::Zero(), 0.01);
-  ASSERT_EQ(held.small.world().broken_connections().size(), 1u);
-  EXPECT_NEAR(held.small.world().connection_wrench(held.connection).force_W.x(), -3.0, 1e-3);
-  EXPECT_NEAR(held.small.world().connection_reaction(held.connection).force_W.x(), 3.0, 1e-3);
+  ASSERT_EQ(held.small.world().connections().broken().size(), 1u);
+  EXPECT_NEAR(held.small.world().connections().wrench(held.connection).force_W.x(), -3.0, 1e-3);
+  EXPECT_NEAR(held.small.world().connections().wrench(held.connection, physics::ConnectionEnd::b).force_W.x(), 3.0,
+              1e-3);
   held.small.world().step();
-  EXPECT_EQ(held.small.world().connection_wrench(held.connection).force_W, Vector3d::Zero());
+  EXPECT_EQ(held.small.world().connections().wrench(held.connection).force_W, Vector3d::Zero());
 }
 
 // 0.7 kg at the end of an arm of 10 cm that weighs 50 g, at ten iterations.
@@ -174,25 +175,25 @@ TEST(Lifting, AnArmLiftsARobotAndDoesNotSag) {
   const auto lifter = small.add(with_arm(), at(0, 0, 0));
   const auto lifted = small.add(tracked_robot(), at(0.03 + arm_length + 0.058, 0, 0));
   physics::World& world = small.world();
-  world.connect(lifter, 0, {}, 0, 0);
-  const auto grip = world.connect(lifter, arm_link, {{arm_length, 0, 0}}, lifted, 1);
-  world.set_joint_position_target(lifter, elevation_joint, -0.5);
+  world.connections().connect({lifter, LinkId{0}}, {}, {BodyId{0}, LinkId{0}});
+  const auto grip = world.connections().connect({lifter, LinkId{arm_link}}, {{arm_length, 0, 0}}, {lifted, LinkId{1}});
+  world.set_joint_target(lifter, JointId{elevation_joint}, physics::JointTarget::position(-0.5));
   double gap = 0.0;
   for (int i = 0; i < 300; ++i) {
     world.step();
-    const Vector3d jaw = world.link_pose(lifter, arm_link) * Vector3d(arm_length, 0, 0);
-    gap = std::max(gap, (jaw - world.link_pose(lifted, 1) * Vector3d(-0.058, 0, 0.02)).norm());
+    const Vector3d jaw = world.link_pose(lifter, LinkId{arm_link}) * Vector3d(arm_length, 0, 0);
+    gap = std::max(gap, (jaw - world.link_pose(lifted, LinkId{1}) * Vector3d(-0.058, 0, 0.02)).norm());
   }
   EXPECT_LT(gap, 0.2e-3);
-  EXPECT_NEAR(world.joint_position(lifter, elevation_joint), -0.5, 1e-4);
-  EXPECT_NEAR(-world.connection_wrench(grip).force_W.z(), 0.7 * g, 1e-3);
+  EXPECT_NEAR(world.joint_state(lifter, JointId{elevation_joint}).position, -0.5, 1e-4);
+  EXPECT_NEAR(-world.connections().wrench(grip).force_W.z(), 0.7 * g, 1e-3);
   // Both hang on the elevation joint: the arm at half its length, the robot with its centre of mass below the jaw.
   const double arm = 0.05 * g * 0.5 * arm_length * std::cos(0.5);
-  const Vector3d joint = world.link_pose(lifter, arm_link).position;
-  const Vector3d chassis = world.link_pose(lifted, 0) * Vector3d(0, 0, 0.033);
-  const Vector3d held = world.link_pose(lifted, 1) * Vector3d(0, 0, 0.02);
+  const Vector3d joint = world.link_pose(lifter, LinkId{arm_link}).position;
+  const Vector3d chassis = world.link_pose(lifted, LinkId{0}) * Vector3d(0, 0, 0.033);
+  const Vector3d held = world.link_pose(lifted, LinkId{1}) * Vector3d(0, 0, 0.02);
   const double robot = g * (0.4 * (chassis - joint).x() + 0.3 * (held - joint).x());
-  EXPECT_NEAR(world.joint_effort(lifter, elevation_joint), -(arm + robot), 1e-3);
+  EXPECT_NEAR(world.joint_state(lifter, JointId{elevation_joint}).effort, -(arm + robot), 1e-3);
 }
 
 TEST(Lifting, ARobotThatTwoOthersHoldBackLiftsAFourth) {
@@ -202,12 +203,12 @@ TEST(Lifting, ARobotThatTwoOthersHoldBackLiftsAFourth) {
   const auto third = small.add(tracked_robot(), at(-0.26, 0, 0));
   const auto lifted = small.add(tracked_robot(), at(0.03 + arm_length + 0.058, 0, 0));
   physics::World& world = small.world();
-  world.connect(lifter, 1, {{-0.065, 0, 0.02}}, second, 1);
-  world.connect(second, 1, {{-0.065, 0, 0.02}}, third, 1);
-  world.connect(lifter, arm_link, {{arm_length, 0, 0}}, lifted, 1);
-  world.set_joint_position_target(lifter, elevation_joint, -0.3);
+  world.connections().connect({lifter, LinkId{1}}, {{-0.065, 0, 0.02}}, {second, LinkId{1}});
+  world.connections().connect({second, LinkId{1}}, {{-0.065, 0, 0.02}}, {third, LinkId{1}});
+  world.connections().connect({lifter, LinkId{arm_link}}, {{arm_length, 0, 0}}, {lifted, LinkId{1}});
+  world.set_joint_target(lifter, JointId{elevation_joint}, physics::JointTarget::position(-0.3));
   for (int i = 0; i < 300; ++i) world.step();
-  EXPECT_NEAR(world.joint_position(lifter, elevation_joint), -0.3, 1e-3);
+  EXPECT_NEAR(world.joint_state(lifter, JointId{elevation_joint}).position, -0.3, 1e-3);
   EXPECT_GT(small.position(lifted).z(), 0.02);
   EXPECT_LT(small.velocity(lifted).norm(), 1e-3);
   EXPECT_GT(small.up(lifter).z(), 0.99);

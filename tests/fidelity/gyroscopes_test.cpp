@@ -25,7 +25,7 @@ constexpr double disc_moment = 0.5 * disc_mass * radius * radius;  // about its 
 
 struct Gyroscope {
   SmallWorld small;
-  std::uint32_t body = 0;
+  BodyId body;
 
   explicit Gyroscope(const description::World& world) : small(world) {}
   double energy() {
@@ -55,7 +55,7 @@ struct Top : Gyroscope {
     model.joints.push_back(joint_of("foot", JointType::ball, description::Joint::world, 0, Vector3d::UnitZ()));
     body = small.add(model, at(0, 0, 1));
     const Eigen::Quaterniond tilted(Eigen::AngleAxisd(0.5, Vector3d::UnitX()));
-    small.world().set_joint_state(body, 0, {tilted.coeffs().data(), 4}, std::vector{0.0, 0.0, spin});
+    small.world().set_joint_state(body, JointId{0}, {tilted.coeffs().data(), 4}, std::vector{0.0, 0.0, spin});
   }
 };
 
@@ -75,7 +75,7 @@ struct OnTheGround : Gyroscope {
     model.links.push_back({"disc", at(0, 0, height), disc(0.0), {}});
     model.joints.push_back(joint_of("axle", JointType::revolute, 0, 1, Vector3d::UnitZ()));
     body = small.add(model, {{0, 0, foot}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d::UnitX()))});
-    small.world().set_joint_state(body, 0, std::vector{0.0}, std::vector{spin});
+    small.world().set_joint_state(body, JointId{0}, std::vector{0.0}, std::vector{spin});
   }
 };
 
@@ -113,7 +113,8 @@ TEST_P(Gyroscopes, ASlowPendulumOnABallJointKeepsItsEnergy) {
     model.joints.push_back(joint_of("pivot", JointType::ball, description::Joint::world, 0, Vector3d::UnitZ()));
     pendulum.body = pendulum.small.add(model, at(0, 0, 1));
     const Eigen::Quaterniond tilted(Eigen::AngleAxisd(0.5, Vector3d::UnitX()));
-    pendulum.small.world().set_joint_state(pendulum.body, 0, {tilted.coeffs().data(), 4}, std::vector{0.0, 2.0, spin});
+    pendulum.small.world().set_joint_state(pendulum.body, JointId{0}, {tilted.coeffs().data(), 4},
+                                           std::vector{0.0, 2.0, spin});
     const double before = pendulum.energy();
     const double above_the_lowest = before - disc_mass * g * 0.7;
     for (int second = 0; second < 60; ++second) {
@@ -136,11 +137,12 @@ TEST_P(Gyroscopes, ABallInATurningFrameKeepsItsSpin) {
   model.joints.push_back(joint_of("pivot", JointType::revolute, description::Joint::world, 0, Vector3d::UnitZ()));
   model.joints.push_back(joint_of("socket", JointType::ball, 0, 1, Vector3d::UnitZ()));
   mount.body = mount.small.add(model, at(0, 0, 1));
-  mount.small.world().set_joint_state(mount.body, 0, std::vector{0.0}, std::vector{1.0});
+  mount.small.world().set_joint_state(mount.body, JointId{0}, std::vector{0.0}, std::vector{1.0});
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity();
-  mount.small.world().set_joint_state(mount.body, 1, {upright.coeffs().data(), 4}, std::vector{5.0, 0.0, -1.0});
+  mount.small.world().set_joint_state(mount.body, JointId{1}, {upright.coeffs().data(), 4},
+                                      std::vector{5.0, 0.0, -1.0});
   mount.small.run(60.0);
-  const Vector3d spin_W = mount.small.world().link_twist(mount.body, 1).angular_W;
+  const Vector3d spin_W = mount.small.world().link_twist(mount.body, LinkId{1}).angular_W;
   EXPECT_NEAR((spin_W - Vector3d(5.0, 0.0, 0.0)).norm(), 0.0, 0.05);
 }
 

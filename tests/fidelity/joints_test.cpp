@@ -49,8 +49,8 @@ double period(SmallWorld& small, const std::function<double()>& x, int count) {
   return -1.0;
 }
 
-Vector3d bob_of(SmallWorld& small, std::uint32_t body) {
-  return small.world().link_pose(body, 0) * Vector3d(0, 0, -1.0);
+Vector3d bob_of(SmallWorld& small, BodyId body) {
+  return small.world().link_pose(body, LinkId{0}) * Vector3d(0, 0, -1.0);
 }
 
 TEST(Joints, APendulumHasThePeriodOfItsLength) {
@@ -73,8 +73,8 @@ TEST(Joints, AConicalPendulumOnABallJointGoesRoundAtItsHeight) {
   // Velocity on a circle of radius sin(angle): v^2 = g r tan(angle).
   const double r = std::sin(angle);
   const double v = std::sqrt(g * r * std::tan(angle));
-  const Vector3d rate_L = small.world().link_pose(body, 0).orientation.conjugate() * Vector3d(0, 0, v / r);
-  small.world().set_joint_state(body, 0, std::array{0.0, 0.0, 0.0, 1.0}, {rate_L.data(), 3});
+  const Vector3d rate_L = small.world().link_pose(body, LinkId{0}).orientation.conjugate() * Vector3d(0, 0, v / r);
+  small.world().set_joint_state(body, JointId{0}, std::array{0.0, 0.0, 0.0, 1.0}, {rate_L.data(), 3});
   const double height = bob_of(small, body).z();
   for (int i = 0; i < 2000; ++i) {
     small.world().step();
@@ -88,7 +88,7 @@ TEST(Joints, AUniversalJointTurnsAboutTwoAxesAndNotAboutTheThird) {
   for (int i = 0; i < 500; ++i) {
     small.world().step();
     // The second axis, x of the child, turns about the first, y of the model: so the two stay square to each other.
-    const Pose X_WL = small.world().link_pose(body, 0);
+    const Pose X_WL = small.world().link_pose(body, LinkId{0});
     const Eigen::Quaterniond q_ML =
         Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3d(1, 1, 0).normalized())).conjugate() * X_WL.orientation;
     ASSERT_NEAR((q_ML * Vector3d::UnitX()).y(), 0.0, 1e-9) << "at step " << i;
@@ -130,9 +130,9 @@ TEST(Joints, ASpringFarStifferThanTheStepAllowsStaysAtRest) {
 TEST(Joints, DampingSlowsDownExponentially) {
   SmallWorld small(empty_world(std::chrono::milliseconds(1)));
   const auto body = small.add(cart(0.0, 3.0), at(0, 0, 0));
-  small.world().set_joint_state(body, 0, std::array{0.0}, std::array{1.0});
+  small.world().set_joint_state(body, JointId{0}, std::array{0.0}, std::array{1.0});
   small.run(1.0);
-  EXPECT_NEAR(small.world().joint_velocity(body, 0), std::exp(-3.0 / 2.0), 1e-3);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).velocity, std::exp(-3.0 / 2.0), 1e-3);
 }
 
 TEST(Joints, FrictionBringsAJointToRestAndHoldsIt) {
@@ -140,11 +140,11 @@ TEST(Joints, FrictionBringsAJointToRestAndHoldsIt) {
   description::Model model = cart(0.0, 0.0);
   model.joints[0].axis.friction = 4.0;
   const auto body = small.add(model, at(0, 0, 0));
-  small.world().set_joint_state(body, 0, std::array{0.0}, std::array{1.0});
+  small.world().set_joint_state(body, JointId{0}, std::array{0.0}, std::array{1.0});
   small.run(1.0);
   // a = F / m = 2 m/s^2: it stops after v^2 / 2a.
-  EXPECT_NEAR(small.world().joint_position(body, 0), 0.25, 1e-3);
-  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.0, 1e-9);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 0.25, 1e-3);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).velocity, 0.0, 1e-9);
 }
 
 TEST(Joints, AMotorGivesNoMoreThanItsEffortAndKeepsItsVelocity) {
@@ -152,11 +152,11 @@ TEST(Joints, AMotorGivesNoMoreThanItsEffortAndKeepsItsVelocity) {
   description::Model model = cart(0.0, 0.0);
   model.devices.push_back(description::VelocityMotor{"motor", 0, 1.0, 3.0});
   const auto body = small.add(model, at(0, 0, 0));
-  small.world().set_joint_velocity_target(body, 0, 0.6);
+  small.world().set_joint_target(body, JointId{0}, physics::JointTarget::velocity(0.6));
   small.run(0.2);
-  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.2 * 3.0 / 2.0, 1e-9) << "a = F / m";
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).velocity, 0.2 * 3.0 / 2.0, 1e-9) << "a = F / m";
   small.run(1.0);
-  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.6, 1e-6);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).velocity, 0.6, 1e-6);
 }
 
 TEST(Joints, ALimitStopsAJointThatFallsOnIt) {
@@ -168,11 +168,11 @@ TEST(Joints, ALimitStopsAJointThatFallsOnIt) {
   double least = 0.0;
   for (int i = 0; i < 500; ++i) {
     small.world().step();
-    least = std::min(least, small.world().joint_position(body, 0));
-    ASSERT_LT(small.world().joint_position(body, 0), 0.205);
+    least = std::min(least, small.world().joint_state(body, JointId{0}).position);
+    ASSERT_LT(small.world().joint_state(body, JointId{0}).position, 0.205);
   }
   EXPECT_GT(least, -0.52);
-  EXPECT_NEAR(small.world().joint_position(body, 0), -0.5, 1e-3) << "it hangs against its limit";
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, -0.5, 1e-3) << "it hangs against its limit";
 }
 
 // About the axis of the middle moment of inertia a body turns over again and again.
@@ -181,19 +181,19 @@ TEST(Bodies, ATumblingBoxKeepsItsAngularMomentumAndItsEnergy) {
   small.description.gravity.setZero();
   const Vector3d size(0.3, 0.2, 0.1);
   const description::Inertial inertial = solid_box(1.0, size);
-  const std::uint32_t box = small.add(loose("box", description::Box{size}, inertial), at(0, 0, 5));
+  const BodyId box = small.add(loose("box", description::Box{size}, inertial), at(0, 0, 5));
   small.world().set_root_twist(box, {Vector3d(0.1, 5.0, 0.1), Vector3d::Zero()});
   const auto momentum = [&]() -> Vector3d {
-    const Eigen::Matrix3d R = small.world().link_pose(box, 0).orientation.toRotationMatrix();
-    return R * (inertial.inertia * (R.transpose() * small.world().link_twist(box, 0).angular_W));
+    const Eigen::Matrix3d R = small.world().link_pose(box, LinkId{0}).orientation.toRotationMatrix();
+    return R * (inertial.inertia * (R.transpose() * small.world().link_twist(box, LinkId{0}).angular_W));
   };
-  const auto energy = [&] { return 0.5 * momentum().dot(small.world().link_twist(box, 0).angular_W); };
+  const auto energy = [&] { return 0.5 * momentum().dot(small.world().link_twist(box, LinkId{0}).angular_W); };
   const Vector3d momentum_before = momentum();
   const double energy_before = energy();
   double turned_over = 1.0;
   for (int second = 0; second < 60; ++second) {
     small.run(1.0);
-    turned_over = std::min(turned_over, small.world().link_pose(box, 0).orientation.toRotationMatrix()(1, 1));
+    turned_over = std::min(turned_over, small.world().link_pose(box, LinkId{0}).orientation.toRotationMatrix()(1, 1));
   }
   EXPECT_LT(turned_over, 0.0);
   EXPECT_LT((momentum() - momentum_before).norm(), 1e-9 * momentum_before.norm());
@@ -219,8 +219,8 @@ TEST(Joints, ADoublePendulumKeepsItsEnergy) {
     double sum = 0.0;
     const double arms[] = {1.0, 0.5};
     for (std::size_t link = 0; link < 2; ++link) {
-      const Pose X_WL = small.world().link_pose(body, link);
-      const physics::Twist twist = small.world().link_twist(body, link);
+      const Pose X_WL = small.world().link_pose(body, LinkId{link});
+      const physics::Twist twist = small.world().link_twist(body, LinkId{link});
       const Vector3d arm = X_WL.orientation * Vector3d(0, 0, -arms[link]);
       sum += 0.5 * (twist.linear_W + twist.angular_W.cross(arm)).squaredNorm() + g * (X_WL.position + arm).z();
     }
@@ -273,7 +273,8 @@ description::Model four_wheels() {
 TEST(Joints, WheelsRollAtTheirRadiusTimesTheirRate) {
   SmallWorld small;
   const auto body = small.add(four_wheels(), at(0, 0, 0));
-  for (std::size_t wheel = 0; wheel < 4; ++wheel) small.world().set_joint_velocity_target(body, wheel, 4.0);
+  for (std::size_t wheel = 0; wheel < 4; ++wheel)
+    small.world().set_joint_target(body, JointId{wheel}, physics::JointTarget::velocity(4.0));
   small.run(2.0);
   EXPECT_NEAR(small.velocity(body).x(), 0.2, 0.001);
   const double before = small.position(body).x();

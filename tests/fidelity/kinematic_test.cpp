@@ -79,10 +79,11 @@ TEST_P(KinematicInSpace, WhatHangsOnAJointMovesAsOnTheWorld) {
   const auto of_the_world = small.add(rod(true), at(0, 0, 2));
   const auto of_a_base = small.add(rod(false), at(0, 1, 2));
   for (const auto body : {of_the_world, of_a_base})
-    small.world().set_joint_state(body, 0, std::vector{1.0}, std::vector{2.0});
+    small.world().set_joint_state(body, JointId{0}, std::vector{1.0}, std::vector{2.0});
   for (int tenth = 0; tenth < 50; ++tenth) {
     small.run(0.1);
-    ASSERT_NEAR(small.world().joint_position(of_a_base, 0), small.world().joint_position(of_the_world, 0), 1e-6);
+    ASSERT_NEAR(small.world().joint_state(of_a_base, JointId{0}).position,
+                small.world().joint_state(of_the_world, JointId{0}).position, 1e-6);
   }
   EXPECT_EQ(small.position(of_a_base), Vector3d(0, 1, 2));
 }
@@ -93,9 +94,9 @@ TEST_P(KinematicInSpace, OneThatTurnsTakesWhatHangsOnItRound) {
   const Vector3d rate_W(0, 0, 0.5);
   small.world().set_root_twist(body, {rate_W, Vector3d::Zero()});
   small.run(2.0);
-  EXPECT_EQ(small.world().link_twist(body, 0).angular_W, rate_W);
+  EXPECT_EQ(small.world().link_twist(body, LinkId{0}).angular_W, rate_W);
   for (const std::size_t link : {0, 1}) {
-    const Eigen::Quaterniond turned = small.world().link_pose(body, link).orientation;
+    const Eigen::Quaterniond turned = small.world().link_pose(body, LinkId{link}).orientation;
     EXPECT_LT(turned.angularDistance(Eigen::Quaterniond(Eigen::AngleAxisd(1.0, Vector3d::UnitZ()))), 1e-9);
   }
 }

@@ -20,14 +20,14 @@ struct DrivenRobots {
   DrivenRobots(const Physics& physics, unsigned threads) : small(physics.world(), threads) {}
 
   SmallWorld small;
-  std::vector<std::uint32_t> robots;
+  std::vector<BodyId> robots;
 
   std::uint64_t run(int ticks) {
     const RandomStream random(1, "island", "drive");
     for (int tick = 0; tick < ticks; ++tick) {
-      for (const std::uint32_t robot : robots)
-        small.drive(robot, 0.4 * random.uniform(tick / 10, 2 * robot) - 0.2,
-                    0.4 * random.uniform(tick / 10, 2 * robot + 1) - 0.2);
+      for (const BodyId robot : robots)
+        small.drive(robot, 0.4 * random.uniform(tick / 10, 2 * robot.value) - 0.2,
+                    0.4 * random.uniform(tick / 10, 2 * robot.value + 1) - 0.2);
       small.world().step();
     }
     return hash_of(small.world());
@@ -46,8 +46,12 @@ struct Raft : DrivenRobots {
     };
     for (int y = 0; y < edge; ++y) {
       for (int x = 0; x < edge; ++x) {
-        if (x > 0) small.world().connect(robot(x, y), turret, {{-0.5 * spacing, 0, 0.02}}, robot(x - 1, y), turret);
-        if (y > 0) small.world().connect(robot(x, y), turret, {{0, -0.5 * spacing, 0.02}}, robot(x, y - 1), turret);
+        if (x > 0)
+          small.world().connections().connect({robot(x, y), LinkId{turret}}, {{-0.5 * spacing, 0, 0.02}},
+                                              {robot(x - 1, y), LinkId{turret}});
+        if (y > 0)
+          small.world().connections().connect({robot(x, y), LinkId{turret}}, {{0, -0.5 * spacing, 0.02}},
+                                              {robot(x, y - 1), LinkId{turret}});
       }
     }
   }
@@ -55,7 +59,7 @@ struct Raft : DrivenRobots {
 
 // A loose board with robots that drive about on it and push each other; some stand half on it, half on the floor.
 struct CrowdedBoard : DrivenRobots {
-  std::uint32_t board = 0;
+  BodyId board;
 
   CrowdedBoard(const Physics& physics, unsigned threads) : DrivenRobots(physics, threads) {
     const Vector3d size(1.6, 1.6, 0.01);
@@ -79,7 +83,7 @@ TEST_P(LargeIslands, OnABoardThatMovesHaveTheSameBitsForAnyNumberOfThreads) {
   CrowdedBoard one(GetParam(), 1);
   const std::uint64_t expected = one.run(100);
   EXPECT_NEAR(one.small.position(one.board).z(), 0.005, 1e-3);
-  for (const std::uint32_t robot : one.robots) EXPECT_GT(one.small.up(robot).z(), 0.95);
+  for (const BodyId robot : one.robots) EXPECT_GT(one.small.up(robot).z(), 0.95);
   for (const unsigned threads : {2u, 4u, 8u})
     EXPECT_EQ(CrowdedBoard(GetParam(), threads).run(100), expected) << threads;
 }
@@ -93,20 +97,20 @@ TEST_P(LargeIslands, HoldTogetherAsSmallOnesDo) {
         (raft.small.position(raft.robots[i], turret) - raft.small.position(raft.robots[i - 1], turret)).norm();
     EXPECT_NEAR(distance, Raft::spacing, 2e-3) << i;
   }
-  for (const std::uint32_t robot : raft.robots) EXPECT_GT(raft.small.up(robot).z(), 0.99);
+  for (const BodyId robot : raft.robots) EXPECT_GT(raft.small.up(robot).z(), 0.99);
 }
 
 TEST_P(LargeIslands, GoOnWithoutABodyThatBreaks) {
   const auto broken_run = [](unsigned threads) {
     Raft raft(GetParam(), 11, threads);
     raft.run(10);
-    const std::uint32_t broken = raft.robots[60];
+    const BodyId broken = raft.robots[60];
     raft.small.world().set_root_twist(broken, {Vector3d::Zero(), Vector3d(1e9, 0, 0)});
     raft.small.world().step();
     EXPECT_EQ(raft.small.world().quarantined().size(), 1u);
     EXPECT_FALSE(raft.small.world().is_active(broken));
     const std::uint64_t hash = raft.run(50);
-    for (const std::uint32_t robot : raft.robots) {
+    for (const BodyId robot : raft.robots) {
       if (robot != broken) {
         EXPECT_GT(raft.small.up(robot).z(), 0.99);
       }

@@ -59,18 +59,18 @@ TEST_P(Mechanisms, AFourBarLinkageTurnsAsAParallelogram) {
   linkage.devices.emplace_back(description::VelocityMotor{"motor", 0, 2.0, 20.0, 0.0});
   SmallWorld small(space(9.81));
   const auto body = small.add(linkage, at(0, 0, 1));
-  small.world().set_joint_velocity_target(body, 0, 0.5);
+  small.world().set_joint_target(body, JointId{0}, physics::JointTarget::velocity(0.5));
   double widest = 0.0;
   double furthest_apart = 0.0;
   for (int tick = 0; tick < 200; ++tick) {  // by 1 rad
     small.world().step();
-    const Pose X_WC = small.world().link_pose(body, 1);
-    const Pose X_WR = small.world().link_pose(body, 2);
+    const Pose X_WC = small.world().link_pose(body, LinkId{1});
+    const Pose X_WR = small.world().link_pose(body, LinkId{2});
     widest = std::max(widest, (X_WC * Vector3d(0.3, 0, 0) - X_WR * Vector3d(0, 0, 0.2)).norm());
-    furthest_apart = std::max(furthest_apart,
-                              std::abs(small.world().joint_position(body, 0) - small.world().joint_position(body, 2)));
+    furthest_apart = std::max(furthest_apart, std::abs(small.world().joint_state(body, JointId{0}).position -
+                                                       small.world().joint_state(body, JointId{2}).position));
   }
-  EXPECT_NEAR(small.world().joint_position(body, 0), 1.0, 0.01);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 1.0, 0.01);
   EXPECT_LT(widest, 1e-4) << "the gap where the loop closes";
   EXPECT_LT(furthest_apart, 1e-3);
   EXPECT_NEAR(small.position(body, 1).y(), 0.0, 1e-6) << "it stays in its plane";
@@ -90,11 +90,11 @@ TEST_P(Mechanisms, EveryKindOfLoopHolds) {
     SmallWorld small(space(9.81));
     const auto body = small.add(model, at(0, 0, 1));
     for (int tick = 0; tick < 200; ++tick) {
-      small.world().push_body(body, 0, {Vector3d(0, 3.0, 0), Vector3d(0.01, 0, 0)});
+      small.world().push_body(body, LinkId{0}, {Vector3d(0, 3.0, 0), Vector3d(0.01, 0, 0)});
       small.world().step();
     }
-    EXPECT_LT((small.world().link_pose(body, 0) * Vector3d(0.4, 0, 0) - Vector3d(0.4, 0, 1)).norm(), 1e-4);
-    const double turns = small.world().link_twist(body, 0).angular_W.x();
+    EXPECT_LT((small.world().link_pose(body, LinkId{0}) * Vector3d(0.4, 0, 0) - Vector3d(0.4, 0, 1)).norm(), 1e-4);
+    const double turns = small.world().link_twist(body, LinkId{0}).angular_W.x();
     if (type == JointType::fixed)
       EXPECT_NEAR(turns, 0.0, 1e-6);
     else
@@ -108,11 +108,12 @@ TEST_P(Mechanisms, AFollowerFollowsAndIsFelt) {
   model.devices.emplace_back(description::EffortMotor{"motor", 0, 1.0, 0.0});
   SmallWorld small(space());
   const auto body = small.add(model, at(0, 0, 1));
-  small.world().set_joint_effort_target(body, 0, 0.05);
+  small.world().set_joint_target(body, JointId{0}, physics::JointTarget::effort(0.05));
   small.run(0.5);
   const double inertia = solid_box(0.5, {0.22, 0.02, 0.02}).inertia(2, 2) + 0.5 * 0.01;
-  EXPECT_NEAR(small.world().joint_velocity(body, 0), 0.05 * 0.5 / (inertia + 4.0 * inertia), 1e-4);
-  EXPECT_NEAR(small.world().joint_position(body, 1), -2.0 * small.world().joint_position(body, 0), 1e-6);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).velocity, 0.05 * 0.5 / (inertia + 4.0 * inertia), 1e-4);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{1}).position,
+              -2.0 * small.world().joint_state(body, JointId{0}).position, 1e-6);
 }
 
 TEST_P(Mechanisms, AFollowerKeepsItsOffset) {
@@ -120,10 +121,10 @@ TEST_P(Mechanisms, AFollowerKeepsItsOffset) {
   model.devices.emplace_back(description::PositionMotor{"motor", 0, 2.0, 50.0, 0.0});
   SmallWorld small(space(9.81));
   const auto body = small.add(model, at(0, 0, 1));
-  small.world().set_joint_position_target(body, 0, 1.0);
+  small.world().set_joint_target(body, JointId{0}, physics::JointTarget::position(1.0));
   small.run(3.0);
-  EXPECT_NEAR(small.world().joint_position(body, 0), 1.0, 1e-4);
-  EXPECT_NEAR(small.world().joint_position(body, 1), 0.4, 1e-4);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 1.0, 1e-4);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{1}).position, 0.4, 1e-4);
 }
 
 // A weight on a thread without friction turns itself down.
@@ -142,7 +143,8 @@ TEST_P(Mechanisms, AWeightOnAScrewTurnsAsItSinks) {
   const double inertia = description::solid_cylinder(1.0, 0.05, 0.02, 0.0).inertia(2, 2);
   const double acceleration = 9.81 / (1.0 + inertia * radians_a_metre * radians_a_metre);
   EXPECT_NEAR(small.velocity(body).z(), -acceleration, 1e-3 * acceleration);
-  EXPECT_NEAR(small.world().joint_position(body, 0) / radians_a_metre, small.position(body).z() - 1.0, 1e-6);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position / radians_a_metre, small.position(body).z() - 1.0,
+              1e-6);
 }
 
 TEST_P(Mechanisms, GoOnFromASnapshotAndPassTheirForcesOn) {
@@ -162,12 +164,12 @@ TEST_P(Mechanisms, GoOnFromASnapshotAndPassTheirForcesOn) {
   small.world().record(body);
   small.run(1.0);
   // At rest both bars bear half of what hangs on them.
-  EXPECT_NEAR(small.world().joint_wrench(body, 0).force_W.z(), 0.75 * 9.81, 1e-3);
-  EXPECT_NEAR(small.world().joint_wrench(body, 1).force_W.z(), 0.75 * 9.81, 1e-3);
+  EXPECT_NEAR(small.world().joint_wrench(body, JointId{0}).force_W.z(), 0.75 * 9.81, 1e-3);
+  EXPECT_NEAR(small.world().joint_wrench(body, JointId{1}).force_W.z(), 0.75 * 9.81, 1e-3);
   SmallWorld restored(small.description);
   restore_from(small.world(), restored.world());
-  small.world().push_body(body, 2, {Vector3d(5, 0, 0), Vector3d::Zero()});
-  restored.world().push_body(body, 2, {Vector3d(5, 0, 0), Vector3d::Zero()});
+  small.world().push_body(body, LinkId{2}, {Vector3d(5, 0, 0), Vector3d::Zero()});
+  restored.world().push_body(body, LinkId{2}, {Vector3d(5, 0, 0), Vector3d::Zero()});
   for (SmallWorld* world : {&small, &restored}) world->run(1.0);
   EXPECT_EQ(hash_of(small.world()), hash_of(restored.world()));
 }

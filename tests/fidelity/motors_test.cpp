@@ -36,17 +36,17 @@ TEST(Motors, GoToAPositionNoFasterThanTheyMayAndStay) {
   SmallWorld small(empty_world());
   const auto body = small.add(driven(JointType::prismatic, 0.5, 100.0), at(0, 0, 0));
   physics::World& world = small.world();
-  world.set_joint_position_target(body, 0, 0.123);
+  world.set_joint_target(body, JointId{0}, physics::JointTarget::position(0.123));
   for (int i = 0; i < 100; ++i) {
     world.step();
-    ASSERT_LE(world.joint_velocity(body, 0), 0.5 + 1e-9);
-    ASSERT_LE(world.joint_position(body, 0), 0.123 + 1e-6) << "at step " << i;
+    ASSERT_LE(world.joint_state(body, JointId{0}).velocity, 0.5 + 1e-9);
+    ASSERT_LE(world.joint_state(body, JointId{0}).position, 0.123 + 1e-6) << "at step " << i;
   }
-  EXPECT_NEAR(world.joint_position(body, 0), 0.123, 1e-6);
-  EXPECT_NEAR(world.joint_velocity(body, 0), 0.0, 1e-6);
-  world.set_joint_position_target(body, 0, -0.1);
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).position, 0.123, 1e-6);
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).velocity, 0.0, 1e-6);
+  world.set_joint_target(body, JointId{0}, physics::JointTarget::position(-0.1));
   small.run(1.0);
-  EXPECT_NEAR(world.joint_position(body, 0), -0.1, 1e-6);
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).position, -0.1, 1e-6);
 }
 
 TEST(Motors, ThatAreWeakBrakeInTimeForTheirPosition) {
@@ -55,14 +55,14 @@ TEST(Motors, ThatAreWeakBrakeInTimeForTheirPosition) {
     // 1 m/s^2 to speed up and to brake: it never gets to its greatest velocity.
     const auto body = small.add(driven(JointType::prismatic, 5.0, moved_mass * 1.0), at(0, 0, 0));
     physics::World& world = small.world();
-    world.set_joint_position_target(body, 0, 1.0);
+    world.set_joint_target(body, JointId{0}, physics::JointTarget::position(1.0));
     double greatest = 0.0;
     double seconds = 0.0;
-    while (std::abs(world.joint_position(body, 0) - 1.0) > 1e-3 && seconds < 5.0) {
+    while (std::abs(world.joint_state(body, JointId{0}).position - 1.0) > 1e-3 && seconds < 5.0) {
       world.step();
       seconds += 1e-3 * step;
-      greatest = std::max(greatest, world.joint_velocity(body, 0));
-      ASSERT_LE(world.joint_position(body, 0), 1.0 + 1e-9) << "after " << seconds << " s";
+      greatest = std::max(greatest, world.joint_state(body, JointId{0}).velocity);
+      ASSERT_LE(world.joint_state(body, JointId{0}).position, 1.0 + 1e-9) << "after " << seconds << " s";
     }
     // Half the way faster, half the way slower: t = 2 sqrt(s / a), v = sqrt(s a).
     EXPECT_NEAR(seconds, 2.0, 0.1) << "steps of " << step << " ms";
@@ -77,17 +77,17 @@ TEST(Motors, HoldAnArmAgainstItsWeightWithoutSagging) {
     const auto body = small.add(driven(JointType::revolute, 2.0, strength * moment), at(0, 0, 0));
     physics::World& world = small.world();
     for (const double target : {0.0, -0.4, 0.3}) {  // level, above and below
-      world.set_joint_position_target(body, 0, target);
-      const double from = world.joint_position(body, 0);
+      world.set_joint_target(body, JointId{0}, physics::JointTarget::position(target));
+      const double from = world.joint_state(body, JointId{0}).position;
       double beyond = 0.0;
       for (int i = 0; i < 400; ++i) {
         world.step();
-        const double position = world.joint_position(body, 0);
+        const double position = world.joint_state(body, JointId{0}).position;
         beyond = std::max(beyond, target > from ? position - target : target - position);
       }
-      EXPECT_NEAR(world.joint_position(body, 0), target, 1e-6) << strength << " times what holds it";
+      EXPECT_NEAR(world.joint_state(body, JointId{0}).position, target, 1e-6) << strength << " times what holds it";
       EXPECT_LT(beyond, 0.01) << strength << " times what holds it, to " << target;
-      EXPECT_NEAR(world.joint_effort(body, 0), -moment * std::cos(target), 1e-6);
+      EXPECT_NEAR(world.joint_state(body, JointId{0}).effort, -moment * std::cos(target), 1e-6);
     }
   }
 }
@@ -95,10 +95,10 @@ TEST(Motors, HoldAnArmAgainstItsWeightWithoutSagging) {
 TEST(Motors, ThatAreTooWeakForAPositionGiveAllTheyHave) {
   SmallWorld small(empty_world());
   const auto body = small.add(driven(JointType::revolute, 2.0, 0.3), at(0, 0, 0));
-  small.world().set_joint_position_target(body, 0, 0.0);
+  small.world().set_joint_target(body, JointId{0}, physics::JointTarget::position(0.0));
   small.run(0.1);
-  EXPECT_GT(small.world().joint_position(body, 0), 0.01) << "it sinks";
-  EXPECT_NEAR(small.world().joint_effort(body, 0), -0.3, 1e-9);
+  EXPECT_GT(small.world().joint_state(body, JointId{0}).position, 0.01) << "it sinks";
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).effort, -0.3, 1e-9);
 }
 
 TEST(Motors, GoNoFurtherThanTheJointsLimits) {
@@ -106,32 +106,32 @@ TEST(Motors, GoNoFurtherThanTheJointsLimits) {
   description::Model model = driven(JointType::prismatic, 0.5, 10.0);
   model.joints[0].axis.upper = 0.2;
   const auto body = small.add(model, at(0, 0, 0));
-  small.world().set_joint_position_target(body, 0, 1.0);
+  small.world().set_joint_target(body, JointId{0}, physics::JointTarget::position(1.0));
   small.run(2.0);
-  EXPECT_NEAR(small.world().joint_position(body, 0), 0.2, 1e-6);
-  EXPECT_NEAR(small.world().joint_effort(body, 0), 0.0, 1e-6) << "and do not push against them";
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 0.2, 1e-6);
+  EXPECT_NEAR(small.world().joint_state(body, JointId{0}).effort, 0.0, 1e-6) << "and do not push against them";
 }
 
 TEST(Motors, GiveAnEffortThatIsToldNoMoreThanTheyMay) {
   SmallWorld small(empty_world());
   const auto body = small.add(driven(JointType::prismatic, 0.5, 2.0), at(0, 0, 0));
   physics::World& world = small.world();
-  world.set_joint_effort_target(body, 0, 1.5);
+  world.set_joint_target(body, JointId{0}, physics::JointTarget::effort(1.5));
   small.run(0.5);
-  EXPECT_NEAR(world.joint_velocity(body, 0), 0.5 * 1.5 / moved_mass, 1e-9) << "a = F / m";
-  EXPECT_NEAR(world.joint_effort(body, 0), 1.5, 1e-12);
-  world.set_joint_effort_target(body, 0, -7.0);
-  const double before = world.joint_velocity(body, 0);
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).velocity, 0.5 * 1.5 / moved_mass, 1e-9) << "a = F / m";
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).effort, 1.5, 1e-12);
+  world.set_joint_target(body, JointId{0}, physics::JointTarget::effort(-7.0));
+  const double before = world.joint_state(body, JointId{0}).velocity;
   small.run(0.1);
-  EXPECT_NEAR(world.joint_velocity(body, 0) - before, -0.1 * 2.0 / moved_mass, 1e-9);
-  EXPECT_NEAR(world.joint_effort(body, 0), -2.0, 1e-12);
-  world.set_joint_effort_target(body, 0, 0.0);
-  const double rolling = world.joint_velocity(body, 0);
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).velocity - before, -0.1 * 2.0 / moved_mass, 1e-9);
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).effort, -2.0, 1e-12);
+  world.set_joint_target(body, JointId{0}, physics::JointTarget::effort(0.0));
+  const double rolling = world.joint_state(body, JointId{0}).velocity;
   small.run(0.1);
-  EXPECT_NEAR(world.joint_velocity(body, 0), rolling, 1e-12) << "it runs freely";
-  world.set_joint_velocity_target(body, 0, 0.0);
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).velocity, rolling, 1e-12) << "it runs freely";
+  world.set_joint_target(body, JointId{0}, physics::JointTarget::velocity(0.0));
   small.run(3.0);
-  EXPECT_NEAR(world.joint_velocity(body, 0), 0.0, 1e-9) << "told a velocity again, it brakes";
+  EXPECT_NEAR(world.joint_state(body, JointId{0}).velocity, 0.0, 1e-9) << "told a velocity again, it brakes";
 }
 
 TEST(Motors, AnEffortHasTheSameEffectWithEverySolver) {
@@ -139,10 +139,10 @@ TEST(Motors, AnEffortHasTheSameEffectWithEverySolver) {
     SmallWorld small;
     small.description.physics.solver = solver;
     const auto robot = small.add(tracked_robot(), at(0, 0, 0));
-    small.world().set_joint_effort_target(robot, 0, 1e-4);
+    small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::effort(1e-4));
     small.run(0.2);
     // The turret against the chassis, which stands: its own moment of inertia about z.
-    EXPECT_NEAR(small.world().joint_velocity(robot, 0), 0.2 * 1e-4 / (0.3 * 0.058 * 0.058 / 2.0), 1e-3);
+    EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).velocity, 0.2 * 1e-4 / (0.3 * 0.058 * 0.058 / 2.0), 1e-3);
   }
 }
 
@@ -150,14 +150,14 @@ TEST(Motors, InThePlaneGoToTheirPositionAndStayWhereAnEffortIsTold) {
   SmallWorld small;
   small.description.physics.fidelity = description::Fidelity::planar;
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
-  small.world().set_joint_position_target(robot, 0, 0.5);
+  small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::position(0.5));
   small.run(0.2);
-  EXPECT_NEAR(small.world().joint_position(robot, 0), 0.2 * 1.5, 1e-9) << "as fast as it may";
+  EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).position, 0.2 * 1.5, 1e-9) << "as fast as it may";
   small.run(1.0);
-  EXPECT_NEAR(small.world().joint_position(robot, 0), 0.5, 1e-12);
-  small.world().set_joint_effort_target(robot, 0, 0.1);
+  EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).position, 0.5, 1e-12);
+  small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::effort(0.1));
   small.run(0.2);
-  EXPECT_NEAR(small.world().joint_position(robot, 0), 0.5, 1e-12);
+  EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).position, 0.5, 1e-12);
 }
 
 TEST(Motors, WhatTheyAreToldIsSavedAndIsPartOfTheHash) {
@@ -165,11 +165,11 @@ TEST(Motors, WhatTheyAreToldIsSavedAndIsPartOfTheHash) {
     SmallWorld small;
     small.description.physics.fidelity = fidelity;
     const auto robot = small.add(tracked_robot(), at(0, 0, 0));
-    small.world().set_joint_velocity_target(robot, 0, 0.3);
+    small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::velocity(0.3));
     const auto velocity = hash_of(small.world());
-    small.world().set_joint_effort_target(robot, 0, 0.3);
+    small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::effort(0.3));
     const auto effort = hash_of(small.world());
-    small.world().set_joint_position_target(robot, 0, 0.3);
+    small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::position(0.3));
     const auto position = hash_of(small.world());
     EXPECT_NE(velocity, position);
     EXPECT_NE(velocity, effort);
@@ -183,7 +183,7 @@ TEST(Motors, WhatTheyAreToldIsSavedAndIsPartOfTheHash) {
       small.world().step();
       ASSERT_EQ(hash_of(*restored), hash_of(small.world())) << "at step " << i;
     }
-    EXPECT_NEAR(restored->joint_position(robot, 0), 0.3, 1e-6);
+    EXPECT_NEAR(restored->joint_state(robot, JointId{0}).position, 0.3, 1e-6);
   }
 }
 

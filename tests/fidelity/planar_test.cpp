@@ -19,8 +19,8 @@ description::Model box(double mass, const Vector3d& size, description::Surface s
   return loose("box", Box{size}, solid_box(mass, size), surface);
 }
 
-double heading(SmallWorld& small, std::uint32_t body) {
-  const Vector3d forward = small.world().link_pose(body, 0).orientation * Vector3d::UnitX();
+double heading(SmallWorld& small, BodyId body) {
+  const Vector3d forward = small.world().link_pose(body, LinkId{0}).orientation * Vector3d::UnitX();
   return std::atan2(forward.y(), forward.x());
 }
 
@@ -42,7 +42,7 @@ TEST(Planar, ARobotTurnsAsItsTracksDiffer) {
   const auto robot = small.add(tracked_robot(), at(0, 0, 0));
   small.drive(robot, -0.02, 0.06);
   small.run(0.5);
-  EXPECT_NEAR(small.world().link_twist(robot, 0).angular_W.z(), 0.08 / 0.08, 0.005);
+  EXPECT_NEAR(small.world().link_twist(robot, LinkId{0}).angular_W.z(), 0.08 / 0.08, 0.005);
   const double before = heading(small, robot);
   small.run(1.0);
   EXPECT_NEAR(heading(small, robot) - before, 1.0, 0.005);
@@ -95,7 +95,7 @@ TEST(Planar, WhatIsLowerThanABodyIsNoWall) {
 
 TEST(Planar, RobotsInACrowdNeverPassThroughEachOther) {
   SmallWorld small(planar.world());
-  std::vector<std::uint32_t> robots;
+  std::vector<BodyId> robots;
   for (int i = 0; i < 36; ++i) robots.push_back(small.add(tracked_robot(), at(0.13 * (i % 6), 0.13 * (i / 6), 0, i)));
   for (const double x : {-0.15, 0.8}) small.add(static_shape("wall", Box{{0.1, 2, 0.3}}), at(x, 0.3, 0.15));
   for (const double y : {-0.15, 0.8}) small.add(static_shape("wall", Box{{2, 0.1, 0.3}}), at(0.3, y, 0.15));
@@ -124,7 +124,7 @@ TEST(Planar, MomentumStaysInACollisionOfDiscs) {
     double sum = 0.0;
     for (const auto& [body, mass] : {std::pair{one, 1.0}, std::pair{two, 3.0}}) {
       sum += mass * small.position(body).cross(small.velocity(body)).z();
-      sum += 0.5 * mass * 0.05 * 0.05 * small.world().link_twist(body, 0).angular_W.z();
+      sum += 0.5 * mass * 0.05 * 0.05 * small.world().link_twist(body, LinkId{0}).angular_W.z();
     }
     return sum;
   };
@@ -167,9 +167,9 @@ TEST(Planar, FrictionStopsASpinningPuck) {
   // The torque 2/3 mu m g r on the inertia m r^2 / 2 stops it after w r / (4/3 mu g).
   const double stops = 5.0 * 0.04 / (4.0 / 3.0 * 0.3 * g);
   small.run(0.5 * stops);
-  EXPECT_NEAR(small.world().link_twist(puck, 0).angular_W.z(), 2.5, 0.5);
+  EXPECT_NEAR(small.world().link_twist(puck, LinkId{0}).angular_W.z(), 2.5, 0.5);
   small.run(0.5 * stops + 0.02);
-  EXPECT_EQ(small.world().link_twist(puck, 0).angular_W.z(), 0.0);
+  EXPECT_EQ(small.world().link_twist(puck, LinkId{0}).angular_W.z(), 0.0);
 }
 
 TEST(Planar, APairOfMaterialsHasItsOwnFriction) {
@@ -242,16 +242,16 @@ TEST(Planar, AMotorTurnsItsJointAsCommandedUpToItsLimit) {
   model.joints[0].axis.upper = 1.0;
   SmallWorld small(planar.world());
   const auto robot = small.add(model, at(0, 0, 0, 0.3));
-  small.world().set_joint_velocity_target(robot, 0, 0.5);
+  small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::velocity(0.5));
   small.run(1.0);
-  EXPECT_NEAR(small.world().joint_position(robot, 0), 0.5, 1e-9);
-  EXPECT_EQ(small.world().joint_velocity(robot, 0), 0.5);
-  EXPECT_NEAR(small.world().link_twist(robot, turret).angular_W.z(), 0.5, 1e-9);
-  const Vector3d forward = small.world().link_pose(robot, turret).orientation * Vector3d::UnitX();
+  EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).position, 0.5, 1e-9);
+  EXPECT_EQ(small.world().joint_state(robot, JointId{0}).velocity, 0.5);
+  EXPECT_NEAR(small.world().link_twist(robot, LinkId{turret}).angular_W.z(), 0.5, 1e-9);
+  const Vector3d forward = small.world().link_pose(robot, LinkId{turret}).orientation * Vector3d::UnitX();
   EXPECT_NEAR(std::atan2(forward.y(), forward.x()), 0.8, 1e-9);
   small.run(2.0);
-  EXPECT_NEAR(small.world().joint_position(robot, 0), 1.0, 1e-9);
-  EXPECT_EQ(small.world().joint_velocity(robot, 0), 0.0);
+  EXPECT_NEAR(small.world().joint_state(robot, JointId{0}).position, 1.0, 1e-9);
+  EXPECT_EQ(small.world().joint_state(robot, JointId{0}).velocity, 0.0);
 }
 
 TEST(Planar, WhatATurretCarriesSweepsAwayWhatIsLoose) {
@@ -261,7 +261,7 @@ TEST(Planar, WhatATurretCarriesSweepsAwayWhatIsLoose) {
   const auto robot = small.add(model, at(0, 0, 0));
   const auto post =
       small.add(loose("post", Cylinder{0.02, 0.2}, solid_cylinder(0.05, 0.02, 0.2, 0.0)), at(0.08, 0.1, 0.1));
-  small.world().set_joint_velocity_target(robot, 0, 1.0);
+  small.world().set_joint_target(robot, JointId{0}, physics::JointTarget::velocity(1.0));
   small.run(2.0);
   EXPECT_LT(small.position(post).x(), 0.02) << "swept along";
   EXPECT_GT((small.position(post) - small.position(robot)).head<2>().norm(), 0.058 + 0.02 - 2e-3);

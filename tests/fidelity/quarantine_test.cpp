@@ -11,13 +11,13 @@ using Eigen::Vector3d;
 // A dozen robots that drive about and push each other.
 struct Crowd {
   SmallWorld small;
-  std::vector<std::uint32_t> robots;
+  std::vector<BodyId> robots;
 
   explicit Crowd(const Physics& physics) : small(physics.world()) {
     for (int i = 0; i < 12; ++i) robots.push_back(small.add(physics.robot(), at(0.13 * (i % 4), 0.13 * (i / 4), 0, i)));
   }
   void set_off() {
-    for (const std::uint32_t robot : robots) small.drive(robot, 0.1, 0.1 + 0.005 * robot);
+    for (const BodyId robot : robots) small.drive(robot, 0.1, 0.1 + 0.005 * robot.value);
   }
 };
 
@@ -52,7 +52,7 @@ TEST_P(Quarantine, ABodyThatBreaksWhileItTouchesOthersLeavesThemWhole) {
   crowd.small.run(1.0);
   crowd.small.world().set_root_twist(crowd.robots[5], {Vector3d::Constant(std::nan("")), Vector3d::Zero()});
   crowd.small.run(2.0);
-  for (const std::uint32_t robot : crowd.robots) {
+  for (const BodyId robot : crowd.robots) {
     EXPECT_EQ(crowd.small.world().is_active(robot), robot != crowd.robots[5]);
     EXPECT_TRUE(crowd.small.position(robot).allFinite());
     EXPECT_LT(crowd.small.velocity(robot).norm(), 1.0);

@@ -161,7 +161,7 @@ TEST(Scenes, SmallThingsLieOnAVeryLargeOneThatMoves) {
   const auto raft = small.add(loose("raft", Box{raft_size}, solid_box(400.0, raft_size), {0.0, 0.0}), at(0, 0, 0.25));
   small.description.models.edit(small.description.models.size() - 1).links[0].collisions[0].surface.friction = 1.0;
   small.description.models.edit(0).links[0].collisions[0].surface.friction = 0.0;
-  std::vector<std::uint32_t> balls;
+  std::vector<BodyId> balls;
   balls.reserve(20);
   for (int i = 0; i < 20; ++i)
     balls.push_back(small.add(loose("ball", description::Sphere{0.02}, solid_sphere(0.03, 0.02)),

@@ -163,7 +163,8 @@ TEST(ShippedExperiments, TheArmComesToItsAngles) {
   int joint = 0;
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     if (model.joints[i].type != description::JointType::revolute) continue;
-    EXPECT_NEAR(run.simulation.world().joint_position(arm, i), expected[joint++], 0.05) << model.joints[i].name;
+    EXPECT_NEAR(run.simulation.world().joint_state(BodyId{arm}, JointId{i}).position, expected[joint++], 0.05)
+        << model.joints[i].name;
   }
   EXPECT_EQ(joint, 3);
   EXPECT_NEAR(run.position("ball").z(), 0.03, 0.01) << "it fell from where the event put it";

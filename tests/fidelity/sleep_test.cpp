@@ -18,18 +18,18 @@ description::Model small_box(double mass = 1.0) {
 }
 
 // Boxes on each other at x, from the bottom up.
-std::vector<std::uint32_t> add_stack(SmallWorld& small, double x, int boxes, double mass = 1.0) {
-  std::vector<std::uint32_t> stack;
+std::vector<BodyId> add_stack(SmallWorld& small, double x, int boxes, double mass = 1.0) {
+  std::vector<BodyId> stack;
   stack.reserve(static_cast<std::size_t>(boxes));
   for (int i = 0; i < boxes; ++i) stack.push_back(small.add(small_box(mass), at(x, 0, edge * (0.5 + i))));
   return stack;
 }
 
-bool all_sleep(SmallWorld& small, const std::vector<std::uint32_t>& bodies) {
-  return std::ranges::all_of(bodies, [&](std::uint32_t body) { return small.world().is_asleep(body); });
+bool all_sleep(SmallWorld& small, const std::vector<BodyId>& bodies) {
+  return std::ranges::all_of(bodies, [&](BodyId body) { return small.world().is_asleep(body); });
 }
-bool none_sleeps(SmallWorld& small, const std::vector<std::uint32_t>& bodies) {
-  return std::ranges::none_of(bodies, [&](std::uint32_t body) { return small.world().is_asleep(body); });
+bool none_sleeps(SmallWorld& small, const std::vector<BodyId>& bodies) {
+  return std::ranges::none_of(bodies, [&](BodyId body) { return small.world().is_asleep(body); });
 }
 
 class Sleeping : public EveryPhysics {
@@ -45,8 +45,8 @@ INSTANTIATE_TEST_SUITE_P(Every, Sleeping, ::testing::Values(treel, by_bullet(tre
 TEST_P(Sleeping, WhatHasBeenStillForHalfASecondSleepsWithAllThatItTouches) {
   SmallWorld small = floor();
   const auto stack = add_stack(small, 0.0, 5);
-  const std::uint32_t robot = small.add(GetParam().robot(), at(1, 0, 0));
-  const std::uint32_t dropped = small.add(small_box(), at(2, 0, 1.3));  // falls for half a second
+  const BodyId robot = small.add(GetParam().robot(), at(1, 0, 0));
+  const BodyId dropped = small.add(small_box(), at(2, 0, 1.3));  // falls for half a second
   small.run(0.4);
   EXPECT_TRUE(none_sleeps(small, stack));
   small.run(5.0);
@@ -70,7 +70,7 @@ TEST_P(Sleeping, AHashTellsWhoSleepsAndASnapshotKeepsIt) {
   restore_from(small.world(), *restored);
   EXPECT_EQ(hash_of(*restored), asleep);
   for (physics::World* world : {&small.world(), restored.get()}) {
-    world->push_body(stack[1], 0, {{3, 0, 0}, {0, 0, 0}});
+    world->push_body(stack[1], LinkId{0}, {{3, 0, 0}, {0, 0, 0}});
     for (int i = 0; i < 20; ++i) world->step();
   }
   EXPECT_FALSE(small.world().is_asleep(stack[0]));
@@ -85,9 +85,8 @@ TEST_P(Sleeping, ABlowWakesWhatItHitsAsIfThatHadBeenAwakeAndNothingElse) {
     world.physics.sleeping = sleeping;
     SmallWorld small(world, threads);
     const auto stack = add_stack(small, 0.0, 3, 0.3);
-    const std::uint32_t ball =
-        small.add(loose("ball", description::Sphere{0.05}, solid_sphere(1.0, 0.05)), at(-2.0, 0, 0.05));
-    const auto far = other_stack ? add_stack(small, 3.0, 3) : std::vector<std::uint32_t>{};
+    const BodyId ball = small.add(loose("ball", description::Sphere{0.05}, solid_sphere(1.0, 0.05)), at(-2.0, 0, 0.05));
+    const auto far = other_stack ? add_stack(small, 3.0, 3) : std::vector<BodyId>{};
     small.world().set_root_twist(ball, {{0, 20, 0}, {1.0, 0, 0}});
     small.run(1.7);
     EXPECT_EQ(small.world().is_asleep(stack[0]), sleeping);
@@ -96,7 +95,7 @@ TEST_P(Sleeping, ABlowWakesWhatItHitsAsIfThatHadBeenAwakeAndNothingElse) {
     EXPECT_EQ(all_sleep(small, far), sleeping || far.empty());
     std::vector<Eigen::Vector3d> places;
     places.reserve(stack.size());
-    for (const std::uint32_t body : stack) places.push_back(small.position(body));
+    for (const BodyId body : stack) places.push_back(small.position(body));
     return std::pair(places, hash_of(small.world(), std::vector{stack[0], stack[1], stack[2], ball}));
   };
   const auto [asleep, hash] = end_of(true, false, 1);
@@ -115,33 +114,42 @@ TEST_P(Sleeping, EveryChangeFromOutsideWakes) {
     small.add(GetParam().robot(), at(1, 0, 0));  // 3
     small.add(small_box(), at(2, 0, 0.05));      // 4
     small.run(3.0);
-    EXPECT_TRUE(all_sleep(small, {1, 2, 3, 4}));
+    EXPECT_TRUE(all_sleep(small, {BodyId{1}, BodyId{2}, BodyId{3}, BodyId{4}}));
     change(small);
     small.world().step();
     std::string awake;
-    for (const std::uint32_t body : {1, 2, 3, 4})
-      if (small.world().is_active(body) && !small.world().is_asleep(body)) awake += std::to_string(body);
+    for (const BodyId body : {BodyId{1}, BodyId{2}, BodyId{3}, BodyId{4}})
+      if (small.world().activity(body) == physics::Activity::awake) awake += std::to_string(body.value);
     return awake;
   };
   EXPECT_EQ(wakes([](SmallWorld&) {}), "");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().push_body(2, 0, {{0, 0, 1}, {0, 0, 0}}); }), "12");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().set_root_twist(4, {{0, 0, 0}, {0.1, 0, 0}}); }), "4");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().remove_body(1); }), "2");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().place_body(2, at(-1, 0, 0.05)); }), "12");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().place_body(4, at(0, 0.09, 0.25)); }), "124");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.drive(3, 0.1, 0.1); }), "3");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.drive(3, 0.0, 0.0); }), "") << "that is what it does already";
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().set_joint_velocity_target(3, 0, 0.5); }), "3");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().connect(4, 0, {}, 2, 0); }), "124");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().record(4); }), "4");
-  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().remove_body(0); }), "1234") << "the floor";
+  EXPECT_EQ(wakes([](SmallWorld& small) {
+              small.world().push_body(BodyId{2}, LinkId{0}, {{0, 0, 1}, {0, 0, 0}});
+            }),
+            "12");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().set_root_twist(BodyId{4}, {{0, 0, 0}, {0.1, 0, 0}}); }), "4");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().set_present(BodyId{1}, false); }), "2");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().place_body(BodyId{2}, at(-1, 0, 0.05)); }), "12");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().place_body(BodyId{4}, at(0, 0.09, 0.25)); }), "124");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.drive(BodyId{3}, 0.1, 0.1); }), "3");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.drive(BodyId{3}, 0.0, 0.0); }), "") << "that is what it does already";
+  EXPECT_EQ(wakes([](SmallWorld& small) {
+              small.world().set_joint_target(BodyId{3}, JointId{0}, physics::JointTarget::velocity(0.5));
+            }),
+            "3");
+  EXPECT_EQ(wakes([](SmallWorld& small) {
+              small.world().connections().connect({BodyId{4}, LinkId{0}}, {}, {BodyId{2}, LinkId{0}});
+            }),
+            "124");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().record(BodyId{4}); }), "4");
+  EXPECT_EQ(wakes([](SmallWorld& small) { small.world().set_present(BodyId{0}, false); }), "1234") << "the floor";
   EXPECT_EQ(wakes([](SmallWorld& small) { small.world().add_body(1, at(2, 0, 0.15)); }), "4") << "it comes to lie on 4";
 }
 
 TEST_P(Sleeping, WhatLiesOnSomethingFallsWhenThatGoes) {
   SmallWorld small = floor();
-  const std::uint32_t table = small.add(static_shape("table", description::Box{{1, 1, 0.1}}), at(0, 0, 0.95));
-  const std::uint32_t box = small.add(small_box(), at(0, 0, 1.05));
+  const BodyId table = small.add(static_shape("table", description::Box{{1, 1, 0.1}}), at(0, 0, 0.95));
+  const BodyId box = small.add(small_box(), at(0, 0, 1.05));
   small.run(2.0);
   ASSERT_TRUE(small.world().is_asleep(box));
   small.world().place_body(table, at(5, 0, 0.95));
@@ -152,13 +160,13 @@ TEST_P(Sleeping, WhatLiesOnSomethingFallsWhenThatGoes) {
 
 TEST_P(Sleeping, AConnectionHoldsWhatSleepsAndLetsItGo) {
   SmallWorld small = floor();
-  const std::uint32_t post = small.add(static_shape("post", description::Box{{0.1, 0.1, 2}}), at(0, 0, 1));
-  const std::uint32_t hanging = small.add(small_box(), at(0.12, 0, 1));
-  const std::uint32_t bond = small.world().connect(hanging, 0, {}, post, 0);
+  const BodyId post = small.add(static_shape("post", description::Box{{0.1, 0.1, 2}}), at(0, 0, 1));
+  const BodyId hanging = small.add(small_box(), at(0.12, 0, 1));
+  const ConnectionId bond = small.world().connections().connect({hanging, LinkId{0}}, {}, {post, LinkId{0}});
   small.run(3.0);
   EXPECT_TRUE(small.world().is_asleep(hanging));
-  EXPECT_NEAR(small.world().connection_wrench(bond).force_W.z(), g, 1e-4) << "it is still borne";
-  small.world().disconnect(bond);
+  EXPECT_NEAR(small.world().connections().wrench(bond).force_W.z(), g, 1e-4) << "it is still borne";
+  small.world().connections().disconnect(bond);
   small.run(2.0);
   EXPECT_NEAR(small.position(hanging).z(), 0.05, 1e-4);
 }
@@ -167,9 +175,9 @@ TEST_P(Sleeping, ARobotOnABoardSleepsAndDrivesOffWithIt) {
   SmallWorld small = floor();
   const Eigen::Vector3d size(0.5, 0.5, 0.01);
   const description::Surface slippery{0.01, 0.0};
-  const std::uint32_t board =
+  const BodyId board =
       small.add(loose("board", description::Box{size}, solid_box(0.2, size), slippery), at(0, 0, 0.005));
-  const std::uint32_t robot = small.add(GetParam().robot(), at(0, 0, 0.01));
+  const BodyId robot = small.add(GetParam().robot(), at(0, 0, 0.01));
   small.run(3.0);
   ASSERT_TRUE(all_sleep(small, {board, robot}));
   WorkerPool workers(2);
@@ -187,7 +195,7 @@ TEST_P(Sleeping, ARobotOnABoardSleepsAndDrivesOffWithIt) {
 
 TEST_P(Sleeping, SlowIsNotStill) {
   SmallWorld small = floor();
-  const std::uint32_t slow = small.add(GetParam().robot(), at(0, 0, 0));
+  const BodyId slow = small.add(GetParam().robot(), at(0, 0, 0));
   small.drive(slow, 1e-4, 1e-4);
   small.run(20.0);
   EXPECT_NEAR(std::abs(small.position(slow).x()), 20.0 * 1e-4, 1e-4);
@@ -199,11 +207,11 @@ TEST_P(Sleeping, AModelMayAskToStayAwakeAndAWorldToo) {
   description::Model insomniac = small_box();
   insomniac.name = "insomniac";
   insomniac.may_sleep = false;
-  const std::uint32_t lower = small.add(small_box(), at(0, 0, 0.05));
-  const std::uint32_t upper = small.add(insomniac, at(0, 0, 0.15));
-  const std::uint32_t other = small.add(small_box(), at(1, 0, 0.05));
+  const BodyId lower = small.add(small_box(), at(0, 0, 0.05));
+  const BodyId upper = small.add(insomniac, at(0, 0, 0.15));
+  const BodyId other = small.add(small_box(), at(1, 0, 0.05));
   SmallWorld awake = floor(false);
-  const std::uint32_t box = awake.add(small_box(), at(0, 0, 0.05));
+  const BodyId box = awake.add(small_box(), at(0, 0, 0.05));
   small.run(2.0);
   awake.run(2.0);
   EXPECT_TRUE(none_sleeps(small, {lower, upper}));

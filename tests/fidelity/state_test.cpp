@@ -12,7 +12,8 @@ namespace {
 struct BusyWorld {
   SmallWorld small;
   std::uint32_t robots;
-  std::uint32_t bond = 0, added = 0;
+  ConnectionId bond;
+  BodyId added;
 
   BusyWorld(const Physics& physics, unsigned threads)
       : small(physics.world(), threads), robots(physics == planar ? 150 : 60) {  // several for each thread
@@ -30,17 +31,19 @@ struct BusyWorld {
   }
   void step(int tick) {
     if (tick == 0) {
-      bond = small.world().connect(1, turret, {{0.07, 0, 0}}, 2, turret, {.force = 50.0});
-      small.world().connect(3, turret, {{0.07, 0, 0}}, 4, turret);
+      bond = small.world().connections().connect({BodyId{1}, LinkId{turret}}, {{0.07, 0, 0}},
+                                                 {BodyId{2}, LinkId{turret}}, {.force = 50.0});
+      small.world().connections().connect({BodyId{3}, LinkId{turret}}, {{0.07, 0, 0}}, {BodyId{4}, LinkId{turret}});
     }
-    if (tick == 50) small.world().remove_body(9);
+    if (tick == 50) small.world().set_present(BodyId{9}, false);
     if (tick == 60) added = small.world().add_body(1, at(-0.8, -0.5, 0));
-    if (tick == 70) small.world().disconnect(bond);
-    for (std::uint32_t body = 1; body < small.world().body_count(); ++body) {
-      if (!small.world().is_active(body) || (body > robots && body != added)) continue;
-      const double turn = 0.05 * std::sin(0.03 * tick + body);
+    if (tick == 70) small.world().connections().disconnect(bond);
+    for (std::uint32_t index = 1; index < small.world().body_count(); ++index) {
+      const BodyId body{index};
+      if (!small.world().is_active(body) || (index > robots && body != added)) continue;
+      const double turn = 0.05 * std::sin(0.03 * tick + index);
       small.drive(body, -0.1 + turn, -0.1 - turn);
-      small.world().set_joint_velocity_target(body, 0, 0.5);
+      small.world().set_joint_target(body, JointId{0}, physics::JointTarget::velocity(0.5));
     }
     small.world().step();
   }
@@ -53,8 +56,8 @@ TEST_P(State, HasTheSameBitsForAnyNumberOfThreads) {
   const auto hash_with = [](unsigned threads) {
     BusyWorld busy(GetParam(), threads);
     for (int tick = 0; tick < 300; ++tick) busy.step(tick);
-    EXPECT_FALSE(busy.small.world().is_active(9));
-    EXPECT_EQ(busy.added, busy.small.description.instances.size());
+    EXPECT_FALSE(busy.small.world().is_active(BodyId{9}));
+    EXPECT_EQ(busy.added.value, busy.small.description.instances.size());
     EXPECT_GT((busy.small.position(busy.added) - Eigen::Vector3d(-0.8, -0.5, 0)).norm(), 0.05);
     return hash_of(busy.small.world());
   };
@@ -66,7 +69,7 @@ TEST_P(State, RestoredFromASnapshotGoesOnWithTheSameBits) {
   BusyWorld busy(GetParam(), 1);
   for (int tick = 0; tick < 150; ++tick) busy.step(tick);
   BusyWorld restored(GetParam(), 2);
-  restored.small.world().recreate_body(1, at(-0.8, -0.5, 0));
+  restored.small.world().add_body(1, at(-0.8, -0.5, 0), physics::Arrival::restored);
   restore_from(busy.small.world(), restored.small.world());
   restored.added = busy.added;
   ASSERT_EQ(hash_of(restored.small.world()), hash_of(busy.small.world()));

@@ -108,8 +108,8 @@ TEST_P(Surfaces, ALinkWithoutGravityFloatsAndGoesStraightOn) {
   EXPECT_TRUE(small.position(floats).isApprox(Vector3d(0.04, 0, 1), 1e-12)) << small.position(floats).transpose();
   EXPECT_LT(small.position(falls).z(), 0.3);
   // What an accelerometer adds to gravity's.
-  EXPECT_LT(small.world().link_acceleration(floats, 0, Vector3d::Zero()).norm(), 1e-9);
-  EXPECT_NEAR(small.world().link_acceleration(falls, 0, Vector3d::Zero()).z(), -g, 1e-9);
+  EXPECT_LT(small.world().link_acceleration(floats, LinkId{0}, Vector3d::Zero()).norm(), 1e-9);
+  EXPECT_NEAR(small.world().link_acceleration(falls, LinkId{0}, Vector3d::Zero()).z(), -g, 1e-9);
 }
 
 TEST_P(Surfaces, APendulumWithoutGravityStandsAndGoesRound) {
@@ -117,9 +117,9 @@ TEST_P(Surfaces, APendulumWithoutGravityStandsAndGoesRound) {
   const auto body = small.add(boom(false), at(0, 0, 2));
   small.world().record(body);
   small.run(1.0);
-  EXPECT_LT(std::abs(small.world().joint_position(body, 0)), 1e-12);
-  EXPECT_LT(small.world().joint_wrench(body, 0).force_W.norm(), 1e-9);
-  EXPECT_LT(small.world().joint_wrench(body, 0).torque_W.norm(), 1e-9);
+  EXPECT_LT(std::abs(small.world().joint_state(body, JointId{0}).position), 1e-12);
+  EXPECT_LT(small.world().joint_wrench(body, JointId{0}).force_W.norm(), 1e-9);
+  EXPECT_LT(small.world().joint_wrench(body, JointId{0}).torque_W.norm(), 1e-9);
 }
 
 // A root that is free, whose momentum is kept: half of the weight is missing.
@@ -143,9 +143,9 @@ TEST_P(Surfaces, AJointBearsNothingOfALinkWithoutGravity) {
   const auto body = small.add(model, at(0, 0, 2));
   small.world().record(body);
   small.run(0.1);
-  EXPECT_LT(small.world().joint_wrench(body, 1).force_W.norm(), 1e-9);
-  EXPECT_TRUE(small.world().joint_wrench(body, 0).force_W.isApprox(Vector3d(0, 0, 0.2 * g), 1e-9));
-  EXPECT_TRUE(small.world().joint_wrench(body, 0).torque_W.isApprox(Vector3d(0.01, -0.15, 0) * 0.2 * g, 1e-9));
+  EXPECT_LT(small.world().joint_wrench(body, JointId{1}).force_W.norm(), 1e-9);
+  EXPECT_TRUE(small.world().joint_wrench(body, JointId{0}).force_W.isApprox(Vector3d(0, 0, 0.2 * g), 1e-9));
+  EXPECT_TRUE(small.world().joint_wrench(body, JointId{0}).torque_W.isApprox(Vector3d(0.01, -0.15, 0) * 0.2 * g, 1e-9));
 }
 
 // Whose x slides and whose y holds, at several headings, and of which one turns as it does so.
@@ -241,7 +241,7 @@ TEST_P(Surfaces, BoxesWithTheSpringsOfGazebosModelsStandOnEachOther) {
   Surface surface;
   surface.stiffness = 1e6;
   const Vector3d size(0.2, 0.2, 0.2);
-  std::vector<std::uint32_t> boxes;
+  std::vector<BodyId> boxes;
   for (int i = 0; i < 4; ++i)
     boxes.push_back(small.add(loose("box", Box{size}, solid_box(5.0, size), surface), at(0, 0, 0.1 + 0.2 * i)));
   small.run(10.0);
@@ -263,10 +263,10 @@ TEST_P(Surfaces, SpinningResistanceStopsABallThatTurnsOnTheSpot) {
   for (const auto each : {ball, free}) small.world().set_root_twist(each, {Vector3d(0, 0, 10), Vector3d::Zero()});
   small.run(1.0);
   const double moment = 0.4 * 2.0 * 0.1 * 0.1;
-  EXPECT_NEAR(small.world().link_twist(ball, 0).angular_W.z(), 10.0 - 0.002 * 2.0 * g / moment, 0.05);
-  EXPECT_NEAR(small.world().link_twist(free, 0).angular_W.z(), 10.0, 1e-6);
+  EXPECT_NEAR(small.world().link_twist(ball, LinkId{0}).angular_W.z(), 10.0 - 0.002 * 2.0 * g / moment, 0.05);
+  EXPECT_NEAR(small.world().link_twist(free, LinkId{0}).angular_W.z(), 10.0, 1e-6);
   small.run(2.0);
-  EXPECT_NEAR(small.world().link_twist(ball, 0).angular_W.z(), 0.0, 1e-6);
+  EXPECT_NEAR(small.world().link_twist(ball, LinkId{0}).angular_W.z(), 0.0, 1e-6);
   EXPECT_LT(small.position(ball).head<2>().norm(), 1e-6);
 }
 
@@ -285,8 +285,11 @@ TEST_P(Surfaces, BounceOnlyAboveTheLargerThreshold) {
   double highest[] = {0, 0, 0};
   for (int i = 0; i < 60; ++i) {
     small.world().step();
-    for (const auto each : {bounces, too_slow, kept_down})
-      highest[each - bounces] = std::max(highest[each - bounces], small.velocity(each).z());
+    int number = 0;
+    for (const auto each : {bounces, too_slow, kept_down}) {
+      double& high = highest[number++];
+      high = std::max(high, small.velocity(each).z());
+    }
   }
   EXPECT_GT(highest[0], 0.8);
   EXPECT_LT(highest[1], 0.01);
@@ -312,7 +315,7 @@ TEST_P(Surfaces, GoOnFromASnapshotToTheSameBits) {
       small.add(model, at(0.03 * (i % 2), 0.02 * (i % 3), 0.06 + 0.1 * i, 0.4 * i));
     }
     for (std::uint32_t body = 1; body <= 12; ++body)
-      small.world().set_root_twist(body, {Vector3d(0, 0, 3), Vector3d::Zero()});
+      small.world().set_root_twist(BodyId{body}, {Vector3d(0, 0, 3), Vector3d::Zero()});
   };
   SmallWorld world(GetParam().world()), other(GetParam().world());
   fill(world);

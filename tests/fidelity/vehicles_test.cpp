@@ -115,10 +115,10 @@ class Vehicles : public ::testing::TestWithParam<std::pair<Fidelity, Dynamics>> 
  private:
   Pose pose() {
     Simulation& simulation = world_.simulation();
-    const std::uint32_t body = simulation.body_of(0);
+    const BodyId body = simulation.body_of(0);
     const description::World& world = world_.world();
-    const Pose& X_ML = world.models[world.instances[body].model].links[0].X_ML;
-    return simulation.world().link_pose(body, 0) * X_ML.inverse();
+    const Pose& X_ML = world.models[world.instances[body.value].model].links[0].X_ML;
+    return simulation.world().link_pose(body, LinkId{0}) * X_ML.inverse();
   }
   ScratchFolder folder_;
 };
@@ -195,7 +195,7 @@ TEST_P(Vehicles, OfGazeboWithATrackControllerCarryWhatLiesOnThem) {
       "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision></link></model>");
   world_.command(0, "base/0/velocity", {0.5});
   world_.step(200);
-  EXPECT_NEAR(world_.simulation().world().link_twist(2, 0).linear_W.x(), 0.5, 1e-3);
+  EXPECT_NEAR(world_.simulation().world().link_twist(BodyId{2}, LinkId{0}).linear_W.x(), 0.5, 1e-3);
 }
 
 TEST_P(Vehicles, OfGazeboWithControllersOfJointsMoveThemAsTheyAreTold) {

@@ -8,15 +8,15 @@ namespace cohort::test {
 /// Robots in a square, not quite where a grid would have them, each holding on to some of its neighbours as they stand.
 struct GrippedSwarm {
   struct Grip {
-    std::uint32_t connection;
-    std::uint32_t a, b;
+    ConnectionId connection;
+    BodyId a, b;
     Pose X_Pa, X_Pb;  // the frame of the connection in the link of either end
   };
   static constexpr int side = 5;
 
   SmallWorld small;
   std::size_t gripping_link;
-  std::vector<std::uint32_t> robots;
+  std::vector<BodyId> robots;
   std::vector<Grip> grips;
   RandomStream random;
 
@@ -41,18 +41,19 @@ struct GrippedSwarm {
       if (has_behind && with_arms && choice < 0.3) grip(robots[i], robots[i + side], turret);
     }
   }
-  void grip(std::uint32_t a, std::uint32_t b) { grip(a, b, gripping_link); }
-  void grip(std::uint32_t a, std::uint32_t b, std::size_t link) {
+  void grip(BodyId a, BodyId b) { grip(a, b, gripping_link); }
+  void grip(BodyId a, BodyId b, std::size_t link) {
     physics::World& world = small.world();
-    const Pose X_WLa = world.link_pose(a, link);
-    const Pose X_WLb = world.link_pose(b, turret);
+    const Pose X_WLa = world.link_pose(a, LinkId{link});
+    const Pose X_WLb = world.link_pose(b, LinkId{turret});
     // At the jaw, or halfway between the turrets.
     const Eigen::Vector3d p_W =
         link == turret ? Eigen::Vector3d(0.5 * (X_WLa.position + X_WLb.position) + Eigen::Vector3d(0, 0, 0.02))
                        : Eigen::Vector3d(X_WLa * Eigen::Vector3d(arm_length, 0, 0));
     const Pose X_WP{p_W, X_WLa.orientation};
     const Pose X_LP = X_WLa.inverse() * X_WP;
-    grips.push_back({world.connect(a, link, X_LP, b, turret), a, b, X_LP, X_WLb.inverse() * X_WP});
+    grips.push_back({world.connections().connect({a, LinkId{link}}, X_LP, {b, LinkId{turret}}), a, b, X_LP,
+                     X_WLb.inverse() * X_WP});
     links.push_back(link);
   }
   std::vector<std::size_t> links;  // of the grips, at a
@@ -64,10 +65,11 @@ struct GrippedSwarm {
       const auto draw = static_cast<std::uint32_t>(4 * i);
       const auto period = static_cast<std::uint64_t>(1 + tick / every);
       small.drive(robots[i], 0.4 * random.uniform(period, draw) - 0.2, 0.4 * random.uniform(period, draw + 1) - 0.2);
-      small.world().set_joint_velocity_target(robots[i], 0, 3.0 * random.uniform(period, draw + 2) - 1.5);
+      small.world().set_joint_target(robots[i], JointId{0},
+                                     physics::JointTarget::velocity(3.0 * random.uniform(period, draw + 2) - 1.5));
       if (gripping_link == arm_link)
-        small.world().set_joint_position_target(robots[i], elevation_joint,
-                                                0.4 * random.uniform(period, draw + 3) - 0.2);
+        small.world().set_joint_target(robots[i], JointId{elevation_joint},
+                                       physics::JointTarget::position(0.4 * random.uniform(period, draw + 3) - 0.2));
     }
   }
   /// The greatest distance between the two ends of a grip [m].
@@ -75,20 +77,20 @@ struct GrippedSwarm {
     double greatest = 0.0;
     for (std::size_t i = 0; i < grips.size(); ++i) {
       const Grip& grip = grips[i];
-      const Eigen::Vector3d a = small.world().link_pose(grip.a, links[i]) * grip.X_Pa.position;
-      const Eigen::Vector3d b = small.world().link_pose(grip.b, turret) * grip.X_Pb.position;
+      const Eigen::Vector3d a = small.world().link_pose(grip.a, LinkId{links[i]}) * grip.X_Pa.position;
+      const Eigen::Vector3d b = small.world().link_pose(grip.b, LinkId{turret}) * grip.X_Pb.position;
       greatest = std::max(greatest, (a - b).norm());
     }
     return greatest;
   }
   double greatest_speed() {
     double greatest = 0.0;
-    for (const std::uint32_t robot : robots) greatest = std::max(greatest, small.velocity(robot, turret).norm());
+    for (const BodyId robot : robots) greatest = std::max(greatest, small.velocity(robot, turret).norm());
     return greatest;
   }
   double greatest_height() {
     double greatest = 0.0;
-    for (const std::uint32_t robot : robots) greatest = std::max(greatest, small.position(robot).z());
+    for (const BodyId robot : robots) greatest = std::max(greatest, small.position(robot).z());
     return greatest;
   }
 };

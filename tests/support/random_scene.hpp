@@ -15,7 +15,7 @@ namespace cohort::geometry {
 /// Built.
 inline Scene scene_of(const Shape& shape, const Pose& X_WC) {
   Scene scene;
-  scene.add({shape, {}, 0, !is_ground(shape), X_WC});
+  scene.add({shape, {}, BodyId{0}, !is_ground(shape), X_WC});
   scene.build();
   return scene;
 }
@@ -75,10 +75,11 @@ inline Scene random_scene(std::uint64_t seed, std::uint32_t count, double half_w
                                        random_mesh(random, n, true),
                                        random_mesh(random, n, false)};
     if (n % 5 != 4) ++body;
-    scene.add({shapes[n % shapes.size()], {}, body, n % 2 == 0, random_pose(random, n, half_width, half_height)});
+    scene.add(
+        {shapes[n % shapes.size()], {}, BodyId{body}, n % 2 == 0, random_pose(random, n, half_width, half_height)});
   }
   const auto add_static = [&](Shape shape, const Pose& X_WC) {
-    scene.add({std::move(shape), {}, ++body, false, X_WC});
+    scene.add({std::move(shape), {}, BodyId{++body}, false, X_WC});
   };
   for (std::uint64_t n = 0; n < 4; ++n)
     add_static(description::Box{{half_width, 0.02, 0.3}}, random_pose(random, 5000 + 3 * n, half_width, half_height));

@@ -63,7 +63,7 @@ class Sensed {
   }
 
   SmallWorld small;
-  std::uint32_t body;
+  BodyId body;
 
  private:
   void make() {
@@ -71,7 +71,7 @@ class Sensed {
     const physics::World& world = small.world();
     emitters_.emplace(small.description, world);
     grippers_.emplace(small.description, small.world());
-    const description::Model& model = small.description.models[small.description.instances[body].model];
+    const description::Model& model = small.description.models[small.description.instances[body.value].model];
     sensor_ = sensing::make_sensor({world, *emitters_, small.description, *grippers_, views_, body, 0, 1});
     if (sensor_->needs_record()) small.world().record(body);
     channels_ = sensor_->channels();

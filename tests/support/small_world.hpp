@@ -15,8 +15,8 @@ class SmallWorld {
   explicit SmallWorld(description::World its_description = world_with_floor(), unsigned threads = 1)
       : description(std::move(its_description)), workers_(threads) {}
 
-  std::uint32_t add(const description::Model& model, const Pose& X_WM) {
-    return place(description, model, model.name + "_" + std::to_string(description.instances.size()), X_WM);
+  BodyId add(const description::Model& model, const Pose& X_WM) {
+    return BodyId{place(description, model, model.name + "_" + std::to_string(description.instances.size()), X_WM)};
   }
   physics::World& world() {
     if (!world_) world_ = physics::make_world(description, workers_);
@@ -27,13 +27,15 @@ class SmallWorld {
     for (auto steps = std::lround(seconds / step); steps > 0; --steps) world().step();
   }
   /// Of a robot as `tracked_robot` makes it.
-  void drive(std::uint32_t body, double left, double right) {
+  void drive(BodyId body, double left, double right) {
     world().set_track_velocity_target(body, 0, physics::Side::left, left);
     world().set_track_velocity_target(body, 0, physics::Side::right, right);
   }
-  Eigen::Vector3d position(std::uint32_t body, std::size_t link = 0) { return world().link_pose(body, link).position; }
-  Eigen::Vector3d velocity(std::uint32_t body, std::size_t link = 0) { return world().link_twist(body, link).linear_W; }
-  Eigen::Vector3d up(std::uint32_t body) { return world().link_pose(body, 0).orientation * Eigen::Vector3d::UnitZ(); }
+  Eigen::Vector3d position(BodyId body, std::size_t link = 0) { return world().link_pose(body, LinkId{link}).position; }
+  Eigen::Vector3d velocity(BodyId body, std::size_t link = 0) {
+    return world().link_twist(body, LinkId{link}).linear_W;
+  }
+  Eigen::Vector3d up(BodyId body) { return world().link_pose(body, LinkId{0}).orientation * Eigen::Vector3d::UnitZ(); }
 
   description::World description;
 
@@ -49,12 +51,12 @@ struct WholeMotion {
   Eigen::Vector3d momentum = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();
 };
-inline WholeMotion whole_motion(SmallWorld& small, std::uint32_t body) {
+inline WholeMotion whole_motion(SmallWorld& small, BodyId body) {
   WholeMotion sum;
   const description::Model& model = small.description.models[small.world().model_of(body)];
   for (std::size_t link = 0; link < model.links.size(); ++link) {
-    const Pose X_WL = small.world().link_pose(body, link);
-    const physics::Twist twist = small.world().link_twist(body, link);
+    const Pose X_WL = small.world().link_pose(body, LinkId{link});
+    const physics::Twist twist = small.world().link_twist(body, LinkId{link});
     const description::Inertial& inertial = model.links[link].inertial;
     const Eigen::Vector3d arm = X_WL.orientation * inertial.X_LI.position;
     const Eigen::Vector3d v = twist.linear_W + twist.angular_W.cross(arm);
@@ -71,13 +73,13 @@ inline WholeMotion whole_motion(SmallWorld& small, std::uint32_t body) {
 /// Of the state of every body, and of all contacts and connections.
 inline std::uint64_t hash_of(const physics::World& world) {
   StateHash hash;
-  for (std::uint32_t body = 0; body < world.body_count(); ++body) world.hash_body(body, hash);
+  for (std::uint32_t body = 0; body < world.body_count(); ++body) world.hash_body(BodyId{body}, hash);
   world.hash_contacts(hash);
   return hash.value();
 }
-inline std::uint64_t hash_of(const physics::World& world, std::span<const std::uint32_t> bodies) {
+inline std::uint64_t hash_of(const physics::World& world, std::span<const BodyId> bodies) {
   StateHash hash;
-  for (const std::uint32_t body : bodies) world.hash_body(body, hash);
+  for (const BodyId body : bodies) world.hash_body(body, hash);
   return hash.value();
 }
 

@@ -90,18 +90,18 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const bool below = !solid.moves && scene.bounds(i).upper.z() <= lowest_robot + floor_tolerance;
-    if (!geometry::is_ground(solid.shape) && !below) is_floor_[solid.body] = 0;
+    if (!geometry::is_ground(solid.shape) && !below) is_floor_[solid.body.value] = 0;
   }
   sample();
   if (viewpoint == Viewpoint::side) note_robots(&RobotTrace::at_start);
 }
 
 // What has come in mid-run is no robot, and no floor.
-std::uint32_t TraceRecorder::robot_of(std::uint32_t body) const {
-  return body < robot_of_body_.size() ? robot_of_body_[body] : none;
+std::uint32_t TraceRecorder::robot_of(BodyId body) const {
+  return body.value < robot_of_body_.size() ? robot_of_body_[body.value] : none;
 }
 
-bool TraceRecorder::is_floor(std::uint32_t body) const { return body < is_floor_.size() && is_floor_[body] != 0; }
+bool TraceRecorder::is_floor(BodyId body) const { return body.value < is_floor_.size() && is_floor_[body.value] != 0; }
 
 void TraceRecorder::boundary() {
   if (simulation_.tick() >= next_sample_) sample();
@@ -155,7 +155,7 @@ void TraceRecorder::note_robots(std::vector<TracedSolid> RobotTrace::*solids) {
       Pose X_LT;
       X_LT.position.z() = drive->ground_height + 0.5 * drive->wheel_radius;
       const auto body = static_cast<std::uint32_t>(world_.robots[robot]);
-      add(robot, tracks, simulation_.world().link_pose(body, drive->link) * X_LT);
+      add(robot, tracks, simulation_.world().link_pose(BodyId{body}, LinkId{drive->link}) * X_LT);
     }
   }
   const Scene& scene = simulation_.world().scene();
@@ -173,7 +173,7 @@ RunTrace TraceRecorder::finish() {
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
-    if (!simulation_.objects().is_present(solid.body)) continue;
+    if (!simulation_.objects().is_present(solid.body.value)) continue;
     const bool of_robot = robot_of(solid.body) != none;
     if (!of_robot && !geometry::is_ground(solid.shape) && scene.bounds(i).lower.allFinite() &&
         scene.bounds(i).upper.allFinite())

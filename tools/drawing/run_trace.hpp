@@ -86,8 +86,8 @@ class TraceRecorder {
 
   void sample();
   void note_contacts();
-  std::uint32_t robot_of(std::uint32_t body) const;
-  bool is_floor(std::uint32_t body) const;
+  std::uint32_t robot_of(BodyId body) const;
+  bool is_floor(BodyId body) const;
   Eigen::Vector2d seen(const Eigen::Vector3d& p_W) const { return (R_VW_ * p_W).head<2>(); }
   Pose pose_seen(const Pose& X_W) const { return {R_VW_ * X_W.position, R_VW_ * X_W.orientation}; }
   void note_robots(std::vector<TracedSolid> RobotTrace::*solids);

@@ -25,7 +25,8 @@ Panel treels() {
   Series ground{"over ground", {}};
   Series encoder{"treel encoder", {}};
   for (int tick = 0; tick <= 16; ++tick) {
-    ground.measured.emplace_back(stand.time(), stand.simulation().world().link_twist(robot, chassis).linear_W.x());
+    ground.measured.emplace_back(stand.time(),
+                                 stand.simulation().world().link_twist(BodyId{robot}, LinkId{chassis}).linear_W.x());
     encoder.measured.emplace_back(stand.time(), stand.read("encoder/left/velocity"));
     stand.step();
   }

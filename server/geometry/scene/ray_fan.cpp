@@ -4,7 +4,7 @@
 
 namespace cohort::geometry {
 
-RayFan::RayFan(const Scene& scene, const Eigen::Vector3d& centre_W, const Bounds& region, std::uint32_t ignored_body)
+RayFan::RayFan(const Scene& scene, const Eigen::Vector3d& centre_W, const Bounds& region, BodyId ignored_body)
     : scene_(scene), centre_W_(centre_W) {
   scene.for_each_overlap(region, [&](std::uint32_t solid) {
     if (scene.solid(solid).body == ignored_body) return;

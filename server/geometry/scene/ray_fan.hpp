@@ -13,7 +13,7 @@ class RayFan {
   /// All rays stay inside `region` and start near `centre_W`: the nearer, the faster. Those of `ignored_body` are left
   /// out.
   RayFan(const Scene& scene, const Eigen::Vector3d& centre_W, const Bounds& region,
-         std::uint32_t ignored_body = Scene::no_body);
+         BodyId ignored_body = Scene::no_body);
 
   /// The same as `Scene::cast_ray`, bit for bit.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range) const;

@@ -35,8 +35,8 @@ std::shared_ptr<const MeshSurface> Scene::surface_of(const description::Mesh& me
 // what a search is for, which looks some millimetres around things, however small they are.
 double Scene::choose_cell_size() const {
   constexpr double much_wider = 4.0;
-  constexpr double narrowest = 0.02;          // [m]
-  std::map<std::uint32_t, double> widest_of;  // of each body
+  constexpr double narrowest = 0.02;   // [m]
+  std::map<BodyId, double> widest_of;  // of each body
   for (std::uint32_t index = 0; index < solids_.size(); ++index) {
     if (!solids_[index].moves) continue;
     double& widest = widest_of[solids_[index].body];
@@ -109,7 +109,7 @@ double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Ei
 }
 
 std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
-                                      std::uint32_t ignored_body) const {
+                                      BodyId ignored_body) const {
   std::optional<RayHit> best;
   const auto test = [&](std::uint32_t index) {
     const double reach = best ? best->distance : range;
@@ -125,11 +125,11 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eig
 }
 
 bool Scene::is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
-                    std::uint32_t ignored_body, std::uint32_t other_ignored_body) const {
+                    BodyId ignored_body, BodyId other_ignored_body) const {
   constexpr double no_further = -1.0;
   std::optional<RayHit> hit;
   const auto test = [&](std::uint32_t index) {
-    const std::uint32_t body = solids_[index].body;
+    const BodyId body = solids_[index].body;
     if (hit || body == ignored_body || body == other_ignored_body ||
         balls_[index].is_missed(origin_W, direction_W, range))
       return hit ? no_further : range;

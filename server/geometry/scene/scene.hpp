@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/core/ids.hpp"
 #include "server/description/model.hpp"
 #include "server/geometry/scene/corner_grid.hpp"
 #include "server/geometry/scene/grid.hpp"
@@ -20,7 +21,7 @@ namespace cohort::geometry {
 struct Solid {
   Shape shape;
   description::Surface surface;
-  std::uint32_t body = 0;  ///< whose it is; solids of one body do not see each other
+  BodyId body;  ///< whose it is; solids of one body do not see each other
   bool moves = false;
   Pose X_WC;
   std::uint32_t link = 0;       ///< of the body's model
@@ -38,7 +39,7 @@ struct RayHit {
 /// `update` calls; queries are const and run from any thread.
 class Scene {
  public:
-  static constexpr std::uint32_t no_body = 0xffffffffu;
+  static constexpr BodyId no_body{0xffffffffu};
 
   /// Adds a solid; `build` must follow before the first query. Returns its index.
   std::uint32_t add(Solid solid);
@@ -62,11 +63,11 @@ class Scene {
   /// left out. Of two at the
   /// very same distance the one with the lower index, so the answer depends on the scene alone.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
-                                 std::uint32_t ignored_body = no_body) const;
+                                 BodyId ignored_body = no_body) const;
 
   /// Whether such a ray meets nothing but these two bodies.
-  bool is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range,
-               std::uint32_t ignored_body, std::uint32_t other_ignored_body = no_body) const;
+  bool is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& direction_W, double range, BodyId ignored_body,
+               BodyId other_ignored_body = no_body) const;
 
   /// As `cast_ray`, among `candidates` only.
   std::optional<RayHit> cast_ray_among(std::span<const std::uint32_t> candidates, const Eigen::Vector3d& origin_W,

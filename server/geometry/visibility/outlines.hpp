@@ -38,7 +38,7 @@ class Outlines {
   struct Item {
     std::optional<Outline> outline;
     std::uint32_t solid = 0;
-    std::uint32_t body = 0;
+    BodyId body;
   };
 
   /// After `Scene::update`; for as long as nothing moves, comes or goes.

@@ -197,7 +197,7 @@ std::optional<Panorama::Window> Panorama::window_of(const Scene& scene, std::uin
   return window;
 }
 
-void Panorama::cast(const Outlines& outlines, const Pose& X_WS, double range, std::uint32_t ignored_body,
+void Panorama::cast(const Outlines& outlines, const Pose& X_WS, double range, BodyId ignored_body,
                     std::span<std::optional<RayHit>> pixels) const {
   const Scene& scene = outlines.scene();
   const View view{X_WS, X_WS.inverse(), range};

@@ -33,7 +33,7 @@ class Panorama {
   ///
   /// The same, bit for bit, as Scene::cast_ray along X_WS.orientation * direction(pixel), with this range.
   /// Const, callable from any thread.
-  void cast(const Outlines& outlines, const Pose& X_WS, double range, std::uint32_t ignored_body,
+  void cast(const Outlines& outlines, const Pose& X_WS, double range, BodyId ignored_body,
             std::span<std::optional<RayHit>> pixels) const;
 
  private:

@@ -31,8 +31,8 @@ ShadowRing::ShadowRing(std::size_t directions) {
   }
 }
 
-void ShadowRing::cast(const Scene& scene, const Vector3d& p_WR, double heading, double range,
-                      std::uint32_t ignored_body, std::span<double> distances) const {
+void ShadowRing::cast(const Scene& scene, const Vector3d& p_WR, double heading, double range, BodyId ignored_body,
+                      std::span<double> distances) const {
   std::fill(distances.begin(), distances.end(), infinity);
   const Vector2d x_W(std::cos(heading), std::sin(heading));
   const auto turned = [&](const Vector2d& v_W) { return Vector2d(x_W.dot(v_W), cross(x_W, v_W)); };

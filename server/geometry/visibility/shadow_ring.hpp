@@ -40,7 +40,7 @@ class ShadowRing {
   /// Writes the distance [m] of the nearest solid in each direction from p_WR, at most `range` away, or infinity.
   /// `heading` is the bearing of the ring's x axis in the world [rad]. Those of `ignored_body` are left out.
   /// `distances` has `size()` elements. Const, callable from any thread.
-  void cast(const Scene& scene, const Eigen::Vector3d& p_WR, double heading, double range, std::uint32_t ignored_body,
+  void cast(const Scene& scene, const Eigen::Vector3d& p_WR, double heading, double range, BodyId ignored_body,
             std::span<double> distances) const;
 
  private:

@@ -41,10 +41,10 @@ struct SightLines::Line {
   double length;
   Vector2d along;  // unit, within rounding; not a number if the length is 0
   double slope;
-  std::uint32_t receiver_body;
+  BodyId receiver_body;
 };
 
-void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double range, std::uint32_t source_body,
+void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double range, BodyId source_body,
                        const Heights& receivers) {
   scene_ = &outlines.scene();
   p_WS_ = p_WS;
@@ -258,7 +258,7 @@ bool SightLines::is_within_range(const Vector3d& offset_W, double squared) const
   return !(squared > limit * (1.0 + rounding)) && offset_W.norm() <= range_;
 }
 
-bool SightLines::is_free(const Vector3d& p_WR, std::uint32_t receiver_body) const {
+bool SightLines::is_free(const Vector3d& p_WR, BodyId receiver_body) const {
   Line line;
   line.offset_W = p_WR - p_WS_;
   const double level_squared = line.offset_W.head<2>().squaredNorm();

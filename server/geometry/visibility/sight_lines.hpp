@@ -21,8 +21,7 @@ class SightLines {
   /// Takes the place of what was built before. `p_WS`: the source [m]. Beyond `range` [m], which may be infinite,
   /// nothing is seen. The source is a part of `source_body`, which never stands in the way. `outlines` and its scene
   /// must outlive the questions. Different objects may be built from different threads.
-  void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range,
-             std::uint32_t source_body = Scene::no_body) {
+  void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range, BodyId source_body = Scene::no_body) {
     build(outlines, p_WS, range, source_body, {});
   }
   /// The same, for receivers that are all within these heights: what is above or below every line is left out.
@@ -30,7 +29,7 @@ class SightLines {
     double lowest = -std::numeric_limits<double>::infinity();  ///< z_W [m]
     double highest = std::numeric_limits<double>::infinity();
   };
-  void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range, std::uint32_t source_body,
+  void build(const Outlines& outlines, const Eigen::Vector3d& p_WS, double range, BodyId source_body,
              const Heights& receivers);
 
   /// Whether nothing solid is on the segment from the source to p_WR, both ends included, and this is no longer than
@@ -38,7 +37,7 @@ class SightLines {
   ///
   /// The same, bit for bit, as no hit of Scene::cast_ray from p_WS along (p_WR - p_WS) / d with range d = |p_WR - p_WS|
   /// among the solids of other bodies. Const, callable from any thread; p_WR must be finite.
-  bool is_free(const Eigen::Vector3d& p_WR, std::uint32_t receiver_body = Scene::no_body) const;
+  bool is_free(const Eigen::Vector3d& p_WR, BodyId receiver_body = Scene::no_body) const;
 
  private:
   /// A solid as seen from the source: all lengths are relative to it. Outer bounds are a little too large and inner
@@ -54,7 +53,7 @@ class SightLines {
     double inner_lowest = 0.0;
     double inner_highest = 0.0;
     std::uint32_t solid = 0;
-    std::uint32_t body = 0;
+    BodyId body;
     std::uint32_t rectangle = Outlines::none;  // in rectangles_, if it is one
   };
   struct Rectangle {
@@ -68,7 +67,7 @@ class SightLines {
     double height = 0.0;    // of the source above it
     double rounding = 0.0;  // of heights
     std::uint32_t solid = 0;
-    std::uint32_t body = 0;
+    BodyId body;
   };
   /// A candidate in a bin, with what leaves it out: rounded outward.
   struct Entry {
@@ -101,7 +100,7 @@ class SightLines {
   std::vector<HalfSpace> planes_;
   struct Unbounded {
     std::uint32_t solid;
-    std::uint32_t body;
+    BodyId body;
   };
   std::vector<Unbounded> unbounded_;   // that no outline holds
   std::vector<Candidate> around_;      // those that the source is in or below or above

@@ -44,7 +44,7 @@ Assembly::Assembly(const description::World& world)
       collision(scene, [this](std::uint32_t solid, std::uint32_t other) { return may_touch(solid, other); }),
       media(world) {}
 
-void Assembly::add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
+void Assembly::add_solid(BodyId body, const description::Model& model, std::size_t link, std::size_t number,
                          const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
   const description::Collision& part_collision = model.links[link].collisions[number];
   scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC,
@@ -53,7 +53,7 @@ void Assembly::add_solid(std::uint32_t body, const description::Model& model, st
   anchors.part_of_solid.push_back(part);
 }
 
-std::vector<std::uint32_t> Assembly::add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
+std::vector<std::uint32_t> Assembly::add_static(BodyId body, const description::Model& model, const Pose& X_WM,
                                                 std::span<const std::shared_ptr<const BulletShape>> shapes) {
   std::vector<std::uint32_t> solids;
   for (std::size_t link = 0; link < model.links.size(); ++link) {

@@ -35,7 +35,7 @@ struct WeightlessLink {
 
 /// A body that moves.
 struct Member {
-  std::uint32_t body = 0;
+  BodyId body;
   std::unique_ptr<Multibody> multibody;
   std::vector<Part> parts;  ///< ascending solids
   double reach = 0.0;       ///< no part's centre is further from a joint that moves it [m]
@@ -78,7 +78,7 @@ struct Assembly {
   std::map<const Mechanism*, std::shared_ptr<const FluidModel>> fluid_models;
 
   /// One thread alone. `shapes`: of the model's collisions, in their order. Returns the solids.
-  std::vector<std::uint32_t> add_static(std::uint32_t body, const description::Model& model, const Pose& X_WM,
+  std::vector<std::uint32_t> add_static(BodyId body, const description::Model& model, const Pose& X_WM,
                                         std::span<const std::shared_ptr<const BulletShape>> shapes);
   /// One thread alone. Returns the index of the member.
   std::uint32_t add_member(std::unique_ptr<Multibody> multibody,
@@ -168,8 +168,8 @@ struct Assembly {
 
  private:
   /// Of the collision `number` of a link.
-  void add_solid(std::uint32_t body, const description::Model& model, std::size_t link, std::size_t number,
-                 const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape);
+  void add_solid(BodyId body, const description::Model& model, std::size_t link, std::size_t number, const Pose& X_WC,
+                 Anchors::Part part, std::shared_ptr<const BulletShape> shape);
   /// Of a solid: how its surface runs.
   RunningSurface surface_of(std::uint32_t solid) const;
   /// Whether it is of a root that nothing pushes.

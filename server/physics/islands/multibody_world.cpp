@@ -41,19 +41,19 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
   assembly_.scene.build();
   find_lowest();
-  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
-    if (!description.instances[body].is_present) remove_body(body);
+  for (std::size_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(BodyId{body});
 }
 
-std::uint32_t MultibodyWorld::add_body(std::size_t model, const Pose& X_WM) {
-  const std::uint32_t body = create_body(model, X_WM);
+BodyId MultibodyWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arrival) {
+  const BodyId body = create_body(model, X_WM);
   assembly_.scene.build();
-  if (is_static(body)) sleep_.wake_all();
+  if (arrival == Arrival::anew && is_static(body)) sleep_.wake_all();
   return body;
 }
 
-std::uint32_t MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM) {
-  const auto body = static_cast<std::uint32_t>(bodies_.size());
+BodyId MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM) {
+  const BodyId body{bodies_.size()};
   const description::Model& model = description_.models[model_index];
   if (model_index >= shapes_.size()) {  // it has come since
     mechanisms_.resize(model_index + 1);
@@ -76,8 +76,7 @@ std::uint32_t MultibodyWorld::create_body(std::size_t model_index, const Pose& X
   return body;
 }
 
-std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_index, const Pose& X_WM,
-                                                          std::uint32_t body) {
+std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_index, const Pose& X_WM, BodyId body) {
   const description::Model& model = description_.models[model_index];
   std::shared_ptr<const Mechanism>& known = mechanisms_[model_index];
   try {
@@ -107,57 +106,61 @@ void MultibodyWorld::find_lowest() {
   lowest -= below_all;
 }
 
-bool MultibodyWorld::is_active(std::uint32_t body) const {
-  return is_static(body) ? !bodies_[body].is_out : assembly_.members[bodies_[body].member].is_active;
+Activity MultibodyWorld::activity(BodyId body) const {
+  if (is_static(body)) return bodies_[body.value].is_out ? Activity::out : Activity::awake;
+  const Member& member = assembly_.members[bodies_[body.value].member];
+  if (!member.is_active) return Activity::out;
+  return member.is_asleep ? Activity::asleep : Activity::awake;
 }
 
-double MultibodyWorld::driven_power(std::uint32_t body) const {
+double MultibodyWorld::driven_power(BodyId body) const {
   if (is_static(body)) return 0.0;
   double power = multibody(body).driven_power();
-  if (const FluidBody* const fluid = assembly_.members[bodies_[body].member].fluid.get()) fluid->add_power(power);
+  if (const FluidBody* const fluid = assembly_.members[bodies_[body.value].member].fluid.get()) fluid->add_power(power);
   return power;
 }
 
-Pose MultibodyWorld::link_pose(std::uint32_t body, std::size_t link) const {
-  if (!is_static(body)) return multibody(body).link_pose(link);
-  return bodies_[body].X_WM * description_.models[bodies_[body].model].links[link].X_ML;
+Pose MultibodyWorld::link_pose(BodyId body, LinkId link) const {
+  if (!is_static(body)) return multibody(body).link_pose(link.value);
+  return bodies_[body.value].X_WM * description_.models[bodies_[body.value].model].links[link.value].X_ML;
 }
 
-Twist MultibodyWorld::link_twist(std::uint32_t body, std::size_t link) const {
-  if (!is_static(body) && is_active(body)) return multibody(body).link_twist(link);
+Twist MultibodyWorld::link_twist(BodyId body, LinkId link) const {
+  if (!is_static(body) && is_active(body)) return multibody(body).link_twist(link.value);
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 
-Wrench MultibodyWorld::joint_wrench(std::uint32_t body, std::size_t joint) const {
-  if (const ForceRecord* record = record_of(body)) return record->joint_wrench(joint);
+JointState MultibodyWorld::joint_state(BodyId body, JointId joint) const {
+  if (is_static(body)) return {};
+  const Multibody& its = multibody(body);
+  return {its.joint_position(joint.value), its.joint_velocity(joint.value), its.joint_effort(joint.value)};
+}
+
+Wrench MultibodyWorld::joint_wrench(BodyId body, JointId joint) const {
+  if (const ForceRecord* record = record_of(body)) return record->joint_wrench(joint.value);
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 
-Eigen::Vector3d MultibodyWorld::link_acceleration(std::uint32_t body, std::size_t link,
-                                                  const Eigen::Vector3d& p_LP) const {
-  if (const ForceRecord* record = record_of(body)) return record->motion().acceleration(link, p_LP, assembly_.step);
+Eigen::Vector3d MultibodyWorld::link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const {
+  if (const ForceRecord* record = record_of(body))
+    return record->motion().acceleration(link.value, p_LP, assembly_.step);
   return Eigen::Vector3d::Zero();
 }
 
-Wrench MultibodyWorld::connection_wrench(std::uint32_t number) const {
-  const Connection* const connection = assembly_.connections.find(number);
-  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  return connection->wrench_on_a(assembly_.pose_of(connection->a()), assembly_.pose_of(connection->b()),
-                                 assembly_.step);
+Wrench MultibodyWorld::wrench(ConnectionId connection, ConnectionEnd end) const {
+  const Connection* const found = assembly_.connections.find(connection.value);
+  if (found == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  const Pose X_WSa = assembly_.pose_of(found->a());
+  const Pose X_WSb = assembly_.pose_of(found->b());
+  return end == ConnectionEnd::a ? found->wrench_on_a(X_WSa, X_WSb, assembly_.step)
+                                 : found->wrench_on_b(X_WSa, X_WSb, assembly_.step);
 }
 
-Wrench MultibodyWorld::connection_reaction(std::uint32_t number) const {
-  const Connection* const connection = assembly_.connections.find(number);
-  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  return connection->wrench_on_b(assembly_.pose_of(connection->a()), assembly_.pose_of(connection->b()),
-                                 assembly_.step);
-}
-
-void MultibodyWorld::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+void MultibodyWorld::set_joint_state(BodyId body, JointId joint, std::span<const double> coordinates,
                                      std::span<const double> velocities) {
   wake(body);
-  multibody(body).set_joint_state(joint, coordinates, velocities);
-  assembly_.place_solids_of(assembly_.members[bodies_[body].member]);
+  multibody(body).set_joint_state(joint.value, coordinates, velocities);
+  assembly_.place_solids_of(assembly_.members[bodies_[body.value].member]);
   assembly_.scene.update();
 }
 
@@ -262,38 +265,38 @@ void MultibodyWorld::quarantine() {
   }
 }
 
-std::uint32_t MultibodyWorld::connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
-                                      std::size_t link_b, const ConnectionLimits& limits) {
-  const Multibody& a = multibody(body_a);
-  const Mechanism::LinkPlace& place_a = a.mechanism().link(link_a);
-  const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
-                              place_a.X_SL * X_LP, body_a};
-  const Pose X_WP = a.segment_pose(place_a.segment) * end_a.X_SP;
-  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, body_b};
-  if (!is_static(body_b)) {
-    const Multibody& b = multibody(body_b);
-    const int segment = b.mechanism().link(link_b).segment;
-    end_b = {bodies_[body_b].member, segment, static_cast<std::uint32_t>(link_b),
-             b.segment_pose(segment).inverse() * X_WP, body_b};
+ConnectionId MultibodyWorld::connect(const BodyLink& a, const Pose& X_LP, const BodyLink& b,
+                                     const ConnectionLimits& limits) {
+  const Multibody& body_a = multibody(a.body);
+  const Mechanism::LinkPlace& place_a = body_a.mechanism().link(a.link.value);
+  const Connection::End end_a{bodies_[a.body.value].member, place_a.segment, a.link.value, place_a.X_SL * X_LP,
+                              a.body.value};
+  const Pose X_WP = body_a.segment_pose(place_a.segment) * end_a.X_SP;
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, b.body.value};
+  if (!is_static(b.body)) {
+    const Multibody& body_b = multibody(b.body);
+    const int segment = body_b.mechanism().link(b.link.value).segment;
+    end_b = {bodies_[b.body.value].member, segment, b.link.value, body_b.segment_pose(segment).inverse() * X_WP,
+             b.body.value};
   }
-  wake(body_a);
-  if (!is_static(body_b)) wake(body_b);
-  return assembly_.connections.add(end_a, end_b, limits);
+  wake(a.body);
+  if (!is_static(b.body)) wake(b.body);
+  return ConnectionId{assembly_.connections.add(end_a, end_b, limits)};
 }
 
-void MultibodyWorld::disconnect(std::uint32_t number) {
-  sleep_.wake_ends(number);
-  assembly_.connections.release(number);
+void MultibodyWorld::disconnect(ConnectionId connection) {
+  sleep_.wake_ends(connection.value);
+  assembly_.connections.release(connection.value);
 }
 
-void MultibodyWorld::set_connection_give(std::uint32_t number, const ConnectionGive& give) {
-  sleep_.wake_ends(number);
-  assembly_.connections.set_give(number, give);
+void MultibodyWorld::set_give(ConnectionId connection, const ConnectionGive& give) {
+  sleep_.wake_ends(connection.value);
+  assembly_.connections.set_give(connection.value, give);
 }
 
-PlacedBody& MultibodyWorld::wake(std::uint32_t body) {
-  sleep_.wake(bodies_[body].member);
-  return bodies_[body];
+PlacedBody& MultibodyWorld::wake(BodyId body) {
+  sleep_.wake(bodies_[body.value].member);
+  return bodies_[body.value];
 }
 
 // Those of what sleeps first: they stay until somebody wakes or falls asleep.

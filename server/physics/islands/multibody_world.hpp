@@ -16,104 +16,85 @@ namespace cohort::physics {
 /// One step of the bodies of a world: where they touch, which of them hang together, and, island by island, their
 /// velocities under gravity, motors, joints and contacts and the way that these take them. Islands do not know of each
 /// other, so it does not matter which worker has which.
-class MultibodyWorld final : public World {
+class MultibodyWorld final : public World, private WorldConnections {
  public:
   /// `like`: as make_world has it.
   MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like = nullptr);
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
-  bool is_active(std::uint32_t body) const override;
-  bool is_asleep(std::uint32_t body) const override {
-    return !is_static(body) && assembly_.members[bodies_[body].member].is_asleep;
-  }
-  std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
-  void recreate_body(std::size_t model, const Pose& X_WM) override {
-    create_body(model, X_WM);
-    assembly_.scene.build();
-  }
-  void remove_body(std::uint32_t index) override;
-  void put_back_body(std::uint32_t index) override;
-  void place_body(std::uint32_t index, const Pose& X_WM) override;
-  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
+  Activity activity(BodyId body) const override;
+  BodyId add_body(std::size_t model, const Pose& X_WM, Arrival arrival) override;
+  void set_present(BodyId body, bool is_present) override;
+  void place_body(BodyId index, const Pose& X_WM) override;
+  void push_body(BodyId body, LinkId link, const Wrench& wrench) override;
 
   const geometry::Scene& scene() const override { return assembly_.scene; }
   std::size_t body_count() const override { return bodies_.size(); }
-  std::size_t model_of(std::uint32_t body) const override { return bodies_[body].model; }
-  Pose link_pose(std::uint32_t body, std::size_t link) const override;
-  Twist link_twist(std::uint32_t body, std::size_t link) const override;
-  double joint_position(std::uint32_t body, std::size_t joint) const override {
-    return multibody(body).joint_position(joint);
-  }
-  double joint_velocity(std::uint32_t body, std::size_t joint) const override {
-    return multibody(body).joint_velocity(joint);
-  }
-  TrackState track(std::uint32_t body, std::size_t drive, Side side) const override {
+  std::size_t model_of(BodyId body) const override { return bodies_[body.value].model; }
+  Pose link_pose(BodyId body, LinkId link) const override;
+  Twist link_twist(BodyId body, LinkId link) const override;
+  JointState joint_state(BodyId body, JointId joint) const override;
+  TrackState track(BodyId body, std::size_t drive, Side side) const override {
     return multibody(body).track(drive, side);
   }
-  void record(std::uint32_t body) override {
+  void record(BodyId body) override {
     if (!is_static(body)) assembly_.record(wake(body).member);
   }
-  Wrench joint_wrench(std::uint32_t body, std::size_t joint) const override;
-  Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const override;
-  double joint_effort(std::uint32_t body, std::size_t joint) const override {
-    return is_static(body) ? 0.0 : multibody(body).joint_effort(joint);
-  }
-  double driven_power(std::uint32_t body) const override;
+  Wrench joint_wrench(BodyId body, JointId joint) const override;
+  Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const override;
+  double driven_power(BodyId body) const override;
 
-  std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
-                        std::size_t link_b, const ConnectionLimits& limits) override;
-  void disconnect(std::uint32_t number) override;
-  std::uint32_t connections_made() const override { return assembly_.connections.made(); }
-  bool is_connected(std::uint32_t connection) const override { return assembly_.connections.holds(connection); }
-  void set_connection_give(std::uint32_t number, const ConnectionGive& give) override;
-  Wrench connection_wrench(std::uint32_t number) const override;
-  Wrench connection_reaction(std::uint32_t number) const override;
-  std::span<const std::uint32_t> broken_connections() const override { return assembly_.connections.broken(); }
+  WorldConnections& connections() override { return *this; }
+  const WorldConnections& connections() const override { return *this; }
 
-  void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
-    set_joint_target(body, joint, JointRows::Control::velocity, velocity);
+  void set_joint_target(BodyId body, JointId joint, const JointTarget& target) override {
+    if (multibody(body).set_joint_target(joint.value, target.kind, target.value)) wake(body);
   }
-  void set_joint_position_target(std::uint32_t body, std::size_t joint, double position) override {
-    set_joint_target(body, joint, JointRows::Control::position, position);
-  }
-  void set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort) override {
-    set_joint_target(body, joint, JointRows::Control::effort, effort);
-  }
-  void set_track_velocity_target(std::uint32_t body, std::size_t drive, Side side, double velocity) override {
+  void set_track_velocity_target(BodyId body, std::size_t drive, Side side, double velocity) override {
     if (multibody(body).set_track_velocity_target(drive, side, velocity)) wake(body);
   }
-  void set_belt_velocity_target(std::uint32_t body, std::size_t link, double velocity) override {
-    if (multibody(body).set_belt_velocity(link, velocity)) wake(body);
+  void set_belt_velocity_target(BodyId body, LinkId link, double velocity) override {
+    if (multibody(body).set_belt_velocity(link.value, velocity)) wake(body);
   }
-  double rotor_velocity(std::uint32_t body, std::size_t device) const override {
-    return assembly_.members[bodies_[body].member].fluid->rotor_velocity(device);
+  double rotor_velocity(BodyId body, std::size_t device) const override {
+    return assembly_.members[bodies_[body.value].member].fluid->rotor_velocity(device);
   }
-  void set_rotor_velocity_target(std::uint32_t body, std::size_t device, double velocity) override {
-    assembly_.members[bodies_[body].member].fluid->set_rotor_target(device, velocity);
+  void set_rotor_velocity_target(BodyId body, std::size_t device, double velocity) override {
+    assembly_.members[bodies_[body.value].member].fluid->set_rotor_target(device, velocity);
   }
-  void set_root_twist(std::uint32_t body, const Twist& twist) override {
+  void set_root_twist(BodyId body, const Twist& twist) override {
     wake(body);
     multibody(body).set_root_twist(twist);
   }
-  void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+  void set_joint_state(BodyId body, JointId joint, std::span<const double> coordinates,
                        std::span<const double> velocities) override;
 
   std::span<const Contact> contacts() const override { return contacts_; }
-  void hash_body(std::uint32_t body, StateHash& hash) const override;
+  void hash_body(BodyId body, StateHash& hash) const override;
   void hash_contacts(StateHash& hash) const override;
   void save(SnapshotWriter& writer) const override;
   void restore(SnapshotReader& reader) override;
 
  private:
+  ConnectionId connect(const BodyLink& a, const Pose& X_LP, const BodyLink& b, const ConnectionLimits& limits) override;
+  void disconnect(ConnectionId connection) override;
+  void set_give(ConnectionId connection, const ConnectionGive& give) override;
+  std::uint32_t made() const override { return assembly_.connections.made(); }
+  bool holds(ConnectionId connection) const override { return assembly_.connections.holds(connection.value); }
+  Wrench wrench(ConnectionId connection, ConnectionEnd end) const override;
+  std::span<const ConnectionId> broken() const override { return assembly_.connections.broken(); }
+
   struct Memory {  // of one worker
     std::vector<std::uint32_t> near;
     std::vector<std::uint32_t> candidates;
     double furthest = 0.0;  // way of a part in this step [m]
   };
 
-  std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, std::uint32_t body);
-  std::uint32_t create_body(std::size_t model, const Pose& X_WM);
+  std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, BodyId body);
+  BodyId create_body(std::size_t model, const Pose& X_WM);
+  void remove_body(BodyId body);
+  void put_back_body(BodyId body);
   void find_lowest();
   void find_awake();
   void detect();
@@ -124,17 +105,14 @@ class MultibodyWorld final : public World {
   void report_contacts_of(std::uint32_t member);
   void wake_group_of(std::uint32_t sleeper);
   // Of a body that moves: it and what sleeps with it.
-  PlacedBody& wake(std::uint32_t body);
-  void set_joint_target(std::uint32_t body, std::size_t joint, JointRows::Control control, double target) {
-    if (multibody(body).set_joint_target(joint, control, target)) wake(body);
-  }
+  PlacedBody& wake(BodyId body);
   // Of a body that moves.
-  Multibody& multibody(std::uint32_t body) { return *assembly_.members[bodies_[body].member].multibody; }
-  const Multibody& multibody(std::uint32_t body) const { return *assembly_.members[bodies_[body].member].multibody; }
-  const ForceRecord* record_of(std::uint32_t body) const {
-    return is_static(body) ? nullptr : assembly_.members[bodies_[body].member].record.get();
+  Multibody& multibody(BodyId body) { return *assembly_.members[bodies_[body.value].member].multibody; }
+  const Multibody& multibody(BodyId body) const { return *assembly_.members[bodies_[body.value].member].multibody; }
+  const ForceRecord* record_of(BodyId body) const {
+    return is_static(body) ? nullptr : assembly_.members[bodies_[body.value].member].record.get();
   }
-  bool is_static(std::uint32_t body) const { return bodies_[body].member == Anchors::nobody; }
+  bool is_static(BodyId body) const { return bodies_[body.value].member == Anchors::nobody; }
 
   const description::World& description_;
   WorkerPool& workers_;

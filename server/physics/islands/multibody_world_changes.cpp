@@ -4,21 +4,28 @@
 
 namespace cohort::physics {
 
-void MultibodyWorld::remove_body(std::uint32_t index) {
-  PlacedBody& body = bodies_[index];
+void MultibodyWorld::set_present(BodyId body, bool is_present) {
+  if (is_present)
+    put_back_body(body);
+  else
+    remove_body(body);
+}
+
+void MultibodyWorld::remove_body(BodyId index) {
+  PlacedBody& body = bodies_[index.value];
   if (!is_active(index)) return;
   if (!is_static(index)) return assembly_.take_out(wake(index).member);
   sleep_.wake_all();
   body.is_out = true;
-  assembly_.connections.release_of_body(index);
+  assembly_.connections.release_of_body(index.value);
   for (const std::uint32_t solid : body.solids) {
     assembly_.scene.remove(solid);
     assembly_.collision.remove(solid);
   }
 }
 
-void MultibodyWorld::put_back_body(std::uint32_t index) {
-  PlacedBody& body = bodies_[index];
+void MultibodyWorld::put_back_body(BodyId index) {
+  PlacedBody& body = bodies_[index.value];
   if (is_active(index)) return;
   if (!is_static(index)) return assembly_.put_back(body.member);
   sleep_.wake_all();
@@ -26,13 +33,13 @@ void MultibodyWorld::put_back_body(std::uint32_t index) {
   for (const std::uint32_t solid : body.solids) assembly_.scene.put_back(solid);
 }
 
-void MultibodyWorld::place_body(std::uint32_t index, const Pose& X_WM) {
-  PlacedBody& body = bodies_[index];
+void MultibodyWorld::place_body(BodyId index, const Pose& X_WM) {
+  PlacedBody& body = bodies_[index.value];
   body.X_WM = X_WM;
   body.is_placed_again = true;
   if (!is_static(index)) return assembly_.place(wake(index).member, X_WM);
   sleep_.wake_all();
-  assembly_.connections.release_of_body(index);
+  assembly_.connections.release_of_body(index.value);
   std::size_t next = 0;
   for (const description::Link& link : description_.models[body.model].links)
     for (const description::Collision& collision : link.collisions) {
@@ -42,10 +49,10 @@ void MultibodyWorld::place_body(std::uint32_t index, const Pose& X_WM) {
   assembly_.scene.build();
 }
 
-void MultibodyWorld::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {
+void MultibodyWorld::push_body(BodyId body, LinkId link, const Wrench& wrench) {
   wake(body);
-  const description::Inertial& inertial = description_.models[bodies_[body].model].links[link].inertial;
-  assembly_.pushes.add({bodies_[body].member, multibody(body).mechanism().link(link).segment, link,
+  const description::Inertial& inertial = description_.models[bodies_[body.value].model].links[link.value].inertial;
+  assembly_.pushes.add({bodies_[body.value].member, multibody(body).mechanism().link(link.value).segment, link.value,
                         link_pose(body, link) * inertial.X_LI.position, wrench});
 }
 

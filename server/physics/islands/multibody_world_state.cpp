@@ -5,11 +5,11 @@
 
 namespace cohort::physics {
 
-void MultibodyWorld::hash_body(std::uint32_t body, StateHash& hash) const {
-  hash_changes(bodies_[body], hash);
+void MultibodyWorld::hash_body(BodyId body, StateHash& hash) const {
+  hash_changes(bodies_[body.value], hash);
   if (is_static(body)) return;
   StateHasher{hash}(is_active(body));
-  const Member& member = assembly_.members[bodies_[body].member];
+  const Member& member = assembly_.members[bodies_[body.value].member];
   StateHasher{hash}.unusual(member.still_steps, 0u);
   StateHasher{hash}.unusual(member.is_asleep, false);
   Multibody::visit_state(multibody(body), StateHasher{hash});
@@ -74,7 +74,7 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
   assembly_.scene.update();
   assembly_.connections.restore(reader, [this](const Connection::End& end) {
     return is_there(end, bodies_, description_.models, [this](std::uint32_t body, std::size_t link) {
-      return multibody(body).mechanism().link(link).segment;
+      return multibody(BodyId{body}).mechanism().link(link).segment;
     });
   });
   assembly_.collision.restore(reader);

@@ -45,7 +45,7 @@ bool Sleep::may_sleep(std::uint32_t index) const {
 
 void Sleep::fall_asleep(const Islands& islands) {
   if (!assembly_.settings.sleeping) return;
-  for (const std::uint32_t broken : assembly_.connections.broken()) wake_ends(broken);
+  for (const ConnectionId broken : assembly_.connections.broken()) wake_ends(broken.value);
   for (std::uint32_t island = 0; island < islands.count(); ++island) {
     const std::span<const std::uint32_t> members = islands.members(island);
     if (std::ranges::all_of(members, [&](std::uint32_t member) { return may_sleep(member); })) put_to_sleep(members);

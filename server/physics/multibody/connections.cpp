@@ -57,7 +57,7 @@ void Connections::break_overloaded(double step) {
   for (auto& [number, connection] : connections_) {
     if (!connection.is_overloaded(step)) continue;
     connection.break_now();
-    broken_.push_back(number);
+    broken_.emplace_back(number);
   }
 }
 

@@ -35,7 +35,7 @@ class Connections {
   /// Releases those that the last step took beyond their limits, and forgets what was released before.
   void break_overloaded(double step);
   /// By that, ascending.
-  std::span<const std::uint32_t> broken() const { return broken_; }
+  std::span<const ConnectionId> broken() const { return broken_; }
 
   /// nullptr if it was released.
   const Connection* find(std::uint32_t connection) const { return const_cast<Connections&>(*this).find(connection); }
@@ -70,7 +70,7 @@ class Connections {
   std::vector<Numbered> connections_;  // ascending
   std::uint32_t next_ = 0;
   std::vector<std::vector<std::uint32_t>> of_member_;  // of end a, ascending
-  std::vector<std::uint32_t> broken_;
+  std::vector<ConnectionId> broken_;
 };
 
 /// Whether there is such an end: a link of one of the `bodies`, on its segment `segment_of(body, link)` if it moves.

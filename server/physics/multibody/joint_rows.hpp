@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "server/physics/mechanism/mechanism.hpp"
+#include "server/physics/world/physics_world.hpp"
 
 namespace cohort::physics {
 
@@ -18,7 +19,7 @@ class JointRows {
   explicit JointRows(const Mechanism& mechanism);
 
   /// What a motor is told.
-  enum class Control : std::uint8_t { velocity, position, effort };
+  using Control = JointTarget::Kind;
 
   /// A motor on one dof, with a limited force or torque; `max_velocity` is for going to a position. At most one for
   /// each dof.

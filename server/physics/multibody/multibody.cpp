@@ -16,7 +16,7 @@ Eigen::Quaterniond ball_rotation(const double* coordinates) {
 
 }  // namespace
 
-Multibody::Multibody(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM, std::uint32_t body)
+Multibody::Multibody(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM, BodyId body)
     : mechanism_(&mechanism),
       body_(body),
       bullet_(dynamics == description::Dynamics::bullet ? std::make_unique<BulletBody>(mechanism) : nullptr),

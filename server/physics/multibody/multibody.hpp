@@ -25,12 +25,12 @@ class Multibody {
  public:
   /// The mechanism is shared and must outlive this; X_WM places the model with all its joints at zero. Throws
   /// std::invalid_argument for a device that cannot be simulated.
-  Multibody(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM, std::uint32_t body);
+  Multibody(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM, BodyId body);
   Multibody(const Multibody&) = delete;
   Multibody& operator=(const Multibody&) = delete;
 
   const Mechanism& mechanism() const { return *mechanism_; }
-  std::uint32_t body() const { return body_; }
+  BodyId body() const { return body_; }
 
   // The state: what decides how the body goes on.
   const double* velocities() const { return state_.velocities(); }
@@ -140,7 +140,7 @@ class Multibody {
   void add_motor(int dof, double max_effort, double max_velocity, const std::string& device);
 
   const Mechanism* mechanism_;
-  std::uint32_t body_;
+  BodyId body_;
   Pose X_WM_;  // of a root that is tied to the world
   std::unique_ptr<BulletBody> bullet_;
   BodyState state_;

@@ -4,17 +4,24 @@
 
 namespace cohort::physics {
 
-void PlanarWorld::remove_body(std::uint32_t index) {
-  PlacedBody& body = bodies_[index];
+void PlanarWorld::set_present(BodyId body, bool is_present) {
+  if (is_present)
+    put_back_body(body);
+  else
+    remove_body(body);
+}
+
+void PlanarWorld::remove_body(BodyId index) {
+  PlacedBody& body = bodies_[index.value];
   if (!is_active(index)) return;
   if (body.member != Anchors::nobody) return take_out(body.member);
   body.is_out = true;
-  connections_.release_of_body(index);
+  connections_.release_of_body(index.value);
   for (const std::uint32_t solid : body.solids) scene_.remove(solid);
 }
 
-void PlanarWorld::put_back_body(std::uint32_t index) {
-  PlacedBody& body = bodies_[index];
+void PlanarWorld::put_back_body(BodyId index) {
+  PlacedBody& body = bodies_[index.value];
   if (is_active(index)) return;
   if (body.member == Anchors::nobody) {
     body.is_out = false;
@@ -29,13 +36,13 @@ void PlanarWorld::put_back_body(std::uint32_t index) {
   for (std::uint32_t i = 0; i < member.part_count; ++i) scene_.put_back(parts_[member.first_part + i].solid);
 }
 
-void PlanarWorld::place_body(std::uint32_t index, const Pose& X_WM) {
-  PlacedBody& body = bodies_[index];
+void PlanarWorld::place_body(BodyId index, const Pose& X_WM) {
+  PlacedBody& body = bodies_[index.value];
   if (body.member != Anchors::nobody) place_on_ground(body.member, X_WM);
   body.X_WM = X_WM;
   body.is_placed_again = true;
   if (body.member == Anchors::nobody) {
-    connections_.release_of_body(index);
+    connections_.release_of_body(index.value);
     std::size_t next = 0;
     for (const description::Link& link : description_.models[body.model].links)
       for (const description::Collision& collision : link.collisions) {
@@ -70,10 +77,10 @@ void PlanarWorld::place_on_ground(std::uint32_t member, const Pose& X_WM) {
   }
 }
 
-void PlanarWorld::push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) {
-  const std::uint32_t member = bodies_[body].member;
-  const description::Inertial& inertial = description_.models[bodies_[body].model].links[link].inertial;
-  pushes_.add({member, planar_.model(member).mechanism().link(link).segment, link,
+void PlanarWorld::push_body(BodyId body, LinkId link, const Wrench& wrench) {
+  const std::uint32_t member = bodies_[body.value].member;
+  const description::Inertial& inertial = description_.models[bodies_[body.value].model].links[link.value].inertial;
+  pushes_.add({member, planar_.model(member).mechanism().link(link.value).segment, link.value,
                link_pose(body, link) * inertial.X_LI.position, wrench});
 }
 

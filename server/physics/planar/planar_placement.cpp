@@ -54,15 +54,16 @@ PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& work
   for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
   scene_.build();
   for (std::uint32_t member = 0; member < members_.size(); ++member) put_on_ground(member);
-  for (std::uint32_t body = 0; body < bodies_.size(); ++body)
-    if (!description.instances[body].is_present) remove_body(body);
+  for (std::size_t body = 0; body < bodies_.size(); ++body)
+    if (!description.instances[body].is_present) remove_body(BodyId{body});
 }
 
-std::uint32_t PlanarWorld::add_body(std::size_t model, const Pose& X_WM) {
-  check_ground(description_.models[model], X_WM);
-  const std::uint32_t body = create_body(model, X_WM);
+BodyId PlanarWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arrival) {
+  if (arrival == Arrival::anew) check_ground(description_.models[model], X_WM);
+  const BodyId body = create_body(model, X_WM);
   scene_.build();
-  if (const std::uint32_t member = bodies_[body].member; member != Anchors::nobody) put_on_ground(member);
+  const std::uint32_t member = bodies_[body.value].member;
+  if (arrival == Arrival::anew && member != Anchors::nobody) put_on_ground(member);
   return body;
 }
 
@@ -97,8 +98,8 @@ bool PlanarWorld::needs_ground(const PlanarModel& model) const {
   return !model.is_immovable() && description_.gravity.z() * model.mass() != 0.0;
 }
 
-std::uint32_t PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
-  const auto body = static_cast<std::uint32_t>(bodies_.size());
+BodyId PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
+  const BodyId body{bodies_.size()};
   const description::Model& model = description_.models[model_index];
   if (model_index >= models_.size()) models_.resize(model_index + 1);  // it has come since
   try {
@@ -123,13 +124,13 @@ std::uint32_t PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM
   return body;
 }
 
-void PlanarWorld::add_static(std::uint32_t body) {
-  const std::vector<description::Link>& links = description_.models[bodies_[body].model].links;
+void PlanarWorld::add_static(BodyId body) {
+  const std::vector<description::Link>& links = description_.models[bodies_[body.value].model].links;
   for (std::size_t link = 0; link < links.size(); ++link) {
     for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
       const description::Collision& collision = links[link].collisions[part];
-      const Pose X_WC = bodies_[body].X_WM * links[link].X_ML * collision.X_LC;
-      bodies_[body].solids.push_back(
+      const Pose X_WC = bodies_[body.value].X_WM * links[link].X_ML * collision.X_LC;
+      bodies_[body.value].solids.push_back(
           scene_.add({collision.shape, collision.surface, body, false, X_WC, static_cast<std::uint32_t>(link),
                       static_cast<std::uint32_t>(part), links[link].color}));
       collision_.add_static();
@@ -138,10 +139,10 @@ void PlanarWorld::add_static(std::uint32_t body) {
   }
 }
 
-void PlanarWorld::add_moving(std::uint32_t body) {
-  const PlanarModel& model = *models_[bodies_[body].model];
-  const std::uint32_t index = planar_.add(model, bodies_[body].X_WM);
-  bodies_[body].member = index;
+void PlanarWorld::add_moving(BodyId body) {
+  const PlanarModel& model = *models_[bodies_[body.value].model];
+  const std::uint32_t index = planar_.add(model, bodies_[body.value].X_WM);
+  bodies_[body.value].member = index;
   collision_.add_member(model.is_immovable());
   grounds_.emplace_back();
   Member& member = members_.emplace_back();

@@ -5,9 +5,9 @@
 
 namespace cohort::physics {
 
-void PlanarWorld::hash_body(std::uint32_t body, StateHash& hash) const {
-  const std::uint32_t member = bodies_[body].member;
-  hash_changes(bodies_[body], hash);
+void PlanarWorld::hash_body(BodyId body, StateHash& hash) const {
+  const std::uint32_t member = bodies_[body.value].member;
+  hash_changes(bodies_[body.value], hash);
   if (member == Anchors::nobody) return;
   StateHasher{hash}(members_[member].is_active);
   PlanarBodies::visit_state(planar_, member, StateHasher{hash});

@@ -26,67 +26,72 @@ Wrench in_plane(const Wrench& wrench) {
 
 }  // namespace
 
-bool PlanarWorld::is_active(std::uint32_t body) const {
-  return bodies_[body].member == Anchors::nobody ? !bodies_[body].is_out : members_[bodies_[body].member].is_active;
+Activity PlanarWorld::activity(BodyId body) const {
+  const PlacedBody& placed = bodies_[body.value];
+  const bool is_in = placed.member == Anchors::nobody ? !placed.is_out : members_[placed.member].is_active;
+  return is_in ? Activity::awake : Activity::out;
 }
 
-Pose PlanarWorld::link_pose(std::uint32_t body, std::size_t link) const {
-  if (bodies_[body].member != Anchors::nobody) return planar_.link_pose(bodies_[body].member, link);
-  return bodies_[body].X_WM * description_.models[bodies_[body].model].links[link].X_ML;
+Pose PlanarWorld::link_pose(BodyId body, LinkId link) const {
+  if (bodies_[body.value].member != Anchors::nobody) return planar_.link_pose(bodies_[body.value].member, link.value);
+  return bodies_[body.value].X_WM * description_.models[bodies_[body.value].model].links[link.value].X_ML;
 }
 
-Twist PlanarWorld::link_twist(std::uint32_t body, std::size_t link) const {
-  if (bodies_[body].member != Anchors::nobody && is_active(body)) return planar_.link_twist(bodies_[body].member, link);
+Twist PlanarWorld::link_twist(BodyId body, LinkId link) const {
+  if (bodies_[body.value].member != Anchors::nobody && is_active(body))
+    return planar_.link_twist(bodies_[body.value].member, link.value);
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 
-void PlanarWorld::set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+JointState PlanarWorld::joint_state(BodyId body, JointId joint) const {
+  const std::uint32_t member = bodies_[body.value].member;
+  if (member == Anchors::nobody) return {};
+  return {planar_.joint_position(member, joint.value), planar_.joint_velocity(member, joint.value), 0.0};
+}
+
+void PlanarWorld::set_joint_state(BodyId body, JointId joint, std::span<const double> coordinates,
                                   std::span<const double> velocities) {
-  const std::uint32_t member = bodies_[body].member;
-  planar_.set_joint_state(member, joint, coordinates, velocities);
+  const std::uint32_t member = bodies_[body.value].member;
+  planar_.set_joint_state(member, joint.value, coordinates, velocities);
   find_parts_in_body(members_[member], member);
   place_solids(member);
   scene_.update();
 }
 
 // Joints move by command and take no effort.
-double PlanarWorld::driven_power(std::uint32_t body) const {
-  if (bodies_[body].member == Anchors::nobody) return 0.0;
-  const PlanarGround& ground = grounds_[bodies_[body].member];
+double PlanarWorld::driven_power(BodyId body) const {
+  if (bodies_[body.value].member == Anchors::nobody) return 0.0;
+  const PlanarGround& ground = grounds_[bodies_[body.value].member];
   double power = 0.0;
   for (const Side side : {Side::left, Side::right})
     power += std::max(0.0, ground.track(side).traction * ground.track(side).velocity);
   return power;
 }
 
-void PlanarWorld::record(std::uint32_t body) {
-  if (bodies_[body].member == Anchors::nobody) return;
-  std::unique_ptr<MotionRecord>& record = members_[bodies_[body].member].record;
+void PlanarWorld::record(BodyId body) {
+  if (bodies_[body.value].member == Anchors::nobody) return;
+  std::unique_ptr<MotionRecord>& record = members_[bodies_[body.value].member].record;
   if (!record) record = std::make_unique<MotionRecord>();
   has_records_ = true;
 }
 
-Eigen::Vector3d PlanarWorld::link_acceleration(std::uint32_t body, std::size_t link,
-                                               const Eigen::Vector3d& p_LP) const {
-  if (bodies_[body].member == Anchors::nobody) return Eigen::Vector3d::Zero();
-  const std::unique_ptr<MotionRecord>& record = members_[bodies_[body].member].record;
-  return record ? record->acceleration(link, p_LP, step_) : Eigen::Vector3d::Zero();
+Eigen::Vector3d PlanarWorld::link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const {
+  if (bodies_[body.value].member == Anchors::nobody) return Eigen::Vector3d::Zero();
+  const std::unique_ptr<MotionRecord>& record = members_[bodies_[body.value].member].record;
+  return record ? record->acceleration(link.value, p_LP, step_) : Eigen::Vector3d::Zero();
 }
 
 Pose PlanarWorld::pose_of(const Connection::End& end) const {
   return end.member == Anchors::nobody ? Pose{} : planar_.segment_pose(end.member, end.segment);
 }
 
-Wrench PlanarWorld::connection_wrench(std::uint32_t index) const {
-  const Connection* const connection = connections_.find(index);
-  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  return in_plane(connection->wrench_on_a(pose_of(connection->a()), pose_of(connection->b()), step_));
-}
-
-Wrench PlanarWorld::connection_reaction(std::uint32_t index) const {
-  const Connection* const connection = connections_.find(index);
-  if (connection == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  return in_plane(connection->wrench_on_b(pose_of(connection->a()), pose_of(connection->b()), step_));
+Wrench PlanarWorld::wrench(ConnectionId connection, ConnectionEnd end) const {
+  const Connection* const found = connections_.find(connection.value);
+  if (found == nullptr) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  const Pose X_WSa = pose_of(found->a());
+  const Pose X_WSb = pose_of(found->b());
+  return in_plane(end == ConnectionEnd::a ? found->wrench_on_a(X_WSa, X_WSb, step_)
+                                          : found->wrench_on_b(X_WSa, X_WSb, step_));
 }
 
 void PlanarWorld::step() {
@@ -237,22 +242,21 @@ void PlanarWorld::report_contacts() {
   }
 }
 
-std::uint32_t PlanarWorld::connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
-                                   std::size_t link_b, const ConnectionLimits& limits) {
-  const auto link_of = [&](std::uint32_t body, std::size_t link) -> const Mechanism::LinkPlace& {
-    return planar_.model(bodies_[body].member).mechanism().link(link);
+ConnectionId PlanarWorld::connect(const BodyLink& a, const Pose& X_LP, const BodyLink& b,
+                                  const ConnectionLimits& limits) {
+  const auto link_of = [&](const BodyLink& end) -> const Mechanism::LinkPlace& {
+    return planar_.model(bodies_[end.body.value].member).mechanism().link(end.link.value);
   };
-  const Mechanism::LinkPlace& place_a = link_of(body_a, link_a);
-  const Connection::End end_a{bodies_[body_a].member, place_a.segment, static_cast<std::uint32_t>(link_a),
-                              place_a.X_SL * X_LP, body_a};
+  const Mechanism::LinkPlace& place_a = link_of(a);
+  const Connection::End end_a{bodies_[a.body.value].member, place_a.segment, a.link.value, place_a.X_SL * X_LP,
+                              a.body.value};
   const Pose X_WP = planar_.segment_pose(end_a.member, end_a.segment) * end_a.X_SP;
-  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, body_b};
-  if (const std::uint32_t member = bodies_[body_b].member; member != Anchors::nobody) {
-    const int segment = link_of(body_b, link_b).segment;
-    end_b = {member, segment, static_cast<std::uint32_t>(link_b),
-             planar_.segment_pose(member, segment).inverse() * X_WP, body_b};
+  Connection::End end_b{Anchors::nobody, 0, 0, X_WP, b.body.value};
+  if (const std::uint32_t member = bodies_[b.body.value].member; member != Anchors::nobody) {
+    const int segment = link_of(b).segment;
+    end_b = {member, segment, b.link.value, planar_.segment_pose(member, segment).inverse() * X_WP, b.body.value};
   }
-  return connections_.add(end_a, end_b, limits);
+  return ConnectionId{connections_.add(end_a, end_b, limits)};
 }
 
 void PlanarWorld::quarantine() {

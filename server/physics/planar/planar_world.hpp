@@ -33,7 +33,7 @@ namespace cohort::physics {
 /// - Joints and motors have no force to tell; a motor that is told an effort stays where it is.
 /// - There is no water, no wind, and nothing that flies or swims.
 /// - The solver is always the iterative one.
-class PlanarWorld final : public World {
+class PlanarWorld final : public World, private WorldConnections {
  public:
   /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, water,
   /// ground that is not level, none under a body, a joint that moves against the world, a belt, a rotor, a fin, drag,
@@ -42,80 +42,61 @@ class PlanarWorld final : public World {
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }
-  bool is_active(std::uint32_t body) const override;
-  bool is_asleep(std::uint32_t) const override { return false; }
-  std::uint32_t add_body(std::size_t model, const Pose& X_WM) override;
-  void recreate_body(std::size_t model, const Pose& X_WM) override {
-    create_body(model, X_WM);
-    scene_.build();
-  }
-  void remove_body(std::uint32_t index) override;
-  void put_back_body(std::uint32_t index) override;
-  void place_body(std::uint32_t index, const Pose& X_WM) override;
-  void push_body(std::uint32_t body, std::size_t link, const Wrench& wrench) override;
+  Activity activity(BodyId body) const override;
+  BodyId add_body(std::size_t model, const Pose& X_WM, Arrival arrival) override;
+  void set_present(BodyId body, bool is_present) override;
+  void place_body(BodyId index, const Pose& X_WM) override;
+  void push_body(BodyId body, LinkId link, const Wrench& wrench) override;
 
   const geometry::Scene& scene() const override { return scene_; }
   std::size_t body_count() const override { return bodies_.size(); }
-  std::size_t model_of(std::uint32_t body) const override { return bodies_[body].model; }
-  Pose link_pose(std::uint32_t body, std::size_t link) const override;
-  Twist link_twist(std::uint32_t body, std::size_t link) const override;
-  double joint_position(std::uint32_t body, std::size_t joint) const override {
-    return planar_.joint_position(bodies_[body].member, joint);
+  std::size_t model_of(BodyId body) const override { return bodies_[body.value].model; }
+  Pose link_pose(BodyId body, LinkId link) const override;
+  Twist link_twist(BodyId body, LinkId link) const override;
+  JointState joint_state(BodyId body, JointId joint) const override;
+  TrackState track(BodyId body, std::size_t, Side side) const override {
+    return grounds_[bodies_[body.value].member].track(side);
   }
-  double joint_velocity(std::uint32_t body, std::size_t joint) const override {
-    return planar_.joint_velocity(bodies_[body].member, joint);
-  }
-  TrackState track(std::uint32_t body, std::size_t, Side side) const override {
-    return grounds_[bodies_[body].member].track(side);
-  }
-  void record(std::uint32_t body) override;
-  Wrench joint_wrench(std::uint32_t, std::size_t) const override {
-    return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  }
-  Eigen::Vector3d link_acceleration(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LP) const override;
-  double joint_effort(std::uint32_t, std::size_t) const override { return 0.0; }
-  double driven_power(std::uint32_t body) const override;
+  void record(BodyId body) override;
+  Wrench joint_wrench(BodyId, JointId) const override { return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
+  Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const override;
+  double driven_power(BodyId body) const override;
 
-  std::uint32_t connect(std::uint32_t body_a, std::size_t link_a, const Pose& X_LP, std::uint32_t body_b,
-                        std::size_t link_b, const ConnectionLimits& limits) override;
-  void disconnect(std::uint32_t connection) override { connections_.release(connection); }
-  bool is_connected(std::uint32_t connection) const override { return connections_.holds(connection); }
-  void set_connection_give(std::uint32_t, const ConnectionGive&) override {}
-  Wrench connection_wrench(std::uint32_t connection) const override;
-  Wrench connection_reaction(std::uint32_t connection) const override;
-  std::span<const std::uint32_t> broken_connections() const override { return connections_.broken(); }
+  WorldConnections& connections() override { return *this; }
+  const WorldConnections& connections() const override { return *this; }
 
-  void set_joint_velocity_target(std::uint32_t body, std::size_t joint, double velocity) override {
-    planar_.set_joint_target(bodies_[body].member, joint, JointRows::Control::velocity, velocity);
+  void set_joint_target(BodyId body, JointId joint, const JointTarget& target) override {
+    planar_.set_joint_target(bodies_[body.value].member, joint.value, target.kind, target.value);
   }
-  void set_joint_position_target(std::uint32_t body, std::size_t joint, double position) override {
-    planar_.set_joint_target(bodies_[body].member, joint, JointRows::Control::position, position);
+  void set_track_velocity_target(BodyId body, std::size_t, Side side, double velocity) override {
+    grounds_[bodies_[body.value].member].set_target(side, velocity);
   }
-  void set_joint_effort_target(std::uint32_t body, std::size_t joint, double effort) override {
-    planar_.set_joint_target(bodies_[body].member, joint, JointRows::Control::effort, effort);
+  void set_belt_velocity_target(BodyId, LinkId, double) override {}          // none can be planar
+  double rotor_velocity(BodyId, std::size_t) const override { return 0.0; }  // none can be planar
+  void set_rotor_velocity_target(BodyId, std::size_t, double) override {}
+  void set_root_twist(BodyId body, const Twist& twist) override {
+    planar_.set_root_twist(bodies_[body.value].member, twist);
   }
-  void set_track_velocity_target(std::uint32_t body, std::size_t, Side side, double velocity) override {
-    grounds_[bodies_[body].member].set_target(side, velocity);
-  }
-  void set_belt_velocity_target(std::uint32_t, std::size_t, double) override {}     // none can be planar
-  double rotor_velocity(std::uint32_t, std::size_t) const override { return 0.0; }  // none can be planar
-  void set_rotor_velocity_target(std::uint32_t, std::size_t, double) override {}
-  void set_root_twist(std::uint32_t body, const Twist& twist) override {
-    planar_.set_root_twist(bodies_[body].member, twist);
-  }
-  void set_joint_state(std::uint32_t body, std::size_t joint, std::span<const double> coordinates,
+  void set_joint_state(BodyId body, JointId joint, std::span<const double> coordinates,
                        std::span<const double> velocities) override;
 
   std::span<const Contact> contacts() const override { return contacts_; }
-  void hash_body(std::uint32_t body, StateHash& hash) const override;
+  void hash_body(BodyId body, StateHash& hash) const override;
   void hash_contacts(StateHash& hash) const override;
   void save(SnapshotWriter& writer) const override;
   void restore(SnapshotReader& reader) override;
-  std::uint32_t connections_made() const override { return connections_.made(); }
 
  private:
+  ConnectionId connect(const BodyLink& a, const Pose& X_LP, const BodyLink& b, const ConnectionLimits& limits) override;
+  void disconnect(ConnectionId connection) override { connections_.release(connection.value); }
+  void set_give(ConnectionId, const ConnectionGive&) override {}
+  std::uint32_t made() const override { return connections_.made(); }
+  bool holds(ConnectionId connection) const override { return connections_.holds(connection.value); }
+  Wrench wrench(ConnectionId connection, ConnectionEnd end) const override;
+  std::span<const ConnectionId> broken() const override { return connections_.broken(); }
+
   struct Member {  // a body that moves
-    std::uint32_t body = 0;
+    BodyId body;
     std::uint32_t first_part = 0;
     std::uint32_t part_count = 0;
     bool is_active = true;
@@ -146,9 +127,11 @@ class PlanarWorld final : public World {
     std::vector<Before> before;
   };
 
-  std::uint32_t create_body(std::size_t model, const Pose& X_WM);
-  void add_static(std::uint32_t body);
-  void add_moving(std::uint32_t body);
+  BodyId create_body(std::size_t model, const Pose& X_WM);
+  void add_static(BodyId body);
+  void add_moving(BodyId body);
+  void remove_body(BodyId body);
+  void put_back_body(BodyId body);
   void put_on_ground(std::uint32_t index);
   void place_on_ground(std::uint32_t member, const Pose& X_WM);
   void check_ground(const description::Model& described, const Pose& X_WM) const;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "server/core/ids.hpp"
 #include "server/core/state_visitors.hpp"
 #include "server/physics/world/anchors.hpp"
 
@@ -46,14 +47,11 @@ void restore_changes(SnapshotReader& reader, Engine& engine) {
     if (is_placed_again) {
       Pose X_WM;
       restore_pose(reader, X_WM);
-      engine.place_body(body, X_WM);
+      engine.place_body(BodyId{body}, X_WM);
     }
     bool is_out = false;
     restore(is_out);
-    if (is_out)
-      engine.remove_body(body);
-    else
-      engine.put_back_body(body);
+    engine.set_present(BodyId{body}, !is_out);
   }
 }
 

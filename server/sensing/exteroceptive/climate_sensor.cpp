@@ -15,7 +15,7 @@ class ClimateSensor final : public SensorOf<description::ClimateSensor> {
             {device_.name + "/0/humidity", "1", 1, 0.0, 1.0, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Eigen::Vector3d p_W = mount_.world.link_pose(mount_.body, device_.link) * device_.p_LS;
+    const Eigen::Vector3d p_W = mount_.world.link_pose(mount_.body, LinkId{device_.link}) * device_.p_LS;
     double temperature = mount_.description.climate.temperature;
     double humidity = mount_.description.climate.humidity;
     for (const emission::ClimateSource& source : mount_.emitters.climate_sources()) {

@@ -15,7 +15,7 @@ class GroundSensors final : public SensorOf<description::GroundSensors> {
     return channels;
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const Pose X_WL = mount_.world.link_pose(mount_.body, device_.link);
+    const Pose X_WL = mount_.world.link_pose(mount_.body, LinkId{device_.link});
     const Eigen::Vector3d down_W = X_WL.orientation * -Eigen::Vector3d::UnitZ();
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto hit = mount_.world.scene().cast_ray(X_WL * device_.places_L[i], down_W, device_.range, mount_.body);

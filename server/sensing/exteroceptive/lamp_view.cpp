@@ -12,7 +12,7 @@ constexpr std::size_t rings_a_chunk = 64;
 
 }  // namespace
 
-std::uint32_t LampView::add_ring(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LS) {
+std::uint32_t LampView::add_ring(BodyId body, LinkId link, const Eigen::Vector3d& p_LS) {
   rings_.push_back({body, link, p_LS});
   return static_cast<std::uint32_t>(rings_.size() - 1);
 }

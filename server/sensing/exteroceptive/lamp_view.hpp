@@ -20,7 +20,7 @@ class LampView final : public SharedView {
   LampView(const physics::World& world, const emission::Emitters& emitters) : world_(world), emitters_(emitters) {}
 
   /// A ring whose middle is at p_LS of a link. Returns its number: they count from 0.
-  std::uint32_t add_ring(std::uint32_t body, std::size_t link, const Eigen::Vector3d& p_LS);
+  std::uint32_t add_ring(BodyId body, LinkId link, const Eigen::Vector3d& p_LS);
   std::uint32_t ring_count() const { return static_cast<std::uint32_t>(rings_.size()); }
 
   /// The ring will be asked for after the next update.
@@ -34,8 +34,8 @@ class LampView final : public SharedView {
 
  private:
   struct Ring {
-    std::uint32_t body = 0;
-    std::size_t link = 0;
+    BodyId body;
+    LinkId link;
     Eigen::Vector3d p_LS;
     Eigen::Vector3d p_WS = Eigen::Vector3d::Zero();
   };

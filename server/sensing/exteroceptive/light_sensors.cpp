@@ -52,7 +52,7 @@ class LightSensors final : public SensorOf<description::LightSensors> {
   LightSensors(const description::LightSensors& sensors, const Mount& mount)
       : SensorOf(sensors, mount),
         lamp_view_(mount.views.get<LampView>(mount.world, mount.emitters)),
-        ring_(lamp_view_.add_ring(mount.body, sensors.link, sensors.X_LS.position)) {
+        ring_(lamp_view_.add_ring(mount.body, LinkId{sensors.link}, sensors.X_LS.position)) {
     if (sensors.samples) table_.emplace(sensors.samples);
     for (std::size_t i = 0; i < sensors.count; ++i) {
       const double bearing = sensors.first_bearing + static_cast<double>(i) * sensors.spacing;

@@ -37,10 +37,11 @@ class LogicalCamera final : public SensorOf<description::LogicalCamera> {
     const physics::World& world = mount_.world;
     const Pose X_SW = pose_of(device_, mount_).inverse();
     std::vector<Seen> seen;
-    for (std::uint32_t body = 0; body < world.body_count(); ++body) {
+    for (std::uint32_t object = 0; object < world.body_count(); ++object) {
+      const BodyId body{object};
       if (body == mount_.body || !world.is_active(body)) continue;
-      const Eigen::Vector3d p_S = X_SW * world.link_pose(body, 0).position;
-      if (is_seen(p_S)) seen.push_back({p_S.squaredNorm(), body});
+      const Eigen::Vector3d p_S = X_SW * world.link_pose(body, LinkId{0}).position;
+      if (is_seen(p_S)) seen.push_back({p_S.squaredNorm(), object});
     }
     std::ranges::sort(seen);
     const std::size_t count = std::min(seen.size(), capacity);
@@ -51,7 +52,7 @@ class LogicalCamera final : public SensorOf<description::LogicalCamera> {
     const std::span<double> orientations = values.subspan(1 + 4 * capacity, 4 * capacity);
     std::ranges::fill(objects, -1.0);
     for (std::size_t i = 0; i < count; ++i) {
-      const Pose X_SO = X_SW * world.link_pose(seen[i].object, 0);
+      const Pose X_SO = X_SW * world.link_pose(BodyId{seen[i].object}, LinkId{0});
       objects[i] = static_cast<double>(seen[i].object);
       write(X_SO.position, positions.subspan(3 * i));
       write(X_SO.orientation, orientations.subspan(4 * i));

@@ -27,7 +27,7 @@ class Microphones final : public SensorOf<description::Microphones> {
   }
   void sense(std::uint64_t, std::span<double> values) const override {
     constexpr double least_squared = 1e-6;  // [m^2]: at no distance a source would be infinitely loud
-    const Pose X_WL = mount_.world.link_pose(mount_.body, device_.link);
+    const Pose X_WL = mount_.world.link_pose(mount_.body, LinkId{device_.link});
     std::vector<Eigen::Vector3d> places_W;
     places_W.reserve(device_.places_L.size());
     for (const Eigen::Vector3d& p_L : device_.places_L) places_W.push_back(X_WL * p_L);

@@ -16,7 +16,7 @@ class ForceTorqueSensor final : public SensorOf<description::ForceTorqueSensor> 
             {device_.name + "/0/torque", "N m", 3, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    const physics::Wrench on_child = mount_.world.joint_wrench(mount_.body, device_.joint);
+    const physics::Wrench on_child = mount_.world.joint_wrench(mount_.body, JointId{device_.joint});
     const Eigen::Quaterniond W_axes = axes_W().conjugate();
     const double sign = device_.is_on_parent ? -1.0 : 1.0;
     write(Eigen::Vector3d(W_axes * (sign * on_child.force_W)), values);
@@ -30,8 +30,8 @@ class ForceTorqueSensor final : public SensorOf<description::ForceTorqueSensor> 
     if (device_.axes == Frame::parent)
       return joint_.parent == description::Joint::world
                  ? Eigen::Quaterniond::Identity()
-                 : mount_.world.link_pose(mount_.body, joint_.parent).orientation;
-    const Eigen::Quaterniond child_W = mount_.world.link_pose(mount_.body, joint_.child).orientation;
+                 : mount_.world.link_pose(mount_.body, LinkId{joint_.parent}).orientation;
+    const Eigen::Quaterniond child_W = mount_.world.link_pose(mount_.body, LinkId{joint_.child}).orientation;
     if (device_.axes == Frame::child) return child_W;
     return child_W * joint_.X_LJ.orientation * device_.X_JS.orientation;
   }

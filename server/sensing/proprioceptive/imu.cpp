@@ -30,7 +30,8 @@ class Imu final : public SensorOf<description::Imu> {
       write(Eigen::Quaterniond(R_RW_ * R_WS), values);
       values = values.subspan(4);
     }
-    write(Eigen::Vector3d(R_WS.conjugate() * mount_.world.link_twist(mount_.body, device_.link).angular_W), values);
+    write(Eigen::Vector3d(R_WS.conjugate() * mount_.world.link_twist(mount_.body, LinkId{device_.link}).angular_W),
+          values);
     write(proper_acceleration_of(device_, mount_), values.subspan(3));
   }
   bool needs_record() const override { return true; }

@@ -14,8 +14,9 @@ class JointEncoder final : public SensorOf<description::JointEncoder> {
             {device_.name + "/0/velocity", unit + "/s", 1, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    values[0] = mount_.world.joint_position(mount_.body, device_.joint);
-    values[1] = mount_.world.joint_velocity(mount_.body, device_.joint);
+    const physics::JointState joint = mount_.world.joint_state(mount_.body, JointId{device_.joint});
+    values[0] = joint.position;
+    values[1] = joint.velocity;
   }
 };
 

@@ -12,7 +12,7 @@ class TorqueSensor final : public SensorOf<description::TorqueSensor> {
     return {{device_.name + (slides ? "/0/force" : "/0/torque"), slides ? "N" : "N m", 1, -infinity, infinity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    values[0] = mount_.world.joint_effort(mount_.body, device_.joint);
+    values[0] = mount_.world.joint_state(mount_.body, JointId{device_.joint}).effort;
   }
 };
 

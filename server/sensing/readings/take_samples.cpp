@@ -26,7 +26,7 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   const emission::Emitters emitters(description, *world);
   SharedViews views;
   const gripping::Grippers grippers(description, *world);
-  const auto sensor = make_sensor({*world, emitters, description, grippers, views, 0, device, 1});
+  const auto sensor = make_sensor({*world, emitters, description, grippers, views, BodyId{0}, device, 1});
   const std::uint64_t ticks = ring.technique == description::ProximityTechnique::random_ray ? random_ticks : 1;
 
   description::Samples samples;
@@ -36,14 +36,14 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   for (std::size_t i = 0; i < grid.distances; ++i)
     samples.distances.push_back(ring.ring_radius +
                                 ring.range * static_cast<double>(i) / static_cast<double>(grid.distances - 1));
-  const Pose X_WS = world->link_pose(0, ring.link) * ring.X_LS;
+  const Pose X_WS = world->link_pose(BodyId{0}, LinkId{ring.link}) * ring.X_LS;
   std::vector<double> values(ring.count);
   for (const double distance : samples.distances)
     for (const double angle : samples.angles) {
       const double away = distance + grid.radius;
       Pose X_WC;
       X_WC.position = X_WS * Eigen::Vector3d(away * std::cos(angle), away * std::sin(angle), 0.0);
-      world->place_body(1, X_WC);
+      world->place_body(BodyId{1}, X_WC);
       std::vector<double> sums(ring.count);
       for (std::uint64_t tick = 0; tick < ticks; ++tick) {
         sensor->sense(tick, values);

@@ -107,7 +107,7 @@ void ControlQueries::fill(Reply& reply, const Request&, const wire::GetEntitySta
   if (!object) return;
   const Pose X_WL = run_->simulation.object_pose(*object);
   const auto& q = X_WL.orientation;
-  const physics::Twist twist = run_->simulation.world().link_twist(*object, 0);
+  const physics::Twist twist = run_->simulation.world().link_twist(BodyId{*object}, LinkId{0});
   reply.returned = wire::EntityState{operation.entity,
                                      {on_wire(X_WL.position), {q.x(), q.y(), q.z(), q.w()}},
                                      {on_wire(twist.linear_W), on_wire(twist.angular_W)}};

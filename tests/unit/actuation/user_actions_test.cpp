@@ -41,7 +41,7 @@ class UserActions : public ::testing::Test {
     return world_.simulation().happened();
   }
   bool has_gate() { return world_.simulation().objects().is_present(gate_); }
-  double speed_of_box() { return world_.simulation().world().link_twist(box_, 0).linear_W.x(); }
+  double speed_of_box() { return world_.simulation().world().link_twist(BodyId{box_}, LinkId{0}).linear_W.x(); }
 
   SensingWorld world_;
   std::uint32_t gate_ = 0, box_ = 0;

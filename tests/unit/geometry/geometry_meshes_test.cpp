@@ -268,8 +268,11 @@ TEST(MeshScene, GivesTheBitsOfEachSolidByItself) {
   for (std::uint32_t n = 0; n < 60; ++n) {
     const Shape shape = n % 3 == 0 ? Shape(skin) : n % 3 == 1 ? Shape(hull) : Shape(map_of(hills()));
     const Vector3d axis = n % 3 == 2 ? Vector3d(Vector3d::UnitZ()) : random_vector(random, n + 100, 1.0).normalized();
-    scene.add(
-        {shape, {}, n, n % 3 == 1, {random_vector(random, n, 4.0), Eigen::Quaterniond(Eigen::AngleAxisd(n, axis))}});
+    scene.add({shape,
+               {},
+               BodyId{n},
+               n % 3 == 1,
+               {random_vector(random, n, 4.0), Eigen::Quaterniond(Eigen::AngleAxisd(n, axis))}});
   }
   scene.build();
   int hits = 0;
@@ -277,7 +280,7 @@ TEST(MeshScene, GivesTheBitsOfEachSolidByItself) {
     const Vector3d origin = random_vector(random, n + 1000, 5.0),
                    direction = random_vector(random, n + 2000, 1.0).normalized();
     RayEntry nearest;
-    std::uint32_t expected = Scene::no_body;
+    std::optional<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < scene.size(); ++i) {
       const Pose X_CW = scene.solid(i).X_WC.inverse();
       const RayEntry entry = cast_ray(scene.solid(i).shape, X_CW * origin, X_CW.orientation * direction);
@@ -287,7 +290,7 @@ TEST(MeshScene, GivesTheBitsOfEachSolidByItself) {
       }
     }
     const auto hit = scene.cast_ray(origin, direction, 1.5);
-    ASSERT_EQ(hit.has_value(), expected != Scene::no_body) << n;
+    ASSERT_EQ(hit.has_value(), expected.has_value()) << n;
     if (!hit) continue;
     EXPECT_EQ(hit->solid, expected) << n;
     EXPECT_EQ(hit->distance, nearest.distance) << n;

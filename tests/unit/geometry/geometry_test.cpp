@@ -198,10 +198,9 @@ class RandomScene : public ::testing::Test {
       const double size = n % 50 == 1 ? 2.0 : 0.05 + 0.1 * random.uniform(n, 9);
       const std::vector<Shape> shapes = {description::Box{{size, 0.1, 0.2}}, description::Sphere{0.05},
                                          description::Cylinder{0.06, 0.1}};
-      scene.add(
-          {shapes[n % 50 == 1 ? 0 : n % 3], {}, static_cast<std::uint32_t>(n), moves, turned_pose(random, n, 1.5)});
+      scene.add({shapes[n % 50 == 1 ? 0 : n % 3], {}, BodyId{n}, moves, turned_pose(random, n, 1.5)});
     }
-    scene.add({description::Plane{}, {}, 400, false, {{0, 0, -1.4}}});
+    scene.add({description::Plane{}, {}, BodyId{400}, false, {{0, 0, -1.4}}});
     scene.build();
     for (std::uint32_t n = 0; n < 400; n += 2) scene.set_pose(n, turned_pose(random, n + 9000, 1.5));
     scene.update();
@@ -231,9 +230,9 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
     const Vector3d origin = random_vector(random, n + 30'000, 1.6);
     const Vector3d direction = random_vector(random, n + 40'000, 1.0).normalized();
     const double range = 0.1 + random.uniform(n, 4);
-    const auto ignored = static_cast<std::uint32_t>(n % 400);
+    const BodyId ignored{n % 400};
     double nearest = range;
-    std::uint32_t expected = Scene::no_body;
+    std::optional<std::uint32_t> expected;
     for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
       if (scene.solid(solid).body == ignored) continue;
       const Pose X_CW = scene.solid(solid).X_WC.inverse();
@@ -244,7 +243,7 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
       }
     }
     const auto hit = scene.cast_ray(origin, direction, range, ignored);
-    ASSERT_EQ(hit.has_value(), expected != Scene::no_body) << n;
+    ASSERT_EQ(hit.has_value(), expected.has_value()) << n;
     if (!hit) continue;
     ++hits;
     EXPECT_EQ(hit->solid, expected) << n;
@@ -286,13 +285,13 @@ TEST_F(RandomScene, IsFreeWhereARayMeetsNothingButTwoBodies) {
     const Vector3d direction = random_vector(random, n + 60'000, 1.0).normalized();
     const double range = 0.2 + 2.0 * random.uniform(n, 4);
     const auto first = scene.cast_ray(origin, direction, range);
-    const std::uint32_t one = first ? scene.solid(first->solid).body : Scene::no_body;
+    const BodyId one = first ? scene.solid(first->solid).body : Scene::no_body;
     EXPECT_EQ(scene.is_free(origin, direction, range, Scene::no_body), !first) << n;
     const auto second = scene.cast_ray(origin, direction, range, one);
     EXPECT_EQ(scene.is_free(origin, direction, range, one), !second) << n;
     if (!second) continue;
     // Without the first two, what is left?
-    const std::uint32_t two = scene.solid(second->solid).body;
+    const BodyId two = scene.solid(second->solid).body;
     bool expected = true;
     for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
       const std::uint32_t those[] = {solid};
@@ -307,8 +306,8 @@ TEST_F(RandomScene, IsFreeWhereARayMeetsNothingButTwoBodies) {
 
 TEST(Scene, SaysWhatIsRemoved) {
   Scene scene;
-  const std::uint32_t ball = scene.add({description::Sphere{0.1}, {}, 0, true, {{1, 0, 0}}});
-  const std::uint32_t wall = scene.add({description::Box{{0.1, 1, 1}}, {}, 1, false, {{2, 0, 0}}});
+  const std::uint32_t ball = scene.add({description::Sphere{0.1}, {}, BodyId{0}, true, {{1, 0, 0}}});
+  const std::uint32_t wall = scene.add({description::Box{{0.1, 1, 1}}, {}, BodyId{1}, false, {{2, 0, 0}}});
   scene.build();
   for (const std::uint32_t solid : {ball, wall}) {
     scene.remove(solid);

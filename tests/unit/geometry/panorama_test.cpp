@@ -24,7 +24,7 @@ std::vector<double> even_elevations(std::size_t rows, double least, double most)
 }
 
 Image image_of(const Panorama& panorama, const Scene& scene, const Pose& X_WS, double range = infinity,
-               std::uint32_t ignored_body = Scene::no_body) {
+               BodyId ignored_body = Scene::no_body) {
   Image image(panorama.columns() * panorama.rows());
   panorama.cast(Outlines(scene), X_WS, range, ignored_body, image);
   return image;
@@ -79,7 +79,7 @@ TEST(Panorama, RefusesWhatIsNoPanorama) {
 }
 
 // All pixels of an image against Scene::cast_ray, bit for bit. Returns how many see something.
-int compare(const Panorama& panorama, const Scene& scene, const Pose& X_WS, double range, std::uint32_t ignored_body) {
+int compare(const Panorama& panorama, const Scene& scene, const Pose& X_WS, double range, BodyId ignored_body) {
   const Image image = image_of(panorama, scene, X_WS, range, ignored_body);
   int seen = 0;
   for (std::size_t i = 0; i < image.size(); ++i) {
@@ -104,7 +104,7 @@ TEST(Panorama, SeesWhatRaysSee) {
     int seen = 0;
     for (std::uint64_t n = 0; n < 30; ++n) {
       const double range = n % 2 == 0 ? 20.0 : 0.3 + random.uniform(n, 8);  // cast_ray goes on for ever if it has none
-      const std::uint32_t ignored = n % 4 == 0 ? Scene::no_body : scene.solid(static_cast<std::uint32_t>(n)).body;
+      const BodyId ignored = n % 4 == 0 ? Scene::no_body : scene.solid(static_cast<std::uint32_t>(n)).body;
       Pose X_WS = random_pose(random, n, 1.2, half_height);
       if (n % 4 == 3) X_WS.position = scene.solid(static_cast<std::uint32_t>(n)).X_WC.position;
       seen += compare(n % 2 == 0 ? level : whole, scene, X_WS, range, ignored);

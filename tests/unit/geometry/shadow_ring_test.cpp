@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 std::vector<double> shadows(const Scene& scene, const Vector3d& p_WR, double heading = 0.0, double range = 10.0,
-                            std::uint32_t ignored_body = Scene::no_body, std::size_t directions = 360) {
+                            BodyId ignored_body = Scene::no_body, std::size_t directions = 360) {
   const ShadowRing ring(directions);
   std::vector<double> distances(directions);
   ring.cast(scene, p_WR, heading, range, ignored_body, distances);
@@ -72,10 +72,10 @@ TEST(ShadowRing, SeesAPlaneThatStandsAsAWall) {
 TEST(ShadowRing, KeepsTheNearestWithinItsRangeAndNotItsOwnBody) {
   Scene scene;
   for (std::uint32_t body = 0; body < 3; ++body)
-    scene.add({description::Sphere{0.25}, {}, body, true, {{1.0 + body, 0, 0}}});
+    scene.add({description::Sphere{0.25}, {}, BodyId{body}, true, {{1.0 + body, 0, 0}}});
   scene.build();
   EXPECT_DOUBLE_EQ(shadows(scene, {0, 0, 0})[0], 0.75);
-  EXPECT_DOUBLE_EQ(shadows(scene, {0, 0, 0}, 0.0, 10.0, 0)[0], 1.75);
+  EXPECT_DOUBLE_EQ(shadows(scene, {0, 0, 0}, 0.0, 10.0, BodyId{0})[0], 1.75);
   EXPECT_TRUE(std::isinf(shadows(scene, {0, 0, 0}, 0.0, 0.74)[0]));
 }
 
@@ -96,9 +96,9 @@ TEST(ShadowRing, SeesWhatRaysSeeOnFlatGround) {
         upright_pose({6 * random.uniform(n, 0), 6 * random.uniform(n, 1), 0.1}, 6.3 * random.uniform(n, 2));
     const Shape shape =
         n % 2 == 0 ? Shape(description::Cylinder{0.5 * width, 0.2}) : Shape(description::Box{{width, 0.1, 0.2}});
-    scene.add({shape, {}, n, n % 4 < 2, X_WC});
+    scene.add({shape, {}, BodyId{n}, n % 4 < 2, X_WC});
   }
-  scene.add({description::Plane{}, {}, 300, false, {}});
+  scene.add({description::Plane{}, {}, BodyId{300}, false, {}});
   scene.build();
   const ShadowRing ring(360);
   std::vector<double> distances(ring.size());
@@ -108,11 +108,11 @@ TEST(ShadowRing, SeesWhatRaysSeeOnFlatGround) {
     const Vector3d p_WR = scene.solid(own).X_WC.position;
     const double heading = 6.3 * random.uniform(n, 3);
     const double range = 0.1 + 2.0 * random.uniform(n, 4);
-    ring.cast(scene, p_WR, heading, range, own, distances);
+    ring.cast(scene, p_WR, heading, range, BodyId{own}, distances);
     for (std::size_t k = 0; k < ring.size(); ++k) {
       const Vector3d direction =
           Eigen::AngleAxisd(heading, Vector3d::UnitZ()) * Vector3d(ring.direction(k).x(), ring.direction(k).y(), 0.0);
-      const auto hit = scene.cast_ray(p_WR, direction, range, own);
+      const auto hit = scene.cast_ray(p_WR, direction, range, BodyId{own});
       if (hit.has_value() != std::isfinite(distances[k])) {
         ++grazed;  // by less than rounding
       } else if (hit) {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 bool sees(const Scene& scene, const Vector3d& source, const Vector3d& receiver, double range = infinity,
-          std::uint32_t source_body = Scene::no_body, std::uint32_t receiver_body = Scene::no_body) {
+          BodyId source_body = Scene::no_body, BodyId receiver_body = Scene::no_body) {
   const Outlines outlines(scene);
   SightLines lines;
   lines.build(outlines, source, range, source_body);
@@ -54,11 +54,11 @@ TEST(SightLines, UprightMeetWhatIsAboveAndBelow) {
 TEST(SightLines, AreNotBlockedByTheBodiesAtTheirEnds) {
   Scene scene;
   for (std::uint32_t body = 0; body < 3; ++body)
-    scene.add({description::Sphere{0.1}, {}, body, true, upright_pose({1.0 * body, 0, 0}, 0)});
+    scene.add({description::Sphere{0.1}, {}, BodyId{body}, true, upright_pose({1.0 * body, 0, 0}, 0)});
   scene.build();
-  EXPECT_TRUE(sees(scene, {0, 0, 0}, {1, 0, 0}, infinity, 0, 1));
-  EXPECT_FALSE(sees(scene, {0, 0, 0}, {1, 0, 0}, infinity, 0)) << "whose receiver is not named";
-  EXPECT_FALSE(sees(scene, {0, 0, 0}, {2, 0, 0}, infinity, 0, 2));
+  EXPECT_TRUE(sees(scene, {0, 0, 0}, {1, 0, 0}, infinity, BodyId{0}, BodyId{1}));
+  EXPECT_FALSE(sees(scene, {0, 0, 0}, {1, 0, 0}, infinity, BodyId{0})) << "whose receiver is not named";
+  EXPECT_FALSE(sees(scene, {0, 0, 0}, {2, 0, 0}, infinity, BodyId{0}, BodyId{2}));
 }
 
 TEST(SightLines, EndAtTheRange) {
@@ -92,14 +92,17 @@ Count compare(const Scene& scene, std::uint64_t seed, double half_width, double 
     const auto n = static_cast<std::uint64_t>(i);
     Vector3d source = random_vector(random, n, half_width);
     source.z() *= half_height / half_width;
-    const std::uint32_t of_source = i % 2 == 0 ? Scene::no_body : static_cast<std::uint32_t>(i % 100);
-    if (of_source != Scene::no_body) source = scene.solid(of_source).X_WC.position;
-    const std::uint32_t source_body = of_source == Scene::no_body ? Scene::no_body : scene.solid(of_source).body;
+    BodyId source_body = Scene::no_body;
+    if (i % 2 != 0) {
+      const geometry::Solid& of_source = scene.solid(static_cast<std::uint32_t>(i % 100));
+      source = of_source.X_WC.position;
+      source_body = of_source.body;
+    }
     lines.build(outlines, source, range, source_body);
     for (int j = 0; j < receivers; ++j) {
       const std::uint64_t m = 100'000 + n * 1000 + static_cast<std::uint64_t>(j);
       const auto of_receiver = static_cast<std::uint32_t>(m % 100);
-      const std::uint32_t receiver_body = scene.solid(of_receiver).body;
+      const BodyId receiver_body = scene.solid(of_receiver).body;
       Vector3d receiver = scene.solid(of_receiver).X_WC.position;
       if (j % 3 == 0) receiver = random_vector(random, m, half_width);
       if (j % 3 == 1) receiver += random_vector(random, m, 0.2);

@@ -62,8 +62,8 @@ struct Pair {
   }
   Pose second_in_first() {
     const physics::World& physics = world.simulation().world();
-    return physics.link_pose(static_cast<std::uint32_t>(first_body), 1).inverse() *
-           physics.link_pose(static_cast<std::uint32_t>(second_body), 1);
+    return physics.link_pose(BodyId{first_body}, LinkId{1}).inverse() *
+           physics.link_pose(BodyId{second_body}, LinkId{1});
   }
 };
 
@@ -279,7 +279,7 @@ TEST(TorqueSensor, ReadsWhatTheMotorGives) {
   // From rest to 1 rad/s in a step would take 0.05 N m and more of a turret of 5e-4 kg m^2, if nothing else moved.
   EXPECT_NEAR(pair.world.read(0, "turret_torque/0/torque"), 5.046e-4 / 0.01, 1e-4);
   EXPECT_NEAR(pair.world.read(0, "turret_torque/0/torque"),
-              pair.world.simulation().world().joint_effort(static_cast<std::uint32_t>(pair.first_body), 0), 1e-12);
+              pair.world.simulation().world().joint_state(BodyId{pair.first_body}, JointId{0}).effort, 1e-12);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct Drive {
   double right;
 };
 
-void command(World& world, std::uint32_t body, Drive tracks) {
+void command(World& world, BodyId body, Drive tracks) {
   world.set_track_velocity_target(body, drive, Side::left, tracks.left);
   world.set_track_velocity_target(body, drive, Side::right, tracks.right);
 }
@@ -30,54 +30,69 @@ double yaw_of(const Pose& pose) {
   return std::atan2(x.y(), x.x());
 }
 
+template <class Body, class Part>
+concept has_link = requires(const World& world, Body body, Part part) {
+  world.link_pose(body, part);
+};
+template <class Body, class Part>
+concept has_joint = requires(const World& world, Body body, Part part) {
+  world.joint_state(body, part);
+};
+
+TEST(World, TakesNoJointForALinkNorALinkForAJoint) {
+  static_assert(has_link<BodyId, LinkId> && has_joint<BodyId, JointId>);
+  static_assert(!has_link<BodyId, JointId> && !has_joint<BodyId, LinkId>);
+  static_assert(!has_link<RobotId, LinkId> && !has_link<LinkId, BodyId> && !has_link<std::uint32_t, std::size_t>);
+}
+
 TEST(TreelDrive, StandsStillWhenToldTo) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0, 0.3));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0, 0.3))};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   run(*world, 100);
-  const Pose settled = world->link_pose(body, 0);
+  const Pose settled = world->link_pose(body, LinkId{0});
   run(*world, 500);
-  const Pose later = world->link_pose(body, 0);
+  const Pose later = world->link_pose(body, LinkId{0});
   EXPECT_LT((later.position - settled.position).norm(), 0.4e-3) << "creep in 5 s";
   EXPECT_NEAR(later.position.z(), 0.0, 1e-3);
 }
 
 TEST(TreelDrive, ReachesTheCommandedVelocityWithinHalfAPercent) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   command(*world, body, {0.1, 0.1});
   run(*world, 200);
-  const double before = world->link_pose(body, 0).position.x();
+  const double before = world->link_pose(body, LinkId{0}).position.x();
   run(*world, 100);
-  EXPECT_NEAR(world->link_pose(body, 0).position.x() - before, 0.1, 0.0005);
+  EXPECT_NEAR(world->link_pose(body, LinkId{0}).position.x() - before, 0.1, 0.0005);
   EXPECT_NEAR(world->track(body, drive, Side::left).velocity, 0.1, 0.0005);
 }
 
 TEST(TreelDrive, TurnsOnTheSpotAtTheRateOfItsGauge) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   command(*world, body, {-0.04, 0.04});  // 0.08 m/s over a gauge of 0.08 m: 1 rad/s
   run(*world, 100);
-  const double before = yaw_of(world->link_pose(body, 0));
+  const double before = yaw_of(world->link_pose(body, LinkId{0}));
   run(*world, 100);
-  EXPECT_NEAR(yaw_of(world->link_pose(body, 0)) - before, 1.0, 0.01);
-  EXPECT_LT(world->link_pose(body, 0).position.head<2>().norm(), 0.002);
+  EXPECT_NEAR(yaw_of(world->link_pose(body, LinkId{0})) - before, 1.0, 0.01);
+  EXPECT_LT(world->link_pose(body, LinkId{0}).position.head<2>().norm(), 0.002);
 }
 
 TEST(TreelDrive, IsStoppedByAWallAndKeepsUpright) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   place(description, static_shape("wall", description::Box{{0.1, 2.0, 0.3}}, {0.3, 0.0}), "wall", at(0.25, 0, 0.15));
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   command(*world, body, {0.2, 0.2});
   run(*world, 300);
-  const Pose pose = world->link_pose(body, 0);
+  const Pose pose = world->link_pose(body, LinkId{0});
   EXPECT_NEAR(pose.position.x(), 0.2 - 0.058, 0.002);
   EXPECT_GT((pose.orientation * Eigen::Vector3d::UnitZ()).z(), 0.99);
   EXPECT_FALSE(world->contacts().empty());
@@ -85,7 +100,7 @@ TEST(TreelDrive, IsStoppedByAWallAndKeepsUpright) {
 
 TEST(TreelDrive, PushesWithNoMoreThanItsMotorsGive) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   place(description, static_shape("wall", description::Box{{0.1, 2.0, 0.3}}, {0.0, 0.0}), "wall", at(0.25, 0, 0.15));
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
@@ -104,42 +119,42 @@ TEST(TreelDrive, PushesWithNoMoreThanItsMotorsGive) {
 
 TEST(TreelDrive, SlipsOnGroundThatGripsLessThanItsMotors) {
   description::World description = world_with_floor(0.05);
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   run(*world, 50);
   command(*world, body, {0.2, 0.2});
   world->step();
-  const Twist before = world->link_twist(body, 0);
+  const Twist before = world->link_twist(body, LinkId{0});
   run(*world, 10);
   // a = mu g while the tracks slip, and the encoders see the tracks, not the ground.
-  EXPECT_NEAR((world->link_twist(body, 0).linear_W.x() - before.linear_W.x()) / 0.1, 0.05 * 9.81, 0.03);
+  EXPECT_NEAR((world->link_twist(body, LinkId{0}).linear_W.x() - before.linear_W.x()) / 0.1, 0.05 * 9.81, 0.03);
   EXPECT_EQ(world->track(body, drive, Side::left).velocity, 0.2);
 }
 
 TEST(TreelDrive, DrivesOnTopOfABoxAndStandsOnIt) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0.2));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0.2))};
   place(description, static_shape("table", description::Box{{1.0, 1.0, 0.2}}), "table", at(0, 0, 0.1));
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   run(*world, 100);
-  EXPECT_NEAR(world->link_pose(body, 0).position.z(), 0.2, 1e-3);
+  EXPECT_NEAR(world->link_pose(body, LinkId{0}).position.z(), 0.2, 1e-3);
   command(*world, body, {0.1, 0.1});
   run(*world, 200);
-  EXPECT_NEAR(world->link_pose(body, 0).position.x(), 0.2, 0.01);
-  EXPECT_NEAR(world->link_pose(body, 0).position.z(), 0.2, 1e-3);
+  EXPECT_NEAR(world->link_pose(body, LinkId{0}).position.x(), 0.2, 0.01);
+  EXPECT_NEAR(world->link_pose(body, LinkId{0}).position.z(), 0.2, 1e-3);
 }
 
 TEST(TreelDrive, FallsOffAnEdgeOntoTheFloor) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0.35, 0, 0.1));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0.35, 0, 0.1))};
   place(description, static_shape("table", description::Box{{1.0, 1.0, 0.1}}), "table", at(0, 0, 0.05));
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   command(*world, body, {0.2, 0.2});
   run(*world, 500);
-  const Pose pose = world->link_pose(body, 0);
+  const Pose pose = world->link_pose(body, LinkId{0});
   EXPECT_GT(pose.position.x(), 0.5);
   EXPECT_GT(pose.position.z(), -0.01) << "it sank";
   EXPECT_LT(pose.position.z(), 0.12);
@@ -147,17 +162,17 @@ TEST(TreelDrive, FallsOffAnEdgeOntoTheFloor) {
 
 TEST(JointMotor, TurnsTheTurretAtTheCommandedRate) {
   description::World description = world_with_floor();
-  const auto body = place(description, tracked_robot(), "robot", at(0, 0, 0));
+  const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0))};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
-  world->set_joint_velocity_target(body, 0, 1.2);
+  world->set_joint_target(body, JointId{0}, JointTarget::velocity(1.2));
   run(*world, 50);
-  const double before = world->joint_position(body, 0);
+  const double before = world->joint_state(body, JointId{0}).position;
   run(*world, 100);
-  EXPECT_NEAR(world->joint_position(body, 0) - before, 1.2, 0.006);
-  EXPECT_NEAR(world->joint_velocity(body, 0), 1.2, 0.006);
-  const double yaw = yaw_of(world->link_pose(body, 1)) - yaw_of(world->link_pose(body, 0));
-  EXPECT_NEAR(std::remainder(yaw - world->joint_position(body, 0), 2 * M_PI), 0.0, 1e-9);
+  EXPECT_NEAR(world->joint_state(body, JointId{0}).position - before, 1.2, 0.006);
+  EXPECT_NEAR(world->joint_state(body, JointId{0}).velocity, 1.2, 0.006);
+  const double yaw = yaw_of(world->link_pose(body, LinkId{1})) - yaw_of(world->link_pose(body, LinkId{0}));
+  EXPECT_NEAR(std::remainder(yaw - world->joint_state(body, JointId{0}).position, 2 * M_PI), 0.0, 1e-9);
 }
 
 TEST(World, LetsABodyFallAsGravitySays) {
@@ -165,26 +180,27 @@ TEST(World, LetsABodyFallAsGravitySays) {
   description::Model ball;
   ball.name = "ball";
   ball.links.push_back({"link", {}, {}, {{"c", {}, description::Sphere{0.05}, {}}}});
-  const auto body = place(description, ball, "ball", at(0, 0, 10.0));
+  const BodyId body{place(description, ball, "ball", at(0, 0, 10.0))};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   run(*world, 100);
   // Semi-implicit Euler: z0 - g h^2 n (n + 1) / 2.
-  EXPECT_NEAR(world->link_pose(body, 0).position.z(), 10.0 - 9.81 * 1e-4 * 100 * 101 / 2, 1e-9);
-  EXPECT_NEAR(world->link_twist(body, 0).linear_W.z(), -9.81, 1e-9);
+  EXPECT_NEAR(world->link_pose(body, LinkId{0}).position.z(), 10.0 - 9.81 * 1e-4 * 100 * 101 / 2, 1e-9);
+  EXPECT_NEAR(world->link_twist(body, LinkId{0}).linear_W.z(), -9.81, 1e-9);
 }
 
 TEST(World, KeepsRobotsFromPassingThroughEachOther) {
   description::World description = world_with_floor();
-  const auto first = place(description, tracked_robot(), "first", at(-0.2, 0, 0, 0));
-  const auto second = place(description, tracked_robot(), "second", at(0.2, 0.01, 0, M_PI));
+  const BodyId first{place(description, tracked_robot(), "first", at(-0.2, 0, 0, 0))};
+  const BodyId second{place(description, tracked_robot(), "second", at(0.2, 0.01, 0, M_PI))};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   command(*world, first, {0.2, 0.2});
   command(*world, second, {0.2, 0.2});
   for (int i = 0; i < 400; ++i) {
     world->step();
-    const double apart = (world->link_pose(first, 0).position - world->link_pose(second, 0).position).head<2>().norm();
+    const double apart =
+        (world->link_pose(first, LinkId{0}).position - world->link_pose(second, LinkId{0}).position).head<2>().norm();
     ASSERT_GT(apart, 2 * 0.058 - 0.002) << "at step " << i;
   }
 }
@@ -204,13 +220,13 @@ TEST(World, HoldsAJointAtItsLimit) {
   hinge.axis.upper = 0.5;
   arm.joints.push_back(hinge);
   arm.devices.push_back(description::VelocityMotor{"hinge", 0, 10.0, 5.0});
-  const auto body = place(description, arm, "arm", at(0, 0, 0));
+  const BodyId body{place(description, arm, "arm", at(0, 0, 0))};
   description.gravity = Eigen::Vector3d::Zero();
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
-  world->set_joint_velocity_target(body, 0, 1.0);
+  world->set_joint_target(body, JointId{0}, JointTarget::velocity(1.0));
   run(*world, 200);
-  EXPECT_NEAR(world->joint_position(body, 0), 0.5, 0.02);
+  EXPECT_NEAR(world->joint_state(body, JointId{0}).position, 0.5, 0.02);
 }
 
 TEST(World, TurnsAnInertiaWithProductsIntoItsPrincipalAxes) {
@@ -224,12 +240,12 @@ TEST(World, TurnsAnInertiaWithProductsIntoItsPrincipalAxes) {
   inertial.X_LI.position = {0.1, -0.2, 0.3};
   body.links.push_back({"link", {}, inertial, {}});
   const Pose X_WM = at(1, 2, 3, 0.4);
-  const auto index = place(description, body, "body", X_WM);
+  const BodyId index{place(description, body, "body", X_WM)};
   WorkerPool workers(1);
   const std::unique_ptr<physics::World> world = physics::make_world(description, workers);
   run(*world, 1);
-  EXPECT_LT((world->link_pose(index, 0).position - X_WM.position).norm(), 1e-12);
-  EXPECT_LT(world->link_pose(index, 0).orientation.angularDistance(X_WM.orientation), 1e-7);
+  EXPECT_LT((world->link_pose(index, LinkId{0}).position - X_WM.position).norm(), 1e-12);
+  EXPECT_LT(world->link_pose(index, LinkId{0}).orientation.angularDistance(X_WM.orientation), 1e-7);
 }
 
 TEST(Islands, HoldsWhatIsLinkedInTheOrderOfTheLeastMember) {

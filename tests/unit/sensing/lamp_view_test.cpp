@@ -38,9 +38,9 @@ TEST(LampView, AnswersForManyRingsAsForFew) {
   LampView by_lamp(world.simulation().world(), emitters);
   LampView by_rays(world.simulation().world(), emitters);
   for (std::uint32_t robot = 0; robot < robots; ++robot) {
-    const auto body = static_cast<std::uint32_t>(world.world().robots[robot]);
-    EXPECT_EQ(by_lamp.add_ring(body, 1, {0.01, 0, 0.045}), robot);
-    by_rays.add_ring(body, 1, {0.01, 0, 0.045});
+    const BodyId body{world.world().robots[robot]};
+    EXPECT_EQ(by_lamp.add_ring(body, LinkId{1}, {0.01, 0, 0.045}), robot);
+    by_rays.add_ring(body, LinkId{1}, {0.01, 0, 0.045});
     by_lamp.ask(robot);
   }
   WorkerPool workers(3);
@@ -49,7 +49,7 @@ TEST(LampView, AnswersForManyRingsAsForFew) {
   int seen = 0, hidden = 0;
   for (std::uint32_t lamp = 0; lamp < emitters.lit_lamps().size(); ++lamp)
     for (std::uint32_t ring = 0; ring < robots; ++ring) {
-      if (emitters.lamp(emitters.lit_lamps()[lamp]).mount.body == world.world().robots[ring]) continue;
+      if (emitters.lamp(emitters.lit_lamps()[lamp]).mount.body == BodyId{world.world().robots[ring]}) continue;
       const bool sees = by_rays.is_in_sight(lamp, ring);
       EXPECT_EQ(by_lamp.is_in_sight(lamp, ring), sees) << lamp << " " << ring;
       ++(sees ? seen : hidden);

@@ -354,11 +354,11 @@ TEST_P(Actions, AForceActsForItsDuration) {
   EXPECT_EQ(simulation.act(ApplyForce{"things/box", "link", {-200, 0, 0}, Eigen::Vector3d::Zero(), 30ms}),
             "apply_force 'things/box'");
   run(simulation, 33);
-  const double speed = simulation.world().link_twist(box_, 0).linear_W.x();
+  const double speed = simulation.world().link_twist(BodyId{box_}, LinkId{0}).linear_W.x();
   EXPECT_LT(speed, -1.5);
   EXPECT_LT(simulation.object_pose(box_).position.x(), before);
   run(simulation, 34);
-  EXPECT_GT(simulation.world().link_twist(box_, 0).linear_W.x(), speed);  // friction alone from here on
+  EXPECT_GT(simulation.world().link_twist(BodyId{box_}, LinkId{0}).linear_W.x(), speed);  // friction alone from here on
 }
 
 TEST_P(Actions, LightsAreSwitchedByTheirNameOrThatOfTheirObject) {

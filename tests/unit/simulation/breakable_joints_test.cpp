@@ -134,7 +134,7 @@ TEST_F(BreakableJoints, HoldTwoThingsThatMoveTogether) {
   push(box_, {4.0, 0, 0});
   Simulation simulation(experiment_, 1);
   for (int i = 0; i < 50; ++i) simulation.step();
-  EXPECT_NEAR(simulation.world().link_twist(other, 0).linear_W.x(), 4.0 / (2.0 * mass) * 0.5, 1e-3);
+  EXPECT_NEAR(simulation.world().link_twist(BodyId{other}, LinkId{0}).linear_W.x(), 4.0 / (2.0 * mass) * 0.5, 1e-3);
   // Half of the force accelerates the other one.
   EXPECT_NEAR(simulation.breakable_joints().wrench_on_second(0).force_W.x(), 2.0, 1e-3);
 }

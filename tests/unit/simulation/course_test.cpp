@@ -126,9 +126,9 @@ TEST_P(CourseOfARun, AForceGivesAMassItsAcceleration) {
   at_time(100ms, box_, description::ApplyForce{0, {force, 0, 0}, Eigen::Vector3d::Zero(), 500ms});
   Simulation simulation(experiment_, 1);
   run(simulation, 10);
-  EXPECT_NEAR(simulation.world().link_twist(box_, 0).linear_W.x(), 0.0, 1e-9);
+  EXPECT_NEAR(simulation.world().link_twist(BodyId{box_}, LinkId{0}).linear_W.x(), 0.0, 1e-9);
   run(simulation, 100);
-  EXPECT_NEAR(simulation.world().link_twist(box_, 0).linear_W.x(), force / mass * 0.5, 1e-6);
+  EXPECT_NEAR(simulation.world().link_twist(BodyId{box_}, LinkId{0}).linear_W.x(), force / mass * 0.5, 1e-6);
 }
 
 TEST_P(CourseOfARun, ATorqueTurns) {
@@ -137,7 +137,7 @@ TEST_P(CourseOfARun, ATorqueTurns) {
   at_time(0s, box_, description::ApplyForce{0, Eigen::Vector3d::Zero(), {0, 0, torque}, 200ms});
   Simulation simulation(experiment_, 1);
   run(simulation, 50);
-  EXPECT_NEAR(simulation.world().link_twist(box_, 0).angular_W.z(), torque / inertia * 0.2, 1e-6);
+  EXPECT_NEAR(simulation.world().link_twist(BodyId{box_}, LinkId{0}).angular_W.z(), torque / inertia * 0.2, 1e-6);
 }
 
 TEST_P(CourseOfARun, StopsWhenAllHaveBeenInsideForSoLong) {

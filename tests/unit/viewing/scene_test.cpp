@@ -133,7 +133,7 @@ TEST(SceneOfAWorld, FramesHaveThePosesAndChangeNothing) {
     for (std::size_t link = 0; link < scene.models[model].links.size(); ++link)
       for (std::uint32_t body = 0; body < scene.entities.size(); ++body) {
         if (scene.entities[body].model != model) continue;
-        const Pose X_WL = simulation.world().link_pose(body, link);
+        const Pose X_WL = simulation.world().link_pose(BodyId{body}, LinkId{link});
         for (int axis = 0; axis < 3; ++axis)
           EXPECT_NEAR(frame.positions[3 * place + static_cast<std::size_t>(axis)], X_WL.position[axis], 1e-6);
         const std::int16_t* const q = frame.orientations.data() + 4 * place;
@@ -149,7 +149,7 @@ TEST(SceneOfAWorld, WhatComesLaterNeedsAnotherMaker) {
   Simulation simulation(experiment, 1);
   const SceneMaker maker(simulation, 1);
   EXPECT_FALSE(maker.is_outdated());
-  const std::size_t pillar = simulation.world().model_of(*simulation.objects().find("pillar_0"));
+  const std::size_t pillar = simulation.world().model_of(BodyId{*simulation.objects().find("pillar_0")});
   const std::string& model = simulation.description().models[pillar].name;
   Pose X_WM;
   X_WM.position = {0.0, 0.0, 3.0};

@@ -18,33 +18,35 @@ class CohortEngine final : public Engine {
         world_(physics::make_world(description_, workers_)) {
     if (!scene.connected) return;
     const Pose X_LP{{0.5 * scene.connection_length, 0.0, robot_.turret.z - robot_.turret_joint_height}};
+    constexpr LinkId turret{turret_link};
     for (std::uint32_t body = first_robot_ + 1; body < world_->body_count(); ++body)
-      world_->connect(body, turret_link, X_LP, body - 1, turret_link);
+      world_->connections().connect({BodyId{body}, turret}, X_LP, {BodyId{body - 1}, turret});
   }
 
   void set_command(std::uint32_t robot, const Command& command) override {
-    const std::uint32_t body = first_robot_ + robot;
+    using Target = physics::JointTarget;
+    const BodyId body{first_robot_ + robot};
     if (drive_ == Drive::wheels) {
-      world_->set_joint_velocity_target(body, left_wheel_joint, command.left / robot_.wheel_radius);
-      world_->set_joint_velocity_target(body, right_wheel_joint, command.right / robot_.wheel_radius);
+      world_->set_joint_target(body, JointId{left_wheel_joint}, Target::velocity(command.left / robot_.wheel_radius));
+      world_->set_joint_target(body, JointId{right_wheel_joint}, Target::velocity(command.right / robot_.wheel_radius));
     } else {
       world_->set_track_velocity_target(body, treel_drive, physics::Side::left, command.left);
       world_->set_track_velocity_target(body, treel_drive, physics::Side::right, command.right);
     }
-    world_->set_joint_velocity_target(body, turret_joint, command.turret);
+    world_->set_joint_target(body, JointId{turret_joint}, Target::velocity(command.turret));
   }
 
   void step() override { world_->step(); }
 
   Eigen::Vector3d turret_centre(std::uint32_t robot) const override {
     const Eigen::Vector3d centre_L(0.0, 0.0, robot_.turret.z - robot_.turret_joint_height);
-    return world_->link_pose(first_robot_ + robot, turret_link) * centre_L;
+    return world_->link_pose(BodyId{first_robot_ + robot}, LinkId{turret_link}) * centre_L;
   }
 
   std::vector<Touch> touches() const override {
     std::vector<Touch> touches;
     for (const physics::Contact& contact : world_->contacts()) {
-      const auto [low, high] = std::minmax(contact.body_a, contact.body_b);  // what is static comes first
+      const auto [low, high] = std::minmax(contact.body_a.value, contact.body_b.value);  // what is static comes first
       if (low == ground) continue;
       touches.push_back({high - first_robot_, low < first_robot_ ? Touch::wall : low - first_robot_});
     }

@@ -47,15 +47,21 @@ class CohortMechanism final : public MechanismRun {
   CohortMechanism(const Mechanism& mechanism, description::Dynamics dynamics)
       : description_(describe(mechanism, dynamics)), world_(physics::make_world(description_, one_)) {
     if (const RigidBody& body = mechanism.bodies.front(); !body.hinge_W)
-      world_->set_root_twist(0, {body.angular_velocity_W, Eigen::Vector3d::Zero()});
+      world_->set_root_twist(BodyId{0}, {body.angular_velocity_W, Eigen::Vector3d::Zero()});
   }
 
   void step() override { world_->step(); }
-  Eigen::Vector3d position(std::size_t body) const override { return world_->link_pose(0, body).position; }
-  Eigen::Vector3d velocity(std::size_t body) const override { return world_->link_twist(0, body).linear_W; }
-  Eigen::Vector3d angular_velocity(std::size_t body) const override { return world_->link_twist(0, body).angular_W; }
+  Eigen::Vector3d position(std::size_t body) const override {
+    return world_->link_pose(BodyId{0}, LinkId{body}).position;
+  }
+  Eigen::Vector3d velocity(std::size_t body) const override {
+    return world_->link_twist(BodyId{0}, LinkId{body}).linear_W;
+  }
+  Eigen::Vector3d angular_velocity(std::size_t body) const override {
+    return world_->link_twist(BodyId{0}, LinkId{body}).angular_W;
+  }
   Eigen::Matrix3d rotation(std::size_t body) const override {
-    return world_->link_pose(0, body).orientation.toRotationMatrix();
+    return world_->link_pose(BodyId{0}, LinkId{body}).orientation.toRotationMatrix();
   }
 
  private:

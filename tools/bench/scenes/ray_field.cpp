@@ -20,7 +20,7 @@ RayField::RayField(std::uint32_t robots, double spacing, std::uint64_t seed) {
   for (const Placement& at : in_cells(robots, spacing, 0.5 * (spacing - least_gap) - turret.radius, seed)) {
     const auto body = static_cast<std::uint32_t>(poses_.size());
     poses_.push_back({{at.x, at.y, turret.z}, Eigen::Quaterniond(Eigen::AngleAxisd(at.yaw, Eigen::Vector3d::UnitZ()))});
-    scene_.add({description::Cylinder{turret.radius, turret.height}, {}, body, true, poses_.back()});
+    scene_.add({description::Cylinder{turret.radius, turret.height}, {}, BodyId{body}, true, poses_.back()});
   }
   scene_.build();
   for (std::size_t ray = 0; ray < rays_a_robot; ++ray) {

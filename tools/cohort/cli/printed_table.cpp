@@ -43,7 +43,7 @@ std::vector<double> values_of(Quantity quantity, const Simulation& simulation, s
       return {std::atan2(forward_W.y(), forward_W.x())};
     }
     case Quantity::velocity: {
-      const Eigen::Vector3d v = simulation.world().link_twist(object, 0).linear_W;
+      const Eigen::Vector3d v = simulation.world().link_twist(BodyId{object}, LinkId{0}).linear_W;
       return {v.x(), v.y(), v.z()};
     }
     default: return {};

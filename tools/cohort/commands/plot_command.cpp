@@ -84,7 +84,7 @@ Plotted plotted(const std::string& what, const Simulation& simulation, std::uint
   };
   if (what == "speed")
     return {"speed", "m/s", [body](const Simulation& world, std::uint32_t id) {
-              return world.world().link_twist(body(world, id), 0).linear_W.norm();
+              return world.world().link_twist(BodyId{body(world, id)}, LinkId{0}).linear_W.norm();
             }};
   return channel_of(what, simulation.kinds()[simulation.kind_of(robot)]);
 }

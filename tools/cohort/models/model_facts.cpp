@@ -38,10 +38,10 @@ Json limit(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 /// One object of a simulation.
 struct Seen {
   const Simulation& simulation;
-  std::uint32_t body;
+  BodyId body;
   const Model& model;
 
-  Pose pose_of(std::size_t link) const { return simulation.world().link_pose(body, link); }
+  Pose pose_of(std::size_t link) const { return simulation.world().link_pose(body, LinkId{link}); }
 };
 
 Json facts_of(const Seen& seen, std::size_t index) {
@@ -65,7 +65,7 @@ Json facts_of(const Seen& seen, std::size_t index) {
   }
   facts["collisions"] = std::move(collisions);
   facts["pose_in_world"] = numbers(seen.pose_of(index));
-  const physics::Twist twist = seen.simulation.world().link_twist(seen.body, index);
+  const physics::Twist twist = seen.simulation.world().link_twist(seen.body, LinkId{index});
   facts["velocity"] = numbers(twist.linear_W);
   facts["angular_velocity"] = numbers(twist.angular_W);
   return facts;
@@ -109,8 +109,9 @@ Json facts_of(const Seen& seen, const std::string& name) {
     const Joint& joint = seen.model.joints[i];
     Json of_joint = facts_of(seen, joint);
     if (of_joint.contains("axis")) {
-      of_joint["position"] = world.joint_position(seen.body, i);
-      of_joint["velocity"] = world.joint_velocity(seen.body, i);
+      const physics::JointState state = world.joint_state(seen.body, JointId{i});
+      of_joint["position"] = state.position;
+      of_joint["velocity"] = state.velocity;
     }
     joints.push_back(std::move(of_joint));
   }
@@ -134,7 +135,7 @@ void for_each_object(const Simulation& simulation, Take take) {
   const description::World& world = simulation.description();
   for (std::uint32_t body = 0; body < world.instances.size(); ++body) {
     const description::Instance& instance = world.instances[body];
-    take(Seen{simulation, body, world.models[instance.model]}, instance.name);
+    take(Seen{simulation, BodyId{body}, world.models[instance.model]}, instance.name);
   }
 }
 

@@ -67,7 +67,7 @@ void run_tracks(SmallWorld& small, BodyId body, double left, double right) {
 }
 
 // That the body's belts do in this time [J].
-double work_of(SmallWorld& small, std::uint32_t body, double time) {
+double work_of(SmallWorld& small, BodyId body, double time) {
   const double step = std::chrono::duration<double>(small.description.step).count();
   double work = 0.0;
   for (auto steps = std::lround(time / step); steps > 0; --steps) {
@@ -247,7 +247,7 @@ TEST_P(Belts, DoTheWorkThatBringsWhatTheyCarryToTheirSpeed) {
     small.add(crate(), at(0, 0, 1.05));
     small.run(0.1);
     EXPECT_EQ(small.world().driven_power(belt), 0.0) << "it stands";
-    small.world().set_belt_velocity_target(belt, 0, sense * speed);
+    small.world().set_belt_velocity_target(belt, LinkId{0}, sense * speed);
     const double work = work_of(small, belt, 1.0);
     EXPECT_NEAR(work, mass * speed * speed, 0.03 * mass * speed * speed);
     EXPECT_LT(work_of(small, belt, 0.5), 1e-3) << "it only goes along";
@@ -271,7 +271,7 @@ TEST_P(Belts, OfAVehicleDoTheWorkOfLiftingIt) {
 // A restored world continues with the load of the belt. With the direct solver all bodies sleep.
 TEST_P(Belts, GoOnRubbingWhatIsJammedThroughASnapshot) {
   constexpr double friction = 0.3, speed = 0.5, mass = 2.0;
-  std::uint32_t belt = 0;
+  BodyId belt;
   const auto jammed = [&] {
     auto small = std::make_unique<SmallWorld>(GetParam().world());
     belt = small->add(conveyor(friction), at(0, 0, 1));
@@ -280,7 +280,7 @@ TEST_P(Belts, GoOnRubbingWhatIsJammedThroughASnapshot) {
     return small;
   };
   const auto first = jammed();
-  first->world().set_belt_velocity_target(belt, 0, speed);
+  first->world().set_belt_velocity_target(belt, LinkId{0}, speed);
   first->run(3.0);
   const double power = first->world().driven_power(belt);
   EXPECT_NEAR(power, friction * mass * g * speed, 0.02 * friction * mass * g * speed);

@@ -112,8 +112,8 @@ class CohortSensing final : public SensingRun {
     std::size_t size = 0;
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        sensors_.push_back(sensing::make_sensor({*world_, emitters_, description_, grippers_, views_,
-                                                 static_cast<std::uint32_t>(body), device, scene.seed}));
+        sensors_.push_back(sensing::make_sensor(
+            {*world_, emitters_, description_, grippers_, views_, BodyId{body}, device, scene.seed}));
         std::size_t of_sensor = 0;
         for (const Channel& channel : sensors_.back()->channels()) of_sensor += channel.size;
         ends_.push_back(size += of_sensor);

@@ -39,7 +39,7 @@ std::size_t RayField::cast() const {
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
     const Pose& X_WS = poses_[i];
     const geometry::Bounds disc = geometry::bounds_of_disc(X_WS, turret.radius + range);
-    const geometry::RayFan fan(scene_, X_WS.position, disc, i);
+    const geometry::RayFan fan(scene_, X_WS.position, disc, BodyId{i});
     for (const Eigen::Vector3d& direction : directions_) {
       const Eigen::Vector3d direction_W = X_WS.orientation * direction;
       const Eigen::Vector3d origin_W = X_WS.position + turret.radius * direction_W;

@@ -43,6 +43,9 @@ class SnapshotWriter {
   std::vector<std::byte> bytes_;
 };
 
+/// How a simulation's numbers stand in a snapshot: later builds add to it, and read the earlier ones.
+enum class SnapshotLayout { first, with_belt_loads };
+
 /// Reads what a SnapshotWriter wrote, in the same order. Throws SnapshotError at the end of the bytes. A snapshot may
 /// come from anywhere: whoever reads numbers from it sees to it that they can be.
 class SnapshotReader {
@@ -88,8 +91,13 @@ class SnapshotReader {
   }
   bool is_at_end() const { return bytes_.empty(); }
 
+  /// The layout of what is read, as its beginning says; the latest one unless it was set.
+  SnapshotLayout layout() const { return layout_; }
+  void set_layout(SnapshotLayout layout) { layout_ = layout; }
+
  private:
   std::span<const std::byte> bytes_;
+  SnapshotLayout layout_ = SnapshotLayout::with_belt_loads;
 };
 
 }  // namespace cohort

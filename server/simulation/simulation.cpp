@@ -14,7 +14,9 @@ namespace cohort {
 namespace {
 
 constexpr std::size_t bodies_a_chunk = 64;
-constexpr std::uint64_t snapshot_mark = 0x746f6873'74726f68u;
+// What a snapshot begins with: of this layout, and of the first one, which has no loads of belts.
+constexpr std::uint64_t snapshot_mark = 0x32746f68'74726f68u;
+constexpr std::uint64_t first_snapshot_mark = 0x746f6873'74726f68u;
 
 }  // namespace
 
@@ -236,7 +238,8 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   SnapshotReader reader(snapshot);
   std::uint64_t mark = 0;
   reader.read(mark);
-  if (mark != snapshot_mark) throw SnapshotError("this is no snapshot");
+  if (mark != snapshot_mark && mark != first_snapshot_mark) throw SnapshotError("this is no snapshot");
+  if (mark == first_snapshot_mark) reader.set_layout(SnapshotLayout::first);
   std::uint64_t version = 0;
   reader.read(version);
   if (version != hash_name(COHORT_VERSION))

@@ -60,7 +60,7 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
     restore(member.next_asleep);
     const StateRestorer restore_body{reader, is_active ? Numbers::finite : Numbers::broken};
     Multibody::visit_state(*member.multibody, restore_body);
-    Multibody::visit_loads(*member.multibody, restore_body);
+    if (reader.layout() >= SnapshotLayout::with_belt_loads) Multibody::visit_loads(*member.multibody, restore_body);
     if (member.fluid) FluidBody::visit_state(*member.fluid, restore_body);
     member.multibody->update_poses();
     if (is_active) {

@@ -13,6 +13,7 @@
 
 #include "client_sdk/src/client_states.hpp"
 #include "client_sdk/src/frame_queue.hpp"
+#include "client_sdk/src/robot_descriptions.hpp"
 #include "client_sdk/src/this_process.hpp"
 #include "client_sdk/text/printable.hpp"
 #include "idl/dds/transport.hpp"
@@ -68,11 +69,6 @@ class Attachment {
     wire::Admit admit;
     wire::Sender sender;
   };
-  // What one server has said of its robots: another one, in its place, is another participant.
-  struct Description {
-    wire::RobotDescription description;
-    std::uint64_t server = 0;
-  };
 
   // On threads of DDS.
   void receive(const wire::Admit& admit, const wire::Sender& sender);
@@ -90,7 +86,6 @@ class Attachment {
   void exchange_states(Lock& lock);
   void answer_frames(Lock& lock);
 
-  bool is_described(const Offer& offer) const;
   std::optional<ClientEnd> reason_to_leave();
   bool server_is_lost() const;
   std::string waiting_text() const;
@@ -112,7 +107,7 @@ class Attachment {
   int long_frames_ = 0;           // in a row, of those that a thread of DDS has answered
   std::optional<Offer> offered_;  // an Admit not yet acted on
   std::optional<Offer> current_;
-  std::vector<Description> descriptions_;
+  RobotDescriptions descriptions_;
   std::vector<wire::Report> reports_;
   FrameQueue frames_;
   std::uint64_t tick_ = 0;  // of the frame last begun
@@ -199,10 +194,7 @@ void Attachment::receive(const wire::Admit& admit, const wire::Sender& sender) {
 
 void Attachment::receive(const wire::RobotDescription& description, const wire::Sender& sender) {
   Lock lock(mutex_);
-  std::erase_if(descriptions_, [&](const Description& known) {
-    return known.server == sender.participant && known.description.description == description.description;
-  });
-  descriptions_.push_back({description, sender.participant});
+  descriptions_.add(description, sender.participant);
   wake(std::move(lock));
 }
 
@@ -249,7 +241,8 @@ void Attachment::wake(Lock lock) {
 void Attachment::drive(Lock& lock) {
   try {
     for (const wire::Report& report : std::exchange(reports_, {})) heed(report);
-    if (offered_ && is_described(*offered_)) heed(*std::exchange(offered_, std::nullopt), lock);
+    if (offered_ && descriptions_.describe(offered_->admit, offered_->sender.participant))
+      heed(*std::exchange(offered_, std::nullopt), lock);
     exchange_states(lock);
     answer_frames(lock);
   } catch (const LeaveRun&) {
@@ -301,9 +294,7 @@ void Attachment::heed(Offer offer, Lock& lock) {
   current_ = std::move(offer);
   tick_ = current_->admit.tick;
   frames_.begin(current_->admit);
-  std::erase_if(descriptions_, [&](const Description& known) { return known.server != current_->sender.participant; });
-  std::vector<wire::RobotDescription> descriptions;
-  for (const Description& known : descriptions_) descriptions.push_back(known.description);
+  const std::vector<wire::RobotDescription> descriptions = descriptions_.keep(current_->sender.participant);
   const Unlocked unlocked(lock);
   starting_ = true;
   handler_.start(current_->admit, descriptions);
@@ -343,14 +334,6 @@ void Attachment::answer_frames(Lock& lock) {
     const Unlocked unlocked(lock);
     commands_.write(command);  // if it cannot be written it counts as lost, and the server asks again
   }
-}
-
-bool Attachment::is_described(const Offer& offer) const {
-  return std::ranges::all_of(offer.admit.robots, [&](const wire::AdmittedRobot& robot) {
-    return std::ranges::any_of(descriptions_, [&](const Description& known) {
-      return known.server == offer.sender.participant && known.description.description == robot.description;
-    });
-  });
 }
 
 std::optional<ClientEnd> Attachment::reason_to_leave() {

@@ -92,15 +92,15 @@ SimulationStatus Control::status() {
   throw ControlError("the server says nothing of its run", ControlResult::bad_reply);
 }
 
-ControlReply Control::play() { return state_->perform(wire::SetSimulationState{wire::SimulationState::playing}); }
-ControlReply Control::pause() { return state_->perform(wire::SetSimulationState{wire::SimulationState::paused}); }
+ControlReply Control::play() { return state_->perform(wire::SetSimulationState{SimulationState::playing}); }
+ControlReply Control::pause() { return state_->perform(wire::SetSimulationState{SimulationState::paused}); }
 ControlReply Control::stop() {
-  return state_->perform(wire::SetSimulationState{wire::SimulationState::stopped}, Takes::as_long_as_the_run);
+  return state_->perform(wire::SetSimulationState{SimulationState::stopped}, Takes::as_long_as_the_run);
 }
 
 ControlReply Control::quit() {
   try {
-    return state_->perform(wire::SetSimulationState{wire::SimulationState::quitting});
+    return state_->perform(wire::SetSimulationState{SimulationState::quitting});
   } catch (const ControlError& error) {
     if (error.result != ControlResult::server_gone) throw;
     state_->last = {};
@@ -128,19 +128,20 @@ std::vector<std::string> Control::entities(const std::string& filter) {
 }
 
 EntityState Control::entity_state(const std::string& entity) {
-  return from_wire(state_->get(wire::GetEntityState{entity}));
+  wire::EntityState state = state_->get(wire::GetEntityState{entity});
+  return {std::move(state.entity), state.pose, state.twist};
 }
 
 ControlReply Control::set_pose(const std::string& entity, const WorldPose& pose) {
-  return state_->perform(wire::SetEntityState{entity, to_wire(pose), {}});
+  return state_->perform(wire::SetEntityState{entity, pose, {}});
 }
 
 ControlReply Control::set_twist(const std::string& entity, const Twist& twist) {
-  return state_->perform(wire::SetEntityState{entity, {}, to_wire(twist)});
+  return state_->perform(wire::SetEntityState{entity, {}, twist});
 }
 
 ControlReply Control::set_entity_state(const EntityState& state) {
-  return state_->perform(wire::SetEntityState{state.entity, to_wire(state.pose), to_wire(state.twist)});
+  return state_->perform(wire::SetEntityState{state.entity, state.pose, state.twist});
 }
 
 std::string Control::spawn(const Spawn& what) {
@@ -149,7 +150,7 @@ std::string Control::spawn(const Spawn& what) {
                               .allow_renaming = what.allow_renaming,
                               .uri = what.model,
                               .resource_string = what.text,
-                              .pose = to_wire(what.pose),
+                              .pose = what.pose,
                               .team = what.team})
       .entity;
 }
@@ -165,8 +166,8 @@ ControlReply Control::set_light(const std::string& light, const LightSetting& se
 ControlReply Control::apply_force(const std::string& entity, const AppliedForce& force) {
   return state_->perform(wire::ApplyForce{.entity = entity,
                                           .link = force.link,
-                                          .force = to_wire(force.force),
-                                          .torque = to_wire(force.torque),
+                                          .force = force.force,
+                                          .torque = force.torque,
                                           .duration_ns = force.duration.count()});
 }
 

@@ -3,8 +3,6 @@
 namespace cohort {
 namespace {
 
-Vector3 from_wire(const wire::Vector3& vector) { return {vector.x, vector.y, vector.z}; }
-
 ControllerStatus from_wire(const wire::ControllerStatus& status) {
   return {status.label,
           status.client,
@@ -21,34 +19,14 @@ ControllerStatus from_wire(const wire::ControllerStatus& status) {
           std::chrono::nanoseconds(status.answer_p99_ns)};
 }
 
-SimulationState from_wire(wire::SimulationState state) {
-  return static_cast<SimulationState>(state);  // both have the numbers of simulation_interfaces
-}
-
 }  // namespace
 
-wire::Vector3 to_wire(const Vector3& vector) { return {vector.x, vector.y, vector.z}; }
-
-wire::Pose to_wire(const WorldPose& pose) {
-  const Quaternion& q = pose.orientation;
-  return {to_wire(pose.position), {q.x, q.y, q.z, q.w}};
-}
-
-wire::Twist to_wire(const Twist& twist) { return {to_wire(twist.linear), to_wire(twist.angular)}; }
-
-EntityState from_wire(const wire::EntityState& state) {
-  const wire::Quaternion& q = state.pose.orientation;
-  return {state.entity,
-          {from_wire(state.pose.position), {q.x, q.y, q.z, q.w}},
-          {from_wire(state.twist.linear), from_wire(state.twist.angular)}};
-}
-
 ControlReply reply_from_wire(const wire::Reply& reply) {
-  return {from_wire(reply.state), reply.run, reply.tick, std::chrono::nanoseconds(reply.time_ns), reply.error_message};
+  return {reply.state, reply.run, reply.tick, std::chrono::nanoseconds(reply.time_ns), reply.error_message};
 }
 
 SimulationStatus status_from_wire(const wire::Reply& reply, const wire::SimulationStatus& status) {
-  SimulationStatus all{.state = from_wire(reply.state),
+  SimulationStatus all{.state = reply.state,
                        .run = reply.run,
                        .tick = reply.tick,
                        .time = std::chrono::nanoseconds(reply.time_ns),

@@ -9,11 +9,6 @@
 /// Values of the public headers as the protocol has them, and back.
 namespace cohort {
 
-wire::Pose to_wire(const WorldPose& pose);
-wire::Twist to_wire(const Twist& twist);
-wire::Vector3 to_wire(const Vector3& vector);
-
-EntityState from_wire(const wire::EntityState& state);
 ControlReply reply_from_wire(const wire::Reply& reply);
 SimulationStatus status_from_wire(const wire::Reply& reply, const wire::SimulationStatus& status);
 /// `result` is another one than ok. Some numbers mean another thing for each operation.

@@ -42,7 +42,7 @@ RunHistory query_history(std::uint64_t since, const std::function<wire::Reply(co
     const wire::Reply reply = ask({history.revision});
     const auto* const part = reply.get<wire::HistoryPart>();
     if (part == nullptr) throw ControlError("the server sends no history", ControlResult::bad_reply);
-    if (reply.run != history.run) {  // revisions begin anew with each run
+    if (reply.run != history.run) {  // each run counts its revisions from 0
       const bool was_asked_of_it = history.run == 0;
       history.events.clear();
       history.run = reply.run;

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "client_sdk/include/cohort/types.hpp"
+
 /// The operations by which clients control a run: docs/protocol.md, "Control". Each is a struct with the fields that it
 /// has: `code` is its number, `Returned` what its Reply brings beside what every Reply says. Entities are called by
 /// their scoped names. Poses, twists, forces and torques are of the world frame, in SI units.
@@ -44,31 +46,12 @@ bool is_query(OperationCode operation);
 /// One that only looks on, and so is anybody's who is let in; all others need the right to control.
 bool is_looking_on(OperationCode operation);
 
-enum class SimulationState : std::uint32_t { stopped = 0, playing = 1, paused = 2, quitting = 3 };
-
-struct Vector3 {
-  double x = 0.0, y = 0.0, z = 0.0;
-  bool operator==(const Vector3&) const = default;
-};
-
-struct Quaternion {
-  double x = 0.0, y = 0.0, z = 0.0, w = 1.0;
-  bool operator==(const Quaternion&) const = default;
-};
-
-/// Of an entity's root link, in the world.
-struct Pose {
-  Vector3 position{};  ///< [m]
-  Quaternion orientation{};
-  bool operator==(const Pose&) const = default;
-};
-
-/// Of the root link's origin, in the world's axes.
-struct Twist {
-  Vector3 linear{};   ///< [m/s]
-  Vector3 angular{};  ///< [rad/s]
-  bool operator==(const Twist&) const = default;
-};
+// The values that clients see too.
+using cohort::Quaternion;
+using cohort::SimulationState;
+using cohort::Vector3;
+using Pose = WorldPose;
+using cohort::Twist;
 
 // What operations return.
 

@@ -29,7 +29,7 @@ class Simulated {
   Process& bridge() { return *bridge_; }
 
   std::uint16_t port(const std::string& robot) {
-    const std::string prefix = "robot " + robot + ": program reaches it at ";
+    const std::string prefix = "robot " + robot + ": the program connects at ";
     if (!bridge_->wait_for_output(prefix)) throw std::runtime_error("no port: " + bridge_->output());
     std::smatch match;
     const std::string output = bridge_->output();

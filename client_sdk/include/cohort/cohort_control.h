@@ -59,7 +59,7 @@ typedef enum CohortResult {
   cohort_result_bad_reply = 15    /* the server sent something else than it was asked for */
 } CohortResult;
 
-/* Of the last request. */
+/* Returns the result of the last request. */
 CohortResult cohort_control_result(const CohortControl* control);
 
 /* ---- What the reply to the last request that was done says ---- */
@@ -84,7 +84,7 @@ int cohort_control_play(CohortControl* control);      /* also if it plays alread
 int cohort_control_pause(CohortControl* control);     /* at the next boundary; also if it is paused already */
 int cohort_control_stop(CohortControl* control);      /* from the beginning, paused */
 int cohort_control_quit(CohortControl* control);      /* ends run and server */
-int cohort_control_step(CohortControl* control, uint64_t steps); /* of a paused run, and waits for them */
+int cohort_control_step(CohortControl* control, uint64_t steps); /* makes ticks of a paused run, and waits for them */
 int cohort_control_reset(CohortControl* control);                /* from the beginning, with the same seed */
 int cohort_control_reset_seed(CohortControl* control, uint64_t seed);
 int cohort_control_back(CohortControl* control, int64_t time_ns);   /* to the last kept snapshot at or before it */
@@ -111,7 +111,7 @@ int cohort_control_has_feature(CohortControl* control, uint32_t feature);
 
 /* ---- The world ---- */
 
-/* Of the origin of an entity's root link, in the world. */
+/* The pose of the origin of an entity's root link in the world frame. */
 typedef struct CohortPose {
   double position[3];    /* x y z [m] */
   double orientation[4]; /* quaternion x y z w, of length 1 */

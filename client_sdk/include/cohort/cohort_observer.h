@@ -41,7 +41,8 @@ uint64_t cohort_observer_tick(const CohortObserver* observer);
 int64_t cohort_observer_time_ns(const CohortObserver* observer); /* simulated, since tick 0 [ns] */
 uint64_t cohort_observer_state_hash(const CohortObserver* observer);
 size_t cohort_observer_poses(const CohortObserver* observer); /* of how many robots it has poses */
-/* The id and the pose of one of them, by ascending ids. NULL beyond the last; `robot` may be NULL. */
+/* Returns the pose of one of these robots, in the order of their ids, and NULL beyond the last. Writes its id to
+ * `*robot` unless that is NULL. */
 const CohortPose* cohort_observer_pose(const CohortObserver* observer, size_t index, uint32_t* robot);
 
 /* ---- The end ---- */
@@ -59,7 +60,8 @@ CohortObserverEnd cohort_observer_ended(const CohortObserver* observer);
 
 /* Asks for all robots of the run, for at most so long. Not for each tick. Returns how many there are, or -1. */
 int64_t cohort_observer_ask_robots(CohortObserver* observer, int milliseconds);
-/* Of one of them, by ascending ids: its scoped name; `robot` is its id, or NULL. NULL beyond the last. */
+/* Returns the scoped name of one of these robots, in the order of their ids, and NULL beyond the last. Writes its id to
+ * `*robot` unless that is NULL. The two functions below return its model and its team. */
 const char* cohort_observer_robot(const CohortObserver* observer, size_t index, uint32_t* robot);
 const char* cohort_observer_model(const CohortObserver* observer, size_t index);
 const char* cohort_observer_team(const CohortObserver* observer, size_t index);

@@ -97,8 +97,8 @@ class Observer {
   /// robots with new ids have come, not for each tick.
   std::optional<std::vector<ObservedRobot>> robots(std::chrono::milliseconds at_most);
   /// Returns what has happened in the run since the last call, at first all: a query to the server, for programs that
-  /// ask once a second or so. `run` is another one when the world was reset or restored; its events begin anew. Returns
-  /// nothing if the server does not answer within `at_most`. Throws ControlError if it refuses.
+  /// ask once a second or so. After a reset or a restore, `run` is another number, and all events of the new run are
+  /// returned. Returns nothing if the server does not answer within `at_most`. Throws ControlError if it refuses.
   std::optional<RunHistory> events(std::chrono::milliseconds at_most);
 
  private:

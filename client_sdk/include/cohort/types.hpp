@@ -21,14 +21,14 @@ struct Quaternion {
   bool operator==(const Quaternion&) const = default;
 };
 
-/// Of the origin of an object's root link, in the world.
+/// The pose of the origin of an object's root link in the world frame.
 struct WorldPose {
   Vector3 position{};  ///< [m]
   Quaternion orientation{};
   bool operator==(const WorldPose&) const = default;
 };
 
-/// Of the origin of an object's root link, in the world's axes.
+/// The velocity of the origin of an object's root link, along the axes of the world frame.
 struct Twist {
   Vector3 linear{};   ///< [m/s]
   Vector3 angular{};  ///< [rad/s]

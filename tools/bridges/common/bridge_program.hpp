@@ -22,7 +22,7 @@ class UsageError : public std::runtime_error {
 /// The command line of a bridge's program: the options that all bridges have, to which each adds its own.
 class BridgeProgram {
  public:
-  /// `name`: of the program. `who`: what people call what drives a robot. `place`: the first robot's default link.
+  /// `name`: of the program. `who`: what people call what drives a robot.
   BridgeProgram(std::string name, std::string who, const std::string& text);
 
   CLI::App& app() { return app_; }

@@ -20,7 +20,7 @@ RobotBridge::RobotBridge(Options options, std::unique_ptr<Firmware> firmware, Pa
       stop_(stop),
       conversation_(open_link(options_.link), options_.who,
                     {[this] { return stop_ || client_->is_over(); }, [this](const std::string& text) { tell(text); }}) {
-  tell(options_.who + " reaches it at " + conversation_.place());
+  tell("the " + options_.who + " connects at " + conversation_.place());
   options_.client.tell = [this](Severity, const std::string& text) { tell(text); };
 }
 

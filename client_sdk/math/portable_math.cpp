@@ -5,8 +5,6 @@
 
 #include "client_sdk/math/portable_math.hpp"
 
-#include <dlfcn.h>
-
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -295,58 +293,3 @@ float powf(float x, float y) noexcept { return static_cast<float>(cohort::portab
 // library.
 extern const char cohort_portable_math = 1;
 }
-
-namespace cohort {
-namespace {
-
-// The function of double, or that of float, among those of one name.
-void* unary(double (*function)(double)) { return reinterpret_cast<void*>(function); }
-void* binary(double (*function)(double, double)) { return reinterpret_cast<void*>(function); }
-void* unary_of_float(float (*function)(float)) { return reinterpret_cast<void*>(function); }
-void* binary_of_float(float (*function)(float, float)) { return reinterpret_cast<void*>(function); }
-
-}  // namespace
-
-std::vector<std::string> functions_not_portable() {
-  struct Function {
-    const char* name;
-    void* ours;
-  };
-  const Function functions[] = {
-      {"sin", unary(::sin)},
-      {"cos", unary(::cos)},
-      {"sincos", reinterpret_cast<void*>(&::sincos)},
-      {"tan", unary(::tan)},
-      {"atan", unary(::atan)},
-      {"atan2", binary(::atan2)},
-      {"asin", unary(::asin)},
-      {"acos", unary(::acos)},
-      {"exp", unary(::exp)},
-      {"log", unary(::log)},
-      {"log2", unary(::log2)},
-      {"log10", unary(::log10)},
-      {"exp2", unary(::exp2)},
-      {"pow", binary(::pow)},
-      {"sinf", unary_of_float(::sinf)},
-      {"cosf", unary_of_float(::cosf)},
-      {"sincosf", reinterpret_cast<void*>(&::sincosf)},
-      {"tanf", unary_of_float(::tanf)},
-      {"atanf", unary_of_float(::atanf)},
-      {"atan2f", binary_of_float(::atan2f)},
-      {"asinf", unary_of_float(::asinf)},
-      {"acosf", unary_of_float(::acosf)},
-      {"expf", unary_of_float(::expf)},
-      {"logf", unary_of_float(::logf)},
-      {"log2f", unary_of_float(::log2f)},
-      {"log10f", unary_of_float(::log10f)},
-      {"exp2f", unary_of_float(::exp2f)},
-      {"powf", binary_of_float(::powf)},
-  };
-  // What the dynamic linker finds first is what it bound the libraries' calls to.
-  std::vector<std::string> missing;
-  for (const Function& function : functions)
-    if (dlsym(RTLD_DEFAULT, function.name) != function.ours) missing.emplace_back(function.name);
-  return missing;
-}
-
-}  // namespace cohort

@@ -12,9 +12,9 @@
 /// runs.
 namespace cohort {
 
-/// The functions that the shared libraries of this process would not get from portable_math.cpp, by name. Empty in our
-/// own programs; a host program that loads the simulation as a plugin may lack the exports, and its runs are then not
-/// portable between CPUs.
+/// Returns the names of the functions that the libraries which this code needs do not get from portable_math.cpp. None
+/// in our own programs, and none after `bind_library_calls` (library_calls.hpp). With such names, runs are not portable
+/// between CPUs.
 std::vector<std::string> functions_not_portable();
 
 }  // namespace cohort

@@ -201,11 +201,13 @@ TEST(Architecture, EachLibraryIsIncludedWhereTheTableSaysSo) {
       {"CLI11", std::regex("CLI/.*")},
       {"spdlog", std::regex("spdlog/.*")},
       {"nlohmann-json", std::regex("nlohmann/.*")},
+      {"nanobind", std::regex("nanobind/.*")},
+      {"Python", std::regex("Python\\.h")},
   };
   // Of the system, of the language, and what any folder may have.
   const std::regex others(
       "[a-z_]+|(std|sys|net|netinet|arpa|linux)[a-z]*/"
-      ".*|(std[a-z]+|inttypes|dlfcn|elf|fcntl|ifaddrs|netdb|poll|pthread|spawn|"
+      ".*|(std[a-z]+|inttypes|dlfcn|elf|link|fcntl|ifaddrs|netdb|poll|pthread|spawn|"
       "termios|unistd|math|string|signal|fenv|time)\\.h|Eigen/.*|fmt/.*|cohort\\.h|cohort_build/"
       ".*|cxxabi\\.h|"
       "immintrin\\.h|x86intrin\\.h|execinfo\\.h");

@@ -183,6 +183,17 @@ void keep_inputs(Experiment& experiment, std::shared_ptr<const KeptFiles> kept) 
   experiment.inputs = std::move(kept);
 }
 
+Experiment read_from(InputFiles& disk, const fs::path& file, std::optional<std::uint64_t> seed,
+                     std::optional<std::chrono::nanoseconds> duration,
+                     const std::vector<fs::path>& last_model_folders) {
+  Experiment experiment = ExperimentReader(disk, file, last_model_folders).read(seed, duration);
+  KeptFiles kept = disk.kept();
+  kept.experiment = file.string();
+  for (const fs::path& folder : last_model_folders) kept.last_model_folders.push_back(folder.string());
+  keep_inputs(experiment, std::make_shared<const KeptFiles>(std::move(kept)));
+  return experiment;
+}
+
 }  // namespace
 
 Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> seed,
@@ -192,12 +203,17 @@ Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> s
   InputFiles disk;
   disk.trust(file, last_model_folders);
   if (xacro == Xacro::run) expand_named(disk, file);
-  Experiment experiment = ExperimentReader(disk, file, last_model_folders).read(seed, duration);
-  KeptFiles kept = disk.kept();
-  kept.experiment = file.string();
-  for (const fs::path& folder : last_model_folders) kept.last_model_folders.push_back(folder.string());
-  keep_inputs(experiment, std::make_shared<const KeptFiles>(std::move(kept)));
-  return experiment;
+  return read_from(disk, file, seed, duration, last_model_folders);
+}
+
+Experiment read_experiment_text(const std::string& text, const fs::path& named, std::optional<std::uint64_t> seed,
+                                std::optional<std::chrono::nanoseconds> duration,
+                                const std::vector<fs::path>& last_model_folders) {
+  const fs::path file = without_links(named);
+  InputFiles disk;
+  disk.trust(file, last_model_folders);
+  disk.add(file, text);
+  return read_from(disk, file, seed, duration, last_model_folders);
 }
 
 Experiment read_experiment(std::shared_ptr<const KeptFiles> kept, std::optional<std::uint64_t> seed,

@@ -1,0 +1,62 @@
+"""Where the files are that come with Cohort."""
+
+import difflib
+import os
+import pathlib
+import sys
+
+_package = pathlib.Path(__file__).absolute().parent
+
+
+def _first_folder(*candidates):
+    return next((each for each in candidates if each.is_dir()), None)
+
+
+def worlds_folder():
+    """Returns the folder of the worlds that come with Cohort."""
+    folder = _first_folder(
+        _package / "worlds",  # of a wheel
+        _package.parent.parent / "share/cohort/worlds",  # of a build tree
+        pathlib.Path(sys.prefix) / "share/cohort/worlds",
+        pathlib.Path("/usr/share/cohort/worlds"),
+    )
+    if folder is None:
+        raise FileNotFoundError("the worlds of Cohort are not installed")
+    return folder
+
+
+def model_folders():
+    """Returns the folders of the models that come with Cohort."""
+    return [worlds_folder() / "robots", worlds_folder() / "objects"]
+
+
+def plugin_folders():
+    """Returns the folders where controllers are looked for that are named without a path."""
+    folders = [pathlib.Path(each) for each in os.environ.get("COHORT_PLUGIN_PATH", "").split(":") if each]
+    return folders + [
+        _package / "controllers",
+        _package.parent.parent / "lib/controllers",
+        *sorted(pathlib.Path("/usr/lib").glob("*/cohort/controllers")),
+        *sorted(pathlib.Path("/usr/local/lib").glob("cohort/controllers")),
+    ]
+
+
+def examples():
+    """Returns the names of the experiments that come with Cohort, in alphabetical order."""
+    return sorted(each.stem for each in (worlds_folder() / "experiments").glob("*.yaml"))
+
+
+def experiment_called(name):
+    """Returns the file of an experiment: of one that comes with Cohort if it is named so and no such file is there.
+
+    Raises FileNotFoundError for a name that is neither.
+    """
+    path = pathlib.Path(name)
+    if path.exists() or len(path.parts) != 1 or path.suffix:
+        return path
+    known = examples()
+    if str(name) in known:
+        return worlds_folder() / "experiments" / f"{name}.yaml"
+    near = difflib.get_close_matches(str(name), known, n=3)
+    suggestion = f"; did you mean {' or '.join(near)}?" if near else ""
+    raise FileNotFoundError(f"there is neither a file '{name}' nor an example of this name{suggestion}")

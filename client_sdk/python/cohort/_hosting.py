@@ -1,0 +1,97 @@
+"""What C++ calls to run controllers that are written in Python."""
+
+import importlib.util
+import pathlib
+import sys
+import traceback
+
+import numpy
+
+from cohort.controller import Controller, Start
+
+
+class Adapter:
+    """One robot's controller. C++ owns the memory of `observation` and `command`."""
+
+    __slots__ = ("_controller", "_command", "_observation", "_start")
+
+    def __init__(self, make):
+        self._controller = make()
+        if not isinstance(self._controller, Controller):
+            raise TypeError(f"{make!r} makes a {type(self._controller).__name__}, expected a cohort.Controller")
+
+    def start(self, facts, observation, command):
+        self._observation = numpy.frombuffer(observation, dtype=numpy.float64)
+        self._command = numpy.frombuffer(command, dtype=numpy.float64)
+        self._start = Start(facts)
+        self._controller.robot = self._start
+        self._controller.tick = self._start.tick
+        self._controller.time = self._start.tick * self._start.step
+        self._controller.start(self._start)
+
+    def step(self, tick, nanoseconds):
+        controller = self._controller
+        controller.tick = tick
+        controller.time = nanoseconds * 1e-9
+        controller.step(self._observation, self._command)
+
+    def asked_for(self):
+        return list(self._start.parameters.asked)
+
+    def save(self):
+        state = self._controller.save()
+        if state is not None and not isinstance(state, bytes):
+            raise TypeError(f"save() gave a {type(state).__name__}, expected bytes, or None if it cannot be saved")
+        return state
+
+    def load(self, state):
+        self._controller.load(state)
+
+
+class Maker:
+    """Makes adapters for controllers of one class."""
+
+    def __init__(self, controller):
+        self.controller = controller
+        self.name = getattr(controller, "__name__", str(controller))
+
+    def __call__(self):
+        return Adapter(self.controller)
+
+
+def controller_in(file):
+    """Returns the one class of controllers that a file of Python defines. Raises ValueError if there are more or none."""
+    path = pathlib.Path(file).resolve()
+    if not path.is_file():
+        raise ValueError(f"there is no file {path}")
+    name = "cohort_controller_" + path.stem
+    specification = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[name] = module
+    sys.path.insert(0, str(path.parent))
+    try:
+        specification.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(path.parent))
+    classes = [
+        value
+        for value in vars(module).values()
+        if isinstance(value, type) and issubclass(value, Controller) and value.__module__ == name
+    ]
+    if len(classes) != 1:
+        found = ", ".join(sorted(each.__name__ for each in classes)) or "none"
+        raise ValueError(f"{path} has these classes of controllers: {found}; expected one that derives from cohort.Controller")
+    return classes[0]
+
+
+def maker_in(file):
+    return Maker(controller_in(file))
+
+
+def describe(error):
+    """Returns an exception as one line: where it was raised, and what it says."""
+    here = str(pathlib.Path(__file__).parent)
+    frames = [each for each in traceback.extract_tb(error.__traceback__) if not each.filename.startswith(here)]
+    places = [f"{pathlib.Path(each.filename).name}:{each.lineno} in {each.name}" for each in frames]
+    said = "".join(traceback.format_exception_only(type(error), error)).strip().splitlines()
+    return (", then ".join(places) + ": " if places else "") + (said[-1] if said else type(error).__name__)

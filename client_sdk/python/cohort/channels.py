@@ -1,0 +1,98 @@
+"""Channels: the named parts of what a robot observes and of what commands it."""
+
+import dataclasses
+import difflib
+import re
+
+import numpy
+
+
+class ChannelError(LookupError):
+    """There is no channel of that name. The message lists those with the nearest names."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Channel:
+    """A named part of a robot's observation or command.
+
+    Attributes:
+        name: `device/index/quantity`, such as `proximity/3/reading`.
+        unit: SI; `1` if it has none.
+        offset: place of its first value among those of the robot.
+        size: how many values it has.
+        lower, upper: the least and the greatest value; infinite if there is none.
+        neutral: of a command, what each value is until it is set.
+    """
+
+    name: str
+    unit: str
+    offset: int
+    size: int
+    lower: float
+    upper: float
+    neutral: float
+
+
+class Channels:
+    """The channels of a robot's observation, or those of its command, in the order of their values."""
+
+    def __init__(self, tuples):
+        self._all = tuple(Channel(*each) for each in tuples)
+        self._by_name = {each.name: each for each in self._all}
+
+    def __iter__(self):
+        return iter(self._all)
+
+    def __len__(self):
+        return len(self._all)
+
+    def __getitem__(self, name):
+        """Returns the channel of this name. Raises ChannelError if there is none."""
+        channel = self._by_name.get(name)
+        if channel is None:
+            near = difflib.get_close_matches(name, self._by_name, n=4, cutoff=0.3)
+            raise ChannelError(f"there is no channel '{name}'" + (f"; near: {', '.join(near)}" if near else ""))
+        return channel
+
+    def __contains__(self, name):
+        return name in self._by_name
+
+    def __repr__(self):
+        return "Channels(" + ", ".join(self._by_name) + ")"
+
+    @property
+    def size(self):
+        """How many values all of them have."""
+        return sum(each.size for each in self._all)
+
+    @property
+    def lower(self):
+        """The least value of each, an array [value]; -inf where there is none."""
+        return numpy.concatenate([numpy.full(each.size, each.lower) for each in self._all] or [numpy.empty(0)])
+
+    @property
+    def upper(self):
+        """The greatest value of each, an array [value]; inf where there is none."""
+        return numpy.concatenate([numpy.full(each.size, each.upper) for each in self._all] or [numpy.empty(0)])
+
+    def index(self, name):
+        """Returns where a channel is: an int if it has one value, else a slice. Raises ChannelError if there is none."""
+        channel = self[name]
+        return channel.offset if channel.size == 1 else slice(channel.offset, channel.offset + channel.size)
+
+    def indices(self, pattern, count=None):
+        """Returns the places of the values of all channels that match.
+
+        `*` stands for any characters but `/`. The result is a slice if the values are in a row, which makes views; else
+        an array of int. Raises ChannelError if nothing matches, or if `count` is given and another number of channels does.
+        """
+        expression = re.compile("[^/]*".join(re.escape(each) for each in pattern.split("*")) + r"\Z")
+        found = [each for each in self._all if expression.match(each.name)]
+        if not found:
+            raise ChannelError(f"no channel matches '{pattern}'; there are: {', '.join(self._by_name)}")
+        if count is not None and len(found) != count:
+            raise ChannelError(f"{len(found)} channels match '{pattern}', expected {count}")
+        places = [place for each in found for place in range(each.offset, each.offset + each.size)]
+        if places[-1] - places[0] == len(places) - 1:
+            return slice(places[0], places[-1] + 1)
+        return numpy.array(places)

@@ -1,0 +1,239 @@
+"""Experiments: a world, robots in teams, what drives them, for how long."""
+
+import dataclasses
+import json
+import os
+import pathlib
+
+from cohort import _files, _native
+from cohort._hosting import Maker, maker_in
+from cohort.controller import Controller
+
+
+class _Idle(Controller):
+    """Drives a team without a controller: its commands stay neutral."""
+
+    def step(self, observation, command):
+        pass
+
+
+class _PathEncoder(json.JSONEncoder):
+    def default(self, value):
+        if isinstance(value, os.PathLike):
+            return os.fspath(value)
+        if hasattr(value, "tolist"):
+            return value.tolist()
+        return super().default(value)
+
+
+@dataclasses.dataclass(frozen=True)
+class Team:
+    """A team as experiments describe it.
+
+    Attributes:
+        name: of the team.
+        controller: what the experiment names as its controller; empty if it names none.
+        robots: ids of its robots, ascending.
+        period: ticks from one command to the next.
+    """
+
+    name: str
+    controller: str
+    robots: tuple
+    period: int
+
+
+@dataclasses.dataclass(frozen=True)
+class Result:
+    """How a run ended.
+
+    Attributes:
+        end: `finished`, `interrupted` or `failed`.
+        error: why it failed; empty if it did not.
+        stop_reason: the stop condition that ended it; empty if none did.
+        ticks: how many there were.
+        time: simulated time [s].
+        wall_time: from the first frame to the last step [s].
+        state_hash: of the last state. The same for every run of the same experiment and controllers.
+        robots: how many there were at the end.
+        robot_ticks: robots times ticks, to which the next two are compared.
+        touching_obstacles: robot-ticks in which a robot touched something that is neither a robot nor a plane.
+        touching_robots: robot-ticks in which a robot touched another one.
+        events: a list of tuples (tick, kind, text, count).
+        seed: of the experiment.
+    """
+
+    end: str
+    error: str
+    stop_reason: str
+    ticks: int
+    time: float
+    wall_time: float
+    state_hash: int
+    robots: int
+    robot_ticks: int
+    touching_obstacles: int
+    touching_robots: int
+    events: list
+    seed: int
+
+
+class Experiment:
+    """A world with robots in teams, checked and ready to run.
+
+    Made from a file with `Experiment.read`, or in Python with the keys of experiment files as arguments:
+
+        cohort.Experiment(
+            world="arena.sdf",
+            duration=60,
+            teams=[{"name": "explorers", "robots": "explorers/*", "controller": "wanderer.py"}],
+        )
+
+    Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with every problem that
+    was found, in the words of `cohort check`.
+    """
+
+    def __init__(self, *, folder=".", name="experiment", seed=None, duration=None, **keys):
+        if seed is not None:
+            keys["seed"] = seed
+        if duration is not None:
+            keys["duration"] = duration
+        text = json.dumps(keys, cls=_PathEncoder, indent=1)
+        file = pathlib.Path(folder).absolute() / f"{name}.yaml"
+        self._native = _native.Experiment.read_text(text, file, None, None, _files.model_folders())
+
+    @classmethod
+    def read(cls, file, seed=None, duration=None):
+        """Reads an experiment in YAML, or a world or a model in SDF or URDF.
+
+        Args:
+            file: a path, or the name of an experiment that comes with Cohort (`cohort.examples()`).
+            seed: in place of that of the file.
+            duration: simulated time [s] in place of that of the file; 0: without an end.
+        """
+        return cls._of(_native.Experiment.read(_files.experiment_called(file), seed, duration, _files.model_folders()))
+
+    @classmethod
+    def read_text(cls, text, folder=".", name="experiment", seed=None, duration=None):
+        """Reads an experiment from a text in YAML whose paths are relative to `folder`."""
+        file = pathlib.Path(folder).absolute() / f"{name}.yaml"
+        return cls._of(_native.Experiment.read_text(text, file, seed, duration, _files.model_folders()))
+
+    @classmethod
+    def _of(cls, native):
+        experiment = cls.__new__(cls)
+        experiment._native = native
+        return experiment
+
+    def with_seed(self, seed):
+        """Returns the same experiment with another seed; robots that are placed at random stand elsewhere."""
+        return self._of(self._native.with_seed(seed))
+
+    @property
+    def name(self):
+        """The name of its file, without the extension."""
+        return self._native.name
+
+    @property
+    def file(self):
+        """The path of its file."""
+        return self._native.file
+
+    @property
+    def seed(self):
+        """The seed of all that is random in it."""
+        return self._native.seed
+
+    @property
+    def step(self):
+        """Simulated time between ticks [s]."""
+        return self._native.step
+
+    @property
+    def duration(self):
+        """Simulated time of a run [s]; 0: without an end."""
+        return self._native.duration
+
+    @property
+    def robots(self):
+        """Scoped names of the robots, in the order of their ids."""
+        return self._native.robots
+
+    @property
+    def teams(self):
+        """The teams, a list of `Team`."""
+        return [Team(each["name"], each["controller"], tuple(each["robots"]), each["period"]) for each in self._native.teams]
+
+    @property
+    def warnings(self):
+        """What its files ask for that is not simulated, a list of sentences."""
+        return self._native.warnings
+
+    def run(self, controllers=None, *, threads=1, record=None):
+        """Runs the experiment to its end in this process, and returns a `Result`.
+
+        Args:
+            controllers: what drives the robots: a class that derives from `cohort.Controller`, the name or the path of a
+                controller, or a dictionary of these by the names of teams. Teams that are not named have the controller
+                of the experiment.
+            threads: that step the world; the result is the same for any number.
+            record: path of a recording (MCAP) to write.
+
+        Raises RuntimeError with the error if the run fails, and KeyboardInterrupt after Ctrl-C.
+        """
+        drivers = [self._driver_of(team, controllers) for team in self.teams]
+        facts = _native.run(self._native, threads, drivers, _files.plugin_folders(), record or "")
+        result = Result(seed=self.seed, **facts)
+        if result.end == "failed":
+            raise RuntimeError(f"the run failed at tick {result.ticks}: {result.error}")
+        return result
+
+    def _driver_of(self, team, controllers):
+        if isinstance(controllers, dict):
+            unknown = set(controllers) - {each.name for each in self.teams}
+            if unknown:
+                raise ValueError(f"there is no team '{sorted(unknown)[0]}', expected one of {[each.name for each in self.teams]}")
+            chosen = controllers.get(team.name)
+            folder = pathlib.Path()
+        else:
+            chosen = controllers
+        folder = pathlib.Path()
+        if chosen is None:
+            chosen = team.controller
+            folder = pathlib.Path(self.file).parent
+        if isinstance(chosen, os.PathLike):
+            chosen = os.fspath(chosen)
+        if not isinstance(chosen, str):
+            return Maker(chosen)
+        if not chosen or chosen == "keyboard":
+            return Maker(_Idle)
+        if chosen.endswith(".py"):
+            return maker_in(folder / chosen)
+        return os.fspath(folder / chosen) if "/" in chosen or chosen.endswith(".so") else chosen
+
+    def __repr__(self):
+        return f"<cohort.Experiment {self.name}: {len(self.robots)} robots, {self.duration:g} s, seed {self.seed}>"
+
+
+def run(experiment, controllers=None, *, seed=None, duration=None, threads=1, record=None):
+    """Reads an experiment, runs it to its end in this process, and returns a `Result`: see `Experiment.run`."""
+    return Experiment.read(experiment, seed, duration).run(controllers, threads=threads, record=record)
+
+
+def run_seeds(experiment, seeds, controllers=None, *, threads=1):
+    """Runs an experiment once for each seed, and returns a table of the results.
+
+    Args:
+        experiment: an `Experiment`, or what `Experiment.read` takes.
+        seeds: an iterable of integers.
+        controllers, threads: as in `Experiment.run`.
+
+    Returns a `pandas.DataFrame` with a row for each seed.
+    """
+    import pandas
+
+    if not isinstance(experiment, Experiment):
+        experiment = Experiment.read(experiment)
+    results = [experiment.with_seed(int(seed)).run(controllers, threads=threads) for seed in seeds]
+    rows = [{key: value for key, value in dataclasses.asdict(each).items() if key != "events"} for each in results]
+    return pandas.DataFrame(rows).set_index("seed")

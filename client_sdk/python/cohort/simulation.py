@@ -1,0 +1,290 @@
+"""A simulation in this process."""
+
+import math
+import os
+import pathlib
+
+import numpy
+
+from cohort import _files, _native
+from cohort.channels import Channels
+from cohort.experiment import Experiment
+
+
+def _vector(values, name, size=3):
+    array = numpy.asarray(values, dtype=numpy.float64)
+    if array.shape != (size,) or not numpy.isfinite(array).all():
+        raise ValueError(f"{name} is {values!r}, expected {size} finite numbers")
+    return array
+
+
+def _orientation(yaw, orientation):
+    if orientation is not None:
+        return _vector(orientation, "orientation", 4)
+    return numpy.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)])
+
+
+class Robot:
+    """A robot of a simulation. Its arrays show what the simulation has now."""
+
+    def __init__(self, simulation, robot):
+        self._simulation = simulation
+        self._native = simulation._native
+        self.id = robot
+        self.name = self._native.robot_name(robot)
+        self.model = self._native.robot_model(robot)
+        self.object = self._native.robot_object(robot)
+        self.observation_channels = Channels(self._native.observation_channels(robot))
+        self.command_channels = Channels(self._native.command_channels(robot))
+
+    @property
+    def observation(self):
+        """What it observed at the last tick at which it was asked, an array [value] in SI units, read-only."""
+        return self._native.observations[self.id, : self.observation_channels.size]
+
+    @property
+    def command(self):
+        """What commands it, an array [value] in SI units, to be written."""
+        return self._native.commands[self.id, : self.command_channels.size]
+
+    @property
+    def pose(self):
+        """Pose of its root link in the world frame: x y z [m], quaternion w x y z; an array [7]."""
+        return self._native.object_poses[self.object]
+
+    @property
+    def velocity(self):
+        """Velocity of the origin of its root link along the axes of the world frame [m/s, rad/s]; an array [6]."""
+        return self._native.object_velocities[self.object]
+
+    def __repr__(self):
+        return f"<cohort.Robot {self.id} {self.name} ({self.model})>"
+
+
+class Simulation:
+    """One world, advancing tick by tick in this process. The program that has it commands all robots.
+
+        simulation = cohort.Simulation("obstacle_avoidance", seed=1)
+        left = simulation.robots[0].command_channels.index("treel/left/velocity")
+        simulation.commands[:, left] = 0.1
+        simulation.step(100)
+        print(simulation.poses[:, :2])
+
+    Arrays are float64 in SI units. Every result is a function of the experiment and of the commands, for any number of
+    threads. One thread of Python uses it at a time; others get a RuntimeError meanwhile. Steps run without Python's
+    global lock. It does not survive a fork of the process. The controllers that the experiment names are not run:
+    `Experiment.run` does that.
+
+    Args:
+        experiment: an `Experiment`, or what `Experiment.read` takes.
+        seed, duration: in place of those of the experiment.
+        threads: that step the world.
+    """
+
+    def __init__(self, experiment, seed=None, duration=None, threads=1):
+        if not isinstance(experiment, Experiment):
+            experiment = Experiment.read(experiment, seed, duration)
+        elif duration is not None:
+            raise ValueError("an Experiment has its duration: give it to Experiment.read")
+        elif seed is not None:
+            experiment = experiment.with_seed(seed)
+        if threads < 1:
+            raise ValueError(f"threads is {threads}, expected at least 1")
+        self._experiment = experiment
+        self._native = _native.Simulation(experiment._native, threads)
+        self._robots = []
+
+    @property
+    def experiment(self):
+        """Its `Experiment`."""
+        return self._experiment
+
+    @property
+    def tick(self):
+        """How many steps there have been."""
+        return self._native.tick
+
+    @property
+    def time(self):
+        """Simulated time [s]."""
+        return self._native.time
+
+    @property
+    def state_hash(self):
+        """A hash of everything that decides how the run goes on, a 64-bit integer; `cohort run` prints the same."""
+        return self._native.state_hash
+
+    @property
+    def robots(self):
+        """The robots, a list of `Robot` in the order of their ids."""
+        for robot in range(len(self._robots), self._native.robot_count):
+            self._robots.append(Robot(self, robot))
+        return self._robots
+
+    @property
+    def observations(self):
+        """What all robots observe, an array [robot, value], read-only.
+
+        It shows the present tick after each step without being asked for again, until robots come, or until `reset` or
+        `restore`. Rows of robots with fewer values end in zeros.
+        """
+        return self._native.observations
+
+    @property
+    def commands(self):
+        """What commands all robots, an array [robot, value], to be written. Values act in each step until they change."""
+        return self._native.commands
+
+    @property
+    def poses(self):
+        """Poses of the root links of all robots in the world frame: x y z [m], quaternion w x y z; an array [robot, 7]."""
+        return self._native.object_poses[[each.object for each in self.robots]]
+
+    @property
+    def velocities(self):
+        """Velocities of the root links of all robots: linear [m/s], angular [rad/s]; an array [robot, 6]."""
+        return self._native.object_velocities[[each.object for each in self.robots]]
+
+    @property
+    def objects(self):
+        """Scoped names of everything in the world, robots too; the order of `object_poses`."""
+        return self._native.object_names
+
+    @property
+    def object_poses(self):
+        """Poses of everything in the world, as `poses`; an array [object, 7]."""
+        return self._native.object_poses
+
+    @property
+    def object_velocities(self):
+        """Velocities of everything in the world, as `velocities`; an array [object, 6]."""
+        return self._native.object_velocities
+
+    @property
+    def objects_present(self):
+        """Which objects are in the world: neither taken out nor still to come; an array [object] of bool."""
+        return self._native.objects_present
+
+    def pose(self, name):
+        """Returns the pose of an object, an array [7]."""
+        return self._native.object_poses[self._native.object_called(name)]
+
+    def contacts(self):
+        """Returns what touched during the last step, a dictionary of arrays with a row for each contact point.
+
+        `objects` [n, 2]: their places in `objects`; `position` [n, 3] in the world [m]; `normal` [n, 3]: unit vector from
+        the second object to the first; `distance` [n]: negative where they overlap [m]; `impulse` [n]: along the normal
+        over the step [N s].
+        """
+        return self._native.contacts()
+
+    @property
+    def stop_reason(self):
+        """Which stop condition of the experiment holds; None if none does."""
+        return self._native.stop_reason
+
+    @property
+    def is_over(self):
+        """Whether a stop condition holds, or the experiment's duration has passed."""
+        return self._native.is_over
+
+    @property
+    def happened(self):
+        """What happened at this tick, a list of sentences: what broke, and events of the experiment."""
+        return self._native.happened
+
+    def step(self, ticks=1):
+        """Steps the world. `commands` act in each of the ticks.
+
+        Raises ValueError before anything moves if a command cannot act, naming robot and channel. After Ctrl-C the
+        simulation stands at the tick that it has reached, and goes on from there.
+        """
+        self._native.step(ticks, False)
+
+    def run(self, until=None, each=None):
+        """Steps to the experiment's end.
+
+        Args:
+            until: simulated time [s] at which it stops, if the experiment does not end before.
+            each: is called with the simulation before each step, to write commands.
+        """
+        end = math.inf if until is None else until
+        if until is None and self._experiment.duration == 0:
+            raise ValueError("the experiment has no end: give `until`")
+        while not self.is_over and self.time < end - self._experiment.step / 2:
+            if each is None:
+                left = min(end, self._experiment.duration or end) - self.time
+                self._native.step(max(1, round(left / self._experiment.step)), True)
+            else:
+                each(self)
+                self._native.step(1, True)
+
+    def reset(self, seed=None):
+        """Begins again, with another seed if one is given. Reads no file."""
+        if seed is not None:
+            self._experiment = self._experiment.with_seed(seed)
+        self._native.reset(self._experiment._native)
+        self._robots = []
+
+    def save(self):
+        """Returns everything that decides how the run goes on, as bytes, for `restore` of the same experiment."""
+        return self._native.save()
+
+    def restore(self, snapshot):
+        """Goes on from what `save` returned. Raises `cohort.SnapshotError`, and changes nothing, if it does not fit."""
+        self._native.restore(snapshot)
+        self._robots = []
+
+    def spawn(self, model, position=(0.0, 0.0, 0.0), yaw=0.0, *, orientation=None, name="", team="", allow_renaming=False):
+        """Brings a new object into the world, at rest, and returns its scoped name.
+
+        Args:
+            model: the name of one of the world's models, a path of an SDF or URDF file, or such a text.
+            position: of the model in the world [m].
+            yaw: about the vertical [rad].
+            orientation: in place of yaw, a quaternion w x y z.
+            name: scoped name; that of the model by default.
+            team: whose robot it is, if it is a robot.
+            allow_renaming: whether a name that is taken gets a number.
+
+        Raises ValueError that says why it cannot be done; nothing is changed then. So do the functions below.
+        """
+        text = ""
+        if isinstance(model, os.PathLike) or (isinstance(model, str) and "<" not in model and "\n" not in model):
+            path = pathlib.Path(model)
+            if path.suffix in (".sdf", ".urdf", ".xml", ".yaml"):
+                text = path.read_text(encoding="utf-8")
+        else:
+            text = model
+        pose = _orientation(yaw, orientation)
+        return self._native.spawn("" if text else os.fspath(model), text, name, _vector(position, "position"), pose, allow_renaming, team)
+
+    def remove(self, name):
+        """Takes an object out of the world, for good."""
+        self._native.remove(name)
+
+    def set_pose(self, name, position, yaw=0.0, *, orientation=None):
+        """Puts an object elsewhere, at rest, with its joints as they are. Arguments as those of `spawn`."""
+        self._native.set_pose(name, _vector(position, "position"), _orientation(yaw, orientation))
+
+    def set_velocity(self, name, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0)):
+        """Gives an object a velocity along the axes of the world frame [m/s, rad/s]."""
+        self._native.set_velocity(name, _vector(linear, "linear"), _vector(angular, "angular"))
+
+    def set_light(self, name, on=True, intensity=None, color=None):
+        """Switches a light (`object/light`), all lights of an object, or a light of the world."""
+        self._native.set_light(name, on, intensity, None if color is None else _vector(color, "color"))
+
+    def apply_force(self, name, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), duration=0.0, link=""):
+        """Pushes a link at its centre of mass, in world axes, from now on.
+
+        Args:
+            name: of the object.
+            force, torque: [N], [N m].
+            duration: simulated time [s]; 0: for one step.
+            link: its name; the root link by default.
+        """
+        self._native.apply_force(name, link, _vector(force, "force"), _vector(torque, "torque"), duration)
+
+    def __repr__(self):
+        return f"<cohort.Simulation {self._experiment.name}: tick {self.tick}, {self._native.robot_count} robots>"

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/description/experiment.hpp"
+#include "server/simulation/simulation.hpp"
+
+namespace cohort::python {
+
+/// A Simulation with what its robots observe and are commanded in arrays [robot, channel]. Rows are as long as the
+/// longest one. One thread at a time.
+class ArraySimulation {
+ public:
+  ArraySimulation(std::shared_ptr<const description::Experiment> experiment, unsigned threads);
+
+  Simulation& simulation() { return *simulation_; }
+  const Simulation& simulation() const { return *simulation_; }
+  const description::Experiment& experiment() const { return *experiment_; }
+  unsigned threads() const { return threads_; }
+
+  std::size_t observation_size() const { return observation_size_; }
+  std::size_t command_size() const { return command_size_; }
+  /// [robot, channel]; another array after robots have come, and after a reset or a restore.
+  const std::shared_ptr<std::vector<double>>& observations() const { return observations_; }
+  const std::shared_ptr<std::vector<double>>& commands() const { return commands_; }
+
+  bool is_timed_out() const;
+  bool is_over() const { return simulation_->stop_reason().has_value() || is_timed_out(); }
+
+  /// Gives the commands to the simulation. Throws std::invalid_argument, and changes nothing, if one cannot act.
+  void command();
+  /// One tick with the commands that were given.
+  void step();
+  /// Does what a program asks for between steps.
+  std::string act(const Action& action);
+  void reset(std::shared_ptr<const description::Experiment> experiment);
+  /// Throws SnapshotError, and changes nothing, if the snapshot is of something else.
+  void restore(std::span<const std::byte> snapshot);
+
+ private:
+  void make_arrays();
+  void take_observations();
+
+  std::shared_ptr<const description::Experiment> experiment_;
+  unsigned threads_;
+  std::unique_ptr<Simulation> simulation_;
+  std::size_t observation_size_ = 0;
+  std::size_t command_size_ = 0;
+  std::shared_ptr<std::vector<double>> observations_;
+  std::shared_ptr<std::vector<double>> commands_;
+};
+
+}  // namespace cohort::python

@@ -1,0 +1,107 @@
+#include "server/batch/batch.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+
+#include <memory>
+
+#include "client_sdk/python/native/arrays.hpp"
+#include "client_sdk/python/native/channels.hpp"
+#include "client_sdk/python/native/one_user.hpp"
+#include "client_sdk/python/native/parts.hpp"
+
+namespace cohort::python {
+namespace {
+
+/// What Python holds: a batch, and who uses it now.
+struct HeldBatch {
+  HeldBatch(const description::Experiment& experiment, std::size_t worlds, unsigned threads)
+      : batch(experiment, worlds, threads) {}
+  Batch batch;
+  OneUser user;
+};
+
+std::unique_ptr<HeldBatch> make_batch(const std::shared_ptr<const description::Experiment>& experiment,
+                                      std::size_t worlds, unsigned threads) {
+  const nb::gil_scoped_release no_gil;
+  return std::make_unique<HeldBatch>(*experiment, worlds, threads);
+}
+
+void step_batch(HeldBatch& held, std::uint64_t ticks) {
+  const OneUser::Turn turn(held.user);
+  const nb::gil_scoped_release no_gil;
+  held.batch.step(ticks);
+}
+
+using Mask = nb::ndarray<const bool, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Seeds = nb::ndarray<const std::uint64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+// Resets the worlds that the mask has, each to its seed.
+void reset_worlds(HeldBatch& held, const Mask& mask, const Seeds& seeds) {
+  const OneUser::Turn turn(held.user);
+  const std::size_t worlds = held.batch.worlds();
+  if (mask.shape(0) != worlds || seeds.shape(0) != worlds)
+    throw std::invalid_argument("expected a mask and seeds for " + std::to_string(worlds) + " worlds");
+  const nb::gil_scoped_release no_gil;
+  for (std::size_t world = 0; world < worlds; ++world)
+    if (mask(world)) held.batch.reset(world, seeds(world));
+}
+
+template <class Value>
+nb::ndarray<nb::numpy, const Value, nb::c_contig> rows_of(nb::handle self, std::span<const Value> values,
+                                                          std::size_t columns) {
+  const Batch& batch = nb::cast<HeldBatch&>(self).batch;
+  return view_of(values.data(), {batch.worlds(), batch.robots(), columns}, self);
+}
+
+}  // namespace
+
+void add_batch(nb::module_& module) {
+  nb::class_<HeldBatch>(module, "Batch")
+      .def(nb::new_(&make_batch), nb::arg("experiment"), nb::arg("worlds"), nb::arg("threads"))
+      .def("step", &step_batch, nb::arg("ticks"))
+      .def("reset", &reset_worlds, nb::arg("mask"), nb::arg("seeds"))
+      .def_prop_ro("worlds", [](const HeldBatch& held) { return held.batch.worlds(); })
+      .def_prop_ro("robots", [](const HeldBatch& held) { return held.batch.robots(); })
+      .def("robot_name", [](const HeldBatch& held, std::uint32_t robot) { return held.batch.robot_name(robot); })
+      .def("robot_model", [](const HeldBatch& held,
+                             std::uint32_t robot) { return held.batch.kinds()[held.batch.kind_of(robot)].model; })
+      .def("observation_channels",
+           [](const HeldBatch& held, std::uint32_t robot) {
+             return channel_tuples(held.batch.kinds()[held.batch.kind_of(robot)].observation);
+           })
+      .def("command_channels",
+           [](const HeldBatch& held, std::uint32_t robot) {
+             return channel_tuples(held.batch.kinds()[held.batch.kind_of(robot)].command);
+           })
+      .def_prop_ro(
+          "observations",
+          [](nb::handle self) {
+            const Batch& batch = nb::cast<HeldBatch&>(self).batch;
+            return rows_of(self, batch.observations(), batch.observation_size());
+          },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "commands",
+          [](nb::handle self) {
+            Batch& batch = nb::cast<HeldBatch&>(self).batch;
+            return view_of(batch.commands().data(), {batch.worlds(), batch.robots(), batch.command_size()}, self);
+          },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "poses", [](nb::handle self) { return rows_of(self, nb::cast<HeldBatch&>(self).batch.poses(), 7); },
+          nb::rv_policy::automatic)
+      .def_prop_ro(
+          "done",
+          [](nb::handle self) {
+            const Batch& batch = nb::cast<HeldBatch&>(self).batch;
+            return view_of(batch.done().data(), {batch.worlds()}, self);
+          },
+          nb::rv_policy::automatic)
+      .def("tick", [](const HeldBatch& held, std::size_t world) { return held.batch.tick(world); })
+      .def("state_hash", [](const HeldBatch& held, std::size_t world) { return held.batch.hash(world); });
+}
+
+}  // namespace cohort::python

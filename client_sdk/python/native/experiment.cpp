@@ -1,0 +1,103 @@
+#include "server/description/experiment.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "client_sdk/python/native/parts.hpp"
+#include "server/core/snapshot.hpp"
+#include "server/description/input_error.hpp"
+#include "server/parsing/experiment/read_experiment.hpp"
+#include "server/run/run_world.hpp"
+
+namespace cohort::python {
+namespace {
+
+namespace nb = nanobind;
+namespace fs = std::filesystem;
+using description::Experiment;
+using ExperimentPtr = std::shared_ptr<const Experiment>;
+
+std::optional<std::chrono::nanoseconds> nanoseconds_of(std::optional<double> seconds) {
+  if (!seconds) return std::nullopt;
+  constexpr double longest = 9e9;  // about 285 years, and less than 2^63 ns
+  if (!(*seconds >= 0.0 && *seconds <= longest))
+    throw std::invalid_argument("duration is " + std::to_string(*seconds) + ", expected seconds from 0 to 9e9");
+  return std::chrono::nanoseconds(std::llround(*seconds * 1e9));
+}
+
+double seconds_of(std::chrono::nanoseconds time) { return std::chrono::duration<double>(time).count(); }
+
+ExperimentPtr read(const fs::path& file, std::optional<std::uint64_t> seed, std::optional<double> duration,
+                   const std::vector<fs::path>& model_folders) {
+  const auto time = nanoseconds_of(duration);
+  const nb::gil_scoped_release no_gil;
+  return std::make_shared<const Experiment>(parsing::read_experiment(file, seed, time, model_folders));
+}
+
+ExperimentPtr read_text(const std::string& text, const fs::path& file, std::optional<std::uint64_t> seed,
+                        std::optional<double> duration, const std::vector<fs::path>& model_folders) {
+  const auto time = nanoseconds_of(duration);
+  const nb::gil_scoped_release no_gil;
+  return std::make_shared<const Experiment>(parsing::read_experiment_text(text, file, seed, time, model_folders));
+}
+
+nb::list teams_of(const Experiment& experiment) {
+  nb::list teams;
+  for (const description::Team& team : experiment.teams) {
+    nb::dict dictionary;
+    dictionary["name"] = team.name;
+    dictionary["robots"] = team.robots;
+    dictionary["controller"] = team.controller;
+    dictionary["period"] = team.policy.period;
+    teams.append(dictionary);
+  }
+  return teams;
+}
+
+}  // namespace
+
+void add_experiment(nb::module_& module) {
+  nb::exception<description::InputError>(module, "InputError", PyExc_ValueError);
+  nb::exception<SnapshotError>(module, "SnapshotError", PyExc_ValueError);
+
+  nb::class_<Experiment>(module, "Experiment")
+      .def_static("read", &read, nb::arg("file"), nb::arg("seed"), nb::arg("duration"), nb::arg("model_folders"))
+      .def_static("read_text", &read_text, nb::arg("text"), nb::arg("file"), nb::arg("seed"), nb::arg("duration"),
+                  nb::arg("model_folders"))
+      .def("with_seed",
+           [](const ExperimentPtr& experiment, std::uint64_t seed) { return session::with_seed(experiment, seed); })
+      .def_ro("name", &Experiment::name)
+      .def_ro("seed", &Experiment::seed)
+      .def_prop_ro("file", [](const Experiment& experiment) { return experiment.file; })
+      .def_prop_ro("step", [](const Experiment& experiment) { return seconds_of(experiment.world.step); })
+      .def_prop_ro("duration", [](const Experiment& experiment) { return seconds_of(experiment.duration); })
+      .def_prop_ro("teams", &teams_of)
+      .def_prop_ro("robots",
+                   [](const Experiment& experiment) {
+                     nb::list names;
+                     for (std::uint32_t robot = 0; robot < experiment.world.robots.size(); ++robot)
+                       names.append(experiment.world.robot(robot).name);
+                     return names;
+                   })
+      .def_prop_ro("warnings", [](const Experiment& experiment) {
+        nb::list texts;
+        for (const description::Problem& warning : experiment.world.warnings) texts.append(warning.text());
+        return texts;
+      });
+}
+
+}  // namespace cohort::python

@@ -1,0 +1,17 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "client_sdk/math/library_calls.hpp"
+#include "client_sdk/math/portable_math.hpp"
+#include "client_sdk/python/native/parts.hpp"
+
+NB_MODULE(_native, module) {
+  cohort::bind_library_calls();
+  module.attr("version") = COHORT_VERSION;
+  module.def("functions_not_portable", &cohort::functions_not_portable);
+  cohort::python::add_experiment(module);
+  cohort::python::add_simulation(module);
+  cohort::python::add_batch(module);
+  cohort::python::add_run(module);
+}

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+/// The parts of the extension module, each in a source of its own. Each adds its classes to the module.
+namespace cohort::python {
+
+void add_experiment(nanobind::module_& module);
+void add_simulation(nanobind::module_& module);
+void add_batch(nanobind::module_& module);
+void add_run(nanobind::module_& module);
+
+}  // namespace cohort::python

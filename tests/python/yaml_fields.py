@@ -1,0 +1,12 @@
+import json
+
+import cohort
+import yaml
+
+
+def of_example(name, **fields):
+    """Returns an experiment that comes with Cohort as text, with absolute paths and these fields in place of its own."""
+    file = cohort._files.experiment_called(name)
+    experiment = yaml.safe_load(file.read_text())
+    experiment["world"] = str((file.parent / experiment["world"]).resolve())
+    return json.dumps(experiment | fields, indent=1)

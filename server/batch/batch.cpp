@@ -75,16 +75,20 @@ void Batch::reset(std::size_t world, std::uint64_t seed, std::span<const Pose> X
   take(world);
 }
 
-void Batch::step(std::uint64_t ticks) {
+void Batch::step(std::uint64_t ticks, std::span<const std::uint8_t> only) {
   if (ticks == 0) throw std::invalid_argument("a batch is stepped by at least one tick");
+  if (!only.empty() && only.size() != worlds())
+    throw std::invalid_argument("a choice of " + std::to_string(only.size()) + " worlds, expected one of " +
+                                std::to_string(worlds()));
+  const auto is_stepped = [&](std::size_t world) { return !stands_still(world) && (only.empty() || only[world] != 0); };
   for (std::size_t world = 0; world < worlds(); ++world)
-    if (!stands_still(world)) check_commands(world);
+    if (is_stepped(world)) check_commands(world);
   // There and back again: those that were visited last are still in the cache.
   is_on_its_way_back_ = !is_on_its_way_back_;
   const auto visit = [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t world = is_on_its_way_back_ ? worlds() - 1 - i : i;
-      if (!stands_still(world)) run(world, ticks);
+      if (is_stepped(world)) run(world, ticks);
     }
   };
   workers_.for_each_chunk(worlds(), worlds_a_chunk(worlds(), workers_.threads()), visit);

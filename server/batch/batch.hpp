@@ -65,11 +65,12 @@ class Batch {
   /// [world]: `Done` bits. A world with `stopped`, `timed_out` or `failed` stands still until it is reset.
   std::span<const std::uint8_t> done() const { return done_; }
 
-  /// Steps all worlds `ticks` ticks, each world until it stands still; `ticks` is at least 1. Throws
-  /// std::invalid_argument before any world has moved if a command cannot act, naming world, robot and channel.
-  /// Throws std::runtime_error after all worlds have moved if an event cannot be done, or a body breaks in a `strict`
-  /// world: it names the first such world, and each of them has `failed`.
-  void step(std::uint64_t ticks = 1);
+  /// Steps all worlds `ticks` ticks, each world until it stands still; `ticks` is at least 1. `only`, if it is not
+  /// empty, has a value for each world, and those with 0 stay as they are. Throws std::invalid_argument before any
+  /// world has moved if a command cannot act, naming world, robot and channel. Throws std::runtime_error after all
+  /// worlds have moved if an event cannot be done, or a body breaks in a `strict` world: it names the first such world,
+  /// and each of them has `failed`.
+  void step(std::uint64_t ticks = 1, std::span<const std::uint8_t> only = {});
 
   /// Begins a world anew with `seed`, as if the experiment had been read with it. Reads no file. Throws
   /// std::invalid_argument, and changes nothing, if there is no such world or the experiment cannot have this seed.

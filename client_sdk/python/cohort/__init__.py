@@ -26,6 +26,7 @@ import numpy  # its functions are bound to portable ones too, so it has to be th
 from cohort import _native
 from cohort._files import examples
 from cohort._native import InputError, SnapshotError
+from cohort.batch import Batch
 from cohort.channels import Channel, ChannelError, Channels
 from cohort.controller import Controller, ParameterError, Parameters, Start
 from cohort.experiment import Experiment, Result, Team, run, run_seeds
@@ -35,6 +36,7 @@ __version__ = _native.version
 del numpy
 
 __all__ = [
+    "Batch",
     "Channel",
     "ChannelError",
     "Channels",

@@ -1,11 +1,13 @@
 #include "server/batch/batch.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/unique_ptr.h>
 
 #include <memory>
+#include <optional>
 
 #include "client_sdk/python/native/arrays.hpp"
 #include "client_sdk/python/native/channels.hpp"
@@ -29,14 +31,16 @@ std::unique_ptr<HeldBatch> make_batch(const std::shared_ptr<const description::E
   return std::make_unique<HeldBatch>(*experiment, worlds, threads);
 }
 
-void step_batch(HeldBatch& held, std::uint64_t ticks) {
-  const OneUser::Turn turn(held.user);
-  const nb::gil_scoped_release no_gil;
-  held.batch.step(ticks);
-}
-
 using Mask = nb::ndarray<const bool, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Seeds = nb::ndarray<const std::uint64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+void step_batch(HeldBatch& held, std::uint64_t ticks, const std::optional<Mask>& only) {
+  const OneUser::Turn turn(held.user);
+  std::span<const std::uint8_t> chosen;
+  if (only) chosen = {reinterpret_cast<const std::uint8_t*>(only->data()), only->shape(0)};
+  const nb::gil_scoped_release no_gil;
+  held.batch.step(ticks, chosen);
+}
 
 // Resets the worlds that the mask has, each to its seed.
 void reset_worlds(HeldBatch& held, const Mask& mask, const Seeds& seeds) {
@@ -61,7 +65,7 @@ nb::ndarray<nb::numpy, const Value, nb::c_contig> rows_of(nb::handle self, std::
 void add_batch(nb::module_& module) {
   nb::class_<HeldBatch>(module, "Batch")
       .def(nb::new_(&make_batch), nb::arg("experiment"), nb::arg("worlds"), nb::arg("threads"))
-      .def("step", &step_batch, nb::arg("ticks"))
+      .def("step", &step_batch, nb::arg("ticks"), nb::arg("only").none())
       .def("reset", &reset_worlds, nb::arg("mask"), nb::arg("seeds"))
       .def_prop_ro("worlds", [](const HeldBatch& held) { return held.batch.worlds(); })
       .def_prop_ro("robots", [](const HeldBatch& held) { return held.batch.robots(); })

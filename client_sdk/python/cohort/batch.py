@@ -1,0 +1,93 @@
+"""Many worlds of one experiment in this process."""
+
+import numpy
+
+from cohort import _native
+from cohort.channels import Channels
+from cohort.experiment import Experiment
+
+
+class Batch:
+    """Many worlds of one experiment, stepped together by threads of C++, for learning.
+
+    Arrays are float64 in SI units, contiguous, and stay at one address as long as the batch lives. A world has the same
+    bits as the same experiment read with the same seed and run alone, whatever the other worlds do and for any number of
+    threads. Rows of robots with fewer channels end in zeros. The program commands all robots; a command acts from the
+    next tick on. One thread of Python uses it at a time; steps run without Python's global lock. It does not survive a
+    fork of the process.
+
+    Args:
+        experiment: an `Experiment`, or what `Experiment.read` takes.
+        worlds: how many.
+        threads: that step them.
+    """
+
+    STOPPED = 1  #: a stop condition of the experiment holds
+    TIMED_OUT = 2  #: the duration of the experiment is over
+    QUARANTINED = 4  #: a robot's state broke, or it has left the world; the others go on
+    FAILED = 8  #: `step` raised an error because of this world
+
+    def __init__(self, experiment, worlds, threads=1):
+        if not isinstance(experiment, Experiment):
+            experiment = Experiment.read(experiment)
+        if worlds < 1 or threads < 1:
+            raise ValueError(f"worlds is {worlds} and threads is {threads}, expected at least 1 of each")
+        self.experiment = experiment
+        self._native = _native.Batch(experiment._native, worlds, threads)
+        #: How many worlds there are.
+        self.worlds = worlds
+        #: Scoped names of the robots of each world.
+        self.robots = [self._native.robot_name(robot) for robot in range(self._native.robots)]
+        #: [world, robot, value], read-only: what robots observe.
+        self.observations = self._native.observations
+        #: [world, robot, value], to be written: what commands robots. A reset puts neutral values there.
+        self.commands = self._native.commands
+        #: [world, robot, 7], read-only: poses of root links in the world frame, x y z [m] and quaternion w x y z.
+        self.poses = self._native.poses
+        #: [world], read-only, uint8: bits of STOPPED, TIMED_OUT, QUARANTINED, FAILED. With all but QUARANTINED a world
+        #: stands still until it is reset.
+        self.done = self._native.done
+
+    def observation_channels(self, robot=0):
+        """Returns the `Channels` of a robot's observation."""
+        return Channels(self._native.observation_channels(robot))
+
+    def command_channels(self, robot=0):
+        """Returns the `Channels` of a robot's command."""
+        return Channels(self._native.command_channels(robot))
+
+    def robot_model(self, robot):
+        """Returns the name of a robot's model."""
+        return self._native.robot_model(robot)
+
+    def step(self, ticks=1, only=None):
+        """Steps all worlds, each until it stands still.
+
+        Args:
+            ticks: at least 1.
+            only: an array [world] of bool; the others stay as they are.
+
+        Raises ValueError before any world has moved if a command cannot act, naming world, robot and channel; and
+        RuntimeError after all worlds have moved if one fails, naming the first.
+        """
+        self._native.step(ticks, only)
+
+    def reset(self, seeds, only=None):
+        """Begins worlds again, each with its seed, as if the experiment had been read with it. Reads no file.
+
+        Args:
+            seeds: an array [world] of integers from 0 to 2^64 - 1, or one for all.
+            only: an array [world] of bool; the others stay as they are.
+        """
+        seeds = numpy.ascontiguousarray(numpy.broadcast_to(numpy.asarray(seeds, dtype=numpy.uint64), (self.worlds,)))
+        if only is None:
+            only = numpy.ones(self.worlds, dtype=bool)
+        self._native.reset(only, seeds)
+
+    def tick(self, world):
+        """Returns the tick of a world."""
+        return self._native.tick(world)
+
+    def state_hash(self, world):
+        """Returns the state hash of a world, that of one run alone."""
+        return self._native.state_hash(world)

@@ -1,0 +1,19 @@
+"""Learning environments on Cohort: for Gymnasium (`VectorEnv`, `Env`) and PettingZoo (`parallel_env`).
+
+    import cohort, cohort.gym
+
+    def reward(state):                       # [env]; state.observations is [env, robot, value]
+        forward = state.commands_of("treel/*/velocity").mean(axis=(1, 2))
+        return forward - state["proximity/*/reading"].max(axis=(1, 2))
+
+    envs = cohort.gym.VectorEnv("obstacle_avoidance", num_envs=256, reward=reward, horizon=500,
+                                observe=["proximity/*/reading"], act=["treel/*/velocity"])
+
+Needs the package gymnasium, and `parallel_env` the package pettingzoo too.
+"""
+
+from cohort.gym.environments import Env, VectorEnv
+from cohort.gym.parallel import parallel_env
+from cohort.gym.worlds import State
+
+__all__ = ["Env", "State", "VectorEnv", "parallel_env"]

@@ -1,0 +1,165 @@
+"""Environments for Gymnasium."""
+
+import gymnasium
+import numpy
+from gymnasium.vector import AutoresetMode
+
+from cohort.gym.worlds import Worlds
+
+
+def _box(bounds, shape, dtype):
+    lower, upper = (numpy.broadcast_to(each, shape).ravel().astype(dtype) for each in bounds)
+    return gymnasium.spaces.Box(lower, upper, dtype=dtype)
+
+
+class VectorEnv(gymnasium.vector.VectorEnv):
+    """Many worlds of one experiment as a `gymnasium.vector.VectorEnv`. Worlds are stepped in C++.
+
+    One agent observes and commands all chosen robots of a world: observations are [env, robots * values], actions too.
+    Spaces have the bounds of the channels. The same seeds give the same trajectories for any number of threads and
+    environments. The first episode of environment i after `reset(seed=s)` is that of the experiment with seed s + i.
+
+    Args:
+        experiment: an `Experiment`, or what `Experiment.read` takes.
+        num_envs: how many worlds.
+        reward: called after each step with a `State`; returns an array [env].
+        done: called after each step with a `State`; returns an array [env] of bool: the episode terminates. It also does
+            if a stop condition of the experiment holds, or the state of a robot breaks.
+        horizon: steps after which an episode is truncated. It also is at the end of the experiment's duration.
+        observe, act: patterns of channels, such as `["proximity/*/reading"]`; by default all.
+        robots: names of robots, or patterns, with ids in a row; by default all. The others keep neutral commands.
+        ticks_per_step: ticks of the world in each step.
+        threads: that step the worlds.
+        autoreset_mode: of `gymnasium.vector.AutoresetMode`.
+        dtype: of observations and actions.
+    """
+
+    def __init__(
+        self,
+        experiment,
+        num_envs,
+        *,
+        reward,
+        done=None,
+        horizon=None,
+        observe=None,
+        act=None,
+        robots=None,
+        ticks_per_step=1,
+        threads=1,
+        autoreset_mode=AutoresetMode.NEXT_STEP,
+        dtype=numpy.float32,
+    ):
+        self.worlds = Worlds(
+            experiment,
+            num_envs,
+            reward=reward,
+            done=done,
+            horizon=horizon,
+            observe=observe,
+            act=act,
+            robots=robots,
+            ticks_per_step=ticks_per_step,
+            threads=threads,
+            dtype=dtype,
+        )
+        self.num_envs = num_envs
+        self._autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = {"autoreset_mode": self._autoreset_mode, "render_modes": []}
+        robot_count = len(self.worlds.robots)
+        self._action_shape = (num_envs, robot_count, len(self.worlds.command_bounds[0]))
+        shape_of = lambda bounds: (robot_count, len(bounds[0]))
+        self.single_observation_space = _box(self.worlds.observation_bounds, shape_of(self.worlds.observation_bounds), self.worlds.dtype)
+        self.single_action_space = _box(self.worlds.command_bounds, shape_of(self.worlds.command_bounds), self.worlds.dtype)
+        self.observation_space = gymnasium.vector.utils.batch_space(self.single_observation_space, num_envs)
+        self.action_space = gymnasium.vector.utils.batch_space(self.single_action_space, num_envs)
+        self._to_reset = numpy.zeros(num_envs, dtype=bool)
+        self._is_seeded = False
+
+    def reset(self, *, seed=None, options=None):
+        """Begins the next episodes.
+
+        Args:
+            seed: environment i gets seed + i; or a list with a seed for each. By default episodes go on to new seeds.
+            options: `{"reset_mask": array [env] of bool}` resets these environments alone.
+        """
+        which = numpy.ones(self.num_envs, dtype=bool)
+        if options is not None and "reset_mask" in options:
+            which = self._checked_mask(options["reset_mask"])
+        if isinstance(seed, (int, numpy.integer)):
+            super().reset(seed=int(seed))
+            self._seed([int(seed) + env for env in range(self.num_envs)], which)
+        elif seed is not None:
+            self._seed(seed, which)
+        elif not self._is_seeded:
+            self._seed([None] * self.num_envs, numpy.ones(self.num_envs, dtype=bool))
+        self.worlds.reset(which)
+        self._to_reset[which] = False
+        return self._observations(), {}
+
+    def _checked_mask(self, mask):
+        if not isinstance(mask, numpy.ndarray) or mask.dtype != numpy.bool_:
+            raise TypeError(f"options['reset_mask'] is a {type(mask).__name__}, expected a numpy array of bool")
+        if mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(f"options['reset_mask'] has the shape {mask.shape}, expected {(self.num_envs,)} with at least one True")
+        return mask
+
+    def _seed(self, seeds, which):
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed has {len(seeds)} values, expected {self.num_envs}")
+        drawn = [self.np_random.integers(1 << 63) if each is None else each for each in seeds]
+        self.worlds.seed(numpy.array(drawn, dtype=numpy.uint64), which)
+        self._is_seeded = True
+
+    def step(self, actions):
+        """Steps all environments with actions, an array [env, robots * values]; what is out of bounds is brought into them."""
+        actions = numpy.asarray(actions)
+        if actions.shape != self.action_space.shape:
+            raise ValueError(f"actions have the shape {actions.shape}, expected {self.action_space.shape}")
+        actions = actions.reshape(self._action_shape)
+        next_step = self._autoreset_mode == AutoresetMode.NEXT_STEP
+        begins = self._to_reset if next_step and self._to_reset.any() else None
+        rewards, terminations, truncations = self.worlds.step(actions, None if begins is None else ~begins)
+        rewards = self.worlds.rewards_per_env(rewards)
+        if begins is not None:
+            self.worlds.reset(begins)
+            rewards[begins] = 0.0
+            terminations[begins] = truncations[begins] = False
+        ended = terminations | truncations
+        infos = {}
+        observations = self._observations()
+        if next_step:
+            self._to_reset = ended
+        elif self._autoreset_mode == AutoresetMode.SAME_STEP and ended.any():
+            final = numpy.full(self.num_envs, None, dtype=object)
+            for env in numpy.flatnonzero(ended):
+                final[env] = observations[env]
+            infos = {"final_obs": final, "_final_obs": ended.copy(), "final_info": {}, "_final_info": ended.copy()}
+            self.worlds.reset(ended)
+            observations = self._observations()
+        return observations, rewards, terminations, truncations, infos
+
+    def _observations(self):
+        return self.worlds.observations().reshape(self.num_envs, -1)
+
+
+class Env(gymnasium.Env):
+    """One world as a `gymnasium.Env`: one agent observes and commands all chosen robots. Arguments as of `VectorEnv`."""
+
+    metadata = {"render_modes": []}
+
+    def __init__(self, experiment, *, autoreset_mode=AutoresetMode.DISABLED, **arguments):
+        self._envs = VectorEnv(experiment, 1, autoreset_mode=autoreset_mode, **arguments)
+        self.observation_space = self._envs.single_observation_space
+        self.action_space = self._envs.single_action_space
+
+    def reset(self, *, seed=None, options=None):
+        """Begins the next episode, of the experiment with this seed if one is given."""
+        super().reset(seed=seed)
+        observations, _ = self._envs.reset(seed=seed)
+        return observations[0], {}
+
+    def step(self, action):
+        """Steps the world with an action, an array [robots * values]."""
+        observations, rewards, terminations, truncations, _ = self._envs.step(numpy.asarray(action)[None])
+        return observations[0], float(rewards[0]), bool(terminations[0]), bool(truncations[0]), {}

@@ -1,0 +1,179 @@
+"""What the environments have in common: worlds, what is observed and commanded of them, rewards, seeds."""
+
+import numpy
+
+from cohort._files import experiment_called
+from cohort.batch import Batch
+from cohort.experiment import Experiment
+
+
+class State:
+    """What rewards and ends of episodes are computed from: all worlds after a step.
+
+    Attributes:
+        observations: [env, robot, value], all channels, whatever the environment observes; read-only.
+        commands: [env, robot, value], what was commanded in the step.
+        poses: [env, robot, 7], x y z [m] and quaternion w x y z in the world frame; read-only.
+        last_poses: [env, robot, 7], those before the step.
+        steps: [env], steps in the episode so far, this one included.
+        seconds: simulated time of a step [s].
+    """
+
+    def __init__(self, batch, robots, seconds):
+        self._observation_channels = batch.observation_channels(robots[0])
+        self._command_channels = batch.command_channels(robots[0])
+        self._places = {}
+        self.observations = batch.observations[:, robots]
+        self.commands = batch.commands[:, robots]
+        self.poses = batch.poses[:, robots]
+        self.last_poses = self.poses.copy()
+        self.steps = numpy.zeros(batch.worlds, dtype=numpy.int64)
+        self.seconds = seconds
+
+    def __getitem__(self, pattern):
+        """Returns what the channels observe that match a pattern such as `proximity/*/reading`, an array [env, robot, value]."""
+        places = self._places.get(pattern)
+        if places is None:
+            places = self._places[pattern] = self._observation_channels.indices(pattern)
+        return self.observations[:, :, places]
+
+    def commands_of(self, pattern):
+        """Returns what was commanded to the channels that match, an array [env, robot, value]."""
+        places = self._places.get((pattern,))
+        if places is None:
+            places = self._places[(pattern,)] = self._command_channels.indices(pattern)
+        return self.commands[:, :, places]
+
+
+def _places(channels, patterns):
+    """Returns the places of the values of all channels that match one of the patterns, a slice if they are in a row."""
+    numbers = numpy.arange(channels.size)
+    if patterns is not None:
+        if isinstance(patterns, str):
+            patterns = [patterns]
+        numbers = numpy.concatenate([numbers[channels.indices(pattern)].ravel() for pattern in patterns])
+    if len(numbers) == 0:
+        raise ValueError("the environment needs at least one channel to observe and one to command")
+    if (numpy.diff(numbers) == 1).all():
+        return slice(int(numbers[0]), int(numbers[-1]) + 1)
+    return numbers
+
+
+def _seeds_of_episode(seeds, episodes):
+    """Returns seeds that differ for each episode; those of episode 0 are `seeds`. SplitMix64 (Steele et al., 2014)."""
+    with numpy.errstate(over="ignore"):
+        mixed = seeds + episodes * numpy.uint64(0x9E3779B97F4A7C15)
+        mixed = (mixed ^ (mixed >> numpy.uint64(30))) * numpy.uint64(0xBF58476D1CE4E5B9)
+        mixed = (mixed ^ (mixed >> numpy.uint64(27))) * numpy.uint64(0x94D049BB133111EB)
+        mixed ^= mixed >> numpy.uint64(31)
+    return numpy.where(episodes == 0, seeds, mixed)
+
+
+class Worlds:
+    """A batch of worlds as environments see it. Robots that take part have the same channels."""
+
+    def __init__(self, experiment, count, *, reward, done, horizon, observe, act, robots, ticks_per_step, threads, dtype):
+        if not isinstance(experiment, Experiment):
+            # Episodes end by `done` and `horizon`; a time that the experiment has ends one too.
+            experiment = Experiment.read(experiment_called(experiment))
+        if ticks_per_step < 1 or (horizon is not None and horizon < 1):
+            raise ValueError(f"ticks_per_step is {ticks_per_step} and horizon is {horizon}, expected at least 1 of each")
+        self.batch = Batch(experiment, count, threads)
+        self.robots = self._chosen(robots)
+        self.names = [self.batch.robots[robot] for robot in self.robots]
+        # A slice makes views, which show what is new after each step.
+        if self.robots != list(range(self.robots[0], self.robots[-1] + 1)):
+            raise ValueError(f"the robots {self.names} have other robots between them; choose some whose ids are in a row")
+        self._rows = slice(self.robots[0], self.robots[-1] + 1)
+        if len({self.batch.robot_model(robot) for robot in self.robots}) != 1:
+            raise ValueError("robots of several models have different channels: choose those of one model with `robots`")
+        observed, commanded = self.batch.observation_channels(self.robots[0]), self.batch.command_channels(self.robots[0])
+        observation_places, command_places = _places(observed, observe), _places(commanded, act)
+        self.observation_bounds = observed.lower[observation_places], observed.upper[observation_places]
+        self.command_bounds = commanded.lower[command_places], commanded.upper[command_places]
+        self._observed = self.batch.observations[:, self._rows]
+        self._observation_places = observation_places
+        self._commands = self.batch.commands[:, self._rows]
+        self._command_places = command_places
+        self.dtype = numpy.dtype(dtype)
+        self.state = State.__new__(State)
+        self.state.__init__(self.batch, self.robots, ticks_per_step * experiment.step)
+        self.state.observations, self.state.commands = self._observed, self._commands
+        self.state.poses = self.batch.poses[:, self._rows]
+        self._reward, self._done, self._horizon = reward, done, horizon
+        self._ticks = ticks_per_step
+        self._seeds = numpy.zeros(count, dtype=numpy.uint64)
+        self._episodes = numpy.zeros(count, dtype=numpy.uint64)
+
+    def _chosen(self, robots):
+        names = self.batch.robots
+        if robots is None:
+            chosen = list(range(len(names)))
+        else:
+            chosen = sorted({place for each in ([robots] if isinstance(robots, str) else robots) for place in self._matching(each)})
+        if not chosen:
+            raise ValueError("the experiment has no robots")
+        return chosen
+
+    def _matching(self, pattern):
+        prefix, star, suffix = pattern.partition("*")
+        found = [
+            place
+            for place, name in enumerate(self.batch.robots)
+            if (name == pattern if not star else name.startswith(prefix) and name.endswith(suffix) and len(name) >= len(prefix + suffix))
+        ]
+        if not found:
+            raise ValueError(f"there is no robot '{pattern}', expected some of {self.batch.robots}")
+        return found
+
+    def seed(self, seeds, which):
+        """Gives worlds seeds for their next episodes, the first of which has the seed itself."""
+        self._seeds[which] = seeds[which]
+        self._episodes[which] = 0
+
+    def reset(self, which):
+        """Begins the next episode of these worlds, an array [env] of bool."""
+        self.batch.reset(_seeds_of_episode(self._seeds, self._episodes), which)
+        self._episodes[which] += numpy.uint64(1)
+        self.state.steps[which] = 0
+        self.state.last_poses[which] = self.state.poses[which]
+
+    def step(self, actions, which=None):
+        """Steps worlds with actions [env, robot, value].
+
+        Returns rewards, terminations and truncations. The state is that after the step.
+        """
+        lower, upper = self.command_bounds
+        if not numpy.isfinite(actions).all():
+            env, robot, value = (int(each[0]) for each in numpy.nonzero(~numpy.isfinite(actions)))
+            raise ValueError(f"the action of environment {env}, robot {self.names[robot]}, value {value} is not finite")
+        self._commands[:, :, self._command_places] = numpy.minimum(numpy.maximum(actions, lower), upper)
+        state = self.state
+        numpy.copyto(state.last_poses, state.poses)
+        self.batch.step(self._ticks, which)
+        state.steps += 1 if which is None else which
+        done = self.batch.done
+        terminations = (done & (Batch.STOPPED | Batch.QUARANTINED)) != 0
+        if self._done is not None:
+            terminations |= self._per_env(self._done(state), "done").astype(bool)
+        truncations = (done & Batch.TIMED_OUT) != 0
+        if self._horizon is not None:
+            truncations |= state.steps >= self._horizon
+        return self._reward(state), terminations, truncations
+
+    def _per_env(self, values, name):
+        values = numpy.asarray(values)
+        if values.shape != (self.batch.worlds,):
+            raise ValueError(f"{name}(state) gave an array {values.shape}, expected {(self.batch.worlds,)}")
+        return values
+
+    def rewards_per_env(self, rewards):
+        """Returns rewards as an array [env] of float64. Raises ValueError for another shape or NaN."""
+        rewards = self._per_env(rewards, "reward").astype(numpy.float64)
+        if numpy.isnan(rewards).any():
+            raise ValueError(f"reward(state) is NaN for environment {int(numpy.argmax(numpy.isnan(rewards)))}")
+        return rewards
+
+    def observations(self):
+        """Returns what is observed of all worlds, a new array [env, robot, value]."""
+        return self._observed[:, :, self._observation_places].astype(self.dtype)

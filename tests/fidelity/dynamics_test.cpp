@@ -76,7 +76,7 @@ description::Model random_mechanism(Draws& draws) {
   return model;
 }
 
-void set_random_state(physics::Multibody& body, Draws& draws) {
+void set_random_state(physics::BodyMotion& body, Draws& draws) {
   if (body.mechanism().has_free_root()) body.set_root_twist({draws.vector(10.0), draws.vector(3.0)});
   for (std::size_t j = 0; j < body.mechanism().model().joints.size(); ++j) {
     const int dofs = body.mechanism().joint(j).dofs;
@@ -109,12 +109,12 @@ TEST(Dynamics, BulletsAndOursAgreeOnRandomMechanisms) {
     if (mechanism.dof_count() == 0) continue;
     ++mechanisms;
     const Pose X_WM{model_draws.vector(5.0), model_draws.rotation()};
-    physics::Multibody bullets(mechanism, Dynamics::bullet, X_WM, BodyId{0});
-    physics::Multibody ours(mechanism, Dynamics::cohort, X_WM, BodyId{0});
+    physics::BodyMotion bullets(mechanism, Dynamics::bullet, X_WM);
+    physics::BodyMotion ours(mechanism, Dynamics::cohort, X_WM);
     physics::Equations of_bullets;
     physics::Equations of_ours;
     for (std::uint64_t state = 0; state < 4; ++state) {
-      for (physics::Multibody* body : {&bullets, &ours}) {
+      for (physics::BodyMotion* body : {&bullets, &ours}) {
         Draws draws(1000 * seed + state);
         set_random_state(*body, draws);
       }

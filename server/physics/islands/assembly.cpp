@@ -98,8 +98,8 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
       const Pose X_SC = place.X_SL * links[link].collisions[part].X_LC;
       const auto solid = static_cast<std::uint32_t>(scene.size());
       member.parts.push_back({solid, place.segment, X_SC});
-      add_solid(body.body(), model, link, part, body.segment_pose(place.segment) * X_SC, {index, place.segment},
-                shape_of_part);
+      add_solid(body.body(), model, link, part, body.motion().segment_pose(place.segment) * X_SC,
+                {index, place.segment}, shape_of_part);
       member.furthest_unseen = std::min(member.furthest_unseen, collision.furthest_unseen(solid));
     }
   }
@@ -121,7 +121,7 @@ void Assembly::take_out(std::uint32_t member) {
 void Assembly::put_back(std::uint32_t index) {
   Member& member = members[index];
   if (!member.is_finite || !member.is_inside) {
-    member.multibody->stop();
+    member.multibody->motion().stop();
     if (member.fluid) member.fluid->stop();
   }
   member.is_active = member.is_finite = member.is_inside = true;
@@ -134,7 +134,7 @@ void Assembly::put_back(std::uint32_t index) {
 void Assembly::place(std::uint32_t index, const Pose& X_WM) {
   const Member& member = members[index];
   connections.release_of(index);
-  member.multibody->place(X_WM);
+  member.multibody->motion().place(X_WM);
   if (member.fluid) member.fluid->stop();
   if (member.record) member.record->forget();
   for (const Part& part : member.parts) collision.remove(part.solid);
@@ -144,7 +144,7 @@ void Assembly::place(std::uint32_t index, const Pose& X_WM) {
 
 void Assembly::place_solids_of(const Member& member) {
   for (const Part& part : member.parts)
-    scene.set_pose(part.solid, member.multibody->segment_pose(part.segment) * part.X_SC);
+    scene.set_pose(part.solid, member.multibody->motion().segment_pose(part.segment) * part.X_SC);
 }
 
 void Assembly::set_asleep(std::uint32_t index, bool asleep) {
@@ -173,14 +173,14 @@ bool Assembly::may_touch(std::uint32_t solid, std::uint32_t other) const {
 }
 
 double Assembly::look_ahead(Member& member) {
-  const Multibody& multibody = *member.multibody;
-  const bool may_be_fast = step * multibody.greatest_speed(member.reach) > member.furthest_unseen;
+  const BodyMotion& motion = member.multibody->motion();
+  const bool may_be_fast = step * motion.greatest_speed(member.reach) > member.furthest_unseen;
   if (!may_be_fast && !member.is_fast) return 0.0;
   member.is_fast = false;
   double furthest = 0.0;
   for (const Part& part : member.parts) {
-    const Eigen::Vector3d centre_W = multibody.segment_pose(part.segment) * part.X_SC.position;
-    Eigen::Vector3d way_W = step * multibody.segment_twist(part.segment, centre_W).linear_W;
+    const Eigen::Vector3d centre_W = motion.segment_pose(part.segment) * part.X_SC.position;
+    Eigen::Vector3d way_W = step * motion.segment_twist(part.segment, centre_W).linear_W;
     const double length = way_W.norm();
     if (length > collision.furthest_unseen(part.solid)) {
       way_W *= std::min(1.0, collision.furthest_followed(part.solid) / length);
@@ -202,7 +202,7 @@ void Assembly::look_around(const Member& member, double furthest, std::vector<st
   geometry::Bounds around{Eigen::Vector3d::Constant(infinity), Eigen::Vector3d::Constant(-infinity)};
   for (const Part& part : member.parts) around.include(collision.region_of(part.solid));
   if (member.is_fast) around = around.grown_by(furthest);  // others come its way
-  const Pose& X_WS = multibody.segment_pose(0);
+  const Pose& X_WS = multibody.motion().segment_pose(0);
   for (const TrackRows& treel : multibody.treels()) around.include(treel.ground_region(X_WS));
   near.clear();
   scene.for_each_overlap(around, [&](std::uint32_t solid) { near.push_back(solid); });
@@ -221,13 +221,13 @@ void Assembly::look_around(const Member& member, double furthest, std::vector<st
 
 void Assembly::set_up(std::uint32_t member, IslandBodies& bodies) {
   Equations& equations = bodies[anchors.index_of_member[member]];
-  equations.set_up(*members[member].multibody, gravity, step, bodies.count() > 1 || is_held(member));
+  equations.set_up(members[member].multibody->motion(), gravity, step, bodies.count() > 1 || is_held(member));
   members[member].multibody->apply_efforts(equations, step);
   pushes.for_each_of(member, [&](const Pushes::Push& push) {
     equations.push(push.segment, push.point_W, step * push.wrench.force_W, step * push.wrench.torque_W);
   });
   for (const WeightlessLink& link : members[member].weightless) {
-    const Eigen::Vector3d centre_W = members[member].multibody->segment_pose(link.segment) * link.centre_S;
+    const Eigen::Vector3d centre_W = members[member].multibody->motion().segment_pose(link.segment) * link.centre_S;
     equations.push(link.segment, centre_W, -step * link.mass * gravity, Eigen::Vector3d::Zero());
   }
   if (FluidBody* const fluid = members[member].fluid.get()) fluid->apply(equations, media, step);
@@ -280,9 +280,10 @@ bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {
 
 void Assembly::expect_sound(const Member& member) const {
   const Mechanism& mechanism = member.multibody->mechanism();
-  if (!member.is_finite || !member.is_inside || !is_sensible(member.multibody->velocities(), mechanism.dof_count()))
+  if (!member.is_finite || !member.is_inside ||
+      !is_sensible(member.multibody->motion().velocities(), mechanism.dof_count()))
     throw SnapshotError("the snapshot has a body that moves as none can");
-  for (const Pose& X_WS : member.multibody->segment_poses()) expect_placed(X_WS);
+  for (const Pose& X_WS : member.multibody->motion().segment_poses()) expect_placed(X_WS);
 }
 
 bool Assembly::is_in_flight(std::uint32_t index) {
@@ -303,33 +304,34 @@ bool Assembly::is_held(std::uint32_t index) {
 // A body that another one has just hit may be much faster than at the beginning of the step, from which it was foreseen
 // what it would touch. It waits before what stands in its way, and touches it in the next step.
 void Assembly::keep_from_passing_through(Member& member) const {
-  Multibody& multibody = *member.multibody;
-  if (!multibody.mechanism().has_free_root() || multibody.mechanism().has_kinematic_root()) return;
-  if (!(step * multibody.greatest_speed(member.reach) > member.furthest_unseen)) return;
+  BodyMotion& motion = member.multibody->motion();
+  if (!motion.mechanism().has_free_root() || motion.mechanism().has_kinematic_root()) return;
+  if (!(step * motion.greatest_speed(member.reach) > member.furthest_unseen)) return;
   Eigen::Vector3d back_W = Eigen::Vector3d::Zero();
   for (const Part& part : member.parts) {
     const Eigen::Vector3d way_W =
-        multibody.segment_pose(part.segment) * part.X_SC.position - scene.solid(part.solid).X_WC.position;
+        motion.segment_pose(part.segment) * part.X_SC.position - scene.solid(part.solid).X_WC.position;
     const Eigen::Vector3d rest_W = (1.0 - collision.free_share(part.solid, way_W)) * way_W;
     if (rest_W.squaredNorm() > back_W.squaredNorm()) back_W = rest_W;
   }
-  if (!back_W.isZero(0.0)) multibody.move(-back_W);
+  if (!back_W.isZero(0.0)) motion.move(-back_W);
 }
 
 void Assembly::integrate(std::uint32_t index, const Problem& problem) {
   Member& member = members[index];
   Multibody& multibody = *member.multibody;
   for (TrackRows& treel : multibody.treels()) treel.read_rows(problem, step);
-  if (member.record) member.record->begin(multibody);
+  if (member.record) member.record->begin(multibody.motion());
   const Equations& equations = problem.equations(anchors.index_of_member[index]);
   if (problem.body_count() == 1 && is_in_flight(index))
     multibody.fly(equations.velocity(), equations.pushed().linear, equations.pushed().angular, gravity, step);
   else
     multibody.integrate(equations.velocity(), step);
   keep_from_passing_through(member);
-  if (member.record) member.record->finish(multibody, equations.velocity(), !equations.is_symmetric(), gravity, step);
+  if (member.record)
+    member.record->finish(multibody.motion(), equations.velocity(), !equations.is_symmetric(), gravity, step);
   if (member.fluid) member.fluid->finish_step();
-  const Eigen::Vector3d& position_W = multibody.segment_pose(0).position;
+  const Eigen::Vector3d& position_W = multibody.motion().segment_pose(0).position;
   member.is_inside = position_W.z() >= settings.lowest && position_W.cwiseAbs().maxCoeff() < furthest_from_origin;
   place_solids_of(member);
 }

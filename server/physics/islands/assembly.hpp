@@ -105,7 +105,7 @@ struct Assembly {
   }
   /// X_WS of the segment that an end is on; of the world's none.
   Pose pose_of(const Connection::End& end) const {
-    return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->segment_pose(end.segment);
+    return end.member == Anchors::nobody ? Pose{} : members[end.member].multibody->motion().segment_pose(end.segment);
   }
 
   /// Finds which parts of the member are fast. Returns how far the furthest of them goes in the step [m], 0 if none is.

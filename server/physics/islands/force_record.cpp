@@ -13,7 +13,7 @@ ForceRecord::ForceRecord(const Mechanism& mechanism, std::uint32_t first_solid,
     if (joint.parent != description::Joint::world) parents_[joint.child] = joint.parent;
 }
 
-void ForceRecord::begin(const Multibody& body) {
+void ForceRecord::begin(const BodyMotion& body) {
   motion_.before(body, parents_.size());
   const std::size_t segments = mechanism_.segments().size();
   X_WS_.resize(segments);
@@ -22,7 +22,7 @@ void ForceRecord::begin(const Multibody& body) {
   reference_W_ = body.reference();
 }
 
-void ForceRecord::finish(const Multibody& body, const double* velocities, bool in_the_middle, const Vector3d& gravity,
+void ForceRecord::finish(const BodyMotion& body, const double* velocities, bool in_the_middle, const Vector3d& gravity,
                          double step) {
   step_ = step;
   motion_.after(body, parents_.size());

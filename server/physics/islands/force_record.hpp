@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/multibody/body_motion.hpp"
 #include "server/physics/world/motion_record.hpp"
 
 namespace cohort::physics {
@@ -21,9 +21,9 @@ class ForceRecord {
   ForceRecord(const Mechanism& mechanism, std::uint32_t first_solid, std::vector<std::size_t> links_of_solids);
 
   /// Call these two around the integration of a step.
-  void begin(const Multibody& body);
+  void begin(const BodyMotion& body);
   /// `velocities`: those that the solver found; `in_the_middle`: with bias forces of the middle of the step.
-  void finish(const Multibody& body, const double* velocities, bool in_the_middle, const Eigen::Vector3d& gravity,
+  void finish(const BodyMotion& body, const double* velocities, bool in_the_middle, const Eigen::Vector3d& gravity,
               double step);
   /// What acted from outside on a link during the step that was finished, as an impulse at a point and an angular
   /// impulse [N s, N m s]; nothing if there is no such step.

@@ -102,7 +102,7 @@ void MultibodyWorld::find_lowest() {
     lowest = std::min(lowest, std::isfinite(low) ? low : scene.solid(solid).X_WC.position.z());
   }
   for (const Member& member : assembly_.members)
-    lowest = std::min(lowest, member.multibody->segment_pose(0).position.z());
+    lowest = std::min(lowest, member.multibody->motion().segment_pose(0).position.z());
   lowest -= below_all;
 }
 
@@ -121,19 +121,20 @@ double MultibodyWorld::driven_power(BodyId body) const {
 }
 
 Pose MultibodyWorld::link_pose(BodyId body, LinkId link) const {
-  if (!is_static(body)) return multibody(body).link_pose(link.value);
+  if (!is_static(body)) return multibody(body).motion().link_pose(link.value);
   return bodies_[body.value].X_WM * description_.models[bodies_[body.value].model].links[link.value].X_ML;
 }
 
 Twist MultibodyWorld::link_twist(BodyId body, LinkId link) const {
-  if (!is_static(body) && is_active(body)) return multibody(body).link_twist(link.value);
+  if (!is_static(body) && is_active(body)) return multibody(body).motion().link_twist(link.value);
   return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 }
 
 JointState MultibodyWorld::joint_state(BodyId body, JointId joint) const {
   if (is_static(body)) return {};
   const Multibody& its = multibody(body);
-  return {its.joint_position(joint.value), its.joint_velocity(joint.value), its.joint_effort(joint.value)};
+  return {its.motion().joint_position(joint.value), its.motion().joint_velocity(joint.value),
+          its.joint_effort(joint.value)};
 }
 
 Wrench MultibodyWorld::joint_wrench(BodyId body, JointId joint) const {
@@ -159,7 +160,7 @@ Wrench MultibodyWorld::wrench(ConnectionId connection, ConnectionEnd end) const 
 void MultibodyWorld::set_joint_state(BodyId body, JointId joint, std::span<const double> coordinates,
                                      std::span<const double> velocities) {
   wake(body);
-  multibody(body).set_joint_state(joint.value, coordinates, velocities);
+  multibody(body).motion().set_joint_state(joint.value, coordinates, velocities);
   assembly_.place_solids_of(assembly_.members[bodies_[body.value].member]);
   assembly_.scene.update();
 }
@@ -267,14 +268,14 @@ void MultibodyWorld::quarantine() {
 
 ConnectionId MultibodyWorld::connect(const BodyLink& a, const Pose& X_LP, const BodyLink& b,
                                      const ConnectionLimits& limits) {
-  const Multibody& body_a = multibody(a.body);
+  const BodyMotion& body_a = multibody(a.body).motion();
   const Mechanism::LinkPlace& place_a = body_a.mechanism().link(a.link.value);
   const Connection::End end_a{bodies_[a.body.value].member, place_a.segment, a.link.value, place_a.X_SL * X_LP,
                               a.body.value};
   const Pose X_WP = body_a.segment_pose(place_a.segment) * end_a.X_SP;
   Connection::End end_b{Anchors::nobody, 0, 0, X_WP, b.body.value};
   if (!is_static(b.body)) {
-    const Multibody& body_b = multibody(b.body);
+    const BodyMotion& body_b = multibody(b.body).motion();
     const int segment = body_b.mechanism().link(b.link.value).segment;
     end_b = {bodies_[b.body.value].member, segment, b.link.value, body_b.segment_pose(segment).inverse() * X_WP,
              b.body.value};

@@ -65,7 +65,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   }
   void set_root_twist(BodyId body, const Twist& twist) override {
     wake(body);
-    multibody(body).set_root_twist(twist);
+    multibody(body).motion().set_root_twist(twist);
   }
   void set_joint_state(BodyId body, JointId joint, std::span<const double> coordinates,
                        std::span<const double> velocities) override;

@@ -62,7 +62,7 @@ void MultibodyWorld::restore(SnapshotReader& reader) {
     Multibody::visit_state(*member.multibody, restore_body);
     if (reader.layout() >= SnapshotLayout::with_belt_loads) Multibody::visit_loads(*member.multibody, restore_body);
     if (member.fluid) FluidBody::visit_state(*member.fluid, restore_body);
-    member.multibody->update_poses();
+    member.multibody->motion().update_poses();
     if (is_active) {
       assembly_.expect_sound(member);
       assembly_.place_solids_of(member);

@@ -16,7 +16,7 @@ bool is_still(const Member& member) {
   if (!member.is_finite || !member.is_inside) return false;
   const Multibody& body = *member.multibody;
   const auto is_slow = [](double velocity) { return std::abs(velocity) < still; };
-  return std::all_of(body.velocities(), body.velocities() + body.mechanism().dof_count(), is_slow) &&
+  return std::all_of(body.motion().velocities(), body.motion().velocities() + body.mechanism().dof_count(), is_slow) &&
          std::ranges::all_of(body.treels(), [&](const TrackRows& treel) {
            return is_slow(treel.track(Side::left).velocity) && is_slow(treel.track(Side::right).velocity);
          });
@@ -55,7 +55,7 @@ void Sleep::fall_asleep(const Islands& islands) {
 void Sleep::put_to_sleep(std::span<const std::uint32_t> members) {
   for (std::size_t i = 0; i < members.size(); ++i) {
     Member& member = assembly_.members[members[i]];
-    member.multibody->stop();
+    member.multibody->motion().stop();
     member.next_asleep = members[(i + 1) % members.size()];
     assembly_.set_asleep(members[i], true);
   }

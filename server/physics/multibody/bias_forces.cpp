@@ -4,7 +4,7 @@ namespace cohort::physics {
 
 using Eigen::Vector3d;
 
-void BiasForces::set_up(const Multibody& body, const std::vector<Spatial>& axes) {
+void BiasForces::set_up(const BodyMotion& body, const std::vector<Spatial>& axes) {
   mechanism_ = &body.mechanism();
   axes_ = &axes;
   inertias_.resize(mechanism_->segments().size());

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "server/physics/multibody/body_motion.hpp"
 #include "server/physics/multibody/joint_axes.hpp"
-#include "server/physics/multibody/multibody.hpp"
 
 namespace cohort::physics {
 
@@ -21,11 +21,11 @@ class BiasForces {
   };
 
   /// For where the segments of `body` are. `axes`: its, which must last as long as the rest is used.
-  void set_up(const Multibody& body, const std::vector<Spatial>& axes);
+  void set_up(const BodyMotion& body, const std::vector<Spatial>& axes);
   const std::vector<SpatialInertia>& inertias() const { return inertias_; }  ///< by segment
 
   /// For velocities, under `gravity` [m/s^2]: the generalised force, by dof [N] or [N m]. The gyroscopic torque of a
-  /// body on its own is not in it: how that turns is left to how it moves on, Multibody::integrate.
+  /// body on its own is not in it: how that turns is left to `integrate`.
   void find(const double* velocities, const Eigen::Vector3d& gravity, double* forces);
 
  private:

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "server/physics/multibody/multibody.hpp"
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/world/anchors.hpp"
 #include "server/physics/world/physics_world.hpp"

@@ -12,7 +12,7 @@ constexpr int free_root_dofs = 6;
 
 }  // namespace
 
-void Equations::set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_held) {
+void Equations::set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, double step, bool is_held) {
   body_ = &body;
   mechanism_ = &body.mechanism();
   size_ = mechanism_->dof_count();

@@ -4,13 +4,13 @@
 
 #include "server/physics/mechanism/linear_system.hpp"
 #include "server/physics/multibody/bias_forces.hpp"
+#include "server/physics/multibody/body_motion.hpp"
 #include "server/physics/multibody/joint_axes.hpp"
 #include "server/physics/multibody/mass_matrix.hpp"
-#include "server/physics/multibody/multibody.hpp"
 
 namespace cohort::physics {
 
-/// The equations of motion of one multibody over one step: its velocities without any impulse, and how an impulse
+/// The equations of motion of one body over one step: its velocities without any impulse, and how an impulse
 /// changes them, by the dynamics that the body has: Bullet's, or our own mass matrix. Damping and springs of the joints
 /// are implicit: they are part of the inertia, and so stable at any stiffness; so is what the rotors of geared motors
 /// resist (Featherstone, "Rigid body dynamics algorithms", 2008, chapter 9.6). Bias forces are those of the beginning
@@ -21,9 +21,9 @@ class Equations {
  public:
   /// For the present state of `body`, under `gravity` [m/s^2], over `step` [s]. `is_held`: whether
   /// something else touches or holds it.
-  void set_up(const Multibody& body, const Eigen::Vector3d& gravity, double step, bool is_held);
+  void set_up(const BodyMotion& body, const Eigen::Vector3d& gravity, double step, bool is_held);
 
-  const Multibody& body() const { return *body_; }
+  const BodyMotion& body() const { return *body_; }
   const Mechanism& mechanism() const { return *mechanism_; }
   int size() const { return size_; }                 ///< degrees of freedom
   std::ptrdiff_t stride() const { return stride_; }  ///< doubles of every vector below, zero beyond `size`
@@ -63,7 +63,7 @@ class Equations {
   void take_bias_of_the_middle(double step);
   void add_generalised(int segment, const Spatial& force, double* jacobian) const;
 
-  const Multibody* body_ = nullptr;
+  const BodyMotion* body_ = nullptr;
   const Mechanism* mechanism_ = nullptr;
   int size_ = 0;
   std::ptrdiff_t stride_ = 0;

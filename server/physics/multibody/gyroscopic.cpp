@@ -30,7 +30,7 @@ bool is_round(const std::vector<Segment>& segments, std::size_t s) {
 
 // A ball joint's velocities turn with its segment, and seem to be turned by that; of what is round only as far as what
 // carries it turns.
-bool has_fast_ball(const Multibody& body, double step, bool is_held) {
+bool has_fast_ball(const BodyMotion& body, double step, bool is_held) {
   const std::vector<Segment>& segments = body.mechanism().segments();
   const double limit = is_held ? slow : slow_ball;
   for (std::size_t s = 0; s < segments.size(); ++s) {
@@ -47,7 +47,7 @@ bool has_fast_ball(const Multibody& body, double step, bool is_held) {
 }
 
 // No segment turns faster [rad/s].
-double bound_of_turning(const Multibody& body) {
+double bound_of_turning(const BodyMotion& body) {
   double turn = 0.0;
   for (const Segment& segment : body.mechanism().segments()) {
     if (segment.motion == Motion::prismatic) continue;
@@ -60,8 +60,8 @@ double bound_of_turning(const Multibody& body) {
 }  // namespace
 
 // Of each joint what spins beyond it, against its own segment and across its axis, by what the segment resists with.
-bool has_stiff_gyroscopic_torques(const Multibody& body, double step, bool is_held) {
-  // How a body on its own turns is left to how it moves on: Multibody::integrate. What closes a loop wants all rows
+bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_held) {
+  // How a body on its own turns is left to `integrate`. What closes a loop wants all rows
   // solved at once, and for that symmetric equations.
   const bool has_loops = !body.mechanism().model().loop_joints.empty();
   if (body.mechanism().is_free_body() || has_loops) return false;

@@ -2,7 +2,7 @@
 
 namespace cohort::physics {
 
-void find_joint_axes(const Multibody& body, std::vector<Spatial>& axes) {
+void find_joint_axes(const BodyMotion& body, std::vector<Spatial>& axes) {
   const Eigen::Vector3d reference = body.reference();
   const std::vector<Segment>& segments = body.mechanism().segments();
   axes.resize(static_cast<std::size_t>(body.mechanism().dof_count()));

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/multibody/body_motion.hpp"
 
 namespace cohort::physics {
 
@@ -14,6 +14,6 @@ struct Spatial {
 
 /// By dof, the velocity that a unit of it gives to all that hangs on it, about the body's reference point in world
 /// axes.
-void find_joint_axes(const Multibody& body, std::vector<Spatial>& axes);
+void find_joint_axes(const BodyMotion& body, std::vector<Spatial>& axes);
 
 }  // namespace cohort::physics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/multibody/body_motion.hpp"
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/world/corrections.hpp"
 
@@ -50,7 +50,7 @@ void JointRows::apply_efforts(Equations& equations, double step) {
 
 // `row`: of the motor, with the velocities as they are without any impulse of the step.
 double JointRows::velocity_towards_target(const Motor& motor, const Row& row, const Problem& problem,
-                                          const Multibody& body, double step) {
+                                          const BodyMotion& body, double step) {
   const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(motor.dof)];
   if (dof.coordinate < 0) return 0.0;
   const double way = std::clamp(motor.target, dof.axis.lower, dof.axis.upper) - body.coordinate(dof);
@@ -62,7 +62,7 @@ double JointRows::velocity_towards_target(const Motor& motor, const Row& row, co
   return direction * std::min(motor.max_velocity, velocity_to_rest(direction * way, braking, step));
 }
 
-void JointRows::add_rows(Problem& problem, int index, const Multibody& body, double step) {
+void JointRows::add_rows(Problem& problem, int index, const BodyMotion& body, double step) {
   for (Friction& friction : frictions_) {
     const Dof& dof = body.mechanism().dofs()[static_cast<std::size_t>(friction.dof)];
     const double limit = dof.axis.friction * step;

@@ -9,7 +9,7 @@
 namespace cohort::physics {
 
 class Equations;
-class Multibody;
+class BodyMotion;
 class Problem;
 struct Row;
 
@@ -38,7 +38,7 @@ class JointRows {
 
   /// Changes the velocities by what motors give that are told an effort; before the rows.
   void apply_efforts(Equations& equations, double step);
-  void add_rows(Problem& problem, int index, const Multibody& body, double step);
+  void add_rows(Problem& problem, int index, const BodyMotion& body, double step);
 
   /// Calls `visit` for each number of the state, always in the same order.
   template <class Self, class Visit>
@@ -76,7 +76,7 @@ class JointRows {
     double impulse = 0.0;
   };
   static double velocity_towards_target(const Motor& motor, const Row& row, const Problem& problem,
-                                        const Multibody& body, double step);
+                                        const BodyMotion& body, double step);
   Motor& motor(int dof) { return motors_[static_cast<std::size_t>(motor_of_[static_cast<std::size_t>(dof)])]; }
   const Motor& motor(int dof) const {
     return motors_[static_cast<std::size_t>(motor_of_[static_cast<std::size_t>(dof)])];

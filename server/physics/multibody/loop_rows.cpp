@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "server/physics/mechanism/rotation.hpp"
-#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/multibody/body_motion.hpp"
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/world/corrections.hpp"
 
@@ -45,7 +45,7 @@ bool LoopRows::connect(int segment, int other) const {
   });
 }
 
-void LoopRows::add_rows(Problem& problem, int index, const Multibody& body, double step) {
+void LoopRows::add_rows(Problem& problem, int index, const BodyMotion& body, double step) {
   for (Loop& loop : loops_) {
     const Pose X_WPc = body.segment_pose(loop.child) * loop.X_SP_child;
     const Pose X_WPp = (loop.parent < 0 ? body.model_pose() : body.segment_pose(loop.parent)) * loop.X_SP_parent;

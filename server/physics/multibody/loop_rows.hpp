@@ -7,7 +7,7 @@
 
 namespace cohort::physics {
 
-class Multibody;
+class BodyMotion;
 class Problem;
 
 /// The joints of one body that close loops: rows between two of its segments, in place of what a tree of joints cannot
@@ -16,7 +16,7 @@ class LoopRows {
  public:
   explicit LoopRows(const Mechanism& mechanism);
 
-  void add_rows(Problem& problem, int index, const Multibody& body, double step);
+  void add_rows(Problem& problem, int index, const BodyMotion& body, double step);
   /// Whether one of them holds on to the world.
   bool reach_the_world() const;
   /// Whether a joint connects the two segments.

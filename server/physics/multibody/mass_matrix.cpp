@@ -10,7 +10,7 @@ constexpr int most_inverted = 12;
 
 }  // namespace
 
-void MassMatrix::set_up(const Multibody& body, const std::vector<Spatial>& axes,
+void MassMatrix::set_up(const BodyMotion& body, const std::vector<Spatial>& axes,
                         const std::vector<SpatialInertia>& inertias) {
   mechanism_ = &body.mechanism();
   axes_ = &axes;

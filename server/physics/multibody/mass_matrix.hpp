@@ -16,7 +16,7 @@ class MassMatrix {
   using SpatialInertia = BiasForces::SpatialInertia;
 
   /// `inertias`: of the segments as they are.
-  void set_up(const Multibody& body, const std::vector<Spatial>& axes, const std::vector<SpatialInertia>& inertias);
+  void set_up(const BodyMotion& body, const std::vector<Spatial>& axes, const std::vector<SpatialInertia>& inertias);
   /// Adds to what one dof resists with.
   void add_inertia(int dof, double inertia) { matrix_[static_cast<std::size_t>(dof * (stride_ + 1))] += inertia; }
 

@@ -1,18 +1,12 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cstdint>
-#include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "server/geometry/scene/scene.hpp"
-#include "server/physics/mechanism/body_state.hpp"
-#include "server/physics/mechanism/bullet_body.hpp"
-#include "server/physics/mechanism/mechanism.hpp"
 #include "server/physics/multibody/belts.hpp"
+#include "server/physics/multibody/body_motion.hpp"
+#include "server/physics/multibody/integration.hpp"
 #include "server/physics/multibody/joint_rows.hpp"
 #include "server/physics/multibody/loop_rows.hpp"
 #include "server/physics/multibody/track_rows.hpp"
@@ -20,7 +14,7 @@
 
 namespace cohort::physics {
 
-/// One instance of a model that moves: its state, and the devices that drive it.
+/// One instance of a model that moves: its motion, its rows, and the devices that drive it.
 class Multibody {
  public:
   /// The mechanism is shared and must outlive this; X_WM places the model with all its joints at zero. Throws
@@ -29,35 +23,10 @@ class Multibody {
   Multibody(const Multibody&) = delete;
   Multibody& operator=(const Multibody&) = delete;
 
-  const Mechanism& mechanism() const { return *mechanism_; }
+  const Mechanism& mechanism() const { return motion_.mechanism(); }
   BodyId body() const { return body_; }
-
-  // The state: what decides how the body goes on.
-  const double* velocities() const { return state_.velocities(); }
-  double coordinate(const Dof& dof) const { return *state_.coordinates(dof.coordinate); }
-  /// Where the spatial velocities of this body are taken: the centre of mass of the root segment, or the origin of a
-  /// root that is tied to the world [m].
-  Eigen::Vector3d reference() const { return state_.reference(); }
-  /// What has the state and its dynamics, nullptr if they are our own.
-  BulletBody* bullet() const { return bullet_.get(); }
-
-  const std::vector<Pose>& segment_poses() const { return X_WS_; }
-  const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
-  Pose link_pose(std::size_t link) const;  ///< X_WL
-  Twist link_twist(std::size_t link) const;
-  /// Of the segment, its velocity at a point.
-  Twist segment_twist(int segment, const Eigen::Vector3d& point_W) const;
-  /// No point within `reach` of all joints it hangs on, and of the reference, moves faster [m/s].
-  double greatest_speed(double reach) const;
-  double joint_position(std::size_t joint) const;
-  double joint_velocity(std::size_t joint) const;
-
-  /// Puts the model at X_WM, at rest, with its joints as they are.
-  void place(const Pose& X_WM);
-  /// All velocities become zero.
-  void stop() { std::fill_n(state_.velocities(), mechanism_->dof_count(), 0.0); }
-  void set_root_twist(const Twist& twist);
-  void set_joint_state(std::size_t joint, std::span<const double> coordinates, std::span<const double> velocities);
+  BodyMotion& motion() { return motion_; }
+  const BodyMotion& motion() const { return motion_; }
 
   /// Whether that is something new. The joint has to have a motor.
   bool set_joint_target(std::size_t joint, JointRows::Control control, double target);
@@ -71,19 +40,17 @@ class Multibody {
 
   /// The link has to have a belt. Whether it is another one than before.
   bool set_belt_velocity(std::size_t link, double velocity) { return belts_.set_velocity(link, velocity); }
-  RunningSurface surface_of(std::size_t link) const { return belts_.of_link(link, X_WS_); }
+  RunningSurface surface_of(std::size_t link) const { return belts_.of_link(link, motion_.segment_poses()); }
 
   bool has_belts() const { return !belts_.is_empty(); }
   /// Forgets what the belts of this body bear.
   void unload_belts() { belts_.unload(); }
   /// Adds what a link with a belt bears, over the last step, where its surface looks towards `outward_W`.
   void load_belt(std::size_t link, const Eigen::Vector3d& outward_W, const Eigen::Vector3d& force_W) {
-    belts_.load(link, X_WS_, outward_W, force_W);
+    belts_.load(link, motion_.segment_poses(), outward_W, force_W);
   }
 
   const LoopRows& loops() const { return loops_; }
-  /// X_WM where it was placed: what joints to the world hold on to.
-  const Pose& model_pose() const { return X_WM_; }
   /// Those drives that stand on tracks, not on wheels.
   std::vector<TrackRows>& treels() { return treels_; }
   const std::vector<TrackRows>& treels() const { return treels_; }
@@ -93,20 +60,20 @@ class Multibody {
   /// Adds the rows of joints and drives; `index`: of this body in the problem.
   void add_rows(Problem& problem, int index, const Anchors& anchors, double step);
   /// Takes the velocities that the solver found and moves the body by them.
-  void integrate(const double* velocities, double step);
-  /// The same of a body of several segments that touches nothing, which gravity [m/s^2] and an impulse from outside [N
-  /// s] alone change as a whole, with the moment that it has about the reference [N m s].
+  void integrate(const double* velocities, double step) {
+    last_step_ = step;
+    physics::integrate(motion_, velocities, step);
+  }
+  /// The same of a body in flight; physics::fly says what the parameters are.
   void fly(const double* velocities, const Eigen::Vector3d& impulse_W, const Eigen::Vector3d& angular_impulse_W,
-           const Eigen::Vector3d& gravity, double step);
-  /// Puts a body whose root is free elsewhere, as it is and moves.
-  void move(const Eigen::Vector3d& way_W) {
-    state_.set_reference(reference() + way_W);
-    update_poses();
+           const Eigen::Vector3d& gravity, double step) {
+    last_step_ = step;
+    physics::fly(motion_, velocities, impulse_W, angular_impulse_W, gravity, step);
   }
   /// Calls `visit` for each number of the state, always in the same order.
   template <class Self, class Visit>
   static void visit_state(Self& self, Visit&& visit) {
-    BodyState::visit(self.state_, visit);
+    BodyMotion::visit_state(self.motion_, visit);
     JointRows::visit_state(self.joints_, visit);
     LoopRows::visit_state(self.loops_, visit);
     for (auto& treel : self.treels_) TrackRows::visit_state(treel, visit);
@@ -118,8 +85,6 @@ class Multibody {
   static void visit_loads(Self& self, Visit&& visit) {
     Belts::visit_loads(self.belts_, visit);
   }
-  /// After the state was changed through `visit_state`.
-  void update_poses();
 
  private:
   /// Drives whose wheels are simulated: how the velocity of a track becomes that of its joints.
@@ -133,18 +98,12 @@ class Multibody {
     int wheels = -1;
   };
 
-  void move_joints(double step);
-  void turn_freely(double step);
   void build_devices();
   void add_drive(std::size_t device, const description::TrackPair& drive);
   void add_motor(int dof, double max_effort, double max_velocity, const std::string& device);
 
-  const Mechanism* mechanism_;
+  BodyMotion motion_;
   BodyId body_;
-  Pose X_WM_;  // of a root that is tied to the world
-  std::unique_ptr<BulletBody> bullet_;
-  BodyState state_;
-  std::vector<Pose> X_WS_;  // follow from the state
   JointRows joints_;
   LoopRows loops_;
   Belts belts_;

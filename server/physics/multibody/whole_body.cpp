@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "server/physics/multibody/multibody.hpp"
+#include "server/physics/multibody/body_motion.hpp"
 
 namespace cohort::physics {
 
 using Eigen::Vector3d;
 
-WholeBody::WholeBody(const Multibody& body) {
+WholeBody::WholeBody(const BodyMotion& body) {
   const std::vector<Segment>& segments = body.mechanism().segments();
   struct SegmentMotion {  // against the root: of the segment's origin
     Vector3d angular_W = Vector3d::Zero();

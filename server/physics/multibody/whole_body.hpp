@@ -4,11 +4,11 @@
 
 namespace cohort::physics {
 
-class Multibody;
+class BodyMotion;
 
 /// All segments of a body with a free root taken together, as they are and move now. In world axes.
 struct WholeBody {
-  explicit WholeBody(const Multibody& body);
+  explicit WholeBody(const BodyMotion& body);
 
   double mass = 0.0;                                    ///< [kg]
   Eigen::Vector3d centre_W = Eigen::Vector3d::Zero();   ///< of mass

@@ -1,0 +1,134 @@
+#include "server/physics/multibody/body_motion.hpp"
+
+#include <cmath>
+
+namespace cohort::physics {
+
+BodyMotion::BodyMotion(const Mechanism& mechanism, description::Dynamics dynamics, const Pose& X_WM)
+    : mechanism_(&mechanism),
+      bullet_(dynamics == description::Dynamics::bullet ? std::make_unique<BulletBody>(mechanism) : nullptr),
+      state_(bullet_ ? BodyState(mechanism, bullet_->memory()) : BodyState(mechanism)),
+      X_WS_(mechanism.segments().size()) {
+  place(X_WM);
+}
+
+void BodyMotion::update_poses() {
+  for (std::size_t s = 0; s < X_WS_.size(); ++s) {
+    const Segment& segment = mechanism_->segments()[s];
+    if (segment.motion == Motion::free) {
+      const Eigen::Quaterniond rotation = state_.root_rotation();
+      X_WS_[s] = {reference() - rotation * segment.centre_S, rotation};
+      continue;
+    }
+    const Pose& X_WP = segment.parent < 0 ? X_WM_ : X_WS_[static_cast<std::size_t>(segment.parent)];
+    X_WS_[s] = moved_by_joint(segment, X_WP * segment.X_PS, state_.coordinates(segment.first_coordinate));
+  }
+  if (!mechanism_->has_free_root()) state_.set_reference(X_WS_[0].position);
+}
+
+Pose BodyMotion::link_pose(std::size_t link) const {
+  const Mechanism::LinkPlace& place = mechanism_->link(link);
+  return segment_pose(place.segment) * place.X_SL;
+}
+
+Twist BodyMotion::link_twist(std::size_t link) const {
+  return segment_twist(mechanism_->link(link).segment, link_pose(link).position);
+}
+
+Twist BodyMotion::segment_twist(int of_segment, const Eigen::Vector3d& point_W) const {
+  Twist twist{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  // From the segment to the root: each joint adds what it does to the point.
+  for (int s = of_segment; s >= 0; s = mechanism_->segments()[static_cast<std::size_t>(s)].parent) {
+    const Segment& segment = mechanism_->segments()[static_cast<std::size_t>(s)];
+    const Pose& X_WS = segment_pose(s);
+    const double* v = velocities() + segment.first_dof;
+    Eigen::Vector3d angular_W = Eigen::Vector3d::Zero();
+    Eigen::Vector3d pivot_W = X_WS.position;
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free:
+        angular_W = {v[0], v[1], v[2]};
+        pivot_W = reference();
+        twist.linear_W += Eigen::Vector3d(v[3], v[4], v[5]);
+        break;
+      case Motion::revolute: angular_W = v[0] * (X_WS.orientation * segment.axis_S); break;
+      case Motion::prismatic: twist.linear_W += v[0] * (X_WS.orientation * segment.axis_S); break;
+      case Motion::ball: angular_W = X_WS.orientation * Eigen::Vector3d(v[0], v[1], v[2]); break;
+    }
+    twist.angular_W += angular_W;
+    twist.linear_W += angular_W.cross(point_W - pivot_W);
+  }
+  return twist;
+}
+
+double BodyMotion::greatest_speed(double reach) const {
+  double sum = 0.0;
+  for (const Segment& segment : mechanism_->segments()) {
+    const double* v = velocities() + segment.first_dof;
+    const auto length = [&](int i) { return std::abs(v[i]) + std::abs(v[i + 1]) + std::abs(v[i + 2]); };
+    switch (segment.motion) {
+      case Motion::anchored: break;
+      case Motion::free: sum += reach * length(0) + length(3); break;
+      case Motion::revolute: sum += reach * std::abs(v[0]); break;
+      case Motion::prismatic: sum += std::abs(v[0]); break;
+      case Motion::ball: sum += reach * length(0); break;
+    }
+  }
+  return sum;
+}
+
+double BodyMotion::joint_position(std::size_t joint) const {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  return place.dofs == 0 ? 0.0 : *state_.coordinates(place.first_coordinate);
+}
+
+double BodyMotion::joint_velocity(std::size_t joint) const {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  return place.dofs == 0 ? 0.0 : velocities()[place.first_dof];
+}
+
+void BodyMotion::place(const Pose& X_WM) {
+  const Segment& root = mechanism_->segments()[0];
+  const Pose X_WS = X_WM * root.X_PS;
+  X_WM_ = X_WM;
+  state_.set_root_rotation(X_WS.orientation);
+  state_.set_reference(mechanism_->has_free_root() ? X_WS * root.centre_S : X_WS.position);
+  stop();
+  update_poses();
+}
+
+void BodyMotion::set_root_twist(const Twist& twist) {
+  const Eigen::Vector3d to_reference_W = reference() - link_pose(0).position;
+  const Eigen::Vector3d linear_W = twist.linear_W + twist.angular_W.cross(to_reference_W);
+  std::copy_n(twist.angular_W.data(), 3, state_.velocities());
+  std::copy_n(linear_W.data(), 3, state_.velocities() + 3);
+}
+
+void BodyMotion::set_joint_state(std::size_t joint, std::span<const double> coordinates,
+                                 std::span<const double> velocities) {
+  const Mechanism::JointPlace& place = mechanism_->joint(joint);
+  double* const v = state_.velocities() + place.first_dof;
+  std::copy(velocities.begin(), velocities.end(), v);
+  constexpr int dofs_of_ball = 3;
+  if (place.dofs == dofs_of_ball) {
+    const Eigen::Quaterniond& axes = mechanism_->segments()[static_cast<std::size_t>(place.segment)].principal_axes;
+    const Eigen::Quaterniond to_axes = axes.conjugate();
+    const Eigen::Quaterniond rotation = to_axes * Eigen::Quaterniond(coordinates.data()) * axes;
+    std::copy_n(rotation.coeffs().data(), 4, state_.coordinates(place.first_coordinate));
+    const Eigen::Vector3d turned = to_axes * Eigen::Vector3d(v[0], v[1], v[2]);
+    std::copy_n(turned.data(), 3, v);
+  } else {
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+      *state_.coordinates(place.first_coordinate + static_cast<int>(i)) = coordinates[i];
+  }
+  for (const auto& [dof, leader, multiplier, offset] : mechanism_->followers()) {
+    if (leader != place.first_dof) continue;
+    const int coordinate = mechanism_->dofs()[static_cast<std::size_t>(leader)].coordinate;
+    *state_.coordinates(mechanism_->dofs()[static_cast<std::size_t>(dof)].coordinate) =
+        multiplier * *state_.coordinates(coordinate) + offset;
+    state_.velocities()[dof] = multiplier * state_.velocities()[leader];
+  }
+  update_poses();
+}
+
+}  // namespace cohort::physics

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "server/core/random.hpp"
-#include "server/physics/multibody/equations.hpp"
+#include "server/physics/dynamics/equations.hpp"
 #include "tests/support/small_world.hpp"
 
 // Bullet's articulated bodies and our own mass matrix give the same velocities and the same answers to impulses,

@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "server/physics/dynamics/equations.hpp"
 #include "server/physics/fluid/fluid_model.hpp"
-#include "server/physics/multibody/equations.hpp"
 
 namespace cohort::physics {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "server/physics/multibody/body_motion.hpp"
+#include "server/physics/dynamics/body_motion.hpp"
 #include "server/physics/world/motion_record.hpp"
 
 namespace cohort::physics {

@@ -63,7 +63,7 @@ BulletBody::BulletBody(const Mechanism& mechanism)
   body_->setLinearDamping(0.0);
   body_->setAngularDamping(0.0);
   body_->setMaxCoordinateVelocity(std::numeric_limits<double>::max());
-  // The turning of a body on its own is left to `integrate` (multibody/integration.hpp).
+  // The turning of a body on its own is left to `integrate` (dynamics/integration.hpp).
   body_->setUseGyroTerm(!mechanism.is_free_body());
   for (int link = 0; link < links; ++link) {
     const Segment& segment = segments[at(link + first_link_)];

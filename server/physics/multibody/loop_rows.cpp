@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "server/physics/dynamics/body_motion.hpp"
 #include "server/physics/mechanism/rotation.hpp"
-#include "server/physics/multibody/body_motion.hpp"
 #include "server/physics/multibody/rows.hpp"
 #include "server/physics/world/corrections.hpp"
 

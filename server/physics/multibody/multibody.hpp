@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "server/physics/dynamics/body_motion.hpp"
+#include "server/physics/dynamics/integration.hpp"
 #include "server/physics/multibody/belts.hpp"
-#include "server/physics/multibody/body_motion.hpp"
-#include "server/physics/multibody/integration.hpp"
 #include "server/physics/multibody/joint_rows.hpp"
 #include "server/physics/multibody/loop_rows.hpp"
 #include "server/physics/multibody/track_rows.hpp"

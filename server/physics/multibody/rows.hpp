@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "server/physics/dynamics/equations.hpp"
 #include "server/physics/mechanism/lanes.hpp"
-#include "server/physics/multibody/equations.hpp"
 #include "server/physics/world/anchors.hpp"
 
 namespace cohort::physics {

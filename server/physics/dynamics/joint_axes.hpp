@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "server/physics/multibody/body_motion.hpp"
+#include "server/physics/dynamics/body_motion.hpp"
 
 namespace cohort::physics {
 

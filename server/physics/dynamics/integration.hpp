@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/physics/multibody/body_motion.hpp"
+#include "server/physics/dynamics/body_motion.hpp"
 
 namespace cohort::physics {
 

@@ -1,9 +1,9 @@
-#include "server/physics/multibody/equations.hpp"
+#include "server/physics/dynamics/equations.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "server/physics/multibody/gyroscopic.hpp"
+#include "server/physics/dynamics/gyroscopic.hpp"
 
 namespace cohort::physics {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/physics/multibody/body_motion.hpp"
+#include "server/physics/dynamics/body_motion.hpp"
 
 #include <cmath>
 

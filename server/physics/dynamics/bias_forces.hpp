@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "server/physics/multibody/body_motion.hpp"
-#include "server/physics/multibody/joint_axes.hpp"
+#include "server/physics/dynamics/body_motion.hpp"
+#include "server/physics/dynamics/joint_axes.hpp"
 
 namespace cohort::physics {
 

@@ -1,4 +1,4 @@
-#include "server/physics/multibody/joint_axes.hpp"
+#include "server/physics/dynamics/joint_axes.hpp"
 
 namespace cohort::physics {
 

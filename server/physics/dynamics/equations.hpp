@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "server/physics/dynamics/bias_forces.hpp"
+#include "server/physics/dynamics/body_motion.hpp"
+#include "server/physics/dynamics/joint_axes.hpp"
+#include "server/physics/dynamics/mass_matrix.hpp"
 #include "server/physics/mechanism/linear_system.hpp"
-#include "server/physics/multibody/bias_forces.hpp"
-#include "server/physics/multibody/body_motion.hpp"
-#include "server/physics/multibody/joint_axes.hpp"
-#include "server/physics/multibody/mass_matrix.hpp"
 
 namespace cohort::physics {
 

@@ -1,8 +1,8 @@
-#include "server/physics/multibody/whole_body.hpp"
+#include "server/physics/dynamics/whole_body.hpp"
 
 #include <vector>
 
-#include "server/physics/multibody/body_motion.hpp"
+#include "server/physics/dynamics/body_motion.hpp"
 
 namespace cohort::physics {
 

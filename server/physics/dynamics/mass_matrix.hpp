@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "server/physics/multibody/bias_forces.hpp"
+#include "server/physics/dynamics/bias_forces.hpp"
 
 namespace cohort::physics {
 

@@ -1,4 +1,4 @@
-#include "server/physics/multibody/bias_forces.hpp"
+#include "server/physics/dynamics/bias_forces.hpp"
 
 namespace cohort::physics {
 

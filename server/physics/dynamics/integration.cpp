@@ -1,9 +1,9 @@
-#include "server/physics/multibody/integration.hpp"
+#include "server/physics/dynamics/integration.hpp"
 
 #include <algorithm>
 
+#include "server/physics/dynamics/whole_body.hpp"
 #include "server/physics/mechanism/rotation.hpp"
-#include "server/physics/multibody/whole_body.hpp"
 
 namespace cohort::physics {
 namespace {

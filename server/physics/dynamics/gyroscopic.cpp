@@ -1,4 +1,4 @@
-#include "server/physics/multibody/gyroscopic.hpp"
+#include "server/physics/dynamics/gyroscopic.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +61,8 @@ double bound_of_turning(const BodyMotion& body) {
 
 // Of each joint what spins beyond it, against its own segment and across its axis, by what the segment resists with.
 bool has_stiff_gyroscopic_torques(const BodyMotion& body, double step, bool is_held) {
-  // How a body on its own turns is left to `integrate`. What closes a loop wants all rows
-  // solved at once, and for that symmetric equations.
+  // How a body on its own turns is left to `integrate`. What closes a loop wants all rows solved at once, and for that
+  // symmetric equations.
   const bool has_loops = !body.mechanism().model().loop_joints.empty();
   if (body.mechanism().is_free_body() || has_loops) return false;
   if (has_fast_ball(body, step, is_held)) return true;

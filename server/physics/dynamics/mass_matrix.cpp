@@ -1,4 +1,4 @@
-#include "server/physics/multibody/mass_matrix.hpp"
+#include "server/physics/dynamics/mass_matrix.hpp"
 
 #include <array>
 

@@ -1,6 +1,10 @@
+import fcntl
+import json
 import os
 import pathlib
 import subprocess
+import tempfile
+import time
 
 import pytest
 
@@ -20,3 +24,52 @@ def cohort_program(build):
         return subprocess.run([program, *arguments], check=True, capture_output=True, text=True).stdout
 
     return run
+
+
+@pytest.fixture
+def domain():
+    """A DDS domain that no other test of this machine has."""
+    patience = 300
+    for _ in range(patience):
+        for number in range(75, 80):
+            with open(pathlib.Path(tempfile.gettempdir()) / f"cohort-test-domain-{number}", "a") as lock:
+                try:
+                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    continue
+                yield number
+                return
+        time.sleep(1)  # until another test is done
+    raise TimeoutError("all domains for tests are taken")
+
+
+@pytest.fixture
+def serve(build, domain, tmp_path):
+    """Starts `cohort run` of an experiment whose controllers others start; what it returns waits for the end."""
+    processes = []
+
+    def start(experiment, *arguments):
+        summary = tmp_path / "served.json"
+        command = [build / "bin/cohort", "run", experiment, "--controllers", "external", "--domain", str(domain)]
+        process = subprocess.Popen(
+            [*command, "--quiet", "--summary", summary, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        processes.append(process)
+
+        def finish():
+            _, errors = process.communicate(timeout=300)
+            return Served(process.returncode, errors, json.loads(summary.read_text()) if summary.exists() else {})
+
+        return finish
+
+    yield start
+    for process in processes:
+        process.kill()
+        process.communicate()
+
+
+class Served:
+    def __init__(self, code, errors, summary):
+        self.code = code
+        self.errors = errors
+        self.state_hash = int(summary.get("state_hash", "0"), 16)

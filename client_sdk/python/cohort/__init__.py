@@ -28,6 +28,7 @@ from cohort._files import examples
 from cohort._native import InputError, SnapshotError
 from cohort.batch import Batch
 from cohort.channels import Channel, ChannelError, Channels
+from cohort.client import ClientError, host, main
 from cohort.controller import Controller, ParameterError, Parameters, Start
 from cohort.experiment import Experiment, Result, Team, run, run_seeds
 from cohort.simulation import Robot, Simulation
@@ -40,6 +41,7 @@ __all__ = [
     "Channel",
     "ChannelError",
     "Channels",
+    "ClientError",
     "Controller",
     "Experiment",
     "InputError",
@@ -52,6 +54,8 @@ __all__ = [
     "Start",
     "Team",
     "examples",
+    "host",
+    "main",
     "run",
     "run_seeds",
 ]

@@ -1,0 +1,109 @@
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <atomic>
+#include <cohort/client.hpp>
+#include <csignal>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client_sdk/math/library_calls.hpp"
+#include "client_sdk/python/hosting/python_controller.hpp"
+#include "client_sdk/src/attachment.hpp"
+
+/// The extension module `cohort._client`: controllers that are clients of a server, over DDS.
+namespace cohort::python {
+namespace {
+
+namespace nb = nanobind;
+
+/// Gives signals back to Python at its end.
+class SignalsOfPython {
+ public:
+  SignalsOfPython() {
+    for (std::size_t i = 0; i < std::size(signals); ++i) ::sigaction(signals[i], nullptr, &actions_[i]);
+  }
+  SignalsOfPython(const SignalsOfPython&) = delete;
+  SignalsOfPython& operator=(const SignalsOfPython&) = delete;
+  ~SignalsOfPython() {
+    for (std::size_t i = 0; i < std::size(signals); ++i) ::sigaction(signals[i], &actions_[i], nullptr);
+  }
+
+ private:
+  static constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction actions_[std::size(signals)] = {};
+};
+
+ControllerKind kind_of_maker(nb::handle maker) {
+  return {nb::cast<std::string>(maker.attr("name")), [object = maker.ptr()] {
+            return OwnedController(new PythonController(object), [](Controller* made) { delete made; });
+          }};
+}
+
+const char* word_of(ClientEnd end) {
+  switch (end) {
+    case ClientEnd::finished: return "finished";
+    case ClientEnd::refused: return "refused";
+    case ClientEnd::superseded: return "superseded";
+    case ClientEnd::failed: return "failed";
+    case ClientEnd::server_lost: return "server_lost";
+    case ClientEnd::interrupted: return "interrupted";
+  }
+  return "failed";
+}
+
+// Returns how it ended, and the last error that it told.
+std::pair<std::string, std::string> host(nb::handle maker, const std::vector<std::string>& robots,
+                                         const std::string& server, std::int64_t domain, const std::string& secure) {
+  ClientOptions options;
+  take_environment(options);
+  if (!robots.empty()) options.robots = robots;
+  if (!server.empty()) options.server = server;
+  if (domain >= 0) options.domain = static_cast<std::uint32_t>(domain);
+  if (!secure.empty()) options.secure = secure;
+  std::string error;
+  options.tell = [&](Severity severity, const std::string& text) {
+    if (severity == Severity::error) error = text;
+  };
+  const ControllerKind kind = kind_of_maker(maker);
+  const SignalsOfPython restored;
+  std::atomic<bool>& stop = stop_on_signals();
+  stop = false;
+  const nb::gil_scoped_release no_gil;
+  const ClientEnd end = run_client(kind, options, stop);
+  return {word_of(end), error};
+}
+
+// What the plugin below makes controllers with; a plugin's functions have no argument for it.
+nb::handle& maker_of_program() {
+  static nb::handle maker;
+  return maker;
+}
+
+int run_program(nb::handle maker, std::vector<std::string> arguments) {
+  maker_of_program() = maker;
+  const std::string name = nb::cast<std::string>(maker.attr("name"));
+  const Plugin plugin{Plugin::current_abi, name.c_str(),
+                      []() -> Controller* { return new PythonController(maker_of_program().ptr()); },
+                      [](Controller* controller) { delete controller; }};
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const SignalsOfPython restored;
+  stop_on_signals() = false;
+  const nb::gil_scoped_release no_gil;
+  return run_controller(plugin, static_cast<int>(arguments.size()), argv.data());
+}
+
+}  // namespace
+}  // namespace cohort::python
+
+NB_MODULE(_client, module) {
+  using namespace nanobind::literals;
+  cohort::bind_library_calls();
+  module.def("host", &cohort::python::host, "maker"_a, "robots"_a, "server"_a, "domain"_a, "secure"_a);
+  module.def("run_program", &cohort::python::run_program, "maker"_a, "arguments"_a);
+}

@@ -1,0 +1,51 @@
+"""Controllers as clients of a server, over DDS."""
+
+import os
+import sys
+
+from cohort import _client
+from cohort._hosting import Maker
+
+
+class ClientError(RuntimeError):
+    """A client did not drive its robots to the end of the run. The message says why."""
+
+
+def host(controller, robots="all", *, server=None, domain=None, secure=None):
+    """Drives robots of a running server until the run ends.
+
+    Args:
+        controller: a class that derives from `cohort.Controller`; each robot gets an object of its own.
+        robots: selectors separated by commas, or a list of them: `all`, `3`, `0..7`, `explorers/sbot_7`, `explorers/*`.
+        server: IPv4 address or host name; by default $COHORT_SERVER, or this machine.
+        domain: the server's DDS domain; by default $COHORT_DOMAIN, or 0.
+        secure: folder of an identity; by default $COHORT_SECURE, or none.
+
+    Waits for a server that is not there yet. Raises ClientError if the run fails, if another client drives these robots
+    or takes them over, or if the server is lost; KeyboardInterrupt after Ctrl-C.
+    """
+    selectors = [each for each in robots.split(",") if each] if isinstance(robots, str) else [str(each) for each in robots]
+    if not selectors:
+        raise ValueError("robots names no robot")
+    end, error = _client.host(Maker(controller), selectors, server or "", -1 if domain is None else domain, os.fspath(secure or ""))
+    if end == "interrupted":
+        raise KeyboardInterrupt
+    if end != "finished":
+        raise ClientError(f"{end.replace('_', ' ')}: {error}" if error else end)
+
+
+def main(controller, arguments=None):
+    """The `main` of a program that is one controller: reads `--robots`, `--server`, `--domain`, `--secure` and `--help`.
+
+        if __name__ == "__main__":
+            cohort.main(Wanderer)
+
+    Ends the process: with 0 when the run finished, 1 when it or the controller failed, 2 for a mistake in the options or
+    a refused claim, 130 when interrupted.
+
+    Args:
+        controller: a class that derives from `cohort.Controller`.
+        arguments: in place of those of the command line.
+    """
+    arguments = sys.argv if arguments is None else [sys.argv[0], *arguments]
+    sys.exit(_client.run_program(Maker(controller), arguments))

@@ -23,7 +23,7 @@ To that end `math.sin`, `math.exp` and their like are functions of Cohort once t
 
 import numpy  # its functions are bound to portable ones too, so it has to be there first
 
-from cohort import _native
+from cohort import _native, math
 from cohort._files import examples
 from cohort._native import InputError, SnapshotError
 from cohort.batch import Batch
@@ -56,6 +56,7 @@ __all__ = [
     "examples",
     "host",
     "main",
+    "math",
     "run",
     "run_seeds",
 ]

@@ -15,7 +15,7 @@ def _first_folder(*candidates):
 def worlds_folder():
     """Returns the folder of the worlds that come with Cohort."""
     folder = _first_folder(
-        _package / "worlds",  # of a wheel
+        _package / "share/cohort/worlds",  # of a wheel
         _package.parent.parent / "share/cohort/worlds",  # of a build tree
         pathlib.Path(sys.prefix) / "share/cohort/worlds",
         pathlib.Path("/usr/share/cohort/worlds"),
@@ -34,7 +34,7 @@ def plugin_folders():
     """Returns the folders where controllers are looked for that are named without a path."""
     folders = [pathlib.Path(each) for each in os.environ.get("COHORT_PLUGIN_PATH", "").split(":") if each]
     return folders + [
-        _package / "controllers",
+        _package / "lib/cohort/controllers",
         _package.parent.parent / "lib/controllers",
         *sorted(pathlib.Path("/usr/lib").glob("*/cohort/controllers")),
         *sorted(pathlib.Path("/usr/local/lib").glob("cohort/controllers")),

@@ -1,0 +1,13 @@
+#!python
+"""The command `cohort` of a wheel: the program that lies in the package, with this Python for controllers in Python."""
+
+import importlib.util
+import os
+import pathlib
+import sys
+
+# Found without being imported, which would take longer than the program.
+package = pathlib.Path(importlib.util.find_spec("cohort").origin).parent
+program = package / "bin" / "cohort"
+os.environ.setdefault("COHORT_PYTHON", sys.executable)
+os.execv(program, [str(program), *sys.argv[1:]])

@@ -10,6 +10,10 @@ from cohort._hosting import Maker, maker_in
 from cohort.controller import Controller
 
 
+_NOBODY = "none"  # what a team of an experiment made in Python is given as its controller that has none
+_PEOPLE = "keyboard"  # with `cohort teleop`, of a server
+
+
 class _Idle(Controller):
     """Drives a team without a controller: its commands stay neutral."""
 
@@ -86,10 +90,11 @@ class Experiment:
         cohort.Experiment(
             world="arena.sdf",
             duration=60,
-            teams=[{"name": "explorers", "robots": "explorers/*", "controller": "wanderer.py"}],
+            teams=[{"name": "explorers", "robots": "explorers/*", "controller": Wanderer}],
         )
 
-    Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with every problem that
+    The controller of a team may be a class that derives from `cohort.Controller`, or left out: then `run` gives one, or
+    the robots stay as they are. Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with every problem that
     was found, in the words of `cohort check`.
     """
 
@@ -98,9 +103,22 @@ class Experiment:
             keys["seed"] = seed
         if duration is not None:
             keys["duration"] = duration
+        self._classes = {}
+        if isinstance(keys.get("teams"), (list, tuple)):
+            keys["teams"] = [self._named_team(team) for team in keys["teams"]]
         text = json.dumps(keys, cls=_PathEncoder, indent=1)
         file = pathlib.Path(folder).absolute() / f"{name}.yaml"
         self._native = _native.Experiment.read_text(text, file, None, None, _files.model_folders())
+
+    def _named_team(self, team):
+        """Returns a team whose controller is a name, and keeps its class if it has one."""
+        if not isinstance(team, dict):
+            return team
+        controller = team.get("controller", _NOBODY)
+        if isinstance(controller, type) and issubclass(controller, Controller):
+            self._classes[team.get("name")] = controller
+            controller = controller.__name__
+        return team | {"controller": controller}
 
     @classmethod
     def read(cls, file, seed=None, duration=None):
@@ -123,11 +141,14 @@ class Experiment:
     def _of(cls, native):
         experiment = cls.__new__(cls)
         experiment._native = native
+        experiment._classes = {}
         return experiment
 
     def with_seed(self, seed):
         """Returns the same experiment with another seed; robots that are placed at random stand elsewhere."""
-        return self._of(self._native.with_seed(seed))
+        experiment = self._of(self._native.with_seed(seed))
+        experiment._classes = self._classes
+        return experiment
 
     @property
     def name(self):
@@ -189,23 +210,23 @@ class Experiment:
         return result
 
     def _driver_of(self, team, controllers):
+        """Returns what drives a team: the name or the path of a plugin, or what makes controllers of a class."""
+        chosen = controllers
         if isinstance(controllers, dict):
-            unknown = set(controllers) - {each.name for each in self.teams}
-            if unknown:
-                raise ValueError(f"there is no team '{sorted(unknown)[0]}', expected one of {[each.name for each in self.teams]}")
+            names = [each.name for each in self.teams]
+            for name in controllers:
+                if name not in names:
+                    raise ValueError(f"there is no team '{name}', expected one of {names}")
             chosen = controllers.get(team.name)
-            folder = pathlib.Path()
-        else:
-            chosen = controllers
         folder = pathlib.Path()
         if chosen is None:
-            chosen = team.controller
+            chosen = self._classes.get(team.name, team.controller)
             folder = pathlib.Path(self.file).parent
         if isinstance(chosen, os.PathLike):
             chosen = os.fspath(chosen)
         if not isinstance(chosen, str):
             return Maker(chosen)
-        if not chosen or chosen == "keyboard":
+        if chosen in (_NOBODY, _PEOPLE):
             return Maker(_Idle)
         if chosen.endswith(".py"):
             return maker_in(folder / chosen)

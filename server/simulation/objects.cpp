@@ -12,25 +12,29 @@ std::uint64_t ticks_of(std::chrono::nanoseconds time, std::chrono::nanoseconds s
   return static_cast<std::uint64_t>(std::max<std::int64_t>(1, (time + step - std::chrono::nanoseconds(1)) / step));
 }
 
-Objects::Objects(description::Experiment& experiment, physics::World& world)
+Objects::Objects(SharedExperiment& experiment, physics::World& world, const Objects* like)
     : experiment_(experiment),
       world_(world),
-      described_(static_cast<std::uint32_t>(experiment.world.instances.size())),
-      history_ticks_(ticks_of(experiment.history.every, experiment.world.step)),
-      histories_(experiment.history.objects.size()) {
-  while (present_.size() < experiment.world.instances.size()) note_instance();
+      described_(static_cast<std::uint32_t>(experiment->world.instances.size())),
+      by_name_(like != nullptr ? like->by_name_ : std::make_shared<ByName>()),
+      history_ticks_(ticks_of(experiment->history.every, experiment->world.step)),
+      histories_(experiment->history.objects.size()) {
+  present_.reserve(described_);
+  for (const description::Instance& instance : experiment->world.instances) {
+    if (like == nullptr) by_name_->emplace(instance.name, present_.size());
+    present_.push_back(instance.is_present ? 1 : 0);
+  }
 }
 
-// The next one that the description has, if it has a name that is new.
-void Objects::note_instance() {
-  const description::Instance& instance = experiment_.world.instances[present_.size()];
-  by_name_.emplace(instance.name, static_cast<std::uint32_t>(present_.size()));
-  present_.push_back(instance.is_present ? 1 : 0);
+void Objects::add_instance(description::Instance instance) {
+  by_name_->emplace(instance.name, present_.size());
+  present_.push_back(1);
+  experiment_.edit().world.instances.push_back(std::move(instance));
 }
 
 std::optional<std::uint32_t> Objects::find(const std::string& name) const {
-  const auto found = by_name_.find(name);
-  return found == by_name_.end() ? std::nullopt : std::optional(found->second);
+  const auto found = by_name_->find(name);
+  return found == by_name_->end() ? std::nullopt : std::optional(found->second);
 }
 
 void Objects::set_present(std::uint32_t object, bool present) {
@@ -46,25 +50,25 @@ std::uint32_t Objects::add(const std::string& name, std::size_t model, const Pos
   if (find(name)) throw std::invalid_argument("another object has the name '" + name + "'");
   if (size() - described_ == most_added)
     throw std::invalid_argument("no more than " + std::to_string(most_added) + " objects come in one run");
+  experiment_.edit();
   const BodyId body = world_.add_body(model, X_WM);
-  experiment_.world.instances.push_back({name, model, X_WM});
-  note_instance();
+  add_instance({name, model, X_WM});
   return body.value;
 }
 
 void Objects::record(std::uint64_t tick) {
   if (tick % history_ticks_ != 0) return;
   for (std::size_t i = 0; i < histories_.size(); ++i) {
-    const auto object = static_cast<std::uint32_t>(experiment_.history.objects[i]);
+    const auto object = static_cast<std::uint32_t>(experiment_->history.objects[i]);
     if (!is_present(object)) continue;
-    if (histories_[i].size() == experiment_.history.length) histories_[i].pop_front();
+    if (histories_[i].size() == experiment_->history.length) histories_[i].pop_front();
     histories_[i].push_back({tick, world_.link_pose(BodyId{object}, LinkId{0})});
   }
 }
 
 const std::deque<PastPose>& Objects::history(std::uint32_t object) const {
   static const std::deque<PastPose> nothing;
-  const std::vector<std::size_t>& asked_for = experiment_.history.objects;
+  const std::vector<std::size_t>& asked_for = experiment_->history.objects;
   const auto place = std::lower_bound(asked_for.begin(), asked_for.end(), object);
   if (place == asked_for.end() || *place != object) return nothing;
   return histories_[static_cast<std::size_t>(place - asked_for.begin())];
@@ -72,7 +76,7 @@ const std::deque<PastPose>& Objects::history(std::uint32_t object) const {
 
 // What is as it was at first, or when it came, adds nothing else.
 void Objects::hash(StateHash& hash) const {
-  const std::vector<description::Instance>& instances = experiment_.world.instances;
+  const std::vector<description::Instance>& instances = experiment_->world.instances;
   for (std::uint32_t object = 0; object < size(); ++object) {
     if (object >= described_) {
       hash.add(hash_name(instances[object].name));
@@ -92,7 +96,7 @@ void Objects::save_added(SnapshotWriter& writer) const {
   writer.add_count(described_);
   writer.add_count(size() - described_);
   for (std::uint32_t object = described_; object < size(); ++object) {
-    const description::Instance& instance = experiment_.world.instances[object];
+    const description::Instance& instance = experiment_->world.instances[object];
     writer.add_count(instance.name.size());
     writer.add_all(instance.name.data(), instance.name.size());
     writer.add_count(instance.model);
@@ -113,15 +117,15 @@ void Objects::restore_added(SnapshotReader& reader) {
     reader.read(model);
     instance.model = static_cast<std::size_t>(model);
     restore_pose(reader, instance.X_WM);
-    if (instance.model >= experiment_.world.models.size())
+    if (instance.model >= experiment_->world.models.size())
       throw SnapshotError("the snapshot has a model that is not there");
     try {
+      experiment_.edit();
       world_.add_body(instance.model, instance.X_WM, physics::Arrival::restored);
     } catch (const std::invalid_argument& error) {
       throw SnapshotError("the snapshot has an object that cannot be simulated: " + std::string(error.what()));
     }
-    experiment_.world.instances.push_back(std::move(instance));
-    note_instance();
+    add_instance(std::move(instance));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -11,6 +12,7 @@
 #include "server/core/snapshot.hpp"
 #include "server/description/experiment.hpp"
 #include "server/physics/world/physics_world.hpp"
+#include "server/simulation/shared_experiment.hpp"
 
 namespace cohort {
 
@@ -24,11 +26,12 @@ struct PastPose {
 /// added. An object's index is that of its instance and of its body. Names form a hierarchy by their slashes.
 class Objects {
  public:
-  /// What comes is added to the instances of `experiment`, which must outlive this.
-  Objects(description::Experiment& experiment, physics::World& world);
+  /// What comes is added to the instances of `experiment`, which must outlive this. `like`: those of another world that
+  /// shares it; null: none.
+  Objects(SharedExperiment& experiment, physics::World& world, const Objects* like = nullptr);
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(present_.size()); }
-  const std::string& name(std::uint32_t object) const { return experiment_.world.instances[object].name; }
+  const std::string& name(std::uint32_t object) const { return experiment_->world.instances[object].name; }
   std::optional<std::uint32_t> find(const std::string& name) const;
 
   /// In the world: neither taken out nor still to come. A quarantined one is.
@@ -55,15 +58,17 @@ class Objects {
   void restore(SnapshotReader& reader);
 
  private:
-  void note_instance();
+  using ByName = std::unordered_map<std::string, std::uint32_t>;
+
+  void add_instance(description::Instance instance);
   // Each may be a robot's, and a stranger's request may bring it.
   static constexpr std::size_t most_added = 100'000;
 
-  description::Experiment& experiment_;
+  SharedExperiment& experiment_;
   physics::World& world_;
   std::uint32_t described_;
   std::vector<char> present_;
-  std::unordered_map<std::string, std::uint32_t> by_name_;  // to find one; nobody goes through it
+  std::shared_ptr<ByName> by_name_;  // to find one; nobody goes through it. As shared as the experiment is
   std::uint64_t history_ticks_ = 1;
   std::vector<std::deque<PastPose>> histories_;  // in the order of History::objects
 };

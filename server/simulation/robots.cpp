@@ -85,10 +85,10 @@ void Robots::add() {
   for (auto& [sensor, device] : devices.sensors) {
     const std::size_t place = robot.sensors.size();
     if (sensor->has_shared_view()) sharing_views_.push_back({id, place});
-    robot.sensors.push_back({std::move(sensor),
-                             sensing::SignalChain(parts.signal_plans[place], around_.experiment.seed, name(id),
-                                                  description::name_of(*device)),
-                             parts.sensor_sizes[place]});
+    robot.sensors.push_back(
+        {std::move(sensor),
+         sensing::SignalChain(parts.signal_plans[place], around_.seed, name(id), description::name_of(*device)),
+         parts.sensor_sizes[place]});
   }
   robot.actuators.reserve(devices.actuators.size());
   for (std::unique_ptr<actuation::Actuator>& actuator : devices.actuators)
@@ -104,7 +104,7 @@ Robots::DevicesOfRobot Robots::make_devices(const Robot& robot) {
   DevicesOfRobot made;
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     if (auto sensor = sensing::make_sensor({around_.world, around_.emitters, description, around_.grippers, views_,
-                                            robot.body, device, around_.experiment.seed})) {
+                                            robot.body, device, around_.seed})) {
       if (sensor->needs_record()) around_.world.record(robot.body);
       made.sensors.emplace_back(std::move(sensor), &model.devices[device]);
     }

@@ -45,6 +45,7 @@ class Robots {
   /// What robots sense and act on; all of it must outlive them.
   struct Surroundings {
     const description::Experiment& experiment;
+    std::uint64_t seed;  ///< of the run
     physics::World& world;
     emission::Emitters& emitters;
     gripping::Grippers& grippers;

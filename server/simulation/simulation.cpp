@@ -21,24 +21,26 @@ constexpr std::uint64_t first_snapshot_mark = 0x746f6873'74726f68u;
 }  // namespace
 
 Simulation::Simulation(const description::Experiment& experiment, unsigned threads)
-    : Simulation(experiment, threads, nullptr) {}
+    : Simulation(SharedExperiment(experiment), experiment.seed, {}, threads, nullptr) {}
 
 Simulation::Simulation(const Simulation& like, std::uint64_t seed, std::span<const Pose> X_WM)
-    : Simulation(like.again_with(seed, X_WM), 1, &like) {}
+    : Simulation(like.shared_with_one_at(X_WM), seed, X_WM, 1, &like) {}
 
-Simulation::Simulation(description::Experiment experiment, unsigned threads, const Simulation* like)
+Simulation::Simulation(SharedExperiment experiment, std::uint64_t seed, std::span<const Pose> X_WM, unsigned threads,
+                       const Simulation* like)
     : experiment_(std::move(experiment)),
+      seed_(seed),
       workers_(threads),
-      world_(physics::make_world(experiment_.world, workers_, like != nullptr ? like->world_.get() : nullptr)),
-      breakable_joints_(experiment_.world, *world_),
-      emitters_(experiment_.world, *world_),
-      grippers_(experiment_.world, *world_),
-      detachable_joints_(experiment_.world, *world_),
-      actions_(experiment_.world, *world_),
-      objects_(experiment_, *world_),
-      robots_({experiment_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_},
+      world_(physics::make_world(experiment_->world, workers_, like != nullptr ? like->world_.get() : nullptr, X_WM)),
+      breakable_joints_(experiment_->world, *world_),
+      emitters_(experiment_->world, *world_),
+      grippers_(experiment_->world, *world_),
+      detachable_joints_(experiment_->world, *world_),
+      actions_(experiment_->world, *world_),
+      objects_(experiment_, *world_, like != nullptr ? &like->objects_ : nullptr),
+      robots_({*experiment_, seed_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_},
               like != nullptr ? &like->robots_ : nullptr),
-      schedule_(experiment_, *world_, objects_, emitters_, actions_),
+      schedule_(*experiment_, *world_, objects_, emitters_, actions_),
       spawned_models_(experiment_) {
   note_bodies();
   begin_tick();
@@ -47,17 +49,13 @@ Simulation::Simulation(description::Experiment experiment, unsigned threads, con
 
 Simulation::~Simulation() = default;
 
-description::Experiment Simulation::again_with(std::uint64_t seed, std::span<const Pose> X_WM) const {
+const SharedExperiment& Simulation::shared_with_one_at(std::span<const Pose> X_WM) const {
   if (objects_.size() != objects_.described() || spawned_models_.size() > 0)
     throw std::invalid_argument("objects have been added to this world: it cannot be built again");
-  const std::vector<description::Instance>& instances = experiment_.world.instances;
-  if (X_WM.size() != instances.size())
+  if (X_WM.size() != objects_.size())
     throw std::invalid_argument("got " + std::to_string(X_WM.size()) + " poses, expected one for each of the " +
-                                std::to_string(instances.size()) + " objects of the experiment");
-  description::Experiment again = experiment_;
-  again.seed = seed;
-  for (std::size_t object = 0; object < X_WM.size(); ++object) again.world.instances[object].X_WM = X_WM[object];
-  return again;
+                                std::to_string(objects_.size()) + " objects of the experiment");
+  return experiment_;
 }
 
 void Simulation::step() {
@@ -108,7 +106,7 @@ void Simulation::add_object(const std::string& name, std::size_t model, const Po
 
 // All who know of bodies and robots are told of one that has come.
 void Simulation::enrol(std::uint32_t object, std::size_t team) {
-  description::World& world = experiment_.world;
+  description::World& world = experiment_.edit().world;
   const description::Model& model = world.models[world.instances[object].model];
   const BodyId body{object};
   emitters_.add_body(body, model);
@@ -117,7 +115,7 @@ void Simulation::enrol(std::uint32_t object, std::size_t team) {
   if (!model.is_robot()) return;
   const auto robot = static_cast<std::uint32_t>(world.robots.size());
   world.robots.push_back(object);
-  experiment_.teams[team].robots.push_back(robot);
+  experiment_.edit().teams[team].robots.push_back(robot);
   actions_.add_robot(robot, body, model);
   robots_.add();
 }
@@ -138,7 +136,7 @@ void Simulation::name_quarantined() {
     quarantined_.push_back("'" + objects_.name(event.body.value) +
                            (broke ? "': its state is no longer finite" : "' has left the world"));
   }
-  if (experiment_.world.physics.strict && !quarantined_.empty()) throw std::runtime_error(quarantined_[0]);
+  if (experiment_->world.physics.strict && !quarantined_.empty()) throw std::runtime_error(quarantined_[0]);
 }
 
 void Simulation::sense() {
@@ -190,7 +188,7 @@ std::vector<ActionResult> Simulation::act(std::span<const Action> actions) {
 std::string Simulation::act_unsensed(const Action& action) {
   note_change();
   if (const auto* const spawn = std::get_if<SpawnObject>(&action)) return spawn_object(*spawn);
-  return schedule_.act_from_outside(event_of(action, {experiment_.world, *world_, objects_}), tick_);
+  return schedule_.act_from_outside(event_of(action, {experiment_->world, *world_, objects_}), tick_);
 }
 
 std::string Simulation::spawn_object(const SpawnObject& spawn) {
@@ -198,12 +196,12 @@ std::string Simulation::spawn_object(const SpawnObject& spawn) {
   const std::size_t models_before = spawned_models_.size();
   try {
     const std::size_t model = spawned_models_.find_or_add(spawn.model);
-    const description::Model& described = experiment_.world.models[model];
-    const std::optional<std::size_t> team = team_of_new(spawn, model, experiment_);
+    const description::Model& described = experiment_->world.models[model];
+    const std::optional<std::size_t> team = team_of_new(spawn, model, *experiment_);
     const std::string name = name_of_new(spawn, described.name, objects_);
     add_object(name, model, X_WM, team.value_or(0));
     return "spawn '" + name + "' of model '" + described.name + "'" +
-           (team ? " in team '" + experiment_.teams[*team].name + "'" : "");
+           (team ? " in team '" + experiment_->teams[*team].name + "'" : "");
   } catch (const std::invalid_argument&) {
     spawned_models_.shrink(models_before);
     throw;
@@ -214,8 +212,8 @@ std::vector<std::byte> Simulation::save() const {
   SnapshotWriter writer;
   writer.add(snapshot_mark);
   writer.add(hash_name(COHORT_VERSION));
-  writer.add(static_cast<std::uint64_t>(experiment_.seed));
-  writer.add(static_cast<std::uint64_t>(experiment_.world.step.count()));
+  writer.add(seed_);
+  writer.add(static_cast<std::uint64_t>(experiment_->world.step.count()));
   writer.add(tick_);
   spawned_models_.save(writer);
   save_added(writer);
@@ -244,10 +242,10 @@ void Simulation::restore(std::span<const std::byte> snapshot) {
   reader.read(version);
   if (version != hash_name(COHORT_VERSION))
     throw SnapshotError("the snapshot is of another version than " COHORT_VERSION);
-  reader.expect_count(experiment_.seed, "as its seed");
-  reader.expect_count(static_cast<std::size_t>(experiment_.world.step.count()), "ns as its step");
+  reader.expect_count(seed_, "as its seed");
+  reader.expect_count(static_cast<std::size_t>(experiment_->world.step.count()), "ns as its step");
   reader.read(tick_);
-  if (tick_ > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / experiment_.world.step.count()))
+  if (tick_ > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / experiment_->world.step.count()))
     throw SnapshotError("the snapshot is of a tick beyond all time");
   spawned_models_.restore(reader);
   restore_added(reader);
@@ -275,12 +273,13 @@ void Simulation::save_added(SnapshotWriter& writer) const {
 
 void Simulation::restore_added(SnapshotReader& reader) {
   objects_.restore_added(reader);
-  const description::World& world = experiment_.world;
+  const description::World& world = experiment_->world;
   for (std::uint32_t object = objects_.described(); object < objects_.size(); ++object) {
     std::uint32_t team = 0;
     if (world.models[world.instances[object].model].is_robot()) {
       reader.read(team);
-      if (team >= experiment_.teams.size()) throw SnapshotError("the snapshot has a robot of a team that is not there");
+      if (team >= experiment_->teams.size())
+        throw SnapshotError("the snapshot has a robot of a team that is not there");
     }
     enrol(object, team);
   }

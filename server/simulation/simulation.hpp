@@ -23,6 +23,7 @@
 #include "server/simulation/objects.hpp"
 #include "server/simulation/robots.hpp"
 #include "server/simulation/schedule.hpp"
+#include "server/simulation/shared_experiment.hpp"
 #include "server/simulation/spawned_models.hpp"
 
 namespace cohort {
@@ -54,14 +55,14 @@ class Simulation {
   Simulation(const description::Experiment& experiment, unsigned threads);
   /// Builds the world again with another seed, on one thread, and each object of the experiment at `X_WM[object]`. Has
   /// the same bits as one of the same experiment with that seed and those poses, and shares with `like` what is the
-  /// same in both. Throws std::invalid_argument also if there is not one pose for each object, or if objects or models
-  /// have been added to `like`.
+  /// same in both: nothing can be added to either as long as both live. Throws std::invalid_argument also if there is
+  /// not one pose for each object, or if objects or models have been added to `like`.
   Simulation(const Simulation& like, std::uint64_t seed, std::span<const Pose> X_WM);
   ~Simulation();
 
   std::uint64_t tick() const { return tick_; }
   /// Simulated time: tick() * step.
-  std::chrono::nanoseconds time() const { return experiment_.world.step * static_cast<std::int64_t>(tick_); }
+  std::chrono::nanoseconds time() const { return experiment_->world.step * static_cast<std::int64_t>(tick_); }
 
   std::uint32_t robot_count() const { return robots_.size(); }
   const std::string& robot_name(std::uint32_t robot) const { return robots_.name(robot); }
@@ -118,9 +119,10 @@ class Simulation {
   /// One after the other, with one sensing after all of them.
   std::vector<ActionResult> act(std::span<const Action> actions);
 
-  /// As it was described, with the models, objects and robots that have come since.
-  const description::Experiment& experiment() const { return experiment_; }
-  const description::World& description() const { return experiment_.world; }
+  /// As it was described, with the models, objects and robots that have come since. Of one that was built like another:
+  /// with the seed and the poses of that one.
+  const description::Experiment& experiment() const { return *experiment_; }
+  const description::World& description() const { return experiment_->world; }
   /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.
   const Objects& objects() const { return objects_; }
   /// Returns the pose of its root link, X_WL.
@@ -148,8 +150,10 @@ class Simulation {
   const TouchCounts& touches() const { return touches_; }
 
  private:
-  Simulation(description::Experiment experiment, unsigned threads, const Simulation* like);
-  description::Experiment again_with(std::uint64_t seed, std::span<const Pose> X_WM) const;
+  // `X_WM`: as make_world has them.
+  Simulation(SharedExperiment experiment, std::uint64_t seed, std::span<const Pose> X_WM, unsigned threads,
+             const Simulation* like);
+  const SharedExperiment& shared_with_one_at(std::span<const Pose> X_WM) const;
   // Whatever is part of the state hash is about to change, or has just done so.
   void note_change() { state_hash_.reset(); }
   bool note_if(bool has_changed) {
@@ -170,7 +174,8 @@ class Simulation {
   void save_added(SnapshotWriter& writer) const;
   void restore_added(SnapshotReader& reader);
 
-  description::Experiment experiment_;  // with what has come since
+  SharedExperiment experiment_;  // with what has come since
+  std::uint64_t seed_;
   mutable WorkerPool workers_;
   std::unique_ptr<physics::World> world_;
   BreakableJoints breakable_joints_;

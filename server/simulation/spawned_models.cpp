@@ -27,7 +27,7 @@ std::size_t SpawnedModels::find_or_add(const ModelChoice& choice) {
 }
 
 std::size_t SpawnedModels::find(const std::string& name) const {
-  const auto& models = experiment_.world.models;
+  const auto& models = experiment_->world.models;
   if (name.empty()) throw std::invalid_argument("expected the name of one of the world's models, or a model");
   check_name(name, "the name of the model");
   const auto named = std::ranges::find(models, name, &description::Model::name);
@@ -43,12 +43,12 @@ std::size_t SpawnedModels::find_or_add(const description::ParsedModel& parsed) {
   if (known != texts_.end()) return described_ + static_cast<std::size_t>(known - texts_.begin());
   check_utf8(parsed.text, "the text of the model");
   add(parsed);
-  return experiment_.world.models.size() - 1;
+  return experiment_->world.models.size() - 1;
 }
 
 // Names of materials that the world has not known are added in their order.
 void SpawnedModels::add(const description::ParsedModel& parsed) {
-  description::World& world = experiment_.world;
+  description::World& world = experiment_.edit().world;
   texts_.push_back({parsed.text, world.materials.size()});
   std::vector<std::uint32_t> in_world;
   for (const std::string& material : parsed.materials) in_world.push_back(find_or_append(world.materials, material));
@@ -63,8 +63,9 @@ void SpawnedModels::add(const description::ParsedModel& parsed) {
 
 void SpawnedModels::shrink(std::size_t count) {
   while (texts_.size() > count) {
-    experiment_.world.models.pop_back();
-    experiment_.world.materials.resize(texts_.back().materials_before);
+    description::World& world = experiment_.edit().world;
+    world.models.pop_back();
+    world.materials.resize(texts_.back().materials_before);
     texts_.pop_back();
   }
 }
@@ -86,8 +87,8 @@ void SpawnedModels::restore(SnapshotReader& reader) {
     std::string text(reader.read_count(1), ' ');
     reader.read_all(text.data(), text.size());
     try {
-      if (!experiment_.read_model) throw std::invalid_argument("this experiment reads no texts of models");
-      add(*experiment_.read_model(text));
+      if (!experiment_->read_model) throw std::invalid_argument("this experiment reads no texts of models");
+      add(*experiment_->read_model(text));
     } catch (const std::invalid_argument& error) {
       throw SnapshotError(std::string("the snapshot has a model that cannot be read: ") + error.what());
     }

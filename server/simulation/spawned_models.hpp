@@ -8,6 +8,7 @@
 #include "server/core/snapshot.hpp"
 #include "server/description/experiment.hpp"
 #include "server/simulation/action.hpp"
+#include "server/simulation/shared_experiment.hpp"
 
 namespace cohort {
 
@@ -16,8 +17,8 @@ namespace cohort {
 class SpawnedModels {
  public:
   /// Adds to the models and materials of `experiment`, which must outlive this.
-  explicit SpawnedModels(description::Experiment& experiment)
-      : experiment_(experiment), described_(experiment.world.models.size()) {}
+  explicit SpawnedModels(SharedExperiment& experiment)
+      : experiment_(experiment), described_(experiment->world.models.size()) {}
 
   /// The index of the model; one of a text that has not come before is new. Throws std::invalid_argument if the world
   /// has no model of the name.
@@ -40,7 +41,7 @@ class SpawnedModels {
   std::size_t find_or_add(const description::ParsedModel& parsed);
   void add(const description::ParsedModel& parsed);
 
-  description::Experiment& experiment_;
+  SharedExperiment& experiment_;
   std::size_t described_;
   std::vector<Text> texts_;
 };

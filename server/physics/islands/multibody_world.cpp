@@ -23,7 +23,8 @@ IslandSolver& solver_of_this_thread() {
 
 }  // namespace
 
-MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like)
+MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like,
+                               std::span<const Pose> X_WM)
     : description_(description),
       workers_(workers),
       mechanisms_(description.models.size()),
@@ -38,7 +39,8 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
     assembly_.fluid_models = like->assembly_.fluid_models;
   }
   bodies_.reserve(description.instances.size());
-  for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
+  for (const description::Instance& instance : description.instances)
+    create_body(instance.model, X_WM.empty() ? instance.X_WM : X_WM[bodies_.size()]);
   assembly_.scene.build();
   find_lowest();
   for (std::size_t body = 0; body < bodies_.size(); ++body)

@@ -18,8 +18,9 @@ namespace cohort::physics {
 /// other, so it does not matter which worker has which.
 class MultibodyWorld final : public World, private WorldConnections {
  public:
-  /// `like`: as make_world has it.
-  MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like = nullptr);
+  /// `like` and `X_WM`: as make_world has them.
+  MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like = nullptr,
+                 std::span<const Pose> X_WM = {});
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }

@@ -36,7 +36,8 @@ double mean_distance(const geometry::Footprint& outline, const Eigen::Vector2d& 
 
 }  // namespace
 
-PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like)
+PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like,
+                         std::span<const Pose> X_WM)
     : description_(description),
       workers_(workers),
       step_(std::chrono::duration<double>(description.step).count()),
@@ -51,7 +52,8 @@ PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& work
   for (unsigned worker = 0; worker < workers.threads(); ++worker)
     memory_.push_back({PlanarSolver(planar_, grounds_), {}, {}});
   bodies_.reserve(description.instances.size());
-  for (const description::Instance& instance : description.instances) create_body(instance.model, instance.X_WM);
+  for (const description::Instance& instance : description.instances)
+    create_body(instance.model, X_WM.empty() ? instance.X_WM : X_WM[bodies_.size()]);
   scene_.build();
   for (std::uint32_t member = 0; member < members_.size(); ++member) put_on_ground(member);
   for (std::size_t body = 0; body < bodies_.size(); ++body)

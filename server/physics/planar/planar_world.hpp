@@ -37,8 +37,10 @@ class PlanarWorld final : public World, private WorldConnections {
  public:
   /// Throws std::invalid_argument for a world or a model that cannot be planar: gravity that is not along -z, water,
   /// ground that is not level, none under a body, a joint that moves against the world, a belt, a rotor, a fin, drag,
-  /// a link that feels a wind, or a robot that leans by more than a milliradian. `like`: as make_world has it.
-  PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like = nullptr);
+  /// a link that feels a wind, or a robot that leans by more than a milliradian. `like` and `X_WM`: as make_world has
+  /// them.
+  PlanarWorld(const description::World& description, WorkerPool& workers, const PlanarWorld* like = nullptr,
+              std::span<const Pose> X_WM = {});
 
   void step() override;
   std::span<const Quarantine> quarantined() const override { return quarantined_; }

@@ -234,6 +234,28 @@ TEST_P(Actions, ObjectsAreSpawnedFromTheTextOfAModelInAnyFormat) {
   EXPECT_GT(simulation.object_pose(object(simulation, "d")).position.x(), -1.98);
 }
 
+TEST_P(Actions, NothingIsAddedWhileWorldsShareTheirExperiment) {
+  constexpr const char* refusal = "nothing can be added to a world that shares its experiment with other worlds";
+  Simulation grown(experiment_, 1);
+  grown.act(SpawnObject{"more", "box", at(4, 4, 0.2)});
+  Simulation first(experiment_, 1);
+  std::vector<Pose> X_WM;
+  for (const description::Instance& instance : experiment_.world.instances) X_WM.push_back(instance.X_WM);
+  {
+    Simulation second(first, experiment_.seed, X_WM);
+    for (Simulation* simulation : {&first, &second}) {
+      const std::uint64_t before = simulation->state_hash();
+      EXPECT_EQ(why_not(*simulation, SpawnObject{"more", "box", at(4, 4, 0.2)}), refusal);
+      EXPECT_EQ(why_not(*simulation, SpawnObject{"more", model_of_text(crate_sdf), at(4, 4, 0.2)}), refusal);
+      EXPECT_EQ(simulation->state_hash(), before);
+      EXPECT_EQ(simulation->objects().size(), experiment_.world.instances.size());
+    }
+    EXPECT_THROW(second.restore(grown.save()), SnapshotError);
+  }
+  first.act(SpawnObject{"more", "box", at(4, 4, 0.2)});
+  EXPECT_EQ(first.state_hash(), grown.state_hash());
+}
+
 TEST_P(Actions, ATextThatIsNoModelIsRefusedWithLineAndReason) {
   const auto reason = [&](const std::string& text) -> std::string {
     try {

@@ -120,7 +120,7 @@ std::optional<Target> Grippers::find_target(std::uint32_t number) const {
     const geometry::Solid& solid = world_.scene().solid(index);
     if (solid.body == gripper.body) return;
     if (!description_.models[world_.model_of(solid.body)].grip_rings.empty()) bodies.push_back(solid.body);
-    if (solid.surface.is_grippable) consider_solid(gripper, X_WG, index, best);
+    if (solid.surface().is_grippable) consider_solid(gripper, X_WG, index, best);
   });
   std::sort(bodies.begin(), bodies.end());
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
@@ -161,7 +161,7 @@ void Grippers::consider_solid(const Gripper& gripper, const Pose& X_WG, std::uin
       const Vector3d direction_W = X_WG.orientation * Vector3d(std::cos(bearing), std::sin(bearing), 0.0);
       const auto hit = world_.scene().cast_ray_among({&index, 1}, from_W, direction_W, device.depth);
       if (hit)
-        improve(best, {solid.body, LinkId{solid.link}, from_W + hit->distance * direction_W, axis_W, hit->distance});
+        improve(best, {solid.body, LinkId{solid.link()}, from_W + hit->distance * direction_W, axis_W, hit->distance});
     }
   }
 }

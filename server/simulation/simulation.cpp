@@ -126,7 +126,7 @@ void Simulation::note_bodies() {
   const geometry::Scene& scene = world_->scene();
   is_ground_.resize(world_->body_count(), 0);
   for (; solids_noted_ < scene.size(); ++solids_noted_)
-    if (geometry::is_ground(scene.solid(solids_noted_).shape)) is_ground_[scene.solid(solids_noted_).body.value] = 1;
+    if (geometry::is_ground(scene.solid(solids_noted_).shape())) is_ground_[scene.solid(solids_noted_).body.value] = 1;
 }
 
 void Simulation::name_quarantined() {

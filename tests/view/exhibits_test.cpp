@@ -44,7 +44,7 @@ TEST_F(WhatThePageShows, HasHillsAsHighAsTheirGround) {
   for (const double x : {-1.31, -0.47, 0.22, 0.93, 1.62})
     for (const double y : {-1.53, -0.18, 0.71, 1.44}) {
       const auto hit = solids.cast_ray({x, y, 10.0}, -Eigen::Vector3d::UnitZ(), 20.0);
-      if (hit && geometry::is_ground(solids.solid(hit->solid).shape)) places.push_back({x, y, 10.0 - hit->distance});
+      if (hit && geometry::is_ground(solids.solid(hit->solid).shape())) places.push_back({x, y, 10.0 - hit->distance});
     }
   ASSERT_GT(places.size(), 10u);
   test::write_file(scratch / "heights.json", places.dump());

@@ -85,12 +85,12 @@ TraceRecorder::TraceRecorder(const description::World& world, const Simulation& 
     lowest_robot = std::min(lowest_robot, scene.bounds(i).lower.z());
     double& radius = trace_.robots[robot].radius;
     const Eigen::Vector2d centre_V = seen(simulation.robot_pose(robot).position);
-    radius = std::max(radius, std::visit(Reach{pose_seen(solid.X_WC), centre_V}, solid.shape));
+    radius = std::max(radius, std::visit(Reach{pose_seen(solid.X_WC), centre_V}, solid.shape()));
   }
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const bool below = !solid.moves && scene.bounds(i).upper.z() <= lowest_robot + floor_tolerance;
-    if (!geometry::is_ground(solid.shape) && !below) is_floor_[solid.body.value] = 0;
+    if (!geometry::is_ground(solid.shape()) && !below) is_floor_[solid.body.value] = 0;
   }
   sample();
   if (viewpoint == Viewpoint::side) note_robots(&RobotTrace::at_start);
@@ -162,7 +162,7 @@ void TraceRecorder::note_robots(std::vector<TracedSolid> RobotTrace::*solids) {
   for (std::uint32_t i = 0; i < scene.size(); ++i) {
     const Solid& solid = scene.solid(i);
     const std::uint32_t robot = robot_of(solid.body);
-    if (robot != none && simulation_.is_present(robot)) add(robot, solid.shape, solid.X_WC);
+    if (robot != none && simulation_.is_present(robot)) add(robot, solid.shape(), solid.X_WC);
   }
 }
 
@@ -175,7 +175,7 @@ RunTrace TraceRecorder::finish() {
     const Solid& solid = scene.solid(i);
     if (!simulation_.objects().is_present(solid.body.value)) continue;
     const bool of_robot = robot_of(solid.body) != none;
-    if (!of_robot && !geometry::is_ground(solid.shape) && scene.bounds(i).lower.allFinite() &&
+    if (!of_robot && !geometry::is_ground(solid.shape()) && scene.bounds(i).lower.allFinite() &&
         scene.bounds(i).upper.allFinite())
       order.push_back(i);
   }
@@ -187,7 +187,7 @@ RunTrace TraceRecorder::finish() {
     const Solid& solid = scene.solid(i);
     using Kind = TracedSolid::Kind;
     const Kind kind = solid.moves ? Kind::object : is_floor(solid.body) ? Kind::floor : Kind::obstacle;
-    trace_.solids.push_back({kind, solid.shape, pose_seen(solid.X_WC)});
+    trace_.solids.push_back({kind, solid.shape(), pose_seen(solid.X_WC)});
   }
   for (const emission::Lamp& lamp : simulation_.emitters().lamps()) {
     const bool of_robot = robot_of(lamp.mount.body) != none;

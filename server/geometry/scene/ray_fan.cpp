@@ -8,7 +8,7 @@ RayFan::RayFan(const Scene& scene, const Eigen::Vector3d& centre_W, const Bounds
     : scene_(scene), centre_W_(centre_W) {
   scene.for_each_overlap(region, [&](std::uint32_t solid) {
     if (scene.solid(solid).body == ignored_body) return;
-    const Scene::Ball& ball = scene.ball(solid);
+    const Scene::Ball ball = scene.ball(solid);
     candidates_.push_back({(ball.centre_W - centre_W).norm() - ball.radius, ball, solid});
   });
   std::sort(candidates_.begin(), candidates_.end(),

@@ -1,6 +1,7 @@
 #include "server/geometry/scene/scene.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "server/core/infinity.hpp"
 
@@ -12,23 +13,25 @@ constexpr double most_cells = 64.0;
 
 }  // namespace
 
-std::uint32_t Scene::add(Solid solid) {
+std::uint32_t Scene::add(SolidKindPtr kind, BodyId body, bool moves, const Pose& X_WC) {
   const auto index = static_cast<std::uint32_t>(solids_.size());
-  bounds_.push_back(bounds_of(solid.shape, solid.X_WC));
-  X_CW_.push_back(solid.X_WC.inverse());
-  constexpr double rounding = 1e-9;
-  balls_.push_back({solid.X_WC.position, radius_of(solid.shape) * (1.0 + rounding) + rounding});
-  const auto* const mesh = std::get_if<description::Mesh>(&solid.shape);
-  surfaces_.push_back(mesh != nullptr ? surface_of(*mesh) : nullptr);
+  const double radius = kind->radius;
+  bounds_.push_back(bounds_of(kind->shape, X_WC));
+  p_CW_.push_back(X_WC.inverse().position);
   is_removed_.push_back(0);
-  solids_.push_back(std::move(solid));
+  solids_.push_back({std::move(kind), body, moves, radius, X_WC});
   return index;
 }
 
-std::shared_ptr<const MeshSurface> Scene::surface_of(const description::Mesh& mesh) {
-  std::shared_ptr<const MeshSurface>& surface = shared_[{mesh.triangles.get(), mesh.convex}];
-  if (!surface) surface = std::make_shared<const MeshSurface>(mesh);
-  return surface;
+std::uint32_t Scene::add(const LoneSolid& solid) {
+  return add(make_solid_kind({.shape = solid.shape, .surface = solid.surface}), solid.body, solid.moves, solid.X_WC);
+}
+
+void Scene::reserve(std::size_t solids) {
+  solids_.reserve(solids);
+  p_CW_.reserve(solids);
+  bounds_.reserve(solids);
+  is_removed_.reserve(solids);
 }
 
 // As wide as the widest body that moves, but for the few that are much wider than the others. Not much narrower than
@@ -40,7 +43,7 @@ double Scene::choose_cell_size() const {
   for (std::uint32_t index = 0; index < solids_.size(); ++index) {
     if (!solids_[index].moves) continue;
     double& widest = widest_of[solids_[index].body];
-    widest = std::max(widest, 2.0 * balls_[index].radius);
+    widest = std::max(widest, 2.0 * solids_[index].radius);
   }
   if (widest_of.empty()) return 1.0;
   std::vector<double> widths;
@@ -60,7 +63,7 @@ void Scene::build() {
   std::vector<std::uint32_t> small;
   for (std::uint32_t index = 0; index < solids_.size(); ++index) {
     if (is_removed_[index]) continue;
-    const double width = 2.0 * balls_[index].radius;
+    const double width = 2.0 * solids_[index].radius;
     if (!solids_[index].moves) {
       (static_grid_.cells_covered(bounds_[index]) > most_cells ? large_ : small).push_back(index);
     } else {
@@ -90,21 +93,22 @@ void Scene::put_back(std::uint32_t index) {
 
 void Scene::set_pose(std::uint32_t index, const Pose& X_WC) {
   solids_[index].X_WC = X_WC;
-  X_CW_[index] = X_WC.inverse();
-  balls_[index].centre_W = X_WC.position;
-  bounds_[index] = bounds_of(solids_[index].shape, X_WC);
+  p_CW_[index] = X_WC.inverse().position;
+  bounds_[index] = bounds_of(solids_[index].shape(), X_WC);
 }
 
 double Scene::improve(std::optional<RayHit>& best, std::uint32_t index, const Eigen::Vector3d& origin_W,
                       const Eigen::Vector3d& direction_W, double range) const {
   const double reach = best ? best->distance : range;
-  const Eigen::Vector3d origin_C = X_CW_[index] * origin_W;
-  const Eigen::Vector3d direction_C = X_CW_[index].orientation * direction_W;
-  const RayEntry entry = surfaces_[index] ? surfaces_[index]->cast_ray(origin_C, direction_C, reach)
-                                          : geometry::cast_ray(solids_[index].shape, origin_C, direction_C, reach);
+  const Solid& solid = solids_[index];
+  const Pose X_CW{p_CW_[index], solid.X_WC.orientation.conjugate()};
+  const Eigen::Vector3d origin_C = X_CW * origin_W;
+  const Eigen::Vector3d direction_C = X_CW.orientation * direction_W;
+  const RayEntry entry = solid.kind->mesh ? solid.kind->mesh->cast_ray(origin_C, direction_C, reach)
+                                          : geometry::cast_ray(solid.shape(), origin_C, direction_C, reach);
   const bool is_nearer = entry.distance < reach || (entry.distance == reach && (!best || index < best->solid));
   if (!is_nearer || !(entry.distance < infinity)) return reach;
-  best = RayHit{entry.distance, index, solids_[index].X_WC.orientation * entry.normal};
+  best = RayHit{entry.distance, index, solid.X_WC.orientation * entry.normal};
   return entry.distance;
 }
 
@@ -113,7 +117,7 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& origin_W, const Eig
   std::optional<RayHit> best;
   const auto test = [&](std::uint32_t index) {
     const double reach = best ? best->distance : range;
-    if (solids_[index].body == ignored_body || balls_[index].is_missed(origin_W, direction_W, reach)) return reach;
+    if (solids_[index].body == ignored_body || ball(index).is_missed(origin_W, direction_W, reach)) return reach;
     return improve(best, index, origin_W, direction_W, range);
   };
   for (const std::uint32_t index : large_) test(index);
@@ -131,7 +135,7 @@ bool Scene::is_free(const Eigen::Vector3d& origin_W, const Eigen::Vector3d& dire
   const auto test = [&](std::uint32_t index) {
     const BodyId body = solids_[index].body;
     if (hit || body == ignored_body || body == other_ignored_body ||
-        balls_[index].is_missed(origin_W, direction_W, range))
+        ball(index).is_missed(origin_W, direction_W, range))
       return hit ? no_further : range;
     improve(hit, index, origin_W, direction_W, range);
     return hit ? no_further : range;
@@ -148,13 +152,13 @@ std::optional<RayHit> Scene::cast_ray_among(std::span<const std::uint32_t> candi
                                             const Eigen::Vector3d& direction_W, double range) const {
   std::optional<RayHit> best;
   for (const std::uint32_t index : candidates)
-    if (!balls_[index].is_missed(origin_W, direction_W, best ? best->distance : range))
+    if (!ball(index).is_missed(origin_W, direction_W, best ? best->distance : range))
       improve(best, index, origin_W, direction_W, range);
   return best;
 }
 
 bool Scene::reaches(std::uint32_t large_solid, const Bounds& query) const {
-  const auto* plane = std::get_if<description::Plane>(&solids_[large_solid].shape);
+  const auto* plane = std::get_if<description::Plane>(&solids_[large_solid].shape());
   if (plane == nullptr) return bounds_[large_solid].overlaps(query);
   const Eigen::Vector3d normal_W = solids_[large_solid].X_WC.orientation * plane->normal;
   const Eigen::Vector3d centre = 0.5 * (query.lower + query.upper);

@@ -1,32 +1,25 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "server/core/ids.hpp"
-#include "server/description/model.hpp"
 #include "server/geometry/scene/corner_grid.hpp"
 #include "server/geometry/scene/grid.hpp"
-#include "server/geometry/shapes/mesh_surface.hpp"
+#include "server/geometry/scene/solid.hpp"
 #include "server/geometry/shapes/shapes.hpp"
 
 namespace cohort::geometry {
 
-/// One collision shape, placed in the world.
-struct Solid {
+/// A solid that belongs to no model.
+struct LoneSolid {
   Shape shape;
   description::Surface surface;
-  BodyId body;  ///< whose it is; solids of one body do not see each other
+  BodyId body;
   bool moves = false;
   Pose X_WC;
-  std::uint32_t link = 0;       ///< of the body's model
-  std::uint32_t collision = 0;  ///< of the link
-  Eigen::Vector3d color = description::default_color();
 };
 
 struct RayHit {
@@ -42,7 +35,10 @@ class Scene {
   static constexpr BodyId no_body{0xffffffffu};
 
   /// Adds a solid; `build` must follow before the first query. Returns its index.
-  std::uint32_t add(Solid solid);
+  std::uint32_t add(SolidKindPtr kind, BodyId body, bool moves, const Pose& X_WC);
+  std::uint32_t add(const LoneSolid& solid);
+  /// Takes memory for as many solids, so that there is none to spare after they were added.
+  void reserve(std::size_t solids);
   /// Chooses the cell size and sorts what does not move. After the last `add`; again if more are added later.
   void build();
   /// Takes a solid out of all further queries, until `put_back`. Its index is never another one's.
@@ -85,7 +81,7 @@ class Scene {
       return along < -radius || along > reach + radius || offset.squaredNorm() - along * along > radius * radius;
     }
   };
-  const Ball& ball(std::uint32_t index) const { return balls_[index]; }
+  Ball ball(std::uint32_t index) const { return {solids_[index].X_WC.position, solids_[index].radius}; }
 
   /// Makes `best` the solid's hit if that is nearer along the ray, or as near and of a lower index. Returns how far a
   /// nearer hit may be.
@@ -94,8 +90,8 @@ class Scene {
 
   /// Whether a solid's bounds overlap `query`, or, of a plane, it reaches into it.
   bool reaches_into(std::uint32_t index, const Bounds& query) const {
-    return std::holds_alternative<description::Plane>(solids_[index].shape) ? reaches(index, query)
-                                                                            : bounds_[index].overlaps(query);
+    return std::holds_alternative<description::Plane>(solids_[index].shape()) ? reaches(index, query)
+                                                                              : bounds_[index].overlaps(query);
   }
 
   /// Calls `visit(index)` once for each solid whose bounds overlap `query` (for a plane: that it reaches into).
@@ -117,14 +113,10 @@ class Scene {
 
  private:
   double choose_cell_size() const;
-  std::shared_ptr<const MeshSurface> surface_of(const description::Mesh& mesh);
   bool reaches(std::uint32_t large_solid, const Bounds& query) const;
   std::vector<Solid> solids_;
-  std::vector<Pose> X_CW_;  // inverse of each solid's pose
+  std::vector<Eigen::Vector3d> p_CW_;  // of each solid: the world's origin as it sees it
   std::vector<Bounds> bounds_;
-  std::vector<Ball> balls_;                                   // around each solid
-  std::vector<std::shared_ptr<const MeshSurface>> surfaces_;  // of each solid that is a mesh
-  std::map<std::pair<const description::TriangleMesh*, bool>, std::shared_ptr<const MeshSurface>> shared_;
   std::vector<char> is_removed_;
   // What does not move.
   std::vector<std::uint32_t> large_;  // planes, and what would fill many cells

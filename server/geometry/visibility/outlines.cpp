@@ -115,7 +115,7 @@ struct Circumscribe {
 }  // namespace
 
 std::optional<Outline> outline_of(const Solid& solid, const Bounds& bounds) {
-  return std::visit(Circumscribe{solid.X_WC, bounds}, solid.shape);
+  return std::visit(Circumscribe{solid.X_WC, bounds}, solid.shape());
 }
 
 Outlines::Outlines(const Scene& scene) : scene_(&scene), item_of_(scene.size(), none) {

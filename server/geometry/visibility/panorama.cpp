@@ -137,10 +137,10 @@ Extent extent_of(const description::Plane& plane, const Pose& X_WC, const Pose& 
 
 Extent extent_of(const Scene& scene, std::uint32_t index, const Pose& X_WS, const Pose& X_SW) {
   const Solid& solid = scene.solid(index);
-  if (const auto* plane = std::get_if<description::Plane>(&solid.shape)) return extent_of(*plane, solid.X_WC, X_WS);
-  if (const auto* box = std::get_if<description::Box>(&solid.shape))
+  if (const auto* plane = std::get_if<description::Plane>(&solid.shape())) return extent_of(*plane, solid.X_WC, X_WS);
+  if (const auto* box = std::get_if<description::Box>(&solid.shape()))
     return extent_of(corners_of(-0.5 * box->size, 0.5 * box->size, X_SW * solid.X_WC));
-  if (std::holds_alternative<description::Mesh>(solid.shape))
+  if (std::holds_alternative<description::Mesh>(solid.shape()))
     return extent_of(corners_of(scene.bounds(index).lower, scene.bounds(index).upper, X_SW));
   return extent_of(scene.ball(index), X_SW);
 }
@@ -215,7 +215,7 @@ void Panorama::cast(const Outlines& outlines, const Pose& X_WS, double range, Bo
   directions_W.reserve(directions_S_.size());
   for (const Vector3d& direction_S : directions_S_) directions_W.push_back(X_WS.orientation * direction_S);
   for (const Window& window : windows) {
-    const Scene::Ball& ball = scene.ball(window.solid);
+    const Scene::Ball ball = scene.ball(window.solid);
     for (std::size_t row = window.first_row; row < window.last_row; ++row) {
       std::size_t column = window.first_column;
       for (std::size_t i = 0; i < window.columns; ++i) {

@@ -40,8 +40,8 @@ void ShadowRing::cast(const Scene& scene, const Vector3d& p_WR, double heading, 
   disc.lower.z() = disc.upper.z() = p_WR.z();
   scene.for_each_overlap(disc, [&](std::uint32_t index) {
     const Solid& solid = scene.solid(index);
-    if (solid.body == ignored_body || std::holds_alternative<description::Heightmap>(solid.shape)) return;
-    if (const auto* plane = std::get_if<description::Plane>(&solid.shape)) {
+    if (solid.body == ignored_body || std::holds_alternative<description::Heightmap>(solid.shape())) return;
+    if (const auto* plane = std::get_if<description::Plane>(&solid.shape())) {
       const Vector3d normal_W = solid.X_WC.orientation * plane->normal;
       if (normal_W.head<2>().norm() > level)
         shade_by_line(turned(normal_W.head<2>()), normal_W.dot(p_WR - solid.X_WC.position), range, distances);

@@ -71,7 +71,7 @@ void SightLines::build(const Outlines& outlines, const Vector3d& p_WS, double ra
 void SightLines::add(const Outlines::Item& item) {
   if (!item.outline) {
     const Solid& solid = scene_->solid(item.solid);
-    if (const auto* plane = std::get_if<description::Plane>(&solid.shape)) {
+    if (const auto* plane = std::get_if<description::Plane>(&solid.shape())) {
       const Vector3d normal_W = solid.X_WC.orientation * plane->normal;
       const Vector3d offset_W = p_WS_ - solid.X_WC.position;
       planes_.push_back({normal_W, normal_W.dot(offset_W), rounding_of(offset_W.norm()), item.solid, item.body});

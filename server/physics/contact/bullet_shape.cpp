@@ -127,7 +127,8 @@ struct Make {
 
 }  // namespace
 
-BulletShape::BulletShape(const geometry::Shape& shape) : data_(std::make_unique<Data>()) {
+BulletShape::BulletShape(const geometry::Shape& shape)
+    : data_(std::make_unique<Data>()), half_thickness_(geometry::half_thickness_of(shape)) {
   if (const auto* mesh = std::get_if<description::Mesh>(&shape)) data_->mesh = mesh->triangles;
   if (const auto* map = std::get_if<description::Heightmap>(&shape)) data_->grid = map->grid;
   data_->shape = std::visit(Make{data_->triangles, offset_}, shape);

@@ -22,11 +22,14 @@ class BulletShape {
   /// By how much Bullet finds others nearer than they are, but for spheres [m]: meshes that are surfaces and height
   /// maps have a skin, or it would find them only once they are reached.
   double skin() const;
+  /// As geometry::half_thickness_of [m].
+  double half_thickness() const { return half_thickness_; }
 
  private:
   struct Data;
   std::unique_ptr<Data> data_;
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();
+  double half_thickness_;
 };
 
 }  // namespace cohort::physics

@@ -21,26 +21,28 @@ BulletNarrowPhase& narrow_phase() {
 Collision::Collision(const geometry::Scene& scene, MayTouch may_touch)
     : scene_(scene), may_touch_(std::move(may_touch)) {}
 
-void Collision::add(std::shared_ptr<const BulletShape> shape) {
-  const auto solid = static_cast<std::uint32_t>(shapes_.size());
-  constexpr double nearly = 0.9;
-  furthest_unseen_.push_back(nearly * geometry::half_thickness_of(scene_.solid(solid).shape));
-  ways_.emplace_back(Eigen::Vector3d::Zero());
-  is_asleep_.push_back(0);
+void Collision::add(std::shared_ptr<const BulletShape> shape, bool moves) {
   shapes_.push_back(std::move(shape));
-  pairs_.emplace_back();
+  place_.push_back(moves ? static_cast<std::uint32_t>(moving_.size()) : nowhere);
+  if (moves) moving_.emplace_back();
+}
+
+void Collision::reserve(std::size_t solids) {
+  shapes_.reserve(solids);
+  place_.reserve(solids);
 }
 
 void Collision::remove(std::uint32_t solid) {
-  pairs_[solid].clear();
-  ways_[solid].setZero();
-  for (std::vector<SolidPair>& pairs : pairs_)
-    std::erase_if(pairs, [&](const SolidPair& pair) { return pair.b == solid; });
+  if (moves(solid)) {
+    moving_[place_[solid]].pairs.clear();
+    moving_[place_[solid]].way_W.setZero();
+  }
+  for (Moving& moving : moving_) std::erase_if(moving.pairs, [&](const SolidPair& pair) { return pair.b == solid; });
 }
 
 void Collision::detect(std::uint32_t solid, std::span<const std::uint32_t> near) {
   find_pairs(solid, near);
-  for (SolidPair& pair : pairs_[solid]) {
+  for (SolidPair& pair : pairs_of(solid)) {
     find_contact(pair);
     if (!is_fast(solid)) continue;
     if (pair.contact.count == 0)
@@ -58,20 +60,21 @@ geometry::Bounds Collision::region_along(std::uint32_t solid, const Eigen::Vecto
 }
 
 bool Collision::reports(std::uint32_t solid, std::uint32_t other) const {
-  if (!scene_.solid(other).moves) return true;
-  if (is_asleep_[solid] != is_asleep_[other]) return is_asleep_[other] != 0;
+  if (!moves(other)) return true;
+  if (is_asleep(solid) != is_asleep(other)) return is_asleep(other);
   return is_fast(solid) == is_fast(other) ? solid < other : is_fast(solid);
 }
 
 bool Collision::makes_a_pair(std::uint32_t solid, std::uint32_t other) const {
-  if (!reports(solid, other) || !may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return false;
-  if (!scene_.reaches_into(other, region_along(solid, ways_[solid] - ways_[other]))) return false;
+  if (!reports(solid, other) || !may_collide(scene_.solid(solid).surface(), scene_.solid(other).surface()))
+    return false;
+  if (!scene_.reaches_into(other, region_along(solid, way_of(solid) - way_of(other)))) return false;
   return scene_.solid(other).body != scene_.solid(solid).body || may_touch_(solid, other);
 }
 
 // Old pairs that are still near keep what they know.
 void Collision::find_pairs(std::uint32_t solid, std::span<const std::uint32_t> near) {
-  std::vector<SolidPair>& pairs = pairs_[solid];
+  std::vector<SolidPair>& pairs = moving_[place_[solid]].pairs;
   std::size_t same = 0;
   bool is_same = true;
   for (const std::uint32_t other : near) {
@@ -100,7 +103,7 @@ void Collision::find_contact(SolidPair& pair) {
   const geometry::Solid& a = scene_.solid(pair.a);
   const geometry::Solid& b = scene_.solid(pair.b);
   ContactPoints found;
-  if (find_closed_form_contact(a.shape, a.X_WC, b.shape, b.X_WC, margin, found)) {
+  if (find_closed_form_contact(a.shape(), a.X_WC, b.shape(), b.X_WC, margin, found)) {
     pair.general.reset();
     match_points(pair.contact, found, [](const ContactPoint& old, ContactPoint& point) {
       point.impulse = old.impulse;
@@ -121,7 +124,7 @@ void Collision::find_contact(SolidPair& pair) {
 ContactPoints Collision::contact_at(const Pose& X_WA, std::uint32_t solid, std::uint32_t other) const {
   const geometry::Solid& b = scene_.solid(other);
   ContactPoints found;
-  if (!find_closed_form_contact(scene_.solid(solid).shape, X_WA, b.shape, b.X_WC, margin, found))
+  if (!find_closed_form_contact(scene_.solid(solid).shape(), X_WA, b.shape(), b.X_WC, margin, found))
     BulletContact(narrow_phase(), shapes_[solid], shapes_[other]).update(X_WA, b.X_WC, found);
   return found;
 }
@@ -131,16 +134,16 @@ ContactPoints Collision::contact_at(const Pose& X_WA, std::uint32_t solid, std::
 // ball has no more.
 void Collision::add_points_beside(const Pose& X_WA, std::uint32_t solid, std::uint32_t other,
                                   ContactPoints& found) const {
-  if (found.count > 2 || std::holds_alternative<description::Sphere>(scene_.solid(solid).shape)) return;
+  if (found.count > 2 || std::holds_alternative<description::Sphere>(scene_.solid(solid).shape())) return;
   constexpr double little = 0.01;  // [rad]
   constexpr double askew = 0.46;   // so that no edge is level [rad]
   constexpr double alike = 0.999;  // cosine between normals
-  const Eigen::Vector3d way_W = ways_[solid] - ways_[other];
+  const Eigen::Vector3d way_W = way_of(solid) - way_of(other);
   const auto is_more_against = [&](const ContactPoint& one, const ContactPoint& two) {
     return one.normal_W.dot(way_W) < two.normal_W.dot(way_W);
   };
   const Eigen::Vector3d normal_W = std::ranges::min_element(found, is_more_against)->normal_W;
-  const double apart = 0.5 * furthest_unseen_[solid];
+  const double apart = 0.5 * furthest_unseen(solid);
   ContactPoints beside;
   const auto add = [&](const Eigen::Vector3d& position_W, double gap) {
     const auto is_near = [&](const ContactPoint& point) { return (point.position_W - position_W).norm() < apart; };
@@ -164,8 +167,8 @@ void Collision::add_points_beside(const Pose& X_WA, std::uint32_t solid, std::ui
 Collision::Touch Collision::first_touch(std::uint32_t solid, std::uint32_t other, const Eigen::Vector3d& way_W) const {
   const Pose& X_WA = scene_.solid(solid).X_WC;
   const auto pose_at = [&](double share) { return Pose{X_WA.position + share * way_W, X_WA.orientation}; };
-  double spacing = furthest_unseen_[solid];
-  if (is_fast(other)) spacing = std::min(spacing, furthest_unseen_[other]);
+  double spacing = furthest_unseen(solid);
+  if (is_fast(other)) spacing = std::min(spacing, furthest_unseen(other));
   const double places = std::min(most_places, std::ceil(way_W.norm() / spacing));
   double apart = 0.0;
   Touch touch{0.0, {}};
@@ -191,13 +194,13 @@ Collision::Touch Collision::first_touch(std::uint32_t solid, std::uint32_t other
 // Of two that are apart, but of which one is so fast that they may have passed through each other at the end of the
 // step: where they will touch.
 void Collision::find_contact_on_the_way(SolidPair& pair) {
-  const Eigen::Vector3d way_W = ways_[pair.a] - ways_[pair.b];  // of a as b sees it
+  const Eigen::Vector3d way_W = way_of(pair.a) - way_of(pair.b);  // of a as b sees it
   Touch touch = first_touch(pair.a, pair.b, way_W);
   if (touch.points.count == 0) return;
   const Pose& X_WA = scene_.solid(pair.a).X_WC;
   add_points_beside({X_WA.position + touch.share * way_W, X_WA.orientation}, pair.a, pair.b, touch.points);
   // As if a were where it is now: the faster of the two has come the longer way to where they meet.
-  const double of_a = ways_[pair.a].norm() / (ways_[pair.a].norm() + ways_[pair.b].norm());
+  const double of_a = way_of(pair.a).norm() / (way_of(pair.a).norm() + way_of(pair.b).norm());
   for (const ContactPoint& point : touch.points) {
     const double closes = -touch.share * point.normal_W.dot(way_W);
     if (closes > 0.0)
@@ -206,12 +209,12 @@ void Collision::find_contact_on_the_way(SolidPair& pair) {
 }
 
 double Collision::free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) const {
-  if (!((way_W - ways_[solid]).norm() > furthest_unseen_[solid])) return 1.0;  // as foreseen, or not a number
+  if (!((way_W - way_of(solid)).norm() > furthest_unseen(solid))) return 1.0;  // as foreseen, or not a number
   double share = 1.0;
   scene_.for_each_static_overlap(region_along(solid, way_W), [&](std::uint32_t other) {
-    if (!may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return;
+    if (!may_collide(scene_.solid(solid).surface(), scene_.solid(other).surface())) return;
     const auto touches = [&](const SolidPair& pair) { return pair.b == other && pair.contact.count > 0; };
-    if (std::ranges::any_of(pairs_[solid], touches)) return;  // the solver knows
+    if (std::ranges::any_of(pairs_of(solid), touches)) return;  // the solver knows
     const Touch touch = first_touch(solid, other, way_W);
     if (touch.points.count > 0) share = std::min(share, touch.share);
   });
@@ -219,8 +222,9 @@ double Collision::free_share(std::uint32_t solid, const Eigen::Vector3d& way_W) 
 }
 
 void Collision::save(SnapshotWriter& writer) const {
-  writer.add_count(pairs_.size());
-  for (const std::vector<SolidPair>& pairs : pairs_) {
+  writer.add_count(place_.size());
+  for (std::uint32_t solid = 0; solid < place_.size(); ++solid) {
+    const std::span<const SolidPair> pairs = moves(solid) ? pairs_of(solid) : std::span<const SolidPair>();
     writer.add_count(pairs.size());
     for (const SolidPair& pair : pairs) {
       writer.add(pair.b);
@@ -233,9 +237,13 @@ void Collision::save(SnapshotWriter& writer) const {
 }
 
 void Collision::restore(SnapshotReader& reader) {
-  reader.expect_count(pairs_.size(), "solids");
-  for (std::uint32_t solid = 0; solid < pairs_.size(); ++solid) {
-    std::vector<SolidPair>& pairs = pairs_[solid];
+  reader.expect_count(place_.size(), "solids");
+  for (std::uint32_t solid = 0; solid < place_.size(); ++solid) {
+    if (!moves(solid)) {
+      reader.expect_count(0, "contacts of a solid that does not move");
+      continue;
+    }
+    std::vector<SolidPair>& pairs = moving_[place_[solid]].pairs;
     pairs.clear();
     constexpr std::size_t least_bytes = 9;
     for (std::size_t count = reader.read_count(least_bytes); count > 0; --count) {
@@ -243,7 +251,7 @@ void Collision::restore(SnapshotReader& reader) {
       pair.a = solid;
       reader.read(pair.b);
       reader.read(pair.contact.count);
-      if (pair.b >= pairs_.size() || pair.contact.count < 0 || pair.contact.count > ContactPoints::most)
+      if (pair.b >= place_.size() || pair.contact.count < 0 || pair.contact.count > ContactPoints::most)
         throw SnapshotError("the snapshot has a contact of a solid that is not there");
       for (ContactPoint& point : pair.contact) ContactPoint::visit_state(point, StateRestorer{reader});
       bool is_general = false;

@@ -31,21 +31,26 @@ class Collision {
   Collision(const geometry::Scene& scene, MayTouch may_touch);
 
   /// Solids in the order of the scene, each with Bullet's shape of it.
-  void add(std::shared_ptr<const BulletShape> shape);
+  void add(std::shared_ptr<const BulletShape> shape, bool moves);
+  /// Takes memory for as many solids.
+  void reserve(std::size_t solids);
   /// Forgets a solid that is no longer in the scene.
   void remove(std::uint32_t solid);
 
   /// Further than this in one step a solid could pass through another one without ever touching it [m]: it is fast.
-  double furthest_unseen(std::uint32_t solid) const { return furthest_unseen_[solid]; }
+  double furthest_unseen(std::uint32_t solid) const {
+    constexpr double nearly = 0.9;
+    return nearly * shapes_[solid]->half_thickness();
+  }
   /// Further than this nothing is followed in one step [m].
-  double furthest_followed(std::uint32_t solid) const { return most_places * furthest_unseen_[solid]; }
-  /// Where a solid that is fast will be at the end of the step if nothing holds it, less where it is [m]; zero for one
-  /// that is not. Different solids from different threads, before `detect`.
-  void set_way(std::uint32_t solid, const Eigen::Vector3d& way_W) { ways_[solid] = way_W; }
+  double furthest_followed(std::uint32_t solid) const { return most_places * furthest_unseen(solid); }
+  /// Where a solid that moves and is fast will be at the end of the step if nothing holds it, less where it is [m];
+  /// zero for one that is not. Different solids from different threads, before `detect`.
+  void set_way(std::uint32_t solid, const Eigen::Vector3d& way_W) { moving_[place_[solid]].way_W = way_W; }
   /// What sleeps leaves its pairs as they are, and reports none with what is awake. Not while others `detect`.
-  void set_asleep(std::uint32_t solid, bool asleep) { is_asleep_[solid] = asleep ? 1 : 0; }
+  void set_asleep(std::uint32_t solid, bool asleep) { moving_[place_[solid]].is_asleep = asleep; }
   /// All places of the solid in the step, and `margin` around them.
-  geometry::Bounds region_of(std::uint32_t solid) const { return region_along(solid, ways_[solid]); }
+  geometry::Bounds region_of(std::uint32_t solid) const { return region_along(solid, way_of(solid)); }
 
   /// Finds the pairs that `solid`, which moves, reports, and their contact points for the present poses or, of what is
   /// fast, for those where the two will meet. `near`: in ascending order all solids, and maybe more, that its region
@@ -63,14 +68,25 @@ class Collision {
   /// With the solids where they were when it was saved.
   void restore(SnapshotReader& reader);
 
-  /// The pairs that solid `a` reports.
-  std::span<SolidPair> pairs_of(std::uint32_t solid) { return pairs_[solid]; }
-  std::span<const SolidPair> pairs_of(std::uint32_t solid) const { return pairs_[solid]; }
+  /// The pairs that solid `a`, which moves, reports.
+  std::span<SolidPair> pairs_of(std::uint32_t solid) { return moving_[place_[solid]].pairs; }
+  std::span<const SolidPair> pairs_of(std::uint32_t solid) const { return moving_[place_[solid]].pairs; }
 
  private:
   static constexpr double most_places = 64.0;  // where one fast solid is looked for on its way
+  static constexpr std::uint32_t nowhere = 0xffffffffu;
+  struct Moving {                    // what a solid that moves has more than others
+    std::vector<SolidPair> pairs{};  // ascending b
+    Eigen::Vector3d way_W = Eigen::Vector3d::Zero();
+    bool is_asleep = false;
+  };
 
-  bool is_fast(std::uint32_t solid) const { return !ways_[solid].isZero(0.0); }
+  bool moves(std::uint32_t solid) const { return place_[solid] != nowhere; }
+  Eigen::Vector3d way_of(std::uint32_t solid) const {
+    return moves(solid) ? moving_[place_[solid]].way_W : Eigen::Vector3d::Zero();
+  }
+  bool is_asleep(std::uint32_t solid) const { return moving_[place_[solid]].is_asleep; }
+  bool is_fast(std::uint32_t solid) const { return !way_of(solid).isZero(0.0); }
   geometry::Bounds region_along(std::uint32_t solid, const Eigen::Vector3d& way_W) const;
   bool reports(std::uint32_t solid, std::uint32_t other) const;
   bool makes_a_pair(std::uint32_t solid, std::uint32_t other) const;
@@ -89,10 +105,8 @@ class Collision {
   const geometry::Scene& scene_;
   std::vector<std::shared_ptr<const BulletShape>> shapes_;
   MayTouch may_touch_;
-  std::vector<std::vector<SolidPair>> pairs_;  // by solid, ascending b
-  std::vector<double> furthest_unseen_;        // by solid
-  std::vector<Eigen::Vector3d> ways_;          // by solid
-  std::vector<std::uint8_t> is_asleep_;        // by solid
+  std::vector<std::uint32_t> place_;  // by solid, in moving_; `nowhere`: it does not move
+  std::vector<Moving> moving_;
 };
 
 }  // namespace cohort::physics

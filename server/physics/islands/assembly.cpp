@@ -44,31 +44,28 @@ Assembly::Assembly(const description::World& world)
       collision(scene, [this](std::uint32_t solid, std::uint32_t other) { return may_touch(solid, other); }),
       media(world) {}
 
-void Assembly::add_solid(BodyId body, const description::Model& model, std::size_t link, std::size_t number,
-                         const Pose& X_WC, Anchors::Part part, std::shared_ptr<const BulletShape> shape) {
-  const description::Collision& part_collision = model.links[link].collisions[number];
-  scene.add({part_collision.shape, part_collision.surface, body, part.member != Anchors::nobody, X_WC,
-             static_cast<std::uint32_t>(link), static_cast<std::uint32_t>(number), model.links[link].color});
-  collision.add(std::move(shape));
+void Assembly::reserve(std::size_t solids) {
+  scene.reserve(solids);
+  collision.reserve(solids);
+  anchors.part_of_solid.reserve(solids);
+}
+
+void Assembly::add_solid(BodyId body, const ModelParts& parts, std::size_t index, const Pose& X_WC,
+                         Anchors::Part part) {
+  const bool moves = part.member != Anchors::nobody;
+  scene.add(parts.kinds[index], body, moves, X_WC);
+  collision.add(parts.shapes[index], moves);
   anchors.part_of_solid.push_back(part);
 }
 
-std::vector<std::uint32_t> Assembly::add_static(BodyId body, const description::Model& model, const Pose& X_WM,
-                                                std::span<const std::shared_ptr<const BulletShape>> shapes) {
-  std::vector<std::uint32_t> solids;
-  for (std::size_t link = 0; link < model.links.size(); ++link) {
-    const std::vector<description::Collision>& parts = model.links[link].collisions;
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      const std::shared_ptr<const BulletShape>& shape = shapes[solids.size()];
-      solids.push_back(static_cast<std::uint32_t>(scene.size()));
-      add_solid(body, model, link, part, X_WM * model.links[link].X_ML * parts[part].X_LC, {}, shape);
-    }
-  }
-  return solids;
+void Assembly::add_static(BodyId body, const description::Model& model, const Pose& X_WM, const ModelParts& parts) {
+  std::size_t index = 0;
+  for (const description::Link& link : model.links)
+    for (const description::Collision& part : link.collisions)
+      add_solid(body, parts, index++, X_WM * link.X_ML * part.X_LC, {});
 }
 
-std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
-                                   std::span<const std::shared_ptr<const BulletShape>> shapes) {
+std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody, const ModelParts& parts) {
   const auto index = static_cast<std::uint32_t>(members.size());
   const Multibody& body = *multibody;
   std::shared_ptr<const FluidModel>& fluid = fluid_models[&body.mechanism()];
@@ -86,20 +83,20 @@ std::uint32_t Assembly::add_member(std::unique_ptr<Multibody> multibody,
     const Segment& root = body.mechanism().segments()[0];
     member.weightless.push_back({0, 0, root.mass, root.centre_S});
   }
-  std::size_t shape = 0;
+  std::size_t next = 0;
   for (std::size_t link = 0; link < links.size(); ++link) {
     const Mechanism::LinkPlace& place = body.mechanism().link(link);
     const description::Inertial& inertial = links[link].inertial;
     if (!links[link].feels_gravity)
       member.weightless.push_back({link, place.segment, inertial.mass, place.X_SL * inertial.X_LI.position});
     for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
-      const std::shared_ptr<const BulletShape>& shape_of_part = shapes[shape++];
+      const std::size_t collision_of_model = next++;
       if (!place.collides) continue;
       const Pose X_SC = place.X_SL * links[link].collisions[part].X_LC;
       const auto solid = static_cast<std::uint32_t>(scene.size());
       member.parts.push_back({solid, place.segment, X_SC});
-      add_solid(body.body(), model, link, part, body.motion().segment_pose(place.segment) * X_SC,
-                {index, place.segment}, shape_of_part);
+      add_solid(body.body(), parts, collision_of_model, body.motion().segment_pose(place.segment) * X_SC,
+                {index, place.segment});
       member.furthest_unseen = std::min(member.furthest_unseen, collision.furthest_unseen(solid));
     }
   }
@@ -247,17 +244,17 @@ void Assembly::add_contact_rows(SolidPair& pair, Problem& problem) const {
   if (is_immovable(pair.a) && (!anchors.moves(pair.b) || is_immovable(pair.b))) return;
   const geometry::Solid& a = scene.solid(pair.a);
   const geometry::Solid& b = scene.solid(pair.b);
-  const SurfacePair both = surfaces.of(a.surface, b.surface);
+  const SurfacePair both = surfaces.of(a.surface(), b.surface());
   const RunningSurfaces running{surface_of(pair.a), surface_of(pair.b)};
   switch (both.directed) {
     case SurfacePair::Directed::neither:
       pair.contact.friction_direction_W = running.a.is_belt() ? running.a.axis_W : running.b.axis_W;
       break;
     case SurfacePair::Directed::by_first:
-      pair.contact.friction_direction_W = a.X_WC.orientation * a.surface.friction_direction;
+      pair.contact.friction_direction_W = a.X_WC.orientation * a.surface().friction_direction;
       break;
     case SurfacePair::Directed::by_second:
-      pair.contact.friction_direction_W = b.X_WC.orientation * b.surface.friction_direction;
+      pair.contact.friction_direction_W = b.X_WC.orientation * b.surface().friction_direction;
       break;
   }
   physics::add_contact_rows(problem, anchors.of(pair.a), anchors.of(pair.b), pair.contact, both, running, step);
@@ -270,7 +267,7 @@ bool Assembly::is_immovable(std::uint32_t solid) const {
 
 RunningSurface Assembly::surface_of(std::uint32_t solid) const {
   if (!anchors.moves(solid)) return {};
-  return members[anchors.member(solid)].multibody->surface_of(scene.solid(solid).link);
+  return members[anchors.member(solid)].multibody->surface_of(scene.solid(solid).link());
 }
 
 bool Assembly::check(std::uint32_t member, const IslandBodies& bodies) {

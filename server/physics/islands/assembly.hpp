@@ -54,6 +54,12 @@ struct Member {
   bool is_awake() const { return is_active && !is_asleep; }
 };
 
+/// What the solids of a model are made from: of each collision, links in their order.
+struct ModelParts {
+  std::vector<geometry::SolidKindPtr> kinds;
+  std::vector<std::shared_ptr<const BulletShape>> shapes;
+};
+
 /// The bodies of a world that move, and all that couples them to each other and to what stands still: what the rows of
 /// an island are made from. Of different members from different threads, unless a function says otherwise.
 struct Assembly {
@@ -77,12 +83,12 @@ struct Assembly {
   bool has_belts = false;    ///< the same
   std::map<const Mechanism*, std::shared_ptr<const FluidModel>> fluid_models;
 
-  /// One thread alone. `shapes`: of the model's collisions, in their order. Returns the solids.
-  std::vector<std::uint32_t> add_static(BodyId body, const description::Model& model, const Pose& X_WM,
-                                        std::span<const std::shared_ptr<const BulletShape>> shapes);
+  /// Takes memory for as many solids, so that there is none to spare after they were added.
+  void reserve(std::size_t solids);
+  /// One thread alone. Its solids come in the order of the model's collisions.
+  void add_static(BodyId body, const description::Model& model, const Pose& X_WM, const ModelParts& parts);
   /// One thread alone. Returns the index of the member.
-  std::uint32_t add_member(std::unique_ptr<Multibody> multibody,
-                           std::span<const std::shared_ptr<const BulletShape>> shapes);
+  std::uint32_t add_member(std::unique_ptr<Multibody> multibody, const ModelParts& parts);
   /// From then on nothing touches it. One thread alone.
   void take_out(std::uint32_t member);
   /// In the world again, as it was, but at rest if it broke or had left the world. One thread alone.
@@ -167,9 +173,8 @@ struct Assembly {
   void integrate(std::uint32_t index, const Problem& problem);
 
  private:
-  /// Of the collision `number` of a link.
-  void add_solid(BodyId body, const description::Model& model, std::size_t link, std::size_t number, const Pose& X_WC,
-                 Anchors::Part part, std::shared_ptr<const BulletShape> shape);
+  /// Of the collision `index` of the model.
+  void add_solid(BodyId body, const ModelParts& parts, std::size_t index, const Pose& X_WC, Anchors::Part part);
   /// Of a solid: how its surface runs.
   RunningSurface surface_of(std::uint32_t solid) const;
   /// Whether it is of a root that nothing pushes.

@@ -99,7 +99,7 @@ void Assembly::load_belts() {
 
 void Assembly::load_belt(std::uint32_t solid, const Eigen::Vector3d& outward_W, const Eigen::Vector3d& impulse_W) {
   if (!anchors.moves(solid)) return;
-  members[anchors.member(solid)].multibody->load_belt(scene.solid(solid).link, outward_W, impulse_W / step);
+  members[anchors.member(solid)].multibody->load_belt(scene.solid(solid).link(), outward_W, impulse_W / step);
 }
 
 void Assembly::record_connection(const Connection& connection) const {

@@ -28,14 +28,16 @@ MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool
     : description_(description),
       workers_(workers),
       mechanisms_(description.models.size()),
-      shapes_(description.models.size()),
+      parts_(description.models.size()),
       assembly_(description),
       large_island_solver_(workers),
       sleep_(assembly_),
       memory_(workers.threads()) {
   if (like != nullptr) {
     mechanisms_ = like->mechanisms_;
-    shapes_ = like->shapes_;
+    parts_ = like->parts_;
+    kinds_ = like->kinds_;
+    assembly_.reserve(like->assembly_.scene.size());
     assembly_.fluid_models = like->assembly_.fluid_models;
   }
   bodies_.reserve(description.instances.size());
@@ -57,25 +59,32 @@ BodyId MultibodyWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arr
 BodyId MultibodyWorld::create_body(std::size_t model_index, const Pose& X_WM) {
   const BodyId body{bodies_.size()};
   const description::Model& model = description_.models[model_index];
-  if (model_index >= shapes_.size()) {  // it has come since
+  if (model_index >= parts_.size()) {  // it has come since
     mechanisms_.resize(model_index + 1);
-    shapes_.resize(model_index + 1);
+    parts_.resize(model_index + 1);
   }
   std::unique_ptr<Multibody> multibody = model.is_static ? nullptr : make_multibody(model_index, X_WM, body);
-  std::vector<std::shared_ptr<const BulletShape>>& shapes = shapes_[model_index];
-  if (shapes.empty())
-    for (const description::Link& link : model.links)
-      for (const description::Collision& collision : link.collisions)
-        shapes.push_back(std::make_shared<BulletShape>(collision.shape));
-  PlacedBody placed;
-  placed.model = model_index;
+  PlacedBody& placed = bodies_.emplace_back();
+  placed.model = static_cast<std::uint32_t>(model_index);
   placed.X_WM = X_WM;
-  if (multibody)
-    placed.member = assembly_.add_member(std::move(multibody), shapes);
-  else
-    placed.solids = assembly_.add_static(body, model, X_WM, shapes);
-  bodies_.push_back(std::move(placed));
+  placed.first_solid = placed.end_of_solids = static_cast<std::uint32_t>(assembly_.scene.size());
+  if (multibody) {
+    placed.member = assembly_.add_member(std::move(multibody), parts_of(model_index));
+  } else {
+    assembly_.add_static(body, model, X_WM, parts_of(model_index));
+    placed.end_of_solids = static_cast<std::uint32_t>(assembly_.scene.size());
+  }
   return body;
+}
+
+const ModelParts& MultibodyWorld::parts_of(std::size_t model) {
+  std::shared_ptr<const ModelParts>& known = parts_[model];
+  if (known) return *known;
+  ModelParts parts{kinds_.of_model(model, description_.models[model]), {}};
+  for (const geometry::SolidKindPtr& kind : parts.kinds)
+    parts.shapes.push_back(std::make_shared<BulletShape>(kind->shape));
+  known = std::make_shared<const ModelParts>(std::move(parts));
+  return *known;
 }
 
 std::unique_ptr<Multibody> MultibodyWorld::make_multibody(std::size_t model_index, const Pose& X_WM, BodyId body) {

@@ -94,6 +94,7 @@ class MultibodyWorld final : public World, private WorldConnections {
 
   std::unique_ptr<Multibody> make_multibody(std::size_t model, const Pose& X_WM, BodyId body);
   BodyId create_body(std::size_t model, const Pose& X_WM);
+  const ModelParts& parts_of(std::size_t model);
   void remove_body(BodyId body);
   void put_back_body(BodyId body);
   void find_lowest();
@@ -117,8 +118,9 @@ class MultibodyWorld final : public World, private WorldConnections {
 
   const description::World& description_;
   WorkerPool& workers_;
-  std::vector<std::shared_ptr<const Mechanism>> mechanisms_;             // by model, null for what is static
-  std::vector<std::vector<std::shared_ptr<const BulletShape>>> shapes_;  // by model, of its collisions in their order
+  std::vector<std::shared_ptr<const Mechanism>> mechanisms_;  // by model, null for what is static
+  std::vector<std::shared_ptr<const ModelParts>> parts_;      // by model, null for one without bodies so far
+  geometry::SolidKinds kinds_;
   std::vector<PlacedBody> bodies_;
   Assembly assembly_;
   Islands islands_;

@@ -18,7 +18,7 @@ void MultibodyWorld::remove_body(BodyId index) {
   sleep_.wake_all();
   body.is_out = true;
   assembly_.connections.release_of_body(index.value);
-  for (const std::uint32_t solid : body.solids) {
+  for (std::uint32_t solid = body.first_solid; solid < body.end_of_solids; ++solid) {
     assembly_.scene.remove(solid);
     assembly_.collision.remove(solid);
   }
@@ -30,7 +30,7 @@ void MultibodyWorld::put_back_body(BodyId index) {
   if (!is_static(index)) return assembly_.put_back(body.member);
   sleep_.wake_all();
   body.is_out = false;
-  for (const std::uint32_t solid : body.solids) assembly_.scene.put_back(solid);
+  for (std::uint32_t solid = body.first_solid; solid < body.end_of_solids; ++solid) assembly_.scene.put_back(solid);
 }
 
 void MultibodyWorld::place_body(BodyId index, const Pose& X_WM) {
@@ -40,11 +40,11 @@ void MultibodyWorld::place_body(BodyId index, const Pose& X_WM) {
   if (!is_static(index)) return assembly_.place(wake(index).member, X_WM);
   sleep_.wake_all();
   assembly_.connections.release_of_body(index.value);
-  std::size_t next = 0;
+  std::uint32_t next = body.first_solid;
   for (const description::Link& link : description_.models[body.model].links)
     for (const description::Collision& collision : link.collisions) {
-      assembly_.collision.remove(body.solids[next]);
-      assembly_.scene.set_pose(body.solids[next++], X_WM * link.X_ML * collision.X_LC);
+      assembly_.collision.remove(next);
+      assembly_.scene.set_pose(next++, X_WM * link.X_ML * collision.X_LC);
     }
   assembly_.scene.build();
 }

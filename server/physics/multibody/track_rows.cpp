@@ -41,7 +41,7 @@ void TrackRows::find_ground(const geometry::Scene& scene, const SurfacePairs& su
         point.ground = finder.below(point.position_W);
         if (point.ground) break;
       }
-      if (point.ground) point.friction = surfaces.of(surface_, scene.solid(point.ground->solid).surface).friction;
+      if (point.ground) point.friction = surfaces.of(surface_, scene.solid(point.ground->solid).surface()).friction;
     }
   }
 }

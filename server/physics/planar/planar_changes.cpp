@@ -17,7 +17,7 @@ void PlanarWorld::remove_body(BodyId index) {
   if (body.member != Anchors::nobody) return take_out(body.member);
   body.is_out = true;
   connections_.release_of_body(index.value);
-  for (const std::uint32_t solid : body.solids) scene_.remove(solid);
+  for (std::uint32_t solid = body.first_solid; solid < body.end_of_solids; ++solid) scene_.remove(solid);
 }
 
 void PlanarWorld::put_back_body(BodyId index) {
@@ -25,7 +25,7 @@ void PlanarWorld::put_back_body(BodyId index) {
   if (is_active(index)) return;
   if (body.member == Anchors::nobody) {
     body.is_out = false;
-    for (const std::uint32_t solid : body.solids) scene_.put_back(solid);
+    for (std::uint32_t solid = body.first_solid; solid < body.end_of_solids; ++solid) scene_.put_back(solid);
     return;
   }
   Member& member = members_[body.member];
@@ -43,11 +43,11 @@ void PlanarWorld::place_body(BodyId index, const Pose& X_WM) {
   body.is_placed_again = true;
   if (body.member == Anchors::nobody) {
     connections_.release_of_body(index.value);
-    std::size_t next = 0;
+    std::uint32_t next = body.first_solid;
     for (const description::Link& link : description_.models[body.model].links)
       for (const description::Collision& collision : link.collisions) {
-        scene_.set_pose(body.solids[next], X_WM * link.X_ML * collision.X_LC);
-        collision_.place_static(body.solids[next++]);
+        scene_.set_pose(next, X_WM * link.X_ML * collision.X_LC);
+        collision_.place_static(next++);
       }
     return scene_.build();
   }

@@ -31,7 +31,7 @@ void PlanarCollision::add_static() {
 PlanarCollision::Outline PlanarCollision::outline_of_static(std::uint32_t index) const {
   const geometry::Solid& solid = scene_.solid(index);
   Outline outline;
-  if (const auto* plane = std::get_if<description::Plane>(&solid.shape)) {
+  if (const auto* plane = std::get_if<description::Plane>(&solid.shape())) {
     const Eigen::Vector3d normal_W = solid.X_WC.orientation * plane->normal.normalized();
     if (std::abs(normal_W.z()) <= level) {
       const Eigen::Vector2d normal = normal_W.head<2>().normalized();
@@ -39,8 +39,8 @@ PlanarCollision::Outline PlanarCollision::outline_of_static(std::uint32_t index)
     } else if (normal_W.head<2>().norm() > level) {
       throw std::invalid_argument("a plane that is neither level nor upright cannot be planar");
     }
-  } else if (const auto footprint = geometry::footprint_of(solid.shape, solid.X_WC)) {
-    const auto* mesh = std::get_if<description::Mesh>(&solid.shape);
+  } else if (const auto footprint = geometry::footprint_of(solid.shape(), solid.X_WC)) {
+    const auto* mesh = std::get_if<description::Mesh>(&solid.shape());
     if (mesh == nullptr || mesh->convex) {
       outline = *footprint;
     } else if (footprint->highest - footprint->lowest > level) {
@@ -132,7 +132,7 @@ void PlanarCollision::find_pairs(std::uint32_t index, Memory& memory) {
 }
 
 void PlanarCollision::find_contact(std::uint32_t solid, std::uint32_t other, Memory& memory) {
-  if (!may_collide(scene_.solid(solid).surface, scene_.solid(other).surface)) return;
+  if (!may_collide(scene_.solid(solid).surface(), scene_.solid(other).surface())) return;
   const auto& a = std::get<geometry::Footprint>(outlines_[solid]);
   PlanarPair pair;
   double lowest = a.lowest;

@@ -29,6 +29,10 @@ class PlanarCollision {
   /// The scene must outlive this.
   explicit PlanarCollision(const geometry::Scene& scene) : scene_(scene) {}
 
+  void reserve(std::size_t solids) {
+    outlines_.reserve(solids);
+    member_of_solid_.reserve(solids);
+  }
   /// The next solid of the scene, one that does not move: a wall, or what nothing can run into. Throws
   /// std::invalid_argument for what is neither flat ground nor an upright wall.
   void add_static();

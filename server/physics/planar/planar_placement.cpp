@@ -44,7 +44,13 @@ PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& work
       surfaces_(description),
       models_(description.models.size()),
       collision_(scene_) {
-  if (like != nullptr) models_ = like->models_;
+  if (like != nullptr) {
+    models_ = like->models_;
+    kinds_ = like->kinds_;
+    scene_.reserve(like->scene_.size());
+    collision_.reserve(like->scene_.size());
+    part_of_solid_.reserve(like->scene_.size());
+  }
   const Vector3d& gravity = description.gravity;
   if (gravity.head<2>().norm() > -most_lean * gravity.z())
     throw std::invalid_argument("planar physics needs gravity along -z");
@@ -113,7 +119,7 @@ BodyId PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
     if (description_.air.wind != Vector3d::Zero() && std::any_of(model.links.begin(), model.links.end(), feels_wind))
       throw std::invalid_argument("what feels the wind cannot be planar");
     PlacedBody& placed = bodies_.emplace_back();
-    placed.model = model_index;
+    placed.model = static_cast<std::uint32_t>(model_index);
     placed.X_WM = X_WM;
     if (model.is_static) {
       add_static(body);
@@ -126,15 +132,15 @@ BodyId PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
   return body;
 }
 
-void PlanarWorld::add_static(BodyId body) {
-  const std::vector<description::Link>& links = description_.models[bodies_[body.value].model].links;
-  for (std::size_t link = 0; link < links.size(); ++link) {
-    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
-      const description::Collision& collision = links[link].collisions[part];
-      const Pose X_WC = bodies_[body.value].X_WM * links[link].X_ML * collision.X_LC;
-      bodies_[body.value].solids.push_back(
-          scene_.add({collision.shape, collision.surface, body, false, X_WC, static_cast<std::uint32_t>(link),
-                      static_cast<std::uint32_t>(part), links[link].color}));
+void PlanarWorld::add_static(BodyId id) {
+  PlacedBody& body = bodies_[id.value];
+  const description::Model& model = description_.models[body.model];
+  const std::vector<geometry::SolidKindPtr>& kinds = kinds_.of_model(body.model, model);
+  body.first_solid = body.end_of_solids = static_cast<std::uint32_t>(scene_.size());
+  auto kind = kinds.begin();
+  for (const description::Link& link : model.links) {
+    for (const description::Collision& collision : link.collisions) {
+      body.end_of_solids = scene_.add(*kind++, id, false, body.X_WM * link.X_ML * collision.X_LC) + 1;
       collision_.add_static();
       part_of_solid_.emplace_back();
     }
@@ -151,16 +157,17 @@ void PlanarWorld::add_moving(BodyId body) {
   member.body = body;
   member.first_part = static_cast<std::uint32_t>(parts_.size());
   const std::vector<description::Link>& links = model.mechanism().model().links;
+  const std::vector<geometry::SolidKindPtr>& kinds =
+      kinds_.of_model(bodies_[body.value].model, model.mechanism().model());
+  std::size_t next = 0;
   for (std::size_t link = 0; link < links.size(); ++link) {
     const Mechanism::LinkPlace& place = model.mechanism().link(link);
-    if (!place.collides) continue;
-    for (std::size_t part = 0; part < links[link].collisions.size(); ++part) {
-      const description::Collision& collision = links[link].collisions[part];
+    for (const description::Collision& collision : links[link].collisions) {
+      const geometry::SolidKindPtr& kind = kinds[next++];
+      if (!place.collides) continue;
       const Pose X_SC = place.X_SL * collision.X_LC;
       const Pose X_WC = planar_.segment_pose(index, place.segment) * X_SC;
-      const std::uint32_t solid =
-          scene_.add({collision.shape, collision.surface, body, true, X_WC, static_cast<std::uint32_t>(link),
-                      static_cast<std::uint32_t>(part), links[link].color});
+      const std::uint32_t solid = scene_.add(kind, body, true, X_WC);
       parts_.push_back({solid, place.segment, X_SC, {}});
       parts_in_body_.emplace_back();
       collision_.add_moving();
@@ -193,14 +200,14 @@ void PlanarWorld::put_on_ground(std::uint32_t index) {
     throw std::invalid_argument("model '" + model.mechanism().model().name + "': " + error.what());
   }
   member.has_ground = true;
-  const description::Surface& under = scene_.solid(ground).surface;
+  const description::Surface& under = scene_.solid(ground).surface();
   if (const description::TrackPair* drive = model.drive()) {
     const description::Surface tracks = surface_of_tracks(model.mechanism().model(), *drive);
     const Mechanism::LinkPlace& place = model.mechanism().link(drive->link);
     grounds_[index] = PlanarGround(*drive, planar_.segment_in_body(index, place.segment) * place.X_SL,
                                    surfaces_.of(tracks, under).friction, weight, planar_.inertia(index), step_);
   } else if (lowest != parts.end()) {
-    const SurfacePair surfaces = surfaces_.of(scene_.solid(lowest->solid).surface, under);
+    const SurfacePair surfaces = surfaces_.of(scene_.solid(lowest->solid).surface(), under);
     grounds_[index] =
         PlanarGround(surfaces.friction, weight, mean_distance(lowest->outline_B, Eigen::Vector2d::Zero()), step_);
   }

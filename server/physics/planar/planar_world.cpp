@@ -180,7 +180,7 @@ void PlanarWorld::add_rows_of(std::uint32_t member, PlanarSolver& solver) {
   });
   for (PlanarPair& pair : collision_.pairs_of(member)) {
     if (is_out(pair.member_b)) continue;
-    const SurfacePair surfaces = surfaces_.of(scene_.solid(pair.a).surface, scene_.solid(pair.b).surface);
+    const SurfacePair surfaces = surfaces_.of(scene_.solid(pair.a).surface(), scene_.solid(pair.b).surface());
     for (PlanarPoint& point : pair.contact)
       solver.add_contact(part_of(pair.a), part_of(pair.b), point, pair.z, surfaces, step_);
   }
@@ -205,7 +205,7 @@ void PlanarWorld::find_parts_in_body(const Member& member, std::uint32_t index) 
     Part& part = parts_[i];
     const Pose X_BC = planar_.segment_in_body(index, part.segment) * part.X_SC;
     // Nothing that moves is a plane or a height map, so it has one.
-    const geometry::Footprint outline = *geometry::footprint_of(scene_.solid(part.solid).shape, X_BC);
+    const geometry::Footprint outline = *geometry::footprint_of(scene_.solid(part.solid).shape(), X_BC);
     part.outline_B = outline;
     parts_in_body_[i] = {X_BC, outline.centre, outline.axis};
     collision_.set_outline(part.solid, outline);

@@ -160,6 +160,7 @@ class PlanarWorld final : public World, private WorldConnections {
   SurfacePairs surfaces_;
   geometry::Scene scene_;
   std::vector<std::shared_ptr<const PlanarModel>> models_;  // null for what is static
+  geometry::SolidKinds kinds_;
   std::vector<PlacedBody> bodies_;
   std::vector<Member> members_;
   std::vector<Part> parts_;

@@ -11,10 +11,11 @@ namespace cohort::physics {
 
 /// An instance of a model, and what was done to it from outside since the world began.
 struct PlacedBody {
-  std::size_t model = 0;
-  Pose X_WM;                               ///< where it was placed; a static body is there
+  Pose X_WM;  ///< where it was placed; a static body is there
+  std::uint32_t model = 0;
   std::uint32_t member = Anchors::nobody;  ///< `nobody`: it is static
-  std::vector<std::uint32_t> solids{};     ///< of a static one
+  std::uint32_t first_solid = 0;           ///< of a static one
+  std::uint32_t end_of_solids = 0;         ///< the same; one past its last
   bool is_placed_again = false;            ///< X_WM is not what the description says
   bool is_out = false;                     ///< of a static one: it was removed
 };

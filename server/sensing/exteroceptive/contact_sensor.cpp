@@ -28,7 +28,7 @@ class ContactSensor final : public SensorOf<description::ContactSensor> {
  private:
   bool is_own(std::uint32_t solid) const {
     const geometry::Solid& own = mount_.world.scene().solid(solid);
-    return own.link == device_.link && own.collision == device_.collision;
+    return own.link() == device_.link && own.collision() == device_.collision;
   }
 };
 

@@ -72,7 +72,7 @@ void PanoramicCamera::draw_surfaces(const Pose& X_WS, std::span<double> image) c
   panorama_.cast(geometry::Outlines(scene), X_WS, device_.range, mount_.body, hits);
   for (std::size_t pixel = 0; pixel < hits.size(); ++pixel)
     paint(image, pixel,
-          hits[pixel] ? Eigen::Vector3d(brightness(hits[pixel]->normal_W) * scene.solid(hits[pixel]->solid).color)
+          hits[pixel] ? Eigen::Vector3d(brightness(hits[pixel]->normal_W) * scene.solid(hits[pixel]->solid).color())
                       : device_.sky);
 }
 

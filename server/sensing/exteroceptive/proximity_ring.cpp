@@ -188,7 +188,7 @@ void ProximityRing::look_up(const Pose& X_WS, std::span<double> values) const {
   disc.lower.z() = disc.upper.z() = X_WS.position.z();
   scene.for_each_overlap(disc, [&](std::uint32_t index) {
     const geometry::Solid& solid = scene.solid(index);
-    if (solid.body == mount_.body || geometry::is_ground(solid.shape)) return;
+    if (solid.body == mount_.body || geometry::is_ground(solid.shape())) return;
     const auto outline = geometry::outline_of(solid, scene.bounds(index));
     if (!outline) return;
     const Vector2d nearest = to_nearest_point(*outline, X_WS.position.head<2>());

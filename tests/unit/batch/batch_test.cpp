@@ -168,6 +168,31 @@ TEST(Batch, AStopConditionEndsAWorldAtItsTick) {
   EXPECT_EQ(batch.tick(1), 9u);
 }
 
+// What its shape and surface are is kept once for all worlds.
+TEST(Batch, APostTakesLessThanHalfAKibibyteOfEachWorld) {
+  constexpr std::size_t posts = 64, worlds = 64;
+  const auto heap = [] { return static_cast<double>(mallinfo2().uordblks + mallinfo2().hblkhd); };
+  const auto bytes_a_world = [&](const description::Experiment& experiment) {
+    const Batch one(experiment, 1, 1);
+    const double before = heap();
+    const Batch many(experiment, worlds, 1);
+    return (heap() - before) / worlds;
+  };
+  for (const auto fidelity : {description::Fidelity::treel, description::Fidelity::planar}) {
+    description::Experiment experiment = two_kinds();
+    experiment.world.physics.fidelity = fidelity;
+    const double without = bytes_a_world(experiment);
+    description::Model post = static_shape("post", description::Cylinder{0.05, 0.15});
+    const std::size_t model = experiment.world.models.size();
+    experiment.world.models.push_back(post);
+    for (std::size_t i = 0; i < posts; ++i)
+      experiment.world.instances.push_back(
+          {"posts/" + std::to_string(i), model,
+           at(0.2 * static_cast<double>(i % 8) - 5.0, 0.2 * static_cast<double>(i / 8), 0.075)});
+    EXPECT_LT(bytes_a_world(experiment) - without, 512.0 * posts);
+  }
+}
+
 TEST(Batch, NothingGrowsWithResets) {
   Batch batch(two_kinds(), 4, 1);
   const auto allocated = [] { return mallinfo2().uordblks; };

@@ -261,6 +261,26 @@ TEST(Bounds, OfMeshesAndHeightmapsHoldThemTightly) {
   EXPECT_EQ(bounds_of(map_of({2, 2, {2, 2}, {0, 0, 1, 0}}), tilted).lower.x(), -infinity);
 }
 
+TEST(SolidKinds, AreMadeOnceForEachCollisionAndTheSurfaceOfAMeshOnceForAll) {
+  description::Model model;
+  const Mesh mesh = mesh_of(torus(20, 12), false);
+  for (int link = 0; link < 2; ++link) {
+    model.links.emplace_back();
+    for (int i = 0; i < 2; ++i) model.links.back().collisions.push_back({"", {}, mesh, {}});
+  }
+  model.links[1].collisions[0].shape = description::Sphere{0.1};
+  SolidKinds kinds;
+  const std::vector<SolidKindPtr> of_model = kinds.of_model(1, model);
+  ASSERT_EQ(of_model.size(), 4u);
+  EXPECT_EQ(of_model[2]->link, 1u);
+  EXPECT_EQ(of_model[3]->collision, 1u);
+  EXPECT_EQ(of_model[0]->mesh, of_model[3]->mesh);
+  EXPECT_EQ(of_model[2]->mesh, nullptr);
+  SolidKinds copy = kinds;
+  EXPECT_EQ(copy.of_model(1, model), of_model);
+  EXPECT_EQ(copy.of_model(0, model)[0]->mesh, of_model[0]->mesh);
+}
+
 TEST(MeshScene, GivesTheBitsOfEachSolidByItself) {
   const Mesh skin = mesh_of(torus(20, 12), false), hull = mesh_of(box({0.3, 0.2, 0.1}), true);
   const RandomStream random(26, "geometry_test", "scene");
@@ -283,7 +303,7 @@ TEST(MeshScene, GivesTheBitsOfEachSolidByItself) {
     std::optional<std::uint32_t> expected;
     for (std::uint32_t i = 0; i < scene.size(); ++i) {
       const Pose X_CW = scene.solid(i).X_WC.inverse();
-      const RayEntry entry = cast_ray(scene.solid(i).shape, X_CW * origin, X_CW.orientation * direction);
+      const RayEntry entry = cast_ray(scene.solid(i).shape(), X_CW * origin, X_CW.orientation * direction);
       if (entry.distance <= 1.5 && entry.distance < nearest.distance) {
         nearest = entry;
         expected = i;

@@ -236,7 +236,8 @@ TEST_F(RandomScene, CastsRaysAsIfItTestedEverySolid) {
     for (std::uint32_t solid = 0; solid < scene.size(); ++solid) {
       if (scene.solid(solid).body == ignored) continue;
       const Pose X_CW = scene.solid(solid).X_WC.inverse();
-      const double distance = cast_ray(scene.solid(solid).shape, X_CW * origin, X_CW.orientation * direction).distance;
+      const double distance =
+          cast_ray(scene.solid(solid).shape(), X_CW * origin, X_CW.orientation * direction).distance;
       if (distance < nearest) {
         nearest = distance;
         expected = solid;

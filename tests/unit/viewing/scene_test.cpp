@@ -85,7 +85,7 @@ TEST(SceneOfAWorld, AHeightMapIsAMeshAsHighAsItsGround) {
   for (std::size_t i = 0; i + 2 < ground.vertices.size() && compared < 50; i += 3 * 97) {
     const Eigen::Vector3d vertex(ground.vertices[i], ground.vertices[i + 1], ground.vertices[i + 2]);
     const auto hit = solids.cast_ray({vertex.x(), vertex.y(), 10.0}, down, 20.0);
-    if (!hit || !geometry::is_ground(solids.solid(hit->solid).shape)) continue;
+    if (!hit || !geometry::is_ground(solids.solid(hit->solid).shape())) continue;
     EXPECT_NEAR(10.0 - hit->distance, vertex.z() + solids.solid(hit->solid).X_WC.position.z(), 2e-3);
     ++compared;
   }

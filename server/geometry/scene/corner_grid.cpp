@@ -3,7 +3,9 @@
 namespace cohort::geometry {
 
 void CornerGrid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>& bounds) {
-  if (!items.empty()) extent_ = bounds[items[0]];
+  entries_.clear();
+  if (items.empty()) return;
+  extent_ = bounds[items[0]];
   for (const std::uint32_t item : items) extent_.include(bounds[item]);
 
   // Counting sort into buckets: sizes, then ends, then items from the last to the first, which leaves the beginnings.

@@ -20,7 +20,9 @@ void Grid::build(std::span<const std::uint32_t> items, const std::vector<Bounds>
   };
 
   items_.assign(items.begin(), items.end());
-  if (!items.empty()) extent_ = bounds[items[0]];
+  entries_.clear();
+  if (items.empty()) return;
+  extent_ = bounds[items[0]];
   for (const std::uint32_t item : items) extent_.include(bounds[item]);
 
   // Counting sort into buckets: sizes, then ends, then items from the last to the first, which leaves the beginnings.

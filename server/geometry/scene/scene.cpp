@@ -1,7 +1,8 @@
 #include "server/geometry/scene/scene.hpp"
 
 #include <algorithm>
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "server/core/infinity.hpp"
 
@@ -38,19 +39,29 @@ void Scene::reserve(std::size_t solids) {
 // what a search is for, which looks some millimetres around things, however small they are.
 double Scene::choose_cell_size() const {
   constexpr double much_wider = 4.0;
-  constexpr double narrowest = 0.02;   // [m]
-  std::map<BodyId, double> widest_of;  // of each body
-  for (std::uint32_t index = 0; index < solids_.size(); ++index) {
-    if (!solids_[index].moves) continue;
-    double& widest = widest_of[solids_[index].body];
-    widest = std::max(widest, 2.0 * solids_[index].radius);
+  constexpr double narrowest = 0.02;  // [m]
+  // Of each body its widest solid. Those of a body mostly follow each other.
+  std::vector<std::pair<BodyId, double>> widest;
+  for (const Solid& solid : solids_) {
+    if (!solid.moves) continue;
+    const double width = 2.0 * solid.radius;
+    if (widest.empty() || widest.back().first != solid.body)
+      widest.emplace_back(solid.body, width);
+    else
+      widest.back().second = std::max(widest.back().second, width);
   }
-  if (widest_of.empty()) return 1.0;
+  if (widest.empty()) return 1.0;
+  if (!std::ranges::is_sorted(widest, {}, &std::pair<BodyId, double>::first)) std::ranges::sort(widest);
   std::vector<double> widths;
-  for (const auto& [body, width] : widest_of) widths.push_back(width);
-  std::sort(widths.begin(), widths.end());
-  const double most = much_wider * widths[widths.size() / 2];
-  return std::max(narrowest, *std::prev(std::upper_bound(widths.begin(), widths.end(), most)));
+  for (std::size_t i = 0; i < widest.size(); ++i)
+    if (i + 1 == widest.size() || widest[i + 1].first != widest[i].first) widths.push_back(widest[i].second);
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::nth_element(widths.begin(), middle, widths.end());
+  const double most = much_wider * *middle;
+  double edge = narrowest;
+  for (const double width : widths)
+    if (width <= most) edge = std::max(edge, width);
+  return edge;
 }
 
 void Scene::build() {

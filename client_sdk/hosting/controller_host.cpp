@@ -65,8 +65,15 @@ const wire::Team* team_of(const wire::Admit& admit, const wire::AdmittedRobot& r
 }  // namespace
 
 ControllerKind kind_of(const Plugin& plugin) {
-  return {plugin.name, [plugin] { return OwnedController(plugin.create(), plugin.destroy); },
-          plugin.abi >= Plugin::first_abi_with_state};
+  return {plugin.name,
+          [plugin] { return OwnedController(plugin.create(), plugin.destroy); },
+          plugin.abi >= Plugin::first_abi_with_state,
+          {}};
+}
+
+std::unique_ptr<FrameHandler> make_handler(const ControllerKind& kind) {
+  if (kind.create_for_all) return kind.create_for_all();
+  return std::make_unique<ControllerHost>(kind);
 }
 
 Start start_of(const wire::Admit& admit, const wire::AdmittedRobot& robot,

@@ -21,8 +21,12 @@ struct ControllerKind {
   std::string name;  ///< shown to people
   std::function<OwnedController()> create;
   bool has_state = true;  ///< they have `save` and `load`: of plugins of older interfaces, none have
+  /// Makes one object that drives all robots of a process, in place of `create`; empty: each robot has a controller.
+  std::function<std::unique_ptr<FrameHandler>()> create_for_all{};
 };
 ControllerKind kind_of(const Plugin& plugin);
+/// Returns what drives the robots of a process by controllers of this kind.
+std::unique_ptr<FrameHandler> make_handler(const ControllerKind& kind);
 
 /// What a controller of `robot`, one of `admit`'s, is started with. Throws ControllerFailure if `admit` or
 /// `descriptions` lack what it refers to.

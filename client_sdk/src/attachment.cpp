@@ -394,8 +394,8 @@ ClientEnd run_client(FrameHandler& handler, const std::string& name, const Clien
 }
 
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop) {
-  ControllerHost host(kind);
-  return run_client(host, kind.name, options, stop, nullptr);
+  const std::unique_ptr<FrameHandler> handler = make_handler(kind);
+  return run_client(*handler, kind.name, options, stop, nullptr);
 }
 
 ClientEnd run_client(const Plugin& plugin, const ClientOptions& options, const std::atomic<bool>& stop) {

@@ -20,4 +20,7 @@ ClientEnd run_client(FrameHandler& handler, const std::string& name, const Clien
 /// Runs controllers of one kind like that.
 ClientEnd run_client(const ControllerKind& kind, const ClientOptions& options, const std::atomic<bool>& stop);
 
+/// The `main` of a program with controllers of one kind: as that of <cohort/controller.hpp>.
+int run_controller(const ControllerKind& kind, int argc, char** argv);
+
 }  // namespace cohort

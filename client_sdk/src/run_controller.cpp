@@ -86,20 +86,22 @@ Arguments parse(int argc, char** argv) {
 
 }  // namespace
 
-int run_controller(const Plugin& plugin, int argc, char** argv) {
+int run_controller(const ControllerKind& kind, int argc, char** argv) {
   try {
     const Arguments arguments = parse(argc, argv);
     if (arguments.help) {
       std::printf(help, argv[0]);
       return exit_finished;
     }
-    return exit_code_of(run_client(plugin, arguments.options, stop_on_signals()));
+    return exit_code_of(run_client(kind, arguments.options, stop_on_signals()));
   } catch (const UsageError& error) {
-    std::fprintf(stderr, "%s: %s. Try --help.\n", plugin.name, error.what());
+    std::fprintf(stderr, "%s: %s. Try --help.\n", kind.name.c_str(), error.what());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", plugin.name, error.what());
+    std::fprintf(stderr, "%s: %s\n", kind.name.c_str(), error.what());
   }
   return exit_usage;
 }
+
+int run_controller(const Plugin& plugin, int argc, char** argv) { return run_controller(kind_of(plugin), argc, argv); }
 
 }  // namespace cohort

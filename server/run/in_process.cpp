@@ -19,7 +19,7 @@ namespace {
 
 // Those of `robots` that are due at `tick`.
 Exchange::Taken ask(Exchange& exchange, Exchange::Frame& frame, const description::Experiment& experiment,
-                    std::span<const std::uint32_t> robots, std::uint64_t tick, ControllerHost& host) {
+                    std::span<const std::uint32_t> robots, std::uint64_t tick, FrameHandler& host) {
   exchange.fill_frame(frame, robots, tick);
   if (frame.robots.empty()) return {};
   wire::Observation observation;
@@ -33,7 +33,7 @@ Exchange::Taken ask(Exchange& exchange, Exchange::Frame& frame, const descriptio
 
 // What a snapshot has of frames without an answer: others were asked, and had not answered when it was taken.
 void ask_again(Exchange& exchange, const description::Experiment& experiment, std::span<const std::uint32_t> robots,
-               std::uint64_t now, ControllerHost& host) {
+               std::uint64_t now, FrameHandler& host) {
   std::map<std::uint64_t, std::vector<std::uint32_t>> robots_of;  // by tick
   for (const std::uint32_t robot : robots)
     for (const std::uint64_t tick : exchange.barrier().unanswered(robot))
@@ -46,7 +46,7 @@ void ask_again(Exchange& exchange, const description::Experiment& experiment, st
 struct Driven {
   std::size_t team = 0;
   std::vector<std::uint32_t> robots;
-  std::unique_ptr<ControllerHost> host;
+  std::unique_ptr<FrameHandler> host;
 };
 
 // Of each team, its robots from the id `first` on, if there are any.
@@ -65,7 +65,7 @@ std::vector<Driven> start_controllers(const Simulation& simulation, std::uint32_
     admit.tick = simulation.tick();
     admit.start_reason = reason;
     admit_robots(admit, experiment, simulation, driven.robots);
-    driven.host = std::make_unique<ControllerHost>(controllers[team]);
+    driven.host = make_handler(controllers[team]);
     driven.host->start(admit, descriptions);
     all.push_back(std::move(driven));
   }

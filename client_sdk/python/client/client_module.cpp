@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "client_sdk/math/library_calls.hpp"
-#include "client_sdk/python/hosting/python_controller.hpp"
+#include "client_sdk/python/hosting/python_team.hpp"
 #include "client_sdk/src/attachment.hpp"
 
 /// The extension module `cohort._client`: controllers that are clients of a server, over DDS.
@@ -36,12 +36,6 @@ class SignalsOfPython {
   static constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
   struct sigaction actions_[std::size(signals)] = {};
 };
-
-ControllerKind kind_of_maker(nb::handle maker) {
-  return {nb::cast<std::string>(maker.attr("name")), [object = maker.ptr()] {
-            return OwnedController(new PythonController(object), [](Controller* made) { delete made; });
-          }};
-}
 
 const char* word_of(ClientEnd end) {
   switch (end) {
@@ -68,7 +62,7 @@ std::pair<std::string, std::string> host(nb::handle maker, const std::vector<std
   options.tell = [&](Severity severity, const std::string& text) {
     if (severity == Severity::error) error = text;
   };
-  const ControllerKind kind = kind_of_maker(maker);
+  const ControllerKind kind = kind_of_maker(maker.ptr());
   const SignalsOfPython restored;
   std::atomic<bool>& stop = stop_on_signals();
   stop = false;
@@ -77,25 +71,15 @@ std::pair<std::string, std::string> host(nb::handle maker, const std::vector<std
   return {word_of(end), error};
 }
 
-// What the plugin below makes controllers with; a plugin's functions have no argument for it.
-nb::handle& maker_of_program() {
-  static nb::handle maker;
-  return maker;
-}
-
 int run_program(nb::handle maker, std::vector<std::string> arguments) {
-  maker_of_program() = maker;
-  const std::string name = nb::cast<std::string>(maker.attr("name"));
-  const Plugin plugin{Plugin::current_abi, name.c_str(),
-                      []() -> Controller* { return new PythonController(maker_of_program().ptr()); },
-                      [](Controller* controller) { delete controller; }};
+  const ControllerKind kind = kind_of_maker(maker.ptr());
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const SignalsOfPython restored;
   stop_on_signals() = false;
   const nb::gil_scoped_release no_gil;
-  return run_controller(plugin, static_cast<int>(arguments.size()), argv.data());
+  return run_controller(kind, static_cast<int>(arguments.size()), argv.data());
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ from cohort._native import InputError, SnapshotError
 from cohort.batch import Batch
 from cohort.channels import Channel, ChannelError, Channels
 from cohort.client import ClientError, host, main
-from cohort.controller import Controller, ParameterError, Parameters, Start
+from cohort.controller import Controller, ParameterError, Parameters, Start, TeamController
 from cohort.experiment import Experiment, Result, Team, run, run_seeds
 from cohort.simulation import Robot, Simulation
 
@@ -53,6 +53,7 @@ __all__ = [
     "SnapshotError",
     "Start",
     "Team",
+    "TeamController",
     "examples",
     "host",
     "main",

@@ -7,7 +7,7 @@ import traceback
 
 import numpy
 
-from cohort.controller import Controller, Start
+from cohort.controller import Controller, Start, TeamController
 
 
 class Adapter:
@@ -28,6 +28,7 @@ class Adapter:
         self._controller.tick = self._start.tick
         self._controller.time = self._start.tick * self._start.step
         self._controller.start(self._start)
+        return list(self._start.parameters.asked)
 
     def step(self, tick, nanoseconds):
         controller = self._controller
@@ -35,17 +36,54 @@ class Adapter:
         controller.time = nanoseconds * 1e-9
         controller.step(self._observation, self._command)
 
-    def asked_for(self):
-        return list(self._start.parameters.asked)
-
     def save(self):
-        state = self._controller.save()
-        if state is not None and not isinstance(state, bytes):
-            raise TypeError(f"save() gave a {type(state).__name__}, expected bytes, or None if it cannot be saved")
-        return state
+        return _checked_state(self._controller.save())
 
     def load(self, state):
         self._controller.load(state)
+
+
+class TeamAdapter:
+    """The controller of all robots of a process. C++ owns the memory of `observations` and `commands`."""
+
+    __slots__ = ("_commands", "_controller", "_observations")
+
+    def __init__(self, make):
+        self._controller = make()
+
+    def start(self, facts, observations, commands):
+        robots = [Start(each) for each in facts]
+        self._observations = numpy.frombuffer(observations, dtype=numpy.float64).reshape(len(robots), -1)
+        self._commands = numpy.frombuffer(commands, dtype=numpy.float64).reshape(len(robots), -1)
+        controller = self._controller
+        controller.robots = robots
+        controller.tick = robots[0].tick
+        controller.time = robots[0].tick * robots[0].step
+        controller.start(robots)
+        return sorted(set().union(*(each.parameters.asked for each in robots)))
+
+    def step(self, tick, nanoseconds, rows):
+        controller = self._controller
+        controller.tick = tick
+        controller.time = nanoseconds * 1e-9
+        if rows is None:
+            controller.asked = slice(None)
+            controller.step(self._observations, self._commands)
+        else:
+            controller.asked = numpy.array(rows)
+            controller.step(self._observations[: len(rows)], self._commands[: len(rows)])
+
+    def save(self):
+        return _checked_state(self._controller.save())
+
+    def load(self, state):
+        self._controller.load(state)
+
+
+def _checked_state(state):
+    if state is not None and not isinstance(state, bytes):
+        raise TypeError(f"save() gave a {type(state).__name__}, expected bytes, or None if it cannot be saved")
+    return state
 
 
 class Maker:
@@ -54,9 +92,10 @@ class Maker:
     def __init__(self, controller):
         self.controller = controller
         self.name = getattr(controller, "__name__", str(controller))
+        self.drives_all = isinstance(controller, type) and issubclass(controller, TeamController)
 
     def __call__(self):
-        return Adapter(self.controller)
+        return (TeamAdapter if self.drives_all else Adapter)(self.controller)
 
 
 def controller_in(file):
@@ -76,7 +115,7 @@ def controller_in(file):
     classes = [
         value
         for value in vars(module).values()
-        if isinstance(value, type) and issubclass(value, Controller) and value.__module__ == name
+        if isinstance(value, type) and issubclass(value, (Controller, TeamController)) and value.__module__ == name
     ]
     if len(classes) != 1:
         found = ", ".join(sorted(each.__name__ for each in classes)) or "none"

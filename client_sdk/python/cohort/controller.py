@@ -189,3 +189,50 @@ class Controller:
 
     def load(self, state):
         """Takes the bytes that `save` of the same class returned, right after `start`, and goes on from there."""
+
+
+class TeamController:
+    """Drives all robots of a process together, by one call for each tick: for policies that are computed for many at once.
+
+    Derive from it, and use the class as one that derives from `Controller`. What it computes may depend on all robots that
+    the same process drives, and so on how robots are spread over processes.
+
+        class Everybody(cohort.TeamController):
+            def start(self, robots):
+                self.near = robots[0].observations("proximity/*/reading")
+                self.tracks = robots[0].commands("treel/*/velocity")
+
+            def step(self, observations, commands):
+                commands[:, self.tracks] = 0.2 * (1.0 - observations[:, self.near].max(axis=1, keepdims=True))
+
+    Attributes, as long as it drives robots:
+        robots: what `start` was told last, a list of `Start` by ascending ids. All are of one model.
+        asked: which rows of `robots` are asked at this tick: a slice of all, or an array of int.
+        tick: the present tick.
+        time: simulated time since tick 0 [s].
+    """
+
+    robots = ()
+    asked = slice(None)
+    tick = 0
+    time = 0.0
+
+    def start(self, robots):
+        """Looks channels up and asks for parameters; `robots` is a list of `Start`. Called as `Controller.start`."""
+
+    def step(self, observations, commands):
+        """Turns observations [robot, value] into commands [robot, value], of the robots that are asked at this tick.
+
+        Otherwise as `Controller.step`.
+        """
+        raise NotImplementedError("a controller needs a step(self, observations, commands)")
+
+    def save(self):
+        """Returns what it remembers of all robots as bytes: as `Controller.save`.
+
+        Goes on where the same robots are driven together.
+        """
+        return None
+
+    def load(self, state):
+        """Takes the bytes that `save` of the same class returned: as `Controller.load`."""

@@ -7,7 +7,7 @@ import pathlib
 
 from cohort import _files, _native
 from cohort._hosting import Maker, maker_in
-from cohort.controller import Controller
+from cohort.controller import Controller, TeamController
 
 
 _NOBODY = "none"  # what a team of an experiment made in Python is given as its controller that has none
@@ -115,7 +115,7 @@ class Experiment:
         if not isinstance(team, dict):
             return team
         controller = team.get("controller", _NOBODY)
-        if isinstance(controller, type) and issubclass(controller, Controller):
+        if isinstance(controller, type) and issubclass(controller, (Controller, TeamController)):
             self._classes[team.get("name")] = controller
             controller = controller.__name__
         return team | {"controller": controller}

@@ -1,124 +1,9 @@
 #include "client_sdk/python/hosting/python_controller.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <span>
-#include <stdexcept>
-#include <utility>
+#include <string>
 
 namespace cohort::python {
-namespace {
-
-std::string text_of(PyObject* object) {
-  if (object == nullptr) return {};
-  const Owned text(PyObject_Str(object));
-  Py_ssize_t size = 0;
-  const char* characters = text ? PyUnicode_AsUTF8AndSize(text.get(), &size) : nullptr;
-  if (characters != nullptr) return {characters, static_cast<std::size_t>(size)};
-  PyErr_Clear();
-  return {};
-}
-
-// What Python has raised, as `cohort._hosting.describe` puts it: the error and the lines that led to it.
-std::string raised() {
-  PyObject *type = nullptr, *value = nullptr, *traceback = nullptr;
-  PyErr_Fetch(&type, &value, &traceback);
-  PyErr_NormalizeException(&type, &value, &traceback);
-  const Owned owned_type(type), owned_value(value), owned_traceback(traceback);
-  if (!owned_value) return "Python failed without an exception";
-  if (owned_traceback) PyException_SetTraceback(owned_value.get(), owned_traceback.get());
-  const Owned module(PyImport_ImportModule("cohort._hosting"));
-  const Owned text(module ? PyObject_CallMethod(module.get(), "describe", "O", owned_value.get()) : nullptr);
-  if (!text) PyErr_Clear();
-  std::string described = text_of(text.get());
-  return described.empty() ? text_of(owned_value.get()) : described;
-}
-
-void put(PyObject* dictionary, const char* key, PyObject* value) {
-  const Owned owned = checked(value);
-  if (PyDict_SetItemString(dictionary, key, owned.get()) != 0) throw std::runtime_error(raised());
-}
-
-PyObject* text(const std::string& text) {
-  return PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace");
-}
-
-Owned channels_of(const std::vector<ChannelInfo>& channels) {
-  Owned list = checked(PyList_New(0));
-  for (const ChannelInfo& channel : channels) {
-    const Owned tuple = checked(Py_BuildValue("(NNIIddd)", text(channel.name), text(channel.unit), channel.offset,
-                                              channel.size, channel.lower, channel.upper, channel.neutral));
-    if (PyList_Append(list.get(), tuple.get()) != 0) throw std::runtime_error(raised());
-  }
-  return list;
-}
-
-Owned parameters_of(const Parameters& parameters) {
-  Owned dictionary = checked(PyDict_New());
-  for (const Parameter& parameter : parameters.all()) {
-    Owned values = checked(PyList_New(0));
-    for (const std::string& value : parameter.values) {
-      const Owned item = checked(text(value));
-      if (PyList_Append(values.get(), item.get()) != 0) throw std::runtime_error(raised());
-    }
-    put(dictionary.get(), parameter.name.c_str(), values.release());
-  }
-  return dictionary;
-}
-
-const char* word_of(StartReason reason) {
-  switch (reason) {
-    case StartReason::first: return "first";
-    case StartReason::takeover: return "takeover";
-    case StartReason::reset: return "reset";
-    case StartReason::restored: return "restored";
-    case StartReason::check: return "check";
-  }
-  return "first";
-}
-
-Owned facts_of(const Start& start) {
-  Owned facts = checked(PyDict_New());
-  PyObject* const to = facts.get();
-  put(to, "robot", PyLong_FromUnsignedLong(start.robot));
-  put(to, "name", text(start.name));
-  put(to, "model", text(start.model));
-  put(to, "team", text(start.team));
-  put(to, "controller", text(start.controller));
-  put(to, "parameters", parameters_of(start.parameters).release());
-  put(to, "reason", text(word_of(start.reason)));
-  put(to, "tick", PyLong_FromUnsignedLongLong(start.tick));
-  put(to, "seed", PyLong_FromUnsignedLongLong(start.seed));
-  put(to, "step_ns", PyLong_FromLongLong(start.step.count()));
-  put(to, "period", PyLong_FromUnsignedLong(start.period));
-  put(to, "observation_channels", channels_of(start.observation_channels).release());
-  put(to, "command_channels", channels_of(start.command_channels).release());
-  return facts;
-}
-
-std::size_t size_of(const std::vector<ChannelInfo>& channels) {
-  return channels.empty() ? 0 : std::size_t{channels.back().offset} + channels.back().size;
-}
-
-Owned memory(std::vector<double>& values, int flags) {
-  return checked(PyMemoryView_FromMemory(reinterpret_cast<char*>(values.data()),
-                                         static_cast<Py_ssize_t>(values.size() * sizeof(double)), flags));
-}
-
-// Tells the parameters which of them the controller has asked for.
-void note_asked(PyObject* adapter, const Parameters& parameters) {
-  const Owned asked = checked(PyObject_CallMethod(adapter, "asked_for", nullptr));
-  const Owned names = checked(PySequence_Fast(asked.get(), "asked_for gives a sequence"));
-  for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(names.get()); ++i)
-    parameters.has(text_of(PySequence_Fast_GET_ITEM(names.get(), i)));
-}
-
-}  // namespace
-
-Owned checked(PyObject* object) {
-  if (object == nullptr) throw std::runtime_error(raised());
-  return Owned(object);
-}
 
 PythonController::PythonController(PyObject* make_adapter) {
   const Lock lock;
@@ -134,43 +19,31 @@ PythonController::~PythonController() {
 void PythonController::start(const Start& start) {
   const Lock lock;
   // Arrays that the controller has kept show this memory, so it is never moved: a robot's layout stays the same.
-  observation_.reserve(1);
-  command_.reserve(1);
   observation_.resize(size_of(start.observation_channels));
   command_.resize(size_of(start.command_channels));
-  neutral_.clear();
-  command_channels_.clear();
-  for (const ChannelInfo& channel : start.command_channels) {
-    neutral_.insert(neutral_.end(), channel.size, channel.neutral);
-    command_channels_.push_back({channel.offset, channel.size, channel.lower, channel.upper});
-  }
+  neutral_ = neutral_of(start.command_channels);
+  command_channels_ = command_channels_of(start.command_channels);
   const Owned facts = facts_of(start);
-  const Owned observation = memory(observation_, PyBUF_READ);
-  const Owned command = memory(command_, PyBUF_WRITE);
-  checked(PyObject_CallMethod(adapter_.get(), "start", "OOO", facts.get(), observation.get(), command.get()));
-  note_asked(adapter_.get(), start.parameters);
+  const Owned observation = memory_of(observation_, false);
+  const Owned command = memory_of(command_, true);
+  const Owned asked =
+      checked(PyObject_CallMethod(adapter_.get(), "start", "OOO", facts.get(), observation.get(), command.get()));
+  note_asked(start.parameters, asked.get());
   step_ = checked(PyObject_GetAttrString(adapter_.get(), "step"));
 }
 
 void PythonController::step(const Observation& observation, Command& command) {
   const Lock lock;
-  const std::span<const double> values = observation.values({0, static_cast<std::uint32_t>(observation_.size())});
-  std::ranges::copy(values, observation_.begin());
+  std::ranges::copy(observation.values({0, static_cast<std::uint32_t>(observation_.size())}), observation_.begin());
   std::ranges::copy(neutral_, command_.begin());
   checked(PyObject_CallFunction(step_.get(), "KL", static_cast<unsigned long long>(observation.tick()),
                                 static_cast<long long>(observation.time().count())));
-  for (const CommandChannel& channel : command_channels_)
-    for (std::uint32_t i = 0; i < channel.size; ++i) command.set(channel, command_[channel.offset + i], i);
+  set_all(command, command_channels_, command_);
 }
 
 void PythonController::save(StateWriter& state) const {
   const Lock lock;
-  const Owned saved = checked(PyObject_CallMethod(adapter_.get(), "save", nullptr));
-  if (saved.get() == Py_None) return state.leave_out();
-  char* bytes = nullptr;
-  Py_ssize_t size = 0;
-  if (PyBytes_AsStringAndSize(saved.get(), &bytes, &size) != 0) throw std::runtime_error(raised());
-  state.write(std::string_view(bytes, static_cast<std::size_t>(size)));
+  write_state(state, checked(PyObject_CallMethod(adapter_.get(), "save", nullptr)).get());
 }
 
 void PythonController::load(StateReader& state) {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "client_sdk/hosting/plugin_loader.hpp"
-#include "client_sdk/python/hosting/python_controller.hpp"
+#include "client_sdk/python/hosting/python_team.hpp"
 #include "client_sdk/python/native/parts.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/run/in_process.hpp"
@@ -40,11 +40,7 @@ class TeamControllers {
         plugins_.emplace_back(nb::cast<std::string>(controller), folders);
         kinds_.push_back(kind_of(plugins_.back().plugin()));
       } else {
-        PyObject* const make_adapter = controller.ptr();  // `controllers` keeps it alive
-        kinds_.push_back({nb::cast<std::string>(controller.attr("name")), [make_adapter] {
-                            return OwnedController(new PythonController(make_adapter),
-                                                   [](Controller* made) { delete made; });
-                          }});
+        kinds_.push_back(kind_of_maker(controller.ptr()));  // `controllers` keeps it alive
       }
     }
   }

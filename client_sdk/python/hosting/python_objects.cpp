@@ -1,0 +1,144 @@
+#include "client_sdk/python/hosting/python_objects.hpp"
+
+#include <stdexcept>
+#include <string_view>
+
+namespace cohort::python {
+namespace {
+
+std::string text_of(PyObject* object) {
+  if (object == nullptr) return {};
+  const Owned text(PyObject_Str(object));
+  Py_ssize_t size = 0;
+  const char* characters = text ? PyUnicode_AsUTF8AndSize(text.get(), &size) : nullptr;
+  if (characters != nullptr) return {characters, static_cast<std::size_t>(size)};
+  PyErr_Clear();
+  return {};
+}
+
+// What Python has raised, as `cohort._hosting.describe` puts it: the error and the lines that led to it.
+std::string raised() {
+  PyObject *type = nullptr, *value = nullptr, *traceback = nullptr;
+  PyErr_Fetch(&type, &value, &traceback);
+  PyErr_NormalizeException(&type, &value, &traceback);
+  const Owned owned_type(type), owned_value(value), owned_traceback(traceback);
+  if (!owned_value) return "Python failed without an exception";
+  if (owned_traceback) PyException_SetTraceback(owned_value.get(), owned_traceback.get());
+  const Owned module(PyImport_ImportModule("cohort._hosting"));
+  const Owned text(module ? PyObject_CallMethod(module.get(), "describe", "O", owned_value.get()) : nullptr);
+  if (!text) PyErr_Clear();
+  std::string described = text_of(text.get());
+  return described.empty() ? text_of(owned_value.get()) : described;
+}
+
+void put(PyObject* dictionary, const char* key, PyObject* value) {
+  const Owned owned = checked(value);
+  if (PyDict_SetItemString(dictionary, key, owned.get()) != 0) throw std::runtime_error(raised());
+}
+
+PyObject* text(const std::string& text) {
+  return PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "replace");
+}
+
+Owned channels_of(const std::vector<ChannelInfo>& channels) {
+  Owned list = checked(PyList_New(0));
+  for (const ChannelInfo& channel : channels) {
+    const Owned tuple = checked(Py_BuildValue("(NNIIddd)", text(channel.name), text(channel.unit), channel.offset,
+                                              channel.size, channel.lower, channel.upper, channel.neutral));
+    if (PyList_Append(list.get(), tuple.get()) != 0) throw std::runtime_error(raised());
+  }
+  return list;
+}
+
+Owned parameters_of(const Parameters& parameters) {
+  Owned dictionary = checked(PyDict_New());
+  for (const Parameter& parameter : parameters.all()) {
+    Owned values = checked(PyList_New(0));
+    for (const std::string& value : parameter.values) {
+      const Owned item = checked(text(value));
+      if (PyList_Append(values.get(), item.get()) != 0) throw std::runtime_error(raised());
+    }
+    put(dictionary.get(), parameter.name.c_str(), values.release());
+  }
+  return dictionary;
+}
+
+const char* word_of(StartReason reason) {
+  switch (reason) {
+    case StartReason::first: return "first";
+    case StartReason::takeover: return "takeover";
+    case StartReason::reset: return "reset";
+    case StartReason::restored: return "restored";
+    case StartReason::check: return "check";
+  }
+  return "first";
+}
+
+}  // namespace
+
+Owned checked(PyObject* object) {
+  if (object == nullptr) throw std::runtime_error(raised());
+  return Owned(object);
+}
+
+Owned facts_of(const Start& start) {
+  Owned facts = checked(PyDict_New());
+  PyObject* const to = facts.get();
+  put(to, "robot", PyLong_FromUnsignedLong(start.robot));
+  put(to, "name", text(start.name));
+  put(to, "model", text(start.model));
+  put(to, "team", text(start.team));
+  put(to, "controller", text(start.controller));
+  put(to, "parameters", parameters_of(start.parameters).release());
+  put(to, "reason", text(word_of(start.reason)));
+  put(to, "tick", PyLong_FromUnsignedLongLong(start.tick));
+  put(to, "seed", PyLong_FromUnsignedLongLong(start.seed));
+  put(to, "step_ns", PyLong_FromLongLong(start.step.count()));
+  put(to, "period", PyLong_FromUnsignedLong(start.period));
+  put(to, "observation_channels", channels_of(start.observation_channels).release());
+  put(to, "command_channels", channels_of(start.command_channels).release());
+  return facts;
+}
+
+void note_asked(const Parameters& parameters, PyObject* asked) {
+  for (Py_ssize_t i = 0; i < PyList_Size(asked); ++i) parameters.has(text_of(PyList_GetItem(asked, i)));
+}
+
+Owned memory_of(std::vector<double>& values, bool is_written) {
+  values.reserve(1);  // Python wants an address also where there are none
+  return checked(PyMemoryView_FromMemory(reinterpret_cast<char*>(values.data()),
+                                         static_cast<Py_ssize_t>(values.size() * sizeof(double)),
+                                         is_written ? PyBUF_WRITE : PyBUF_READ));
+}
+
+std::size_t size_of(const std::vector<ChannelInfo>& channels) {
+  return channels.empty() ? 0 : std::size_t{channels.back().offset} + channels.back().size;
+}
+
+std::vector<double> neutral_of(const std::vector<ChannelInfo>& channels) {
+  std::vector<double> neutral;
+  for (const ChannelInfo& channel : channels) neutral.insert(neutral.end(), channel.size, channel.neutral);
+  return neutral;
+}
+
+std::vector<CommandChannel> command_channels_of(const std::vector<ChannelInfo>& channels) {
+  std::vector<CommandChannel> handles;
+  for (const ChannelInfo& channel : channels)
+    handles.push_back({channel.offset, channel.size, channel.lower, channel.upper});
+  return handles;
+}
+
+void set_all(Command& command, const std::vector<CommandChannel>& channels, std::span<const double> values) {
+  for (const CommandChannel& channel : channels)
+    for (std::uint32_t i = 0; i < channel.size; ++i) command.set(channel, values[channel.offset + i], i);
+}
+
+void write_state(StateWriter& state, PyObject* saved) {
+  if (saved == Py_None) return state.leave_out();
+  char* bytes = nullptr;
+  Py_ssize_t size = 0;
+  if (PyBytes_AsStringAndSize(saved, &bytes, &size) != 0) throw std::runtime_error(raised());
+  state.write(std::string_view(bytes, static_cast<std::size_t>(size)));
+}
+
+}  // namespace cohort::python

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "server/core/names.hpp"
 #include "server/core/overloaded.hpp"
 #include "server/core/text.hpp"
 
 namespace cohort {
 namespace {
 
-constexpr std::size_t longest_name = 255;
 constexpr double furthest = 1e6;  // beyond it a body has left the world [m]
 constexpr double unit_tolerance = 1e-3;
 constexpr std::chrono::nanoseconds longest_push = std::chrono::hours(24 * 365);
@@ -87,11 +87,6 @@ description::Event event_of_kind(const ApplyForce& apply, const ActionScope& sco
   return {{}, object, description::ApplyForce{link, apply.force_W, apply.torque_W, apply.duration}, "apply_force"};
 }
 
-// With a slash between each two.
-bool has_parts(const std::string& name) {
-  return !name.empty() && name.front() != '/' && name.back() != '/' && name.find("//") == std::string::npos;
-}
-
 // ---- Lights ----
 
 std::vector<std::size_t> lights_of(const description::Model& model) {
@@ -158,36 +153,6 @@ description::Event event_of_kind(const SetLight& set, const ActionScope& scope) 
 
 }  // namespace
 
-// What is no name is not repeated in a message either.
-void check_name(const std::string& name, const std::string& what) {
-  check_utf8(name, what);
-  if (name.size() > longest_name) refuse(what + " is longer than " + std::to_string(longest_name) + " bytes");
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-  if (std::ranges::any_of(name, is_control)) refuse(what + " has a control character in it");
-}
-
-void check_utf8(const std::string& text, const std::string& what) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-  for (std::size_t i = 0; i < text.size();) {
-    const unsigned first = byte(i);
-    const std::size_t length = first < 0x80   ? 1
-                               : first < 0xc2 ? 0
-                               : first < 0xe0 ? 2
-                               : first < 0xf0 ? 3
-                               : first < 0xf5 ? 4
-                                              : 0;
-    bool is_good = length > 0;
-    for (std::size_t k = 1; k < length; ++k) is_good = is_good && (byte(i + k) & 0xc0) == 0x80;
-    // Shortest forms, no surrogates, nothing beyond U+10FFFF.
-    if (first == 0xe0) is_good = is_good && byte(i + 1) >= 0xa0;
-    if (first == 0xed) is_good = is_good && byte(i + 1) < 0xa0;
-    if (first == 0xf0) is_good = is_good && byte(i + 1) >= 0x90;
-    if (first == 0xf4) is_good = is_good && byte(i + 1) < 0x90;
-    if (!is_good) refuse(what + " is not UTF-8");
-    i += length;
-  }
-}
-
 Pose checked_pose(const Pose& X_WM) {
   const double norm = X_WM.orientation.norm();
   if (!X_WM.position.allFinite() || !X_WM.orientation.coeffs().allFinite()) refuse("the pose is not finite");
@@ -196,19 +161,10 @@ Pose checked_pose(const Pose& X_WM) {
   return {X_WM.position, norm == 1.0 ? X_WM.orientation : X_WM.orientation.normalized()};
 }
 
-bool is_object_name(const std::string& name) {
-  try {
-    check_name(name, "");
-  } catch (const std::invalid_argument&) {
-    return false;
-  }
-  return has_parts(name);
-}
-
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects) {
   const std::string& wanted = spawn.name.empty() ? model : spawn.name;
   check_name(wanted, "the name of the object");
-  if (!has_parts(wanted)) refuse(quoted(wanted) + " is no name: expected parts with a slash between them");
+  if (!is_object_name(wanted)) refuse(quoted(wanted) + " is no name: expected parts with a slash between them");
   if (!objects.find(wanted)) return wanted;
   if (!spawn.allow_renaming)
     refuse(objects.is_present(*objects.find(wanted)) ? "another object has the name " + quoted(wanted)

@@ -25,10 +25,6 @@ struct ActionScope {
 /// not finite.
 description::Event event_of(const Action& action, const ActionScope& scope);
 
-/// Returns whether a new object can be called so: parts of UTF-8 with a slash between them,
-/// without control characters and not too long.
-bool is_object_name(const std::string& name);
-
 /// The name that a new object gets. Throws std::invalid_argument if it is no name, or is taken.
 std::string name_of_new(const SpawnObject& spawn, const std::string& model, const Objects& objects);
 
@@ -39,12 +35,5 @@ std::optional<std::size_t> team_of_new(const SpawnObject& spawn, std::size_t mod
 
 /// With a unit quaternion. Throws std::invalid_argument if it is no pose, or beyond what is simulated.
 Pose checked_pose(const Pose& X_WM);
-
-/// Throws std::invalid_argument if `name` is not UTF-8, has a control character or more than 255 bytes. `what`: for the
-/// message.
-void check_name(const std::string& name, const std::string& what);
-
-/// Throws std::invalid_argument if `text` is not UTF-8. `what`: for the message.
-void check_utf8(const std::string& text, const std::string& what);
 
 }  // namespace cohort

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "server/core/names.hpp"
 #include "server/core/random.hpp"
 #include "server/core/text.hpp"
-#include "server/simulation/action_events.hpp"
 
 namespace cohort {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "server/simulation/action_events.hpp"
+#include "server/core/names.hpp"
 
 namespace cohort::session {
 namespace {

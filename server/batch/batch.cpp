@@ -16,6 +16,15 @@ std::uint64_t last_tick_of(const description::Experiment& experiment) {
   return static_cast<std::uint64_t>(experiment.duration / experiment.world.step);
 }
 
+// The rows of a batch's arrays are those of the robots that are there from the beginning, and its worlds share the
+// experiment that new objects would be added to.
+void refuse_spawners(const description::Experiment& experiment) {
+  if (experiment.spawners.empty()) return;
+  throw std::invalid_argument("an event spawns '" + experiment.spawners.front().name +
+                              "_1' and so on, and the worlds of a batch have the objects of the description alone: "
+                              "expected `add` in place of `spawn`");
+}
+
 // So few that all workers have something to do to the end, and so many that handing them over costs nothing.
 std::size_t worlds_a_chunk(std::size_t worlds, unsigned threads) {
   constexpr std::size_t chunks_a_thread = 8;
@@ -26,6 +35,7 @@ std::size_t worlds_a_chunk(std::size_t worlds, unsigned threads) {
 
 Batch::Batch(const description::Experiment& experiment, std::size_t worlds, unsigned threads)
     : first_(experiment, 1), placer_(experiment.world), last_tick_(last_tick_of(experiment)), workers_(threads) {
+  refuse_spawners(experiment);
   if (worlds == 0) throw std::invalid_argument("a batch needs at least one world");
   for (const description::Instance& instance : experiment.world.instances) described_poses_.push_back(instance.X_WM);
   for (std::size_t world = 0; world < worlds; ++world)

@@ -41,7 +41,7 @@ class Batch {
   };
 
   /// All worlds begin with the experiment's seed. `worlds` and `threads` are at least 1. Throws std::invalid_argument
-  /// for a world that cannot be simulated.
+  /// for a world that cannot be simulated, and for an experiment with events that spawn.
   Batch(const description::Experiment& experiment, std::size_t worlds, unsigned threads);
   ~Batch();
 

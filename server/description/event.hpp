@@ -40,11 +40,28 @@ struct SetEmitters {
   std::vector<std::size_t> emitters;  ///< indices into Model::emitters
   EmitterChange change;
 };
-using Effect = std::variant<SetPresence, PlaceAt, SetVelocity, ApplyForce, SetEmitters>;
+/// A new object comes, by one of Experiment::spawners.
+struct SpawnNew {
+  std::size_t spawner = 0;
+};
+using Effect = std::variant<SetPresence, PlaceAt, SetVelocity, ApplyForce, SetEmitters, SpawnNew>;
+
+/// How many new objects the events of an experiment may bring together.
+inline constexpr std::size_t most_spawned = 10'000;
+
+/// Makes a new object each time an event asks for one, under a name of its own: `name` and the next number.
+struct Spawner {
+  std::string name;       ///< `late` makes late_1, late_2 ...; a number whose name is taken is left out
+  std::size_t model = 0;  ///< index into World::models
+  Pose X_WM;
+  Eigen::Vector2d area = Eigen::Vector2d::Zero();  ///< edges of the rectangle about X_WM that objects are put in [m]
+  std::string team{};                              ///< of a robot
+  std::size_t most = 100;                          ///< objects in a run, >= 1
+};
 
 struct Event {
   std::chrono::nanoseconds time{0};
-  std::size_t object = 0;
+  std::size_t object = 0;  ///< means nothing where a new one comes
   Effect effect;
   std::string kind;  ///< as the file calls it
 };

@@ -85,6 +85,7 @@ struct Experiment {
   unsigned threads = 0;       ///< that step the world; 0: as many as there are cores
   std::vector<Event> events;  ///< in the order of their times, and of the file
   std::vector<Reaction> reactions;
+  std::vector<Spawner> spawners{};
   std::vector<StopCondition> stops;
   std::vector<PrintedQuantity> prints;
   History history;

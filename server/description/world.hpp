@@ -100,6 +100,12 @@ struct BreakableJoint {
   Problem second_place{};  ///< the same of the second one
 };
 
+/// A model of which events of an experiment bring new objects.
+struct SpawnableModel {
+  std::string uri;        ///< as the experiment has it
+  std::size_t model = 0;  ///< index into World::models
+};
+
 /// A world with every include and population expanded. A robot's id is its place in `robots`.
 struct World {
   std::string name;
@@ -119,6 +125,7 @@ struct World {
   std::vector<Instance> instances;
   std::vector<Population> populations;
   std::vector<BreakableJoint> breakable_joints;
+  std::vector<SpawnableModel> spawnable_models{};
   std::vector<std::size_t> robots;  ///< indices into `instances`, in their order
   std::vector<Problem> warnings;    ///< what the file asks for and is not simulated
   std::size_t seed_warnings = 0;    ///< how many of the last warnings depend on the seed

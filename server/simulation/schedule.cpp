@@ -9,15 +9,21 @@
 
 namespace cohort {
 Schedule::Schedule(const description::Experiment& experiment, physics::World& world, Objects& objects,
-                   emission::Emitters& emitters, const actuation::UserActions& actions)
+                   emission::Emitters& emitters, const actuation::UserActions& actions, Spawn spawn)
     : experiment_(experiment),
       world_(world),
       objects_(objects),
       emitters_(emitters),
       actions_(actions),
-      boundaries_held_(experiment.stops.size(), 0) {
-  for (const description::Event& event : experiment.events)
+      spawn_(std::move(spawn)),
+      boundaries_held_(experiment.stops.size(), 0),
+      spawned_(experiment.spawners.size(), 0) {
+  for (const description::Event& event : experiment.events) {
     event_ticks_.push_back(event.time.count() == 0 ? 0 : ticks_of(event.time, experiment.world.step));
+    // A simulation that a snapshot is restored into has nothing but what the description has.
+    if (event_ticks_.back() == 0 && std::holds_alternative<description::SpawnNew>(event.effect))
+      throw std::invalid_argument("an event spawns at 0 s: expected a later time");
+  }
   for (const description::Instance& instance : experiment.world.instances)
     stages_.push_back(instance.is_present ? Stage::came : Stage::to_come);
   for (const description::Reaction& reaction : experiment.reactions)
@@ -77,7 +83,29 @@ std::optional<std::string> Schedule::why_not(const description::Event& event) co
   return std::nullopt;
 }
 
+// Numbers go on, and pass over names that something else has had.
+std::string Schedule::spawn_new(const description::SpawnNew& spawn) {
+  const description::Spawner& spawner = experiment_.spawners.at(spawn.spawner);
+  std::uint64_t& spawned = spawned_[spawn.spawner];
+  if (spawned >= spawner.most)
+    return "spawn '" + spawner.name + "' does nothing: it has brought " + std::to_string(spawned) +
+           ", and may bring no more";
+  std::string name;
+  std::uint64_t number = spawned;
+  do {
+    name = spawner.name + "_" + std::to_string(++number);
+  } while (objects_.find(name));
+  try {
+    std::string text = spawn_(spawner, name);
+    ++spawned;
+    return text;
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error("spawn '" + name + "': " + error.what());
+  }
+}
+
 std::string Schedule::act(const description::Event& event) {
+  if (const auto* const spawn = std::get_if<description::SpawnNew>(&event.effect)) return spawn_new(*spawn);
   const auto object = static_cast<std::uint32_t>(event.object);
   std::string text = event.kind + " '" + objects_.name(object) + "'";
   if (const std::optional<std::string> reason = why_not(event)) return text + " does nothing: " + *reason;
@@ -113,6 +141,7 @@ void Schedule::apply(const description::Event& event) {
                  [&](const description::SetEmitters& set) {
                    for (const std::size_t emitter : set.emitters) emitters_.change(BodyId{object}, emitter, set.change);
                  },
+                 [](const description::SpawnNew&) { throw std::logic_error("a new object is no event of an old one"); },
              },
              event.effect);
 }
@@ -210,6 +239,7 @@ void Schedule::hash(StateHash& hash) const {
       hash.add(static_cast<std::uint64_t>(number));
   });
   for (const std::uint64_t held : boundaries_held_) hash.add(held);
+  for (const std::uint64_t spawned : spawned_) hash.add(spawned);
   if (experiment_.reactions.empty()) return;  // then all else follows from the tick
   for (const Stage stage : stages_) hash.add(static_cast<std::uint64_t>(stage));
   for (const std::uint64_t end : force_ends_) hash.add(end);
@@ -228,6 +258,9 @@ void Schedule::save(SnapshotWriter& writer) const {
   writer.add_count(pushes_.size());
   writer.add_count(removed_.size());
   visit_outside(*this, [&](const auto& number) { writer.add(number); });
+  if (spawned_.empty()) return;  // as in snapshots of builds without them
+  writer.add_count(spawned_.size());
+  writer.add_all(spawned_.data(), spawned_.size());
 }
 
 void Schedule::restore(SnapshotReader& reader, std::uint64_t tick) {
@@ -244,6 +277,13 @@ void Schedule::restore(SnapshotReader& reader, std::uint64_t tick) {
   pushes_.assign(reader.read_count(sizeof(std::uint64_t)), {});
   removed_.assign(reader.read_count(sizeof(std::uint32_t)), 0);
   visit_outside(*this, [&](auto& number) { reader.read(number); });
+  if (!spawned_.empty()) {
+    reader.expect_count(spawned_.size(), "spawners");
+    reader.read_all(spawned_.data(), spawned_.size());
+  }
+  for (std::size_t spawner = 0; spawner < spawned_.size(); ++spawner)
+    if (spawned_[spawner] > experiment_.spawners[spawner].most)
+      throw SnapshotError("snapshot: an event has brought more objects than it may");
   for (const Stage stage : stages_)
     if (stage > Stage::gone) throw SnapshotError("the snapshot has an object that neither came nor went");
   for (const std::uint32_t object : removed_)

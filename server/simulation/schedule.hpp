@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +15,13 @@ namespace cohort {
 /// The schedule of a run, as its experiment has it: its events, what actions of robots make happen, and when it stops.
 class Schedule {
  public:
+  /// Brings a new object into the world, as a spawner has it and under this name. Returns a sentence. Throws
+  /// std::invalid_argument if it cannot be done; nothing is changed then.
+  using Spawn = std::function<std::string(const description::Spawner& spawner, const std::string& name)>;
+
+  /// Throws std::invalid_argument if an event brings something before the first step.
   Schedule(const description::Experiment& experiment, physics::World& world, Objects& objects,
-           emission::Emitters& emitters, const actuation::UserActions& actions);
+           emission::Emitters& emitters, const actuation::UserActions& actions, Spawn spawn);
 
   /// The events of a boundary: those of its time, then those of the actions that begin. Throws std::runtime_error for
   /// one that cannot be done. Returns a sentence for each.
@@ -43,6 +49,7 @@ class Schedule {
   std::string who_begins(const description::Reaction& reaction) const;
   std::optional<std::string> why_not(const description::Event& event) const;
   std::string act(const description::Event& event);
+  std::string spawn_new(const description::SpawnNew& spawn);
   void apply(const description::Event& event);
   std::optional<std::string> why_it_holds(const description::StopCondition& condition) const;
 
@@ -51,11 +58,13 @@ class Schedule {
   Objects& objects_;
   emission::Emitters& emitters_;
   const actuation::UserActions& actions_;
+  Spawn spawn_;
   std::vector<std::uint64_t> event_ticks_;
   std::size_t next_event_ = 0;
   std::vector<std::uint64_t> boundaries_held_;  // in a row, of each stop condition
   std::vector<Stage> stages_;                   // by object
   std::vector<std::uint64_t> force_ends_;       // of each event of each reaction: its force acts before this tick
+  std::vector<std::uint64_t> spawned_;          // how many objects each spawner has brought
   struct Push {
     std::uint32_t object = 0;
     description::ApplyForce force;

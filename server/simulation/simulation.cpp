@@ -40,7 +40,8 @@ Simulation::Simulation(SharedExperiment experiment, std::uint64_t seed, std::spa
       objects_(experiment_, *world_, like != nullptr ? &like->objects_ : nullptr),
       robots_({*experiment_, seed_, *world_, emitters_, grippers_, detachable_joints_, actions_, objects_, workers_},
               like != nullptr ? &like->robots_ : nullptr),
-      schedule_(*experiment_, *world_, objects_, emitters_, actions_),
+      schedule_(*experiment_, *world_, objects_, emitters_, actions_,
+                [this](const auto& spawner, const std::string& name) { return spawn_by(spawner, name); }),
       spawned_models_(experiment_) {
   note_bodies();
   begin_tick();
@@ -192,20 +193,32 @@ std::string Simulation::act_unsensed(const Action& action) {
 }
 
 std::string Simulation::spawn_object(const SpawnObject& spawn) {
-  const Pose X_WM = checked_pose(spawn.X_WM);
   const std::size_t models_before = spawned_models_.size();
   try {
-    const std::size_t model = spawned_models_.find_or_add(spawn.model);
-    const description::Model& described = experiment_->world.models[model];
-    const std::optional<std::size_t> team = team_of_new(spawn, model, *experiment_);
-    const std::string name = name_of_new(spawn, described.name, objects_);
-    add_object(name, model, X_WM, team.value_or(0));
-    return "spawn '" + name + "' of model '" + described.name + "'" +
-           (team ? " in team '" + experiment_->teams[*team].name + "'" : "");
+    return add_new(spawn, spawned_models_.find_or_add(spawn.model));
   } catch (const std::invalid_argument&) {
     spawned_models_.shrink(models_before);
     throw;
   }
+}
+
+// Where it comes depends on the seed and its name alone.
+std::string Simulation::spawn_by(const description::Spawner& spawner, const std::string& name) {
+  const RandomStream random(seed_, name, "spawn");
+  Pose X_WM = spawner.X_WM;
+  X_WM.position.x() += spawner.area.x() * (random.uniform(0, 0) - 0.5);
+  X_WM.position.y() += spawner.area.y() * (random.uniform(0, 1) - 0.5);
+  return add_new({.name = name, .model = {}, .X_WM = X_WM, .team = spawner.team}, spawner.model);
+}
+
+std::string Simulation::add_new(const SpawnObject& spawn, std::size_t model) {
+  const Pose X_WM = checked_pose(spawn.X_WM);
+  const description::Model& described = experiment_->world.models.at(model);
+  const std::optional<std::size_t> team = team_of_new(spawn, model, *experiment_);
+  const std::string name = name_of_new(spawn, described.name, objects_);
+  add_object(name, model, X_WM, team.value_or(0));
+  return "spawn '" + name + "' of model '" + described.name + "'" +
+         (team ? " in team '" + experiment_->teams[*team].name + "'" : "");
 }
 
 std::vector<std::byte> Simulation::save() const {

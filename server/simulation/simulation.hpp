@@ -163,6 +163,8 @@ class Simulation {
   std::uint64_t computed_state_hash() const;
   std::string act_unsensed(const Action& action);
   std::string spawn_object(const SpawnObject& spawn);
+  std::string spawn_by(const description::Spawner& spawner, const std::string& name);
+  std::string add_new(const SpawnObject& spawn, std::size_t model);
   void add_object(const std::string& name, std::size_t model, const Pose& X_WM, std::size_t team);
   void sense();
   void count_touches();

@@ -74,7 +74,8 @@ class ExperimentText {
                             text_ << " " << apply.link << " " << apply.duration.count();
                             add(apply.force_W), add(apply.torque_W);
                           },
-                          [&](const description::SetEmitters& set) { list(set.emitters); }},
+                          [&](const description::SetEmitters& set) { list(set.emitters); },
+                          [&](const description::SpawnNew& spawn) { text_ << " " << spawn.spawner; }},
                event.effect);
     text_ << "\n";
   }

@@ -67,6 +67,7 @@ void select_again(const YamlNode& document, const fs::path& file, Experiment& ex
   experiment.world = std::move(read.world);
   experiment.events = std::move(read.events);
   experiment.reactions = std::move(read.reactions);
+  experiment.spawners = std::move(read.spawners);
   experiment.stops = std::move(read.stops);
   experiment.prints = std::move(read.prints);
   experiment.history.objects = std::move(read.history.objects);

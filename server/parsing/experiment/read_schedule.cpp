@@ -12,6 +12,7 @@
 #include "server/description/select_robots.hpp"
 #include "server/parsing/experiment/read_effects.hpp"
 #include "server/parsing/experiment/read_recorded.hpp"
+#include "server/parsing/experiment/read_spawn.hpp"
 #include "server/parsing/experiment/schedule_entry.hpp"
 #include "server/parsing/keys/choices.hpp"
 #include "server/parsing/keys/experiment_keys.hpp"
@@ -43,7 +44,7 @@ struct ScheduleReader::Written {
   std::string path;  // of the kind, such as `events[0].add`
   std::string kind;
   const YamlNode* map = nullptr;  // of the kind's keys
-  std::chrono::nanoseconds time{0};
+  std::optional<std::chrono::nanoseconds> time{};
   const YamlNode* on = nullptr;  // what makes it happen in place of a time
   std::string on_path;
 };
@@ -134,7 +135,7 @@ void ScheduleReader::read_when(const YamlMap& map, Written& written) {
   if (!seconds) return;
   const std::optional<std::chrono::nanoseconds> time = schedule_time(*seconds);
   if (!time) map.problem("at", "expected from 0 s to 9e9 s");
-  written.time = time.value_or(written.time);
+  written.time = time;
 }
 
 std::vector<ScheduleReader::Written> ScheduleReader::entries(const std::string& list, bool have_times) const {
@@ -172,14 +173,19 @@ std::vector<LaterObject> ScheduleReader::later_objects() const {
   if (!top_.has("events") || !top_.where("events").is_list()) return objects;
   const YamlNode& nodes = top_.where("events");
   const YamlReport nothing(file_, ignored);
-  for (std::size_t i = 0; i < nodes.items.size(); ++i) {
-    const YamlNode* const added = nodes.items[i]->find("add");
-    if (added == nullptr || !added->is_map()) continue;
-    const std::string path = "events[" + std::to_string(i) + "].add";
-    const KeyValues values = read_values(*added, path, experiment_part("add", "events"), true, nothing);
-    if (!values.has("model") || !values.has("name") || !values.has("pose")) continue;
-    objects.push_back({values.text("model"), values.text("name"), values.pose("pose"), {file_, added->line, path, ""}});
-  }
+  for (std::size_t i = 0; i < nodes.items.size(); ++i)
+    for (const std::string kind : {"add", "spawn"}) {
+      const YamlNode* const added = nodes.items[i]->find(kind);
+      if (added == nullptr || !added->is_map()) continue;
+      const std::string path = "events[" + std::to_string(i) + "]." + kind;
+      const KeyValues values = read_values(*added, path, experiment_part(kind, "events"), true, nothing);
+      if (!values.has("model") || !values.has("name") || !values.has("pose")) continue;
+      objects.push_back({values.text("model"),
+                         values.text("name"),
+                         values.pose("pose"),
+                         {file_, added->line, path, ""},
+                         kind == "spawn"});
+    }
   return objects;
 }
 
@@ -195,7 +201,8 @@ void ScheduleReader::read_events(Experiment& experiment) const {
   std::vector<ReadEvent> events;
   std::vector<Event> at_any_time;
   for (const Written& written : entries("events", true)) {
-    std::vector<ReadEvent> read = read_event(written, experiment.world);
+    std::vector<ReadEvent> read =
+        written.kind == "spawn" ? read_spawn(written, experiment) : read_event(written, experiment.world);
     if (written.on_path.empty()) {
       std::move(read.begin(), read.end(), std::back_inserter(events));
       continue;
@@ -254,7 +261,18 @@ std::vector<ScheduleReader::ReadEvent> ScheduleReader::read_event(const Written&
   }
   std::vector<ReadEvent> events;
   for (auto& [object, effect] : read_effects(written.kind, entry, world, objects))
-    events.push_back({{written.time, object, std::move(effect), written.kind}, written.map, written.path});
+    events.push_back({{written.time.value_or(std::chrono::nanoseconds(0)), object, std::move(effect), written.kind},
+                      written.map,
+                      written.path});
+  return events;
+}
+
+std::vector<ScheduleReader::ReadEvent> ScheduleReader::read_spawn(const Written& written,
+                                                                  Experiment& experiment) const {
+  const ScheduleEntry entry(*written.map, written.path, experiment_part(written.kind, "events"), report_);
+  std::vector<ReadEvent> events;
+  for (Event& event : read_spawn_events(entry, written.time, !written.on_path.empty(), experiment))
+    events.push_back({std::move(event), written.map, written.path});
   return events;
 }
 
@@ -269,6 +287,7 @@ void ScheduleReader::check_order(const World& world, const std::vector<ReadEvent
     if (event.kind == "add") is_there[event.object] = 1;
   for (const ReadEvent& each : events) {
     const Event& event = each.event;
+    if (std::holds_alternative<SpawnNew>(event.effect)) continue;
     const std::string name = "'" + world.instances[event.object].name + "'";
     if (is_gone[event.object])
       report_.problem(*each.node, each.path, name + " has been removed by then");

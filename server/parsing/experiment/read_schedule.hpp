@@ -30,6 +30,7 @@ class ScheduleReader {
   static void read_when(const YamlMap& map, Written& written);
   void read_events(Experiment& experiment) const;
   std::vector<ReadEvent> read_event(const Written& written, const World& world) const;
+  std::vector<ReadEvent> read_spawn(const Written& written, Experiment& experiment) const;
   std::optional<Reaction> read_on(const Written& written, const World& world) const;
   void check_order(const World& world, const std::vector<ReadEvent>& events,
                    const std::vector<Event>& at_any_time) const;

@@ -65,6 +65,15 @@ constexpr ExtensionKey add[] = {
     {"name", name, "", "", "of the object, unique; may be scoped, as in `team/late_1`"},
     {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the world"},
 };
+constexpr ExtensionKey spawn[] = {
+    {"model", uri, "", "", "`model://NAME`, or a path relative to the world's file"},
+    {"name", name, "", "", "what names begin with: `team/late` makes `team/late_1`, `team/late_2` …"},
+    {"pose", pose, "m, rad", "0 0 0 0 0 0", "in the world"},
+    {"area", point, "m", "0 0", "edges of a rectangle about the pose, in which the seed draws x and y of each"},
+    {"team", name, "", no_value, "whose controllers drive it; has to be there if there are several teams"},
+    {"every", positive, "s", no_value, "beside `at`: comes again and again, so much time apart"},
+    {"most", count, "1", "100", "how many may come in a run"},
+};
 constexpr ExtensionKey objects_only[] = {
     {"objects", name, "", "", "names, in which `*` stands for any characters", true},
 };
@@ -149,6 +158,7 @@ constexpr Extension table[] = {
     {"experiment", "", false, "A world, a seed, a duration, and who controls which robot.", experiment, "experiment"},
     {"teams", "experiment", false, "Robots that share a controller.", team, "experiment"},
     {"add", "events", false, "An object or a robot comes into the world.", add, "events"},
+    {"spawn", "events", false, "A new object or robot comes into the world, another one each time.", spawn, "events"},
     {"remove", "events", false, "Objects leave the world for good.", objects_only, "events"},
     {"disable", "events", false, "Objects leave the world and may come back as they were.", objects_only, "events"},
     {"enable", "events", false, "Objects come back.", objects_only, "events"},

@@ -13,7 +13,8 @@ struct LaterObject {
   std::string uri;  ///< of its model
   std::string name;
   Pose X_WM;
-  Problem where;  ///< of the event, without a message
+  Problem where;               ///< of the event, without a message
+  bool is_model_only = false;  ///< the event makes new objects of the model; there is none in the description
 };
 
 }  // namespace cohort::parsing

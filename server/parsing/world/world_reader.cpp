@@ -307,11 +307,15 @@ void WorldReader::add_later(const LaterObject& object) {
   };
   const SdfFile* const file = find_model(object.uri, problem);
   if (file == nullptr) return;
-  const std::size_t before = world_.instances.size();
-  if (!add_instance(object.name, shared_model(*file, file->root.Model()->Static()), object.X_WM))
-    return problem("another object has the name '" + object.name + "'");
-  if (world_.instances.size() > before + 1)
+  const std::size_t model = shared_model(*file, file->root.Model()->Static());
+  if (count_of_bodies(model) > 1)
     return problem("the model has several roots, which are bodies of their own; an event can bring one");
+  if (object.is_model_only) {
+    world_.spawnable_models.push_back({object.uri, model});
+    return;
+  }
+  if (!add_instance(object.name, model, object.X_WM))
+    return problem("another object has the name '" + object.name + "'");
   world_.instances.back().is_present = false;
 }
 

@@ -205,6 +205,13 @@ TEST(Batch, NothingGrowsWithResets) {
   EXPECT_LE(allocated(), before + 4096);
 }
 
+TEST(Batch, RefusesEventsThatSpawn) {
+  description::Experiment experiment = two_kinds();
+  experiment.spawners.push_back({"late", 0, at(2, 0, 0), {1, 1}, "team", 1});
+  experiment.events.push_back({30ms, 0, description::SpawnNew{0}, "spawn"});
+  EXPECT_NE(message_of([&] { Batch(experiment, 2, 1); }).find("an event spawns 'late_1'"), std::string::npos);
+}
+
 // The robot falls beside the floor that is taken away.
 description::Experiment without_ground(bool strict) {
   description::Experiment experiment = two_kinds();

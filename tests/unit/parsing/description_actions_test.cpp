@@ -203,7 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"events:\n  - {disable: {objects: wall}}\n", 5, "events[0].at", "or `on`"},
         Flaw{"events:\n  - at: 1\n    on: {action: open}\n    disable: {objects: wall}\n", 6, "events[0].on",
              "no place beside `at`"},
-        Flaw{"events:\n  - on: {action: open}\n", 5, "events[0]", "missing: one of add, remove"},
+        Flaw{"events:\n  - on: {action: open}\n", 5, "events[0]", "missing: one of add, spawn, remove"},
         Flaw{"events:\n  - on: open\n    disable: {objects: wall}\n", 5, "events[0].on", "expected"},
         Flaw{"events:\n  - on: {robots: all}\n    disable: {objects: wall}\n", 5, "events[0].on.action", "missing"},
         Flaw{"events:\n  - on: {action: opn}\n    disable: {objects: wall}\n", 5, "events[0].on.action",

@@ -59,6 +59,26 @@ TEST_F(Schedule, HasItsEventsInTheOrderOfTheirTimes) {
   EXPECT_EQ(std::get<SetVelocity>(experiment.events[6].effect).angular_W, Eigen::Vector3d::Zero());
 }
 
+TEST_F(Schedule, BringsNewRobotsAtTimesAndWhenRobotsDoSomething) {
+  const Experiment experiment = read_course(
+      "events:\n"
+      "  - {at: 1, spawn: {model: model://sbot, name: team/late, pose: [0, 1, 0, 0, 0, 0], every: 0.5, most: 3}}\n"
+      "  - {at: 2, spawn: {model: model://sbot, name: other, area: [1, 2], team: t}}\n"
+      "  - {at: 1.2, remove: {objects: wall}}\n");
+  EXPECT_EQ(experiment.world.instances.size(), 3u) << "nothing is there that has not come";
+  EXPECT_EQ(experiment.world.spawnable_models.size(), 2u);
+  ASSERT_EQ(experiment.spawners.size(), 2u);
+  EXPECT_EQ(experiment.spawners[0].model, 0u) << "the model of a, read once";
+  EXPECT_EQ(experiment.spawners[0].X_WM.position, Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(experiment.spawners[0].team, "t");
+  EXPECT_EQ(experiment.spawners[0].most, 3u);
+  EXPECT_EQ(experiment.spawners[1].most, 1u);
+  EXPECT_EQ(experiment.spawners[1].area, Eigen::Vector2d(1, 2));
+  std::vector<std::chrono::nanoseconds> times;
+  for (const Event& event : experiment.events) times.push_back(event.time);
+  EXPECT_EQ(times, (std::vector<std::chrono::nanoseconds>{1s, 1200ms, 1500ms, 2s, 2s}));
+}
+
 TEST_F(Schedule, SaysWhatIsRecorded) {
   const Recorded defaults = read_course("").recorded;
   EXPECT_EQ(defaults.observed, (std::vector<std::uint32_t>{0, 1}));
@@ -106,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Flaw{"events: 3\n", 4, "events", "expected a list"},
         Flaw{"events:\n  - {remove: {objects: a}}\n", 5, "events[0].at", "missing"},
-        Flaw{"events:\n  - {at: 1}\n", 5, "events[0]", "missing: one of add, remove"},
+        Flaw{"events:\n  - {at: 1}\n", 5, "events[0]", "missing: one of add, spawn, remove"},
         Flaw{"events:\n  - {at: -1, remove: {objects: a}}\n", 5, "events[0].at", "expected from 0 s"},
         Flaw{"events:\n  - at: 1\n    remov: {objects: a}\n", 6, "events[0].remov", "did you mean 'remove'?"},
         Flaw{"events:\n  - at: 1\n    remove: {objects: a}\n    disable: {objects: a}\n", 7, "events[0].disable",
@@ -116,6 +136,23 @@ INSTANTIATE_TEST_SUITE_P(
         Flaw{"events:\n  - at: 1\n    remove: {object: a}\n", 6, "events[0].remove.object", "did you mean 'objects'?"},
         Flaw{"events:\n  - at: 1\n    move: {objects: a}\n", 6, "events[0].move.pose", "missing"},
         Flaw{"events:\n  - at: 1\n    move: {objects: a, pose: [1, 2]}\n", 6, "events[0].move.pose", "six numbers"},
+        Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbit, name: n}\n", 6, "events[0].spawn",
+             "no model 'sbit'"},
+        Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot}\n", 6, "events[0].spawn.name", "missing"},
+        Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: /n}\n", 6, "events[0].spawn.name",
+             "expected parts with a slash between them"},
+        Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, team: u}\n", 6, "events[0].spawn.team",
+             "there is no team 'u'; did you mean 't'?"},
+        Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, area: [-1, 0]}\n", 6,
+             "events[0].spawn.area", "at least 0 m"},
+        Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, most: 3}\n", 6, "events[0].spawn.most",
+             "no place without `every`"},
+        Flaw{"events:\n  - at: 1\n    spawn: {model: model://sbot, name: n, every: 1, most: 10001}\n", 6,
+             "events[0].spawn.most", "may bring 10000"},
+        Flaw{"events:\n  - at: 0\n    spawn: {model: model://sbot, name: n}\n", 6, "events[0].spawn",
+             "nothing can be spawned at 0 s"},
+        Flaw{"events:\n  - at: -1\n    spawn: {model: model://sbot, name: n}\n", 5, "events[0].at",
+             "expected from 0 s"},
         Flaw{"events:\n  - at: 1\n    add: {model: model://sbit, name: n}\n", 6, "events[0].add", "no model 'sbit'"},
         Flaw{"events:\n  - at: 1\n    add: {model: model://sbot, name: a}\n", 6, "events[0].add", "another object"},
         Flaw{"events:\n  - at: 1\n    set_velocity: {objects: wall}\n", 6, "events[0].set_velocity.objects",

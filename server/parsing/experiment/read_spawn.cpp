@@ -1,0 +1,96 @@
+#include "server/parsing/experiment/read_spawn.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "server/core/names.hpp"
+#include "server/core/text.hpp"
+
+namespace cohort::parsing {
+namespace {
+
+constexpr const char* spawn_kind = "spawn";
+
+// The team of the new objects; empty if they are no robots, or if it is not clear which, which is reported.
+std::string read_team(const ScheduleEntry& entry, const Model& model, const std::vector<Team>& teams) {
+  const KeyValues& values = entry.values();
+  const std::string team = values.has("team") ? values.text("team") : "";
+  if (!model.is_robot()) {
+    if (values.has("team")) entry.problem("team", "the model '" + model.name + "' is no robot, so it is in no team");
+    return "";
+  }
+  std::vector<std::string> names;
+  std::string list;
+  for (const Team& each : teams) {
+    names.push_back(each.name);
+    list += (list.empty() ? "" : ", ") + each.name;
+  }
+  if (values.has("team")) {
+    if (std::ranges::find(names, team) == names.end())
+      entry.problem("team", "there is no team '" + team + "'" + suggestion(team, names));
+    return team;
+  }
+  if (names.size() == 1) return names.front();
+  if (!names.empty()) entry.problem("team", "missing: which of the teams a new robot joins: " + list);
+  return "";
+}
+
+void check_area(const ScheduleEntry& entry) {
+  if ((entry.values().point("area").array() < 0.0).any()) entry.problem("area", "expected edges of at least 0 m");
+}
+
+// How often is said where it comes more than once.
+void check_repetition(const ScheduleEntry& entry, std::optional<std::chrono::nanoseconds> at, bool is_reaction) {
+  const bool repeats = entry.is_written("every");
+  if (is_reaction && repeats) entry.problem("every", "has no place beside `on`");
+  if (!is_reaction && !repeats && entry.is_written("most"))
+    entry.problem("most", "has no place without `every` or `on`: what happens at one time brings one object");
+  if (at && at->count() == 0)
+    entry.problem("nothing can be spawned at 0 s: what is there from the beginning stands in the world");
+}
+
+void check_most(const ScheduleEntry& entry, const Experiment& experiment) {
+  std::size_t total = 0;
+  for (const Spawner& spawner : experiment.spawners) total += std::min(spawner.most, most_spawned + 1);
+  if (total > most_spawned)
+    entry.problem("most", "the events of an experiment may bring " + std::to_string(most_spawned) +
+                              " new objects together, and here it would be more");
+}
+
+std::vector<Event> events_of(std::size_t spawner, std::chrono::nanoseconds first, std::size_t count,
+                             std::chrono::nanoseconds every) {
+  const std::chrono::nanoseconds longest = *schedule_time(9e9);
+  std::vector<Event> events;
+  for (std::chrono::nanoseconds time = first; events.size() < count; time += every) {
+    events.push_back({time, 0, SpawnNew{spawner}, spawn_kind});
+    if (every > longest - time) break;
+  }
+  return events;
+}
+
+}  // namespace
+
+std::vector<Event> read_spawn_events(const ScheduleEntry& entry, std::optional<std::chrono::nanoseconds> at,
+                                     bool is_reaction, Experiment& experiment) {
+  const KeyValues& values = entry.values();
+  check_repetition(entry, at, is_reaction);
+  for (const char* key : {"model", "name", "pose", "area", "most"})
+    if (!values.has(key)) return {};
+  check_area(entry);
+  Spawner spawner{values.text("name"), 0, values.pose("pose"), values.point("area"), "", 1};
+  if (is_reaction || values.has("every")) spawner.most = static_cast<std::size_t>(values.whole("most"));
+  if (!is_object_name(spawner.name + "_" + std::to_string(most_spawned)))
+    entry.problem("name", "expected parts with a slash between them, together less than 250 bytes");
+  const auto& models = experiment.world.spawnable_models;
+  const auto model = std::ranges::find(models, values.text("model"), &SpawnableModel::uri);
+  if (model == models.end()) return {};  // which is reported with the world
+  spawner.model = model->model;
+  spawner.team = read_team(entry, experiment.world.models[spawner.model], experiment.teams);
+  experiment.spawners.push_back(spawner);
+  check_most(entry, experiment);
+  const std::chrono::nanoseconds every = entry.time("every").value_or(std::chrono::nanoseconds(0));
+  const std::size_t count = is_reaction ? 1 : std::min(spawner.most, most_spawned);
+  return events_of(experiment.spawners.size() - 1, at.value_or(std::chrono::nanoseconds(0)), count, every);
+}
+
+}  // namespace cohort::parsing

@@ -112,6 +112,14 @@ std::string own_command_line() {
   return line;
 }
 
+// Whether an event of the experiment has brought the object, by its name.
+bool is_spawned(const std::string& name, const description::Experiment& experiment) {
+  return std::ranges::any_of(experiment.spawners, [&](const description::Spawner& spawner) {
+    const std::string start = spawner.name + "_";
+    return name.starts_with(start) && name.find_first_not_of("0123456789", start.size()) == std::string::npos;
+  });
+}
+
 // Of the view: one that looks, and if it may do more, one that controls, and one that drives what people are to drive.
 void add_identities_of_view(const RunCommand& command, const description::Experiment& experiment,
                             std::vector<std::string>& arguments) {
@@ -157,6 +165,7 @@ Serving::~Serving() = default;
 void Serving::start_controllers(const description::Experiment& experiment,
                                 const std::vector<TeamController>& controllers) {
   if (command_.controllers == Controllers::external) return;
+  controllers_ = &controllers;
   for (const description::Team& team : experiment.teams)
     if (team.controller == keyboard_controller)
       log_.notice(fmt::format(
@@ -205,15 +214,55 @@ void Serving::let_look(const std::atomic<bool>& stop) {
   }
 }
 
+// Starts processes for robots that have come, ascending ids.
+void Serving::drive(const description::Experiment& experiment, const std::vector<std::uint32_t>& robots) {
+  if (controllers_ == nullptr || robots.empty()) return;
+  description::Experiment theirs = experiment;
+  for (description::Team& team : theirs.teams)
+    std::erase_if(team.robots, [&](std::uint32_t robot) { return !std::ranges::binary_search(robots, robot); });
+  const bool per_robot = command_.controllers == Controllers::per_robot;
+  newcomers_.push_back(std::make_unique<Children>(
+      controller_processes(theirs, *controllers_, per_robot, domains_, command_.secure, log_),
+      listener_of_controllers(*server_, log_)));
+}
+
 session::RunResult Serving::run(const description::Experiment& experiment, Simulation& simulation,
                                 const session::RunOptions& options, const session::RunListener& listener,
                                 const std::atomic<bool>& stop, bool is_last) {
-  session::RunResult result = server_->run(experiment, simulation, options, listener, stop);
-  if (result.next || (!is_last && result.end == session::RunResult::End::finished)) return result;
+  const auto spawned_since = [&](std::uint32_t first) {
+    std::vector<std::uint32_t> robots;
+    for (std::uint32_t robot = first; robot < simulation.robot_count(); ++robot)
+      if (is_spawned(simulation.robot_name(robot), experiment)) robots.push_back(robot);
+    return robots;
+  };
+  // What events bring is there as soon as a step is done. Those who spawn a robot later say themselves who drives it.
+  std::uint32_t known = simulation.robot_count();
+  session::RunListener with_newcomers = listener;
+  with_newcomers.boundary = [&] {
+    known = simulation.robot_count();
+    if (listener.boundary) listener.boundary();
+  };
+  with_newcomers.stepped = [&] {
+    try {
+      drive(simulation.experiment(), spawned_since(known));
+    } catch (const std::exception& error) {
+      server_->fail(error.what());
+    }
+    if (listener.stepped) listener.stepped();
+  };
+  drive(simulation.experiment(), spawned_since(static_cast<std::uint32_t>(experiment.world.robots.size())));
+  session::RunResult result = server_->run(experiment, simulation, options, with_newcomers, stop);
+  for (const auto& each : newcomers_) each->stop_restarting();
+  if (result.next || (!is_last && result.end == session::RunResult::End::finished)) {
+    newcomers_.clear();  // the next world has none of their robots, or `drive` starts processes for them
+    return result;
+  }
   if (view_) view_->stop_restarting();
   if (children_) children_->stop_restarting();
   server_->dismiss(result);
   if (children_) children_->let_finish();
+  for (const auto& each : newcomers_) each->let_finish();
+  newcomers_.clear();
   return result;
 }
 

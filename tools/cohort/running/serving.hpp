@@ -22,8 +22,8 @@ class Serving {
   Serving(const RunCommand& command, const description::Experiment& experiment, Log& log);
   ~Serving();
 
-  /// Starts the processes of the experiment's teams, unless they are started by somebody else. `controllers` and
-  /// `experiment` must outlive this call only.
+  /// Starts the processes of the experiment's teams, unless they are started by somebody else; `run` starts those of
+  /// the robots that events bring. `experiment` must outlive this call only, `controllers` must outlive this.
   void start_controllers(const description::Experiment& experiment, const std::vector<TeamController>& controllers);
 
   /// Starts a process that shows the runs in a browser (`cohort view`); that it cannot is a warning. `recording` is
@@ -38,12 +38,16 @@ class Serving {
                          const std::atomic<bool>& stop, bool is_last);
 
  private:
+  void drive(const description::Experiment& experiment, const std::vector<std::uint32_t>& robots);
+
   const RunCommand& command_;
   Log& log_;
   std::vector<std::uint32_t> domains_;
   std::vector<wire::Participant> participants_;
   std::optional<session::Server> server_;
+  const std::vector<TeamController>* controllers_ = nullptr;  // null: somebody else starts them
   std::unique_ptr<Children> children_;
+  std::vector<std::unique_ptr<Children>> newcomers_;  // of one run
   std::atomic<bool> has_view_{false};
   std::unique_ptr<Children> view_;
 };

@@ -34,6 +34,15 @@ std::size_t process_count(const RunCommand& command, const description::Experime
   return command.controllers == Controllers::per_robot ? experiment.world.robots.size() : experiment.teams.size();
 }
 
+// How many more may come to be started for robots that events bring.
+std::size_t later_process_count(const RunCommand& command, const description::Experiment& experiment) {
+  std::size_t count = 0;
+  if (command.controllers == Controllers::external) return count;
+  for (const description::Spawner& spawner : experiment.spawners)
+    if (experiment.world.models[spawner.model].is_robot()) count += spawner.most;
+  return count;
+}
+
 // Without security one for all.
 std::vector<std::optional<wire::Identity>> doors_of(const RunCommand& command) {
   if (command.secure.empty()) return {std::nullopt};
@@ -141,7 +150,7 @@ void add_identities_of_view(const RunCommand& command, const description::Experi
 Serving::Serving(const RunCommand& command, const description::Experiment& experiment, Log& log)
     : command_(command), log_(log) {
   const std::size_t processes = process_count(command, experiment);
-  raise_file_limit(processes, log);
+  raise_file_limit(processes + later_process_count(command, experiment), log);
   const bool external = command.controllers == Controllers::external;
   open_domains(command, external || has_keyboard(experiment), processes, domains_, participants_);
   server_.emplace(participants_);

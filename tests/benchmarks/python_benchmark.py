@@ -4,12 +4,13 @@
     tools/python-environment --benchmarks                          # prints a Python that has all of them
     PYTHONPATH=build/release/python PYTHON tests/benchmarks/python_benchmark.py [--seconds S] [--worlds N]
 
-A step is one tick of 10 ms of one world: all robots sense and are commanded. Every row is measured in turns, so that what
-else the machine does is shared; medians and quartiles are of steps of a robot for each second of CPU time. Peers that are
-not installed are left out, by name.
+A step is one tick of 10 ms of one world: all robots sense and are commanded. Every row is measured in turns, so that
+what else the machine does is shared; medians and quartiles are of steps of a robot for each second of CPU time. Peers
+that are not installed are left out, by name.
 """
 
 import argparse
+import functools
 import pathlib
 import statistics
 import time
@@ -43,7 +44,12 @@ def mujoco_model():
 
     walls = "".join(
         f'<geom type="box" size="{size}" pos="{place}"/>'
-        for size, place in (("1 .02 .1", "0 1 .1"), ("1 .02 .1", "0 -1 .1"), (".02 1 .1", "1 0 .1"), (".02 1 .1", "-1 0 .1"))
+        for size, place in (
+            ("1 .02 .1", "0 1 .1"),
+            ("1 .02 .1", "0 -1 .1"),
+            (".02 1 .1", "1 0 .1"),
+            (".02 1 .1", "-1 0 .1"),
+        )
     )
     sites, sensors = "", ""
     for i in range(8):
@@ -187,21 +193,20 @@ def half_cheetah(count):
 
 
 def rows(worlds):
-    crowd = lambda fidelity: crowd_experiment(fidelity)
     for fidelity in ("treel", "planar"):
         alone = experiment("alone", fidelity)
-        yield f"batch, {fidelity}, 1 robot", lambda: batch(alone, worlds, 1), 1
-        yield f"VectorEnv, {fidelity}, 1 robot", lambda: vector_env(alone, worlds, 1), 1
-        yield f"VectorEnv, {fidelity}, 1 robot, 2 threads", lambda: vector_env(alone, worlds, 2), 2
-        yield f"VectorEnv, {fidelity}, 1 robot, 10 ticks a step", lambda: vector_env(alone, worlds, 1, 10), 1
-        many = crowd(fidelity)
-        yield f"batch, {fidelity}, 16 robots", lambda: batch(many, worlds, 1), 1
-        yield f"VectorEnv, {fidelity}, 16 robots", lambda: vector_env(many, worlds, 1), 1
+        yield f"batch, {fidelity}, 1 robot", functools.partial(batch, alone, worlds, 1), 1
+        yield f"VectorEnv, {fidelity}, 1 robot", functools.partial(vector_env, alone, worlds, 1), 1
+        yield f"VectorEnv, {fidelity}, 1 robot, 2 threads", functools.partial(vector_env, alone, worlds, 2), 2
+        yield f"VectorEnv, {fidelity}, 1 robot, 10 ticks a step", functools.partial(vector_env, alone, worlds, 1, 10), 1
+        many = crowd_experiment(fidelity)
+        yield f"batch, {fidelity}, 16 robots", functools.partial(batch, many, worlds, 1), 1
+        yield f"VectorEnv, {fidelity}, 16 robots", functools.partial(vector_env, many, worlds, 1), 1
     yield "MuJoCo, 8 range finders, loop", mujoco_loop, 1
-    yield "MuJoCo, mujoco.rollout, 256 x 10", lambda: mujoco_rollout(1), 1
-    yield "MuJoCo, mujoco.rollout, 256 x 10, 2 threads", lambda: mujoco_rollout(2), 2
+    yield "MuJoCo, mujoco.rollout, 256 x 10", functools.partial(mujoco_rollout, 1), 1
+    yield "MuJoCo, mujoco.rollout, 256 x 10, 2 threads", functools.partial(mujoco_rollout, 2), 2
     yield "PyBullet, 8 rays", pybullet_loop, 1
-    yield "HalfCheetah-v5, 16 environments (5 ticks a step)", lambda: half_cheetah(16), 1
+    yield "HalfCheetah-v5, 16 environments (5 ticks a step)", functools.partial(half_cheetah, 16), 1
 
 
 def crowd_experiment(fidelity):
@@ -232,7 +237,10 @@ def main():
     print(f"{'':52} {'a CPU-second, median':>22} {'quartiles':>16} {'median':>8}")
     for rate in measured:
         low, median, high = statistics.quantiles(rate.cpu, n=4) if len(rate.cpu) > 1 else (rate.cpu[0],) * 3
-        print(f"{rate.name:52} {median / 1e3:22.1f} {low / 1e3:7.1f} {high / 1e3:8.1f} {statistics.median(rate.wall) / 1e3:8.1f}")
+        print(
+            f"{rate.name:52} {median / 1e3:22.1f} {low / 1e3:7.1f} {high / 1e3:8.1f}"
+            f" {statistics.median(rate.wall) / 1e3:8.1f}"
+        )
 
 
 if __name__ == "__main__":

@@ -52,7 +52,10 @@ def serve(build, domain, tmp_path):
         summary = tmp_path / "served.json"
         command = [build / "bin/cohort", "run", experiment, "--controllers", "external", "--domain", str(domain)]
         process = subprocess.Popen(
-            [*command, "--quiet", "--summary", summary, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [*command, "--quiet", "--summary", summary, *arguments],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
         )
         processes.append(process)
 

@@ -70,7 +70,11 @@ def test_teams_have_controllers_of_their_own():
     experiment = made(
         teams=[
             {"name": "first", "robots": "explorers/sbot_0"},
-            {"name": "others", "robots": [f"explorers/sbot_{i}" for i in range(1, 16)], "controller": "obstacle_avoidance"},
+            {
+                "name": "others",
+                "robots": [f"explorers/sbot_{i}" for i in range(1, 16)],
+                "controller": "obstacle_avoidance",
+            },
         ]
     )
     alone = experiment.run({"first": Forward})

@@ -27,4 +27,3 @@ def test_functions_take_arrays_of_any_shape():
     assert cohort.math.sin(numpy.zeros((2, 3))).shape == (2, 3)
     assert cohort.math.atan2([[1.0], [2.0]], [1.0, 2.0, 3.0]).shape == (2, 3)
     assert cohort.math.pow(2, 10) == 1024.0
-

@@ -7,7 +7,6 @@ import cohort.gym
 import gymnasium
 import numpy
 import pytest
-import yaml_fields
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 from pettingzoo.test import parallel_api_test, parallel_seed_test
@@ -24,7 +23,12 @@ def reward(state):
 
 
 def environments(num_envs, **arguments):
-    given = {"reward": reward, "horizon": 7, "observe": ["proximity/*/reading"], "act": ["treel/*/velocity"]} | arguments
+    given = {
+        "reward": reward,
+        "horizon": 7,
+        "observe": ["proximity/*/reading"],
+        "act": ["treel/*/velocity"],
+    } | arguments
     return cohort.gym.VectorEnv("obstacle_avoidance", num_envs, **given)
 
 
@@ -72,7 +76,9 @@ def test_the_same_seeds_give_the_same_trajectories(num_envs, threads):
     alone = trajectory(environments(1), 5, 25, 0)
     assert_same(alone, trajectory(environments(num_envs, threads=threads), 5, 25, 0))
     last = num_envs - 1
-    assert_same(trajectory(environments(1), 5 + last, 25, 0), trajectory(environments(num_envs, threads=threads), 5, 25, last))
+    assert_same(
+        trajectory(environments(1), 5 + last, 25, 0), trajectory(environments(num_envs, threads=threads), 5, 25, last)
+    )
 
 
 def test_the_first_episode_is_the_experiment_with_that_seed():

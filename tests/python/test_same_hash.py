@@ -13,7 +13,16 @@ SECONDS = 3
 def hash_of_program(cohort_program, folder, experiment, *more):
     summary = folder / "summary.json"
     cohort_program(
-        "run", str(experiment), "--controllers", "inprocess", "--quiet", "--summary", str(summary), "--duration", str(SECONDS), *more
+        "run",
+        str(experiment),
+        "--controllers",
+        "inprocess",
+        "--quiet",
+        "--summary",
+        str(summary),
+        "--duration",
+        str(SECONDS),
+        *more,
     )
     return int(json.loads(summary.read_text())["state_hash"], 16)
 

@@ -57,7 +57,12 @@ def test_it_is_asked_for_the_robots_that_are_due():
         world=cohort._files.worlds_folder() / "arenas/obstacles.sdf",
         duration=0.04,
         teams=[
-            {"name": "even", "robots": [f"explorers/sbot_{i}" for i in range(0, 16, 2)], "period": 2, "controller": Some},
+            {
+                "name": "even",
+                "robots": [f"explorers/sbot_{i}" for i in range(0, 16, 2)],
+                "period": 2,
+                "controller": Some,
+            },
             {"name": "odd", "robots": [f"explorers/sbot_{i}" for i in range(1, 16, 2)], "controller": Some},
         ],
     )

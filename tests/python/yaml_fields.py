@@ -5,7 +5,7 @@ import yaml
 
 
 def of_example(name, **fields):
-    """Returns an experiment that comes with Cohort as text, with absolute paths and these fields in place of its own."""
+    """Returns the text of an experiment that comes with Cohort, with absolute paths and these fields."""
     file = cohort._files.experiment_called(name)
     experiment = yaml.safe_load(file.read_text())
     experiment["world"] = str((file.parent / experiment["world"]).resolve())

@@ -99,7 +99,7 @@ class Maker:
 
 
 def controller_in(file):
-    """Returns the one class of controllers that a file of Python defines. Raises ValueError if there are more or none."""
+    """Returns the class of controllers that a file of Python defines. Raises ValueError if there is not just one."""
     path = pathlib.Path(file).resolve()
     if not path.is_file():
         raise ValueError(f"there is no file {path}")
@@ -119,7 +119,9 @@ def controller_in(file):
     ]
     if len(classes) != 1:
         found = ", ".join(sorted(each.__name__ for each in classes)) or "none"
-        raise ValueError(f"{path} has these classes of controllers: {found}; expected one that derives from cohort.Controller")
+        raise ValueError(
+            f"{path} has these classes of controllers: {found}; expected one that derives from cohort.Controller"
+        )
     return classes[0]
 
 

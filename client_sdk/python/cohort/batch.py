@@ -1,5 +1,9 @@
 """Many worlds of one experiment in this process."""
 
+from __future__ import annotations
+
+import os
+
 import numpy
 
 from cohort import _native
@@ -11,10 +15,10 @@ class Batch:
     """Many worlds of one experiment, stepped together by threads of C++, for learning.
 
     Arrays are float64 in SI units, contiguous, and stay at one address as long as the batch lives. A world has the same
-    bits as the same experiment read with the same seed and run alone, whatever the other worlds do and for any number of
-    threads. Rows of robots with fewer channels end in zeros. The program commands all robots; a command acts from the
-    next tick on. One thread of Python uses it at a time; steps run without Python's global lock. It does not survive a
-    fork of the process.
+    bits as the same experiment read with the same seed and run alone, whatever the other worlds do and for any number
+    of threads. Rows of robots with fewer channels end in zeros. The program commands all robots; a command acts from
+    the next tick on. One thread of Python uses it at a time; steps run without Python's global lock. It does not
+    survive a fork of the process.
 
     Args:
         experiment: an `Experiment`, or what `Experiment.read` takes.
@@ -27,7 +31,7 @@ class Batch:
     QUARANTINED = 4  #: a robot's state broke, or it has left the world; the others go on
     FAILED = 8  #: `step` raised an error because of this world
 
-    def __init__(self, experiment, worlds, threads=1):
+    def __init__(self, experiment: Experiment | str | os.PathLike, worlds: int, threads: int = 1) -> None:
         if not isinstance(experiment, Experiment):
             experiment = Experiment.read(experiment)
         if worlds < 1 or threads < 1:
@@ -37,30 +41,30 @@ class Batch:
         #: How many worlds there are.
         self.worlds = worlds
         #: Scoped names of the robots of each world.
-        self.robots = [self._native.robot_name(robot) for robot in range(self._native.robots)]
+        self.robots: list[str] = [self._native.robot_name(robot) for robot in range(self._native.robots)]
         #: [world, robot, value], read-only: what robots observe.
-        self.observations = self._native.observations
+        self.observations: numpy.ndarray = self._native.observations
         #: [world, robot, value], to be written: what commands robots. A reset puts neutral values there.
-        self.commands = self._native.commands
+        self.commands: numpy.ndarray = self._native.commands
         #: [world, robot, 7], read-only: poses of root links in the world frame, x y z [m] and quaternion w x y z.
-        self.poses = self._native.poses
+        self.poses: numpy.ndarray = self._native.poses
         #: [world], read-only, uint8: bits of STOPPED, TIMED_OUT, QUARANTINED, FAILED. With all but QUARANTINED a world
         #: stands still until it is reset.
-        self.done = self._native.done
+        self.done: numpy.ndarray = self._native.done
 
-    def observation_channels(self, robot=0):
+    def observation_channels(self, robot: int = 0) -> Channels:
         """Returns the `Channels` of a robot's observation."""
         return Channels(self._native.observation_channels(robot))
 
-    def command_channels(self, robot=0):
+    def command_channels(self, robot: int = 0) -> Channels:
         """Returns the `Channels` of a robot's command."""
         return Channels(self._native.command_channels(robot))
 
-    def robot_model(self, robot):
+    def robot_model(self, robot: int) -> str:
         """Returns the name of a robot's model."""
         return self._native.robot_model(robot)
 
-    def step(self, ticks=1, only=None):
+    def step(self, ticks: int = 1, only: numpy.ndarray | None = None) -> None:
         """Steps all worlds, each until it stands still.
 
         Args:
@@ -72,7 +76,7 @@ class Batch:
         """
         self._native.step(ticks, only)
 
-    def reset(self, seeds, only=None):
+    def reset(self, seeds: int | numpy.ndarray, only: numpy.ndarray | None = None) -> None:
         """Begins worlds again, each with its seed, as if the experiment had been read with it. Reads no file.
 
         Args:
@@ -84,10 +88,10 @@ class Batch:
             only = numpy.ones(self.worlds, dtype=bool)
         self._native.reset(only, seeds)
 
-    def tick(self, world):
+    def tick(self, world: int) -> int:
         """Returns the tick of a world."""
         return self._native.tick(world)
 
-    def state_hash(self, world):
+    def state_hash(self, world: int) -> int:
         """Returns the state hash of a world, that of one run alone."""
         return self._native.state_hash(world)

@@ -1,8 +1,11 @@
 """Channels: the named parts of what a robot observes and of what commands it."""
 
+from __future__ import annotations
+
 import dataclasses
 import difflib
 import re
+from collections.abc import Iterable, Iterator
 
 import numpy
 
@@ -36,17 +39,17 @@ class Channel:
 class Channels:
     """The channels of a robot's observation, or those of its command, in the order of their values."""
 
-    def __init__(self, tuples):
+    def __init__(self, tuples: Iterable[tuple]) -> None:
         self._all = tuple(Channel(*each) for each in tuples)
         self._by_name = {each.name: each for each in self._all}
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Channel]:
         return iter(self._all)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._all)
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> Channel:
         """Returns the channel of this name. Raises ChannelError if there is none."""
         channel = self._by_name.get(name)
         if channel is None:
@@ -54,37 +57,41 @@ class Channels:
             raise ChannelError(f"there is no channel '{name}'" + (f"; near: {', '.join(near)}" if near else ""))
         return channel
 
-    def __contains__(self, name):
+    def __contains__(self, name: str) -> bool:
         return name in self._by_name
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return "Channels(" + ", ".join(self._by_name) + ")"
 
     @property
-    def size(self):
+    def size(self) -> int:
         """How many values all of them have."""
         return sum(each.size for each in self._all)
 
     @property
-    def lower(self):
+    def lower(self) -> numpy.ndarray:
         """The least value of each, an array [value]; -inf where there is none."""
         return numpy.concatenate([numpy.full(each.size, each.lower) for each in self._all] or [numpy.empty(0)])
 
     @property
-    def upper(self):
+    def upper(self) -> numpy.ndarray:
         """The greatest value of each, an array [value]; inf where there is none."""
         return numpy.concatenate([numpy.full(each.size, each.upper) for each in self._all] or [numpy.empty(0)])
 
-    def index(self, name):
-        """Returns where a channel is: an int if it has one value, else a slice. Raises ChannelError if there is none."""
+    def index(self, name: str) -> int | slice:
+        """Returns where a channel is: an int if it has one value, else a slice.
+
+        Raises ChannelError if there is none.
+        """
         channel = self[name]
         return channel.offset if channel.size == 1 else slice(channel.offset, channel.offset + channel.size)
 
-    def indices(self, pattern, count=None):
+    def indices(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
         """Returns the places of the values of all channels that match.
 
         `*` stands for any characters but `/`. The result is a slice if the values are in a row, which makes views; else
-        an array of int. Raises ChannelError if nothing matches, or if `count` is given and another number of channels does.
+        an array of int. Raises ChannelError if nothing matches, or if `count` is given and another number of channels
+        does.
         """
         expression = re.compile("[^/]*".join(re.escape(each) for each in pattern.split("*")) + r"\Z")
         found = [each for each in self._all if expression.match(each.name)]

@@ -1,17 +1,29 @@
 """Controllers as clients of a server, over DDS."""
 
+from __future__ import annotations
+
 import os
 import sys
+from collections.abc import Sequence
+from typing import NoReturn
 
 from cohort import _client
 from cohort._hosting import Maker
+from cohort.controller import Controller, TeamController
 
 
 class ClientError(RuntimeError):
     """A client did not drive its robots to the end of the run. The message says why."""
 
 
-def host(controller, robots="all", *, server=None, domain=None, secure=None):
+def host(
+    controller: type[Controller] | type[TeamController],
+    robots: str | Sequence[object] = "all",
+    *,
+    server: str | None = None,
+    domain: int | None = None,
+    secure: str | os.PathLike | None = None,
+) -> None:
     """Drives robots of a running server until the run ends.
 
     Args:
@@ -24,24 +36,28 @@ def host(controller, robots="all", *, server=None, domain=None, secure=None):
     Waits for a server that is not there yet. Raises ClientError if the run fails, if another client drives these robots
     or takes them over, or if the server is lost; KeyboardInterrupt after Ctrl-C.
     """
-    selectors = [each for each in robots.split(",") if each] if isinstance(robots, str) else [str(each) for each in robots]
+    selectors = (
+        [each for each in robots.split(",") if each] if isinstance(robots, str) else [str(each) for each in robots]
+    )
     if not selectors:
         raise ValueError("robots names no robot")
-    end, error = _client.host(Maker(controller), selectors, server or "", -1 if domain is None else domain, os.fspath(secure or ""))
+    end, error = _client.host(
+        Maker(controller), selectors, server or "", -1 if domain is None else domain, os.fspath(secure or "")
+    )
     if end == "interrupted":
         raise KeyboardInterrupt
     if end != "finished":
         raise ClientError(f"{end.replace('_', ' ')}: {error}" if error else end)
 
 
-def main(controller, arguments=None):
-    """The `main` of a program that is one controller: reads `--robots`, `--server`, `--domain`, `--secure` and `--help`.
+def main(controller: type[Controller] | type[TeamController], arguments: Sequence[str] | None = None) -> NoReturn:
+    """Is the `main` of a program with one controller: reads `--robots`, `--server`, `--domain`, `--secure`, `--help`.
 
         if __name__ == "__main__":
             cohort.main(Wanderer)
 
-    Ends the process: with 0 when the run finished, 1 when it or the controller failed, 2 for a mistake in the options or
-    a refused claim, 130 when interrupted.
+    Ends the process: with 0 when the run finished, 1 when it or the controller failed, 2 for a mistake in the options
+    or a refused claim, 130 when interrupted.
 
     Args:
         controller: a class that derives from `cohort.Controller`.

@@ -1,6 +1,12 @@
 """What the author of a controller writes against: one class that derives from Controller."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy
 
 from cohort.channels import Channels
 
@@ -16,18 +22,18 @@ class Parameters:
     over is a mistake of the experiment, and the controller does not start.
     """
 
-    def __init__(self, values):
+    def __init__(self, values: dict[str, list[str]]) -> None:
         self._values = values
-        self.asked = set()
+        self.asked: set[str] = set()
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._values)
 
-    def __contains__(self, name):
+    def __contains__(self, name: str) -> bool:
         self.asked.add(name)
         return name in self._values
 
-    def _single(self, name, expected, fallback):
+    def _single(self, name: str, expected: str, fallback: object) -> str | None:
         self.asked.add(name)
         if name not in self._values:
             if fallback is None:
@@ -38,17 +44,17 @@ class Parameters:
             raise ParameterError(f"parameter '{name}': expected {expected}, not {values}")
         return values[0]
 
-    def real(self, name, fallback=None):
+    def real(self, name: str, fallback: float | None = None) -> float:
         """Returns a finite number. Raises ParameterError if it is something else, or missing without a fallback."""
         text = self._single(name, "a number", fallback)
-        return float(fallback) if text is None else _number(name, text, "a number")
+        return fallback if text is None and fallback is not None else _number(name, text or "", "a number")
 
-    def reals(self, name):
+    def reals(self, name: str) -> list[float]:
         """Returns a list of finite numbers, which is empty if the experiment has none of that name."""
         self.asked.add(name)
         return [_number(name, each, "a number or a list of numbers") for each in self._values.get(name, [])]
 
-    def flag(self, name, fallback=None):
+    def flag(self, name: str, fallback: bool | None = None) -> bool:
         """Returns True or False, which the experiment writes as `true` or `false`."""
         text = self._single(name, "true or false", fallback)
         if text is None:
@@ -57,18 +63,18 @@ class Parameters:
             raise ParameterError(f"parameter '{name}': expected true or false, not '{text}'")
         return text == "true"
 
-    def text(self, name, fallback=None):
+    def text(self, name: str, fallback: str | None = None) -> str:
         """Returns a single text."""
         text = self._single(name, "a text", fallback)
-        return fallback if text is None else text
+        return fallback or "" if text is None else text
 
-    def texts(self, name):
+    def texts(self, name: str) -> list[str]:
         """Returns a list of texts, which is empty if the experiment has none of that name."""
         self.asked.add(name)
         return list(self._values.get(name, []))
 
 
-def _number(name, text, expected):
+def _number(name: str, text: str, expected: str) -> float:
     try:
         number = float(text)
     except ValueError:
@@ -96,45 +102,45 @@ class Start:
         observation_channels, command_channels: `Channels`, with units and bounds.
     """
 
-    def __init__(self, facts):
-        self.robot = facts["robot"]
-        self.name = facts["name"]
-        self.model = facts["model"]
-        self.team = facts["team"]
-        self.controller = facts["controller"]
+    def __init__(self, facts: dict[str, Any]) -> None:
+        self.robot: int = facts["robot"]
+        self.name: str = facts["name"]
+        self.model: str = facts["model"]
+        self.team: str = facts["team"]
+        self.controller: str = facts["controller"]
         self.parameters = Parameters(facts["parameters"])
-        self.reason = facts["reason"]
-        self.tick = facts["tick"]
-        self.seed = facts["seed"]
-        self.step = facts["step_ns"] * 1e-9
-        self.period = facts["period"]
+        self.reason: str = facts["reason"]
+        self.tick: int = facts["tick"]
+        self.seed: int = facts["seed"]
+        self.step: float = facts["step_ns"] * 1e-9
+        self.period: int = facts["period"]
         self.observation_channels = Channels(facts["observation_channels"])
         self.command_channels = Channels(facts["command_channels"])
 
     @property
-    def seconds_per_step(self):
+    def seconds_per_step(self) -> float:
         """Simulated time from one step of the controller to the next [s]."""
         return self.step * self.period
 
-    def observation(self, name):
+    def observation(self, name: str) -> int | slice:
         """Returns the index of an observation channel: an int, or a slice if it has several values.
 
         Raises ChannelError if there is none.
         """
         return self.observation_channels.index(name)
 
-    def observations(self, pattern, count=None):
+    def observations(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
         """Returns the index of the values of all observation channels that match, such as `proximity/*/reading`.
 
         A slice where the values are in a row. Raises ChannelError if none match, or not `count` of them.
         """
         return self.observation_channels.indices(pattern, count)
 
-    def command(self, name):
+    def command(self, name: str) -> int | slice:
         """Returns the index of a command channel. Raises ChannelError if there is none."""
         return self.command_channels.index(name)
 
-    def commands(self, pattern, count=None):
+    def commands(self, pattern: str, count: int | None = None) -> slice | numpy.ndarray:
         """Returns the index of the values of all command channels that match."""
         return self.command_channels.indices(pattern, count)
 
@@ -142,10 +148,11 @@ class Start:
 class Controller:
     """Drives one robot. Derive from it, and give the class to a run, or name its file in an experiment.
 
-    Every robot has an object of its own, made without arguments. One thread calls all of them. An exception ends the run
-    with its message. For runs with the same bits, `step` depends on nothing but what `start` and the steps since gave: no
-    clock, no random device, nothing that robots share. Functions such as `math.sin` are those of Cohort, with the same
-    bits on every machine; those of NumPy depend on the processor (`cohort.math` has functions for arrays that do not).
+    Every robot has an object of its own, made without arguments. One thread calls all of them. An exception ends the
+    run with its message. For runs with the same bits, `step` depends on nothing but what `start` and the steps since
+    gave: no clock, no random device, nothing that robots share. Functions such as `math.sin` are those of Cohort,
+    with the same bits on every machine; those of NumPy depend on the processor (`cohort.math` has functions for
+    arrays that do not).
 
         class Wanderer(cohort.Controller):
             def start(self, start):
@@ -164,14 +171,14 @@ class Controller:
         time: simulated time since tick 0 [s].
     """
 
-    robot = None
-    tick = 0
-    time = 0.0
+    robot: Start
+    tick: int = 0
+    time: float = 0.0
 
-    def start(self, start):
+    def start(self, start: Start) -> None:
         """Looks channels up and asks for parameters. Called before the first step, and when the world begins again."""
 
-    def step(self, observation, command):
+    def step(self, observation: numpy.ndarray, command: numpy.ndarray) -> None:
         """Turns an observation into a command.
 
         Both are arrays [value] of float64 in SI units, at the same address in every step, and valid during the step.
@@ -180,22 +187,22 @@ class Controller:
         """
         raise NotImplementedError("a controller needs a step(self, observation, command)")
 
-    def save(self):
+    def save(self) -> bytes | None:
         """Returns what it remembers of the steps since `start` as bytes, at most 1 MiB, when a snapshot is taken.
 
         b"" if it remembers nothing. A class without `save` returns None: it is started anew from a snapshot.
         """
         return None
 
-    def load(self, state):
+    def load(self, state: bytes) -> None:
         """Takes the bytes that `save` of the same class returned, right after `start`, and goes on from there."""
 
 
 class TeamController:
-    """Drives all robots of a process together, by one call for each tick: for policies that are computed for many at once.
+    """Drives all robots of a process by one call for each tick: for policies that are computed for many at once.
 
-    Derive from it, and use the class as one that derives from `Controller`. What it computes may depend on all robots that
-    the same process drives, and so on how robots are spread over processes.
+    Derive from it, and use the class as one that derives from `Controller`. What it computes may depend on all robots
+    that the same process drives, and so on how robots are spread over processes.
 
         class Everybody(cohort.TeamController):
             def start(self, robots):
@@ -212,27 +219,27 @@ class TeamController:
         time: simulated time since tick 0 [s].
     """
 
-    robots = ()
-    asked = slice(None)
-    tick = 0
-    time = 0.0
+    robots: list[Start] = []
+    asked: slice | numpy.ndarray = slice(None)
+    tick: int = 0
+    time: float = 0.0
 
-    def start(self, robots):
+    def start(self, robots: list[Start]) -> None:
         """Looks channels up and asks for parameters; `robots` is a list of `Start`. Called as `Controller.start`."""
 
-    def step(self, observations, commands):
+    def step(self, observations: numpy.ndarray, commands: numpy.ndarray) -> None:
         """Turns observations [robot, value] into commands [robot, value], of the robots that are asked at this tick.
 
         Otherwise as `Controller.step`.
         """
         raise NotImplementedError("a controller needs a step(self, observations, commands)")
 
-    def save(self):
+    def save(self) -> bytes | None:
         """Returns what it remembers of all robots as bytes: as `Controller.save`.
 
         Goes on where the same robots are driven together.
         """
         return None
 
-    def load(self, state):
+    def load(self, state: bytes) -> None:
         """Takes the bytes that `save` of the same class returned: as `Controller.load`."""

@@ -1,14 +1,25 @@
 """Experiments: a world, robots in teams, what drives them, for how long."""
 
+from __future__ import annotations
+
 import dataclasses
 import json
 import os
 import pathlib
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Union
 
 from cohort import _files, _native
 from cohort._hosting import Maker, maker_in
 from cohort.controller import Controller, TeamController
 
+if TYPE_CHECKING:
+    import pandas
+
+#: What drives a team: a class, or the name or the path of a controller.
+Driver = Union[type[Controller], type[TeamController], str, os.PathLike]
+#: What drives all teams, or each by its name.
+Controllers = Union[Driver, dict[str, Driver]]
 
 _NOBODY = "none"  # what a team of an experiment made in Python is given as its controller that has none
 _PEOPLE = "keyboard"  # with `cohort teleop`, of a server
@@ -43,7 +54,7 @@ class Team:
 
     name: str
     controller: str
-    robots: tuple
+    robots: tuple[int, ...]
     period: int
 
 
@@ -78,7 +89,7 @@ class Result:
     robot_ticks: int
     touching_obstacles: int
     touching_robots: int
-    events: list
+    events: list[tuple[int, str, str, int]]
     seed: int
 
 
@@ -94,16 +105,24 @@ class Experiment:
         )
 
     The controller of a team may be a class that derives from `cohort.Controller`, or left out: then `run` gives one, or
-    the robots stay as they are. Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with every problem that
-    was found, in the words of `cohort check`.
+    the robots stay as they are. Paths are relative to `folder`, by default the working directory. Raises
+    `cohort.InputError` with every problem that was found, in the words of `cohort check`.
     """
 
-    def __init__(self, *, folder=".", name="experiment", seed=None, duration=None, **keys):
+    def __init__(
+        self,
+        *,
+        folder: str | os.PathLike = ".",
+        name: str = "experiment",
+        seed: int | None = None,
+        duration: float | None = None,
+        **keys: Any,
+    ) -> None:
         if seed is not None:
             keys["seed"] = seed
         if duration is not None:
             keys["duration"] = duration
-        self._classes = {}
+        self._classes: dict[object, type] = {}
         if isinstance(keys.get("teams"), (list, tuple)):
             keys["teams"] = [self._named_team(team) for team in keys["teams"]]
         text = json.dumps(keys, cls=_PathEncoder, indent=1)
@@ -121,7 +140,7 @@ class Experiment:
         return team | {"controller": controller}
 
     @classmethod
-    def read(cls, file, seed=None, duration=None):
+    def read(cls, file: str | os.PathLike, seed: int | None = None, duration: float | None = None) -> Experiment:
         """Reads an experiment in YAML, or a world or a model in SDF or URDF.
 
         Args:
@@ -132,69 +151,81 @@ class Experiment:
         return cls._of(_native.Experiment.read(_files.experiment_called(file), seed, duration, _files.model_folders()))
 
     @classmethod
-    def read_text(cls, text, folder=".", name="experiment", seed=None, duration=None):
+    def read_text(
+        cls,
+        text: str,
+        folder: str | os.PathLike = ".",
+        name: str = "experiment",
+        seed: int | None = None,
+        duration: float | None = None,
+    ) -> Experiment:
         """Reads an experiment from a text in YAML whose paths are relative to `folder`."""
         file = pathlib.Path(folder).absolute() / f"{name}.yaml"
         return cls._of(_native.Experiment.read_text(text, file, seed, duration, _files.model_folders()))
 
     @classmethod
-    def _of(cls, native):
+    def _of(cls, native: _native.Experiment) -> Experiment:
         experiment = cls.__new__(cls)
         experiment._native = native
         experiment._classes = {}
         return experiment
 
-    def with_seed(self, seed):
+    def with_seed(self, seed: int) -> Experiment:
         """Returns the same experiment with another seed; robots that are placed at random stand elsewhere."""
         experiment = self._of(self._native.with_seed(seed))
         experiment._classes = self._classes
         return experiment
 
     @property
-    def name(self):
+    def name(self) -> str:
         """The name of its file, without the extension."""
         return self._native.name
 
     @property
-    def file(self):
+    def file(self) -> pathlib.Path:
         """The path of its file."""
         return self._native.file
 
     @property
-    def seed(self):
+    def seed(self) -> int:
         """The seed of all that is random in it."""
         return self._native.seed
 
     @property
-    def step(self):
+    def step(self) -> float:
         """Simulated time between ticks [s]."""
         return self._native.step
 
     @property
-    def duration(self):
+    def duration(self) -> float:
         """Simulated time of a run [s]; 0: without an end."""
         return self._native.duration
 
     @property
-    def robots(self):
+    def robots(self) -> list[str]:
         """Scoped names of the robots, in the order of their ids."""
         return self._native.robots
 
     @property
-    def teams(self):
+    def teams(self) -> list[Team]:
         """The teams, a list of `Team`."""
-        return [Team(each["name"], each["controller"], tuple(each["robots"]), each["period"]) for each in self._native.teams]
+        return [
+            Team(each["name"], each["controller"], tuple(each["robots"]), each["period"]) for each in self._native.teams
+        ]
 
     @property
-    def warnings(self):
+    def warnings(self) -> list[str]:
         """What its files ask for that is not simulated, a list of sentences."""
         return self._native.warnings
 
-    def run(self, controllers=None, *, threads=1, record=None):
+    def run(
+        self, controllers: Controllers | None = None, *, threads: int = 1, record: str | os.PathLike | None = None
+    ) -> Result:
         """Runs the experiment to its end in this process, and returns a `Result`.
 
         Args:
-            controllers: what drives the robots: a class that derives from `cohort.Controller`, the name or the path of a
+            controllers: what drives the robots: a class that derives from `cohort.Controller`, the name or the path
+            of a
                 controller, or a dictionary of these by the names of teams. Teams that are not named have the controller
                 of the experiment.
             threads: that step the world; the result is the same for any number.
@@ -232,16 +263,30 @@ class Experiment:
             return maker_in(folder / chosen)
         return os.fspath(folder / chosen) if "/" in chosen or chosen.endswith(".so") else chosen
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<cohort.Experiment {self.name}: {len(self.robots)} robots, {self.duration:g} s, seed {self.seed}>"
 
 
-def run(experiment, controllers=None, *, seed=None, duration=None, threads=1, record=None):
+def run(
+    experiment: str | os.PathLike,
+    controllers: Controllers | None = None,
+    *,
+    seed: int | None = None,
+    duration: float | None = None,
+    threads: int = 1,
+    record: str | os.PathLike | None = None,
+) -> Result:
     """Reads an experiment, runs it to its end in this process, and returns a `Result`: see `Experiment.run`."""
     return Experiment.read(experiment, seed, duration).run(controllers, threads=threads, record=record)
 
 
-def run_seeds(experiment, seeds, controllers=None, *, threads=1):
+def run_seeds(
+    experiment: Experiment | str | os.PathLike,
+    seeds: Iterable[int],
+    controllers: Controllers | None = None,
+    *,
+    threads: int = 1,
+) -> pandas.DataFrame:
     """Runs an experiment once for each seed, and returns a table of the results.
 
     Args:

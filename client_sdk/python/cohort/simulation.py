@@ -1,12 +1,16 @@
 """A simulation in this process."""
 
+from __future__ import annotations
+
 import math
 import os
 import pathlib
+from collections.abc import Callable
 
 import numpy
+from numpy.typing import ArrayLike
 
-from cohort import _files, _native
+from cohort import _native
 from cohort.channels import Channels
 from cohort.experiment import Experiment
 
@@ -27,37 +31,37 @@ def _orientation(yaw, orientation):
 class Robot:
     """A robot of a simulation. Its arrays show what the simulation has now."""
 
-    def __init__(self, simulation, robot):
+    def __init__(self, simulation: Simulation, robot: int) -> None:
         self._simulation = simulation
         self._native = simulation._native
-        self.id = robot
-        self.name = self._native.robot_name(robot)
-        self.model = self._native.robot_model(robot)
-        self.object = self._native.robot_object(robot)
+        self.id: int = robot
+        self.name: str = self._native.robot_name(robot)
+        self.model: str = self._native.robot_model(robot)
+        self.object: int = self._native.robot_object(robot)
         self.observation_channels = Channels(self._native.observation_channels(robot))
         self.command_channels = Channels(self._native.command_channels(robot))
 
     @property
-    def observation(self):
+    def observation(self) -> numpy.ndarray:
         """What it observed at the last tick at which it was asked, an array [value] in SI units, read-only."""
         return self._native.observations[self.id, : self.observation_channels.size]
 
     @property
-    def command(self):
+    def command(self) -> numpy.ndarray:
         """What commands it, an array [value] in SI units, to be written."""
         return self._native.commands[self.id, : self.command_channels.size]
 
     @property
-    def pose(self):
+    def pose(self) -> numpy.ndarray:
         """Pose of its root link in the world frame: x y z [m], quaternion w x y z; an array [7]."""
         return self._native.object_poses[self.object]
 
     @property
-    def velocity(self):
+    def velocity(self) -> numpy.ndarray:
         """Velocity of the origin of its root link along the axes of the world frame [m/s, rad/s]; an array [6]."""
         return self._native.object_velocities[self.object]
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<cohort.Robot {self.id} {self.name} ({self.model})>"
 
 
@@ -81,7 +85,13 @@ class Simulation:
         threads: that step the world.
     """
 
-    def __init__(self, experiment, seed=None, duration=None, threads=1):
+    def __init__(
+        self,
+        experiment: Experiment | str | os.PathLike,
+        seed: int | None = None,
+        duration: float | None = None,
+        threads: int = 1,
+    ) -> None:
         if not isinstance(experiment, Experiment):
             experiment = Experiment.read(experiment, seed, duration)
         elif duration is not None:
@@ -92,37 +102,37 @@ class Simulation:
             raise ValueError(f"threads is {threads}, expected at least 1")
         self._experiment = experiment
         self._native = _native.Simulation(experiment._native, threads)
-        self._robots = []
+        self._robots: list[Robot] = []
 
     @property
-    def experiment(self):
+    def experiment(self) -> Experiment:
         """Its `Experiment`."""
         return self._experiment
 
     @property
-    def tick(self):
+    def tick(self) -> int:
         """How many steps there have been."""
         return self._native.tick
 
     @property
-    def time(self):
+    def time(self) -> float:
         """Simulated time [s]."""
         return self._native.time
 
     @property
-    def state_hash(self):
+    def state_hash(self) -> int:
         """A hash of everything that decides how the run goes on, a 64-bit integer; `cohort run` prints the same."""
         return self._native.state_hash
 
     @property
-    def robots(self):
+    def robots(self) -> list[Robot]:
         """The robots, a list of `Robot` in the order of their ids."""
         for robot in range(len(self._robots), self._native.robot_count):
             self._robots.append(Robot(self, robot))
         return self._robots
 
     @property
-    def observations(self):
+    def observations(self) -> numpy.ndarray:
         """What all robots observe, an array [robot, value], read-only.
 
         It shows the present tick after each step without being asked for again, until robots come, or until `reset` or
@@ -131,69 +141,69 @@ class Simulation:
         return self._native.observations
 
     @property
-    def commands(self):
-        """What commands all robots, an array [robot, value], to be written. Values act in each step until they change."""
+    def commands(self) -> numpy.ndarray:
+        """What commands all robots, an array [robot, value], to be written. Values act until they change."""
         return self._native.commands
 
     @property
-    def poses(self):
-        """Poses of the root links of all robots in the world frame: x y z [m], quaternion w x y z; an array [robot, 7]."""
+    def poses(self) -> numpy.ndarray:
+        """Poses of the root links of all robots in the world frame [robot, 7]: x y z [m], quaternion w x y z."""
         return self._native.object_poses[[each.object for each in self.robots]]
 
     @property
-    def velocities(self):
+    def velocities(self) -> numpy.ndarray:
         """Velocities of the root links of all robots: linear [m/s], angular [rad/s]; an array [robot, 6]."""
         return self._native.object_velocities[[each.object for each in self.robots]]
 
     @property
-    def objects(self):
+    def objects(self) -> list[str]:
         """Scoped names of everything in the world, robots too; the order of `object_poses`."""
         return self._native.object_names
 
     @property
-    def object_poses(self):
+    def object_poses(self) -> numpy.ndarray:
         """Poses of everything in the world, as `poses`; an array [object, 7]."""
         return self._native.object_poses
 
     @property
-    def object_velocities(self):
+    def object_velocities(self) -> numpy.ndarray:
         """Velocities of everything in the world, as `velocities`; an array [object, 6]."""
         return self._native.object_velocities
 
     @property
-    def objects_present(self):
+    def objects_present(self) -> numpy.ndarray:
         """Which objects are in the world: neither taken out nor still to come; an array [object] of bool."""
         return self._native.objects_present
 
-    def pose(self, name):
+    def pose(self, name: str) -> numpy.ndarray:
         """Returns the pose of an object, an array [7]."""
         return self._native.object_poses[self._native.object_called(name)]
 
-    def contacts(self):
+    def contacts(self) -> dict[str, numpy.ndarray]:
         """Returns what touched during the last step, a dictionary of arrays with a row for each contact point.
 
-        `objects` [n, 2]: their places in `objects`; `position` [n, 3] in the world [m]; `normal` [n, 3]: unit vector from
-        the second object to the first; `distance` [n]: negative where they overlap [m]; `impulse` [n]: along the normal
-        over the step [N s].
+        `objects` [n, 2]: their places in `objects`; `position` [n, 3] in the world [m]; `normal` [n, 3]: unit vector
+        from the second object to the first; `distance` [n]: negative where they overlap [m]; `impulse` [n]: along the
+        normal over the step [N s].
         """
         return self._native.contacts()
 
     @property
-    def stop_reason(self):
+    def stop_reason(self) -> str | None:
         """Which stop condition of the experiment holds; None if none does."""
         return self._native.stop_reason
 
     @property
-    def is_over(self):
+    def is_over(self) -> bool:
         """Whether a stop condition holds, or the experiment's duration has passed."""
         return self._native.is_over
 
     @property
-    def happened(self):
+    def happened(self) -> list[str]:
         """What happened at this tick, a list of sentences: what broke, and events of the experiment."""
         return self._native.happened
 
-    def step(self, ticks=1):
+    def step(self, ticks: int = 1) -> None:
         """Steps the world. `commands` act in each of the ticks.
 
         Raises ValueError before anything moves if a command cannot act, naming robot and channel. After Ctrl-C the
@@ -201,7 +211,7 @@ class Simulation:
         """
         self._native.step(ticks, False)
 
-    def run(self, until=None, each=None):
+    def run(self, until: float | None = None, each: Callable[[Simulation], object] | None = None) -> None:
         """Steps to the experiment's end.
 
         Args:
@@ -219,23 +229,33 @@ class Simulation:
                 each(self)
                 self._native.step(1, True)
 
-    def reset(self, seed=None):
+    def reset(self, seed: int | None = None) -> None:
         """Begins again, with another seed if one is given. Reads no file."""
         if seed is not None:
             self._experiment = self._experiment.with_seed(seed)
         self._native.reset(self._experiment._native)
         self._robots = []
 
-    def save(self):
+    def save(self) -> bytes:
         """Returns everything that decides how the run goes on, as bytes, for `restore` of the same experiment."""
         return self._native.save()
 
-    def restore(self, snapshot):
+    def restore(self, snapshot: bytes) -> None:
         """Goes on from what `save` returned. Raises `cohort.SnapshotError`, and changes nothing, if it does not fit."""
         self._native.restore(snapshot)
         self._robots = []
 
-    def spawn(self, model, position=(0.0, 0.0, 0.0), yaw=0.0, *, orientation=None, name="", team="", allow_renaming=False):
+    def spawn(
+        self,
+        model: str | os.PathLike,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        yaw: float = 0.0,
+        *,
+        orientation: ArrayLike | None = None,
+        name: str = "",
+        team: str = "",
+        allow_renaming: bool = False,
+    ) -> str:
         """Brings a new object into the world, at rest, and returns its scoped name.
 
         Args:
@@ -257,25 +277,40 @@ class Simulation:
         else:
             text = model
         pose = _orientation(yaw, orientation)
-        return self._native.spawn("" if text else os.fspath(model), text, name, _vector(position, "position"), pose, allow_renaming, team)
+        return self._native.spawn(
+            "" if text else os.fspath(model), text, name, _vector(position, "position"), pose, allow_renaming, team
+        )
 
-    def remove(self, name):
+    def remove(self, name: str) -> None:
         """Takes an object out of the world, for good."""
         self._native.remove(name)
 
-    def set_pose(self, name, position, yaw=0.0, *, orientation=None):
+    def set_pose(
+        self, name: str, position: ArrayLike, yaw: float = 0.0, *, orientation: ArrayLike | None = None
+    ) -> None:
         """Puts an object elsewhere, at rest, with its joints as they are. Arguments as those of `spawn`."""
         self._native.set_pose(name, _vector(position, "position"), _orientation(yaw, orientation))
 
-    def set_velocity(self, name, linear=(0.0, 0.0, 0.0), angular=(0.0, 0.0, 0.0)):
+    def set_velocity(
+        self, name: str, linear: ArrayLike = (0.0, 0.0, 0.0), angular: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> None:
         """Gives an object a velocity along the axes of the world frame [m/s, rad/s]."""
         self._native.set_velocity(name, _vector(linear, "linear"), _vector(angular, "angular"))
 
-    def set_light(self, name, on=True, intensity=None, color=None):
+    def set_light(
+        self, name: str, on: bool = True, intensity: float | None = None, color: ArrayLike | None = None
+    ) -> None:
         """Switches a light (`object/light`), all lights of an object, or a light of the world."""
         self._native.set_light(name, on, intensity, None if color is None else _vector(color, "color"))
 
-    def apply_force(self, name, force=(0.0, 0.0, 0.0), torque=(0.0, 0.0, 0.0), duration=0.0, link=""):
+    def apply_force(
+        self,
+        name: str,
+        force: ArrayLike = (0.0, 0.0, 0.0),
+        torque: ArrayLike = (0.0, 0.0, 0.0),
+        duration: float = 0.0,
+        link: str = "",
+    ) -> None:
         """Pushes a link at its centre of mass, in world axes, from now on.
 
         Args:
@@ -286,5 +321,5 @@ class Simulation:
         """
         self._native.apply_force(name, link, _vector(force, "force"), _vector(torque, "torque"), duration)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<cohort.Simulation {self._experiment.name}: tick {self.tick}, {self._native.robot_count} robots>"

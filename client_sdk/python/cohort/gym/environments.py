@@ -23,7 +23,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         experiment: an `Experiment`, or what `Experiment.read` takes.
         num_envs: how many worlds.
         reward: called after each step with a `State`; returns an array [env].
-        done: called after each step with a `State`; returns an array [env] of bool: the episode terminates. It also does
+        done: called after each step with a `State`; returns an array [env] of bool: the episode terminates. It also
+        does
             if a stop condition of the experiment holds, or the state of a robot breaks.
         horizon: steps after which an episode is truncated. It also is at the end of the experiment's duration.
         observe, act: patterns of channels, such as `["proximity/*/reading"]`; by default all.
@@ -69,8 +70,12 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         robot_count = len(self.worlds.robots)
         self._action_shape = (num_envs, robot_count, len(self.worlds.command_bounds[0]))
         shape_of = lambda bounds: (robot_count, len(bounds[0]))
-        self.single_observation_space = _box(self.worlds.observation_bounds, shape_of(self.worlds.observation_bounds), self.worlds.dtype)
-        self.single_action_space = _box(self.worlds.command_bounds, shape_of(self.worlds.command_bounds), self.worlds.dtype)
+        self.single_observation_space = _box(
+            self.worlds.observation_bounds, shape_of(self.worlds.observation_bounds), self.worlds.dtype
+        )
+        self.single_action_space = _box(
+            self.worlds.command_bounds, shape_of(self.worlds.command_bounds), self.worlds.dtype
+        )
         self.observation_space = gymnasium.vector.utils.batch_space(self.single_observation_space, num_envs)
         self.action_space = gymnasium.vector.utils.batch_space(self.single_action_space, num_envs)
         self._to_reset = numpy.zeros(num_envs, dtype=bool)
@@ -101,7 +106,9 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         if not isinstance(mask, numpy.ndarray) or mask.dtype != numpy.bool_:
             raise TypeError(f"options['reset_mask'] is a {type(mask).__name__}, expected a numpy array of bool")
         if mask.shape != (self.num_envs,) or not mask.any():
-            raise ValueError(f"options['reset_mask'] has the shape {mask.shape}, expected {(self.num_envs,)} with at least one True")
+            raise ValueError(
+                f"options['reset_mask'] has the shape {mask.shape}, expected {(self.num_envs,)} with at least one True"
+            )
         return mask
 
     def _seed(self, seeds, which):
@@ -112,7 +119,7 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         self._is_seeded = True
 
     def step(self, actions):
-        """Steps all environments with actions, an array [env, robots * values]; what is out of bounds is brought into them."""
+        """Steps all environments with actions [env, robots * values], which are brought into their bounds."""
         actions = numpy.asarray(actions)
         if actions.shape != self.action_space.shape:
             raise ValueError(f"actions have the shape {actions.shape}, expected {self.action_space.shape}")
@@ -144,7 +151,10 @@ class VectorEnv(gymnasium.vector.VectorEnv):
 
 
 class Env(gymnasium.Env):
-    """One world as a `gymnasium.Env`: one agent observes and commands all chosen robots. Arguments as of `VectorEnv`."""
+    """One world as a `gymnasium.Env`: one agent observes and commands all chosen robots.
+
+    Arguments are those of `VectorEnv`.
+    """
 
     metadata = {"render_modes": []}
 

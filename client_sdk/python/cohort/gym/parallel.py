@@ -19,9 +19,23 @@ def parallel_env(experiment, **arguments):
 
         def __init__(self):
             done = arguments.pop("done", None)
-            self._worlds = Worlds(experiment, 1, done=None, **({
-                "horizon": None, "observe": None, "act": None, "robots": None, "ticks_per_step": 1, "threads": 1,
-                "dtype": numpy.float32} | arguments))
+            self._worlds = Worlds(
+                experiment,
+                1,
+                done=None,
+                **(
+                    {
+                        "horizon": None,
+                        "observe": None,
+                        "act": None,
+                        "robots": None,
+                        "ticks_per_step": 1,
+                        "threads": 1,
+                        "dtype": numpy.float32,
+                    }
+                    | arguments
+                ),
+            )
             self._done = done
             self.possible_agents = list(self._worlds.names)
             self.agents = []
@@ -81,7 +95,9 @@ def parallel_env(experiment, **arguments):
             values = numpy.asarray(values)
             robots = len(self.possible_agents)
             if values.size not in (1, robots):
-                raise ValueError(f"{name}(state) gave an array {values.shape}, expected a value for each of {robots} robots")
+                raise ValueError(
+                    f"{name}(state) gave an array {values.shape}, expected a value for each of {robots} robots"
+                )
             return numpy.broadcast_to(values.ravel(), robots)
 
     return ParallelEnv()

@@ -31,7 +31,7 @@ class State:
         self.seconds = seconds
 
     def __getitem__(self, pattern):
-        """Returns what the channels observe that match a pattern such as `proximity/*/reading`, an array [env, robot, value]."""
+        """Returns what the channels observe that match a pattern, an array [env, robot, value]."""
         places = self._places.get(pattern)
         if places is None:
             places = self._places[pattern] = self._observation_channels.indices(pattern)
@@ -72,22 +72,33 @@ def _seeds_of_episode(seeds, episodes):
 class Worlds:
     """A batch of worlds as environments see it. Robots that take part have the same channels."""
 
-    def __init__(self, experiment, count, *, reward, done, horizon, observe, act, robots, ticks_per_step, threads, dtype):
+    def __init__(
+        self, experiment, count, *, reward, done, horizon, observe, act, robots, ticks_per_step, threads, dtype
+    ):
         if not isinstance(experiment, Experiment):
             # Episodes end by `done` and `horizon`; a time that the experiment has ends one too.
             experiment = Experiment.read(experiment_called(experiment))
         if ticks_per_step < 1 or (horizon is not None and horizon < 1):
-            raise ValueError(f"ticks_per_step is {ticks_per_step} and horizon is {horizon}, expected at least 1 of each")
+            raise ValueError(
+                f"ticks_per_step is {ticks_per_step} and horizon is {horizon}, expected at least 1 of each"
+            )
         self.batch = Batch(experiment, count, threads)
         self.robots = self._chosen(robots)
         self.names = [self.batch.robots[robot] for robot in self.robots]
         # A slice makes views, which show what is new after each step.
         if self.robots != list(range(self.robots[0], self.robots[-1] + 1)):
-            raise ValueError(f"the robots {self.names} have other robots between them; choose some whose ids are in a row")
+            raise ValueError(
+                f"the robots {self.names} have other robots between them; choose some whose ids are in a row"
+            )
         self._rows = slice(self.robots[0], self.robots[-1] + 1)
         if len({self.batch.robot_model(robot) for robot in self.robots}) != 1:
-            raise ValueError("robots of several models have different channels: choose those of one model with `robots`")
-        observed, commanded = self.batch.observation_channels(self.robots[0]), self.batch.command_channels(self.robots[0])
+            raise ValueError(
+                "robots of several models have different channels: choose those of one model with `robots`"
+            )
+        observed, commanded = (
+            self.batch.observation_channels(self.robots[0]),
+            self.batch.command_channels(self.robots[0]),
+        )
         observation_places, command_places = _places(observed, observe), _places(commanded, act)
         self.observation_bounds = observed.lower[observation_places], observed.upper[observation_places]
         self.command_bounds = commanded.lower[command_places], commanded.upper[command_places]
@@ -110,7 +121,9 @@ class Worlds:
         if robots is None:
             chosen = list(range(len(names)))
         else:
-            chosen = sorted({place for each in ([robots] if isinstance(robots, str) else robots) for place in self._matching(each)})
+            chosen = sorted(
+                {place for each in ([robots] if isinstance(robots, str) else robots) for place in self._matching(each)}
+            )
         if not chosen:
             raise ValueError("the experiment has no robots")
         return chosen
@@ -120,7 +133,11 @@ class Worlds:
         found = [
             place
             for place, name in enumerate(self.batch.robots)
-            if (name == pattern if not star else name.startswith(prefix) and name.endswith(suffix) and len(name) >= len(prefix + suffix))
+            if (
+                name == pattern
+                if not star
+                else name.startswith(prefix) and name.endswith(suffix) and len(name) >= len(prefix + suffix)
+            )
         ]
         if not found:
             raise ValueError(f"there is no robot '{pattern}', expected some of {self.batch.robots}")

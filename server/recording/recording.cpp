@@ -83,7 +83,7 @@ Recording::Recording(const std::filesystem::path& file) : file_(file), reader_(f
   } catch (const messages::CdrError& error) {
     throw McapError(file, 0, std::string("what it says of its run is no message of Cohort's: ") + error.what());
   }
-  if (worlds_.empty()) throw McapError(file, 0, "no run begins in it");
+  if (worlds_.empty()) throw McapError(file, 0, "no run can be read in it" + (damage().empty() ? "" : ": " + damage()));
   if (const Channel* const snapshots = reader_.channel(RecordedSnapshot::topic)) {
     MessageStream stream = messages_of(reader_, snapshots->id);
     while (const auto message = stream.next()) snapshots_.push_back(message->log_time);

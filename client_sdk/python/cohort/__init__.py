@@ -13,6 +13,11 @@
     class Wanderer(cohort.Controller): ...             # drives one robot: help(cohort.Controller)
     cohort.run("obstacle_avoidance", Wanderer)
 
+    recording = cohort.Recording("run.mcap")           # of cohort.run(..., record="run.mcap")
+    recording.poses, recording.observations            # arrays of xarray
+    recording.table("events")                          # of pandas
+    print(cohort.compare("run.mcap", "other.mcap"))    # where two runs part
+
     cohort.gym.VectorEnv(...)                          # many worlds at once, for learning: help(cohort.gym)
 
 The order of values is that of channels, which have names, units and bounds (`Robot.observation_channels`). Poses are
@@ -31,6 +36,8 @@ from cohort.channels import Channel, ChannelError, Channels
 from cohort.client import ClientError, host, main
 from cohort.controller import Controller, ParameterError, Parameters, Start, TeamController
 from cohort.experiment import Experiment, Result, Team, run, run_seeds
+from cohort.findings import Comparison, Difference, Verification
+from cohort.recording import Recording, RecordingError, World, compare
 from cohort.simulation import Robot, Simulation
 
 __version__ = _native.version
@@ -42,11 +49,15 @@ __all__ = [
     "ChannelError",
     "Channels",
     "ClientError",
+    "Comparison",
     "Controller",
+    "Difference",
     "Experiment",
     "InputError",
     "ParameterError",
     "Parameters",
+    "Recording",
+    "RecordingError",
     "Result",
     "Robot",
     "Simulation",
@@ -54,6 +65,9 @@ __all__ = [
     "Start",
     "Team",
     "TeamController",
+    "Verification",
+    "World",
+    "compare",
     "examples",
     "host",
     "main",

@@ -15,4 +15,5 @@ NB_MODULE(_native, module) {
   cohort::python::add_batch(module);
   cohort::python::add_run(module);
   cohort::python::add_portable_functions(module);
+  cohort::python::add_recordings(module);
 }

@@ -10,5 +10,6 @@ void add_simulation(nanobind::module_& module);
 void add_batch(nanobind::module_& module);
 void add_run(nanobind::module_& module);
 void add_portable_functions(nanobind::module_& module);
+void add_recordings(nanobind::module_& module);
 
 }  // namespace cohort::python

@@ -15,6 +15,7 @@
 
 #include "client_sdk/hosting/plugin_loader.hpp"
 #include "client_sdk/python/hosting/python_team.hpp"
+#include "client_sdk/python/native/interruption.hpp"
 #include "client_sdk/python/native/parts.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/run/in_process.hpp"
@@ -52,31 +53,6 @@ class TeamControllers {
   std::vector<ControllerKind> kinds_;
 };
 
-// Ends a run at a boundary when Ctrl-C was pressed. Python's handlers run on the thread that runs.
-class Interruption {
- public:
-  explicit Interruption(std::atomic<bool>& stop) : stop_(stop) {}
-
-  void look() {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - looked_ < std::chrono::milliseconds(50)) return;
-    looked_ = now;
-    const nb::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() == 0) return;
-    error_.emplace();
-    stop_ = true;
-  }
-  /// Throws what a handler has raised.
-  void rethrow() {
-    if (error_) throw *std::exchange(error_, std::nullopt);
-  }
-
- private:
-  std::atomic<bool>& stop_;
-  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
-  std::optional<nb::python_error> error_;
-};
-
 nb::dict dictionary_of(const session::RunResult& result) {
   nb::list events;
   for (const session::RunEvent& event : result.events)
@@ -101,12 +77,14 @@ nb::dict run(const std::shared_ptr<const Experiment>& experiment, unsigned threa
              const std::vector<fs::path>& plugin_folders, const fs::path& record) {
   const TeamControllers drivers(controllers, plugin_folders);
   std::atomic<bool> stop = false;
-  Interruption interruption(stop);
+  Interruption interruption;
   session::RunResult result;
   {
     const nb::gil_scoped_release no_gil;
     Simulation simulation(*experiment, threads);
-    session::RunListener listener{.boundary = [&] { interruption.look(); }};
+    session::RunListener listener{.boundary = [&] {
+      if (interruption.is_wanted()) stop = true;
+    }};
     std::optional<recording::Recorder> recorder;
     std::vector<recording::Recorder*> recorders;
     if (!record.empty()) {

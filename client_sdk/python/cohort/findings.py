@@ -1,0 +1,92 @@
+"""What replaying and comparing recordings finds."""
+
+import dataclasses
+import typing
+
+
+@dataclasses.dataclass(frozen=True)
+class Verification:
+    """What a replay of a recording found. True if all of it is identical.
+
+    Attributes:
+        ticks: how many were compared and are identical.
+        tick, time: the first tick that differs, and its time in the recording [s]; None if none does.
+        recorded, replayed: its state hashes; None if none differs.
+        problem: why the replay ended before the recording did; empty if it did not.
+    """
+
+    ticks: int
+    tick: typing.Optional[int] = None
+    time: typing.Optional[float] = None
+    recorded: typing.Optional[int] = None
+    replayed: typing.Optional[int] = None
+    problem: str = ""
+
+    @property
+    def is_identical(self):
+        """Whether the replay has the state of every tick of the recording."""
+        return self.ticks > 0 and self.tick is None and not self.problem
+
+    def __bool__(self):
+        return self.is_identical
+
+    def __str__(self):
+        before = f"{self.ticks} identical ticks"
+        if self.is_identical:
+            return f"identical, {self.ticks} ticks"
+        if self.tick is not None:
+            hashes = f"recorded {self.recorded:016x}, replayed {self.replayed:016x}"
+            return f"differs at tick {self.tick} ({self.time:.3f} s), after {before}: {hashes}"
+        return f"ends after {before}: {self.problem}" if self.problem else "there is nothing to compare"
+
+
+class Difference(typing.NamedTuple):
+    """A quantity that is not the same in two runs.
+
+    `object` is a scoped name, empty for the world as a whole; `quantity` is `command`, `action`, `pose`, `velocity`,
+    `joint`, `contact`, `observation`, `presence` or `state`; `detail` says which of them, such as a channel; `first`
+    and `second` are the values as text.
+    """
+
+    object: str
+    quantity: str
+    detail: str
+    first: str
+    second: str
+
+    def __str__(self):
+        values = f"{self.first} | {self.second}" if self.second else self.first
+        return f"{self.quantity:<12} {self.object or 'the world':<24} {self.detail}: {values}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Comparison:
+    """Where two recordings part. `print` shows it as `cohort diff` does.
+
+    Attributes:
+        ticks: how many at the beginning are the same in both.
+        tick, time: the first tick that is not, and its time in the recording [s]; None if they do not part.
+        differences: what differs there, a list of `Difference`.
+        more: how many differences there are beyond those.
+        ends: if one ends before the other, a sentence that says so.
+    """
+
+    ticks: int
+    tick: typing.Optional[int] = None
+    time: typing.Optional[float] = None
+    differences: list = dataclasses.field(default_factory=list)
+    more: int = 0
+    ends: str = ""
+
+    @property
+    def are_identical(self):
+        """Whether both hold the same run to its end."""
+        return self.tick is None and not self.ends
+
+    def __str__(self):
+        if self.tick is None:
+            same = f"identical, {self.ticks} ticks"
+            return f"{self.ends}; until then they are {same}" if self.ends else same
+        lines = [f"they part at tick {self.tick} ({self.time:.3f} s), after {self.ticks} identical ticks"]
+        lines += [f"  {each}" for each in self.differences]
+        return "\n".join(lines + ([f"  and {self.more} more"] if self.more else []))

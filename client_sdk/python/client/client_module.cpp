@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "client_sdk/math/library_calls.hpp"
 #include "client_sdk/python/hosting/python_team.hpp"
 #include "client_sdk/src/attachment.hpp"
 
@@ -87,7 +86,6 @@ int run_program(nb::handle maker, std::vector<std::string> arguments) {
 
 NB_MODULE(_client, module) {
   using namespace nanobind::literals;
-  cohort::bind_library_calls();
   module.def("host", &cohort::python::host, "maker"_a, "robots"_a, "server"_a, "domain"_a, "secure"_a);
   module.def("run_program", &cohort::python::run_program, "maker"_a, "arguments"_a);
 }

@@ -7,9 +7,11 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from cohort import _client
+from cohort import _client, _native
 from cohort._hosting import Maker
 from cohort.controller import Controller, TeamController
+
+_native.bind_library_calls()  # of the libraries that _client has brought: all call the same functions
 
 
 class ClientError(RuntimeError):

@@ -9,6 +9,7 @@
 NB_MODULE(_native, module) {
   cohort::bind_library_calls();
   module.attr("version") = COHORT_VERSION;
+  module.def("bind_library_calls", &cohort::bind_library_calls);
   module.def("functions_not_portable", &cohort::functions_not_portable);
   cohort::python::add_experiment(module);
   cohort::python::add_simulation(module);

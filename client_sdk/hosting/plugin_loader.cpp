@@ -16,10 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A name is looked for, a path is taken as it is.
-bool is_path(const std::string& name_or_path) {
-  return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".so");
-}
+bool is_script(const std::string& name_or_path) { return name_or_path.ends_with(".py"); }
 
 std::string joined(const std::set<std::string>& names) {
   std::string text;
@@ -47,15 +44,44 @@ std::string reason_not_loaded(const fs::path& path) {
   return reason;
 }
 
+fs::path existing_file(const std::string& path, const char* what) {
+  std::error_code ignored;
+  fs::path file = fs::absolute(path).lexically_normal();
+  if (fs::is_regular_file(file, ignored)) return file;
+  throw std::runtime_error(std::string("there is no ") + what + " " + file.string());
+}
+
+// A plugin, and the file of Python that it is to run, if any.
+struct ControllerFiles {
+  fs::path plugin;
+  fs::path script{};
+};
+
+ControllerFiles find_controller(const std::string& name_or_path, const std::vector<fs::path>& directories) {
+  if (!is_script(name_or_path)) return {find_plugin(name_or_path, directories)};
+  fs::path script = existing_file(name_or_path, "file of a controller");
+  try {
+    return {find_plugin("python", directories), std::move(script)};
+  } catch (const std::runtime_error&) {
+    throw std::runtime_error("cannot run " + script.string() +
+                             ": controllers in Python need the Python package of Cohort, whose plugin 'python' is not "
+                             "installed. Install the package, or put the folder of python.so into COHORT_PLUGIN_PATH");
+  }
+}
+
 }  // namespace
 
+bool is_controller_path(const std::string& name_or_path) {
+  return name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".so") || is_script(name_or_path);
+}
+
+void check_controller(const std::string& name_or_path, const std::vector<fs::path>& directories) {
+  check_plugin_file(find_controller(name_or_path, directories).plugin);
+}
+
 fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path>& directories) {
+  if (is_controller_path(name_or_path)) return existing_file(name_or_path, "controller plugin");
   std::error_code ignored;
-  if (is_path(name_or_path)) {
-    fs::path path = fs::absolute(name_or_path).lexically_normal();
-    if (fs::is_regular_file(path, ignored)) return path;
-    throw std::runtime_error("there is no controller plugin " + path.string());
-  }
   std::string tried;
   for (const fs::path& directory : directories) {
     fs::path path = (directory / (name_or_path + ".so")).lexically_normal();
@@ -67,7 +93,10 @@ fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path
 }
 
 LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs::path>& directories)
-    : path_(find_plugin(name_or_path, directories)), library_(nullptr, ::dlclose) {
+    : library_(nullptr, ::dlclose) {
+  ControllerFiles files = find_controller(name_or_path, directories);
+  path_ = std::move(files.plugin);
+  script_ = std::move(files.script);
   check_plugin_file(path_);
   {
     const Callee callee("the controller plugin " + path_.string());
@@ -78,6 +107,21 @@ LoadedPlugin::LoadedPlugin(const std::string& name_or_path, const std::vector<fs
   if (plugin_ == nullptr) throw std::runtime_error("cannot load " + path_.string() + ": " + reason_not_loaded(path_));
   // First in the struct in every version, so it can be read before anything else is trusted.
   check_plugin_abi(path_, plugin_->abi);
+  if (script_.empty())
+    kind_ = kind_of(*plugin_);
+  else
+    read_script();
+}
+
+// Now, so that a mistake in the file is told before any robot is claimed.
+void LoadedPlugin::read_script() {
+  using KindInFile = void(const char* file, ControllerKind& kind);
+  const auto kind_in_file = reinterpret_cast<KindInFile*>(::dlsym(library_.get(), "cohort_kind_in_file"));
+  if (kind_in_file == nullptr)
+    throw std::runtime_error(path_.string() + " does not run files of Python. It is not the plugin of this version");
+  const Callee callee("the controller " + script_.string());
+  const ControllerCall under_way(callee, "its module", 0);
+  kind_in_file(script_.c_str(), kind_);
 }
 
 std::vector<fs::path> default_plugin_directories() {

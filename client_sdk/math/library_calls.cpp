@@ -18,6 +18,8 @@
 
 #include "client_sdk/math/portable_math.hpp"
 
+extern "C" const char cohort_portable_math;  // of portable_math.cpp
+
 namespace cohort {
 namespace {
 
@@ -204,9 +206,17 @@ void write_slot(const Object& object, std::uintptr_t slot, std::uintptr_t value)
   mprotect(page, page_size, PROT_READ);
 }
 
+// Whether the program has functions of portable_math.cpp of its own. It exports them, so everything that is loaded is
+// bound to them already.
+bool is_bound_by_program() {
+  const void* const exported = dlsym(RTLD_DEFAULT, "cohort_portable_math");
+  return exported != nullptr && exported != &cohort_portable_math;
+}
+
 }  // namespace
 
 void bind_library_calls() {
+  if (is_bound_by_program()) return;
   visit_slots(loaded_objects(), [](const Object& object, const Function& function, std::uintptr_t slot) {
     if (*reinterpret_cast<const std::uintptr_t*>(slot) != function.ours) write_slot(object, slot, function.ours);
   });
@@ -214,6 +224,7 @@ void bind_library_calls() {
 
 std::vector<std::string> functions_not_portable() {
   std::vector<std::string> missing;
+  if (is_bound_by_program()) return missing;
   // What the dynamic linker finds first is what it binds calls to.
   for (const Function& function : our_functions())
     if (reinterpret_cast<std::uintptr_t>(dlsym(RTLD_DEFAULT, function.name)) != function.ours)

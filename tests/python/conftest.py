@@ -1,12 +1,51 @@
+import contextlib
 import fcntl
 import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 import time
 
 import pytest
+
+PATIENCE = 300  # [s] for what should happen soon
+
+
+class Program:
+    """The program `cohort`, which finds the Python that runs the tests."""
+
+    def __init__(self, path):
+        self.path = path
+        self._environment = os.environ | {"COHORT_PYTHON": sys.executable}
+
+    def __call__(self, *arguments):
+        """Runs it and returns what it prints."""
+        return self.end_of(*arguments, check=True).stdout
+
+    def end_of(self, *arguments, check=False, **environment):
+        """Runs it and returns how it ended."""
+        command = [self.path, *map(str, arguments)]
+        environment = self._environment | environment
+        return subprocess.run(command, check=check, capture_output=True, text=True, env=environment, timeout=PATIENCE)
+
+    @contextlib.contextmanager
+    def running(self, *arguments):
+        """A process that runs it, and is killed if it has not ended by then."""
+        command = [self.path, *map(str, arguments)]
+        pipe = subprocess.PIPE
+        with subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, env=self._environment) as process:
+            try:
+                yield process
+            finally:
+                process.kill()
+
+
+def end_of(process):
+    """Waits for a process and returns its exit code and what it has written to standard error."""
+    _, errors = process.communicate(timeout=PATIENCE)
+    return process.returncode, errors
 
 
 @pytest.fixture(scope="session")
@@ -17,13 +56,8 @@ def build():
 
 @pytest.fixture(scope="session")
 def cohort_program(build):
-    """Runs `cohort` with arguments and returns what it prints."""
-
-    def run(*arguments):
-        program = build / "bin/cohort"
-        return subprocess.run([program, *arguments], check=True, capture_output=True, text=True).stdout
-
-    return run
+    """Runs `cohort` with arguments and returns what it prints: a `Program`."""
+    return Program(build / "bin/cohort")
 
 
 @pytest.fixture

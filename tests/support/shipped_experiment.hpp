@@ -44,7 +44,7 @@ class ShippedExperiment {
     std::vector<ControllerKind> kinds;
     for (const description::Team& team : experiment.teams) {
       plugins.push_back(std::make_unique<LoadedPlugin>(team.controller, default_plugin_directories()));
-      kinds.push_back(kind_of(plugins.back()->plugin()));
+      kinds.push_back(plugins.back()->kind());
     }
     const session::RunListener listener = {.boundary = [&] {
       if (watch) watch(*this);

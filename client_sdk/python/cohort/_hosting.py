@@ -7,7 +7,7 @@ import traceback
 
 import numpy
 
-from cohort.controller import Controller, Start, TeamController
+from cohort.controller import Controller, ParameterError, Start, TeamController
 
 
 class Adapter:
@@ -129,10 +129,25 @@ def maker_in(file):
     return Maker(controller_in(file))
 
 
+def maker_in_program(file):
+    """Does as `maker_in` in a program that embeds Python, and ends without its end: what is printed is seen at once."""
+    if sys.stdout is not None:
+        sys.stdout.reconfigure(line_buffering=True)
+    return maker_in(file)
+
+
+def parameter_problem(error):
+    """Returns the name of the parameter that is wrong, and what is wrong with it, or None for another exception."""
+    return (str(error.name), str(error.problem)) if isinstance(error, ParameterError) else None
+
+
 def describe(error):
     """Returns an exception as one line: where it was raised, and what it says."""
     here = str(pathlib.Path(__file__).parent)
-    frames = [each for each in traceback.extract_tb(error.__traceback__) if not each.filename.startswith(here)]
-    places = [f"{pathlib.Path(each.filename).name}:{each.lineno} in {each.name}" for each in frames]
+    frames = traceback.extract_tb(error.__traceback__)
+    shown = [each for each in frames if not each.filename.startswith((here, "<frozen "))]
+    places = [f"{pathlib.Path(each.filename).name}:{each.lineno} in {each.name}" for each in shown]
+    if isinstance(error, SyntaxError) and error.filename:
+        places.append(f"{pathlib.Path(error.filename).name}:{error.lineno}")
     said = "".join(traceback.format_exception_only(type(error), error)).strip().splitlines()
     return (", then ".join(places) + ": " if places else "") + (said[-1] if said else type(error).__name__)

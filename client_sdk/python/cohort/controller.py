@@ -12,7 +12,17 @@ from cohort.channels import Channels
 
 
 class ParameterError(ValueError):
-    """A parameter of a team is missing, or is not what it should be. The message names it."""
+    """A parameter of a team is missing, or is not what it should be.
+
+    Attributes:
+        name: of the parameter; the message names it too.
+        problem: what is wrong with it.
+    """
+
+    def __init__(self, name: str, problem: str) -> None:
+        super().__init__(f"parameter '{name}': {problem}")
+        self.name = name
+        self.problem = problem
 
 
 class Parameters:
@@ -37,11 +47,11 @@ class Parameters:
         self.asked.add(name)
         if name not in self._values:
             if fallback is None:
-                raise ParameterError(f"parameter '{name}': the experiment has none")
+                raise ParameterError(name, "the experiment has none")
             return None
         values = self._values[name]
         if len(values) != 1:
-            raise ParameterError(f"parameter '{name}': expected {expected}, not {values}")
+            raise ParameterError(name, f"expected {expected}, not {values}")
         return values[0]
 
     def real(self, name: str, fallback: float | None = None) -> float:
@@ -60,7 +70,7 @@ class Parameters:
         if text is None:
             return bool(fallback)
         if text not in ("true", "false"):
-            raise ParameterError(f"parameter '{name}': expected true or false, not '{text}'")
+            raise ParameterError(name, f"expected true or false, not '{text}'")
         return text == "true"
 
     def text(self, name: str, fallback: str | None = None) -> str:
@@ -80,7 +90,7 @@ def _number(name: str, text: str, expected: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number) or "_" in text:
-        raise ParameterError(f"parameter '{name}': expected {expected}, not '{text}'")
+        raise ParameterError(name, f"expected {expected}, not '{text}'")
     return number
 
 

@@ -16,24 +16,30 @@ std::string text_of(PyObject* object) {
   return {};
 }
 
-// What Python has raised, as `cohort._hosting.describe` puts it: the error and the lines that led to it.
-std::string raised() {
+// Throws what Python has raised: a ParameterError as one of C++, all else as `cohort._hosting.describe` puts it, with
+// the lines that led to it.
+[[noreturn]] void throw_raised() {
   PyObject *type = nullptr, *value = nullptr, *traceback = nullptr;
   PyErr_Fetch(&type, &value, &traceback);
   PyErr_NormalizeException(&type, &value, &traceback);
   const Owned owned_type(type), owned_value(value), owned_traceback(traceback);
-  if (!owned_value) return "Python failed without an exception";
+  if (!owned_value) throw std::runtime_error("Python failed without an exception");
   if (owned_traceback) PyException_SetTraceback(owned_value.get(), owned_traceback.get());
   const Owned module(PyImport_ImportModule("cohort._hosting"));
-  const Owned text(module ? PyObject_CallMethod(module.get(), "describe", "O", owned_value.get()) : nullptr);
-  if (!text) PyErr_Clear();
-  std::string described = text_of(text.get());
-  return described.empty() ? text_of(owned_value.get()) : described;
+  const auto call = [&](const char* function) {
+    Owned result(module ? PyObject_CallMethod(module.get(), function, "O", owned_value.get()) : nullptr);
+    if (!result) PyErr_Clear();
+    return result;
+  };
+  if (const Owned problem = call("parameter_problem"); problem && problem.get() != Py_None)
+    throw ParameterError(text_of(PyTuple_GetItem(problem.get(), 0)), text_of(PyTuple_GetItem(problem.get(), 1)));
+  const std::string described = text_of(call("describe").get());
+  throw std::runtime_error(described.empty() ? text_of(owned_value.get()) : described);
 }
 
 void put(PyObject* dictionary, const char* key, PyObject* value) {
   const Owned owned = checked(value);
-  if (PyDict_SetItemString(dictionary, key, owned.get()) != 0) throw std::runtime_error(raised());
+  if (PyDict_SetItemString(dictionary, key, owned.get()) != 0) throw_raised();
 }
 
 PyObject* text(const std::string& text) {
@@ -45,7 +51,7 @@ Owned channels_of(const std::vector<ChannelInfo>& channels) {
   for (const ChannelInfo& channel : channels) {
     const Owned tuple = checked(Py_BuildValue("(NNIIddd)", text(channel.name), text(channel.unit), channel.offset,
                                               channel.size, channel.lower, channel.upper, channel.neutral));
-    if (PyList_Append(list.get(), tuple.get()) != 0) throw std::runtime_error(raised());
+    if (PyList_Append(list.get(), tuple.get()) != 0) throw_raised();
   }
   return list;
 }
@@ -56,7 +62,7 @@ Owned parameters_of(const Parameters& parameters) {
     Owned values = checked(PyList_New(0));
     for (const std::string& value : parameter.values) {
       const Owned item = checked(text(value));
-      if (PyList_Append(values.get(), item.get()) != 0) throw std::runtime_error(raised());
+      if (PyList_Append(values.get(), item.get()) != 0) throw_raised();
     }
     put(dictionary.get(), parameter.name.c_str(), values.release());
   }
@@ -77,7 +83,7 @@ const char* word_of(StartReason reason) {
 }  // namespace
 
 Owned checked(PyObject* object) {
-  if (object == nullptr) throw std::runtime_error(raised());
+  if (object == nullptr) throw_raised();
   return Owned(object);
 }
 
@@ -137,7 +143,7 @@ void write_state(StateWriter& state, PyObject* saved) {
   if (saved == Py_None) return state.leave_out();
   char* bytes = nullptr;
   Py_ssize_t size = 0;
-  if (PyBytes_AsStringAndSize(saved, &bytes, &size) != 0) throw std::runtime_error(raised());
+  if (PyBytes_AsStringAndSize(saved, &bytes, &size) != 0) throw_raised();
   state.write(std::string_view(bytes, static_cast<std::size_t>(size)));
 }
 

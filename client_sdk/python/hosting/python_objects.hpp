@@ -1,5 +1,6 @@
 #pragma once
 
+#define PY_SSIZE_T_CLEAN  // before Python.h: lengths of bytes are Py_ssize_t
 #include <Python.h>
 
 #include <cohort/controller.hpp>
@@ -13,7 +14,15 @@ namespace cohort::python {
 /// Holds Python's global lock as long as it lives, on any thread.
 class Lock {
  public:
-  Lock() : state_(PyGILState_Ensure()) {}
+  Lock() {
+    // Without this, Python would forget a thread that is not its own after each call, and what it keeps for it: the
+    // values of context variables, how NumPy treats errors.
+    if (PyGILState_GetThisThreadState() == nullptr) {
+      PyGILState_Ensure();
+      PyEval_SaveThread();
+    }
+    state_ = PyGILState_Ensure();
+  }
   Lock(const Lock&) = delete;
   Lock& operator=(const Lock&) = delete;
   ~Lock() { PyGILState_Release(state_); }
@@ -49,7 +58,8 @@ class Owned {
   PyObject* object_ = nullptr;
 };
 
-/// Returns `object`. Throws std::runtime_error, with the exception that Python has raised, if it is null.
+/// Returns `object`. If it is null, throws std::runtime_error with the exception that Python has raised: ParameterError
+/// for one of the package.
 Owned checked(PyObject* object);
 
 /// Returns what `cohort._hosting.Start` is made of, a dictionary.

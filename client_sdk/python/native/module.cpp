@@ -4,6 +4,7 @@
 
 #include "client_sdk/math/library_calls.hpp"
 #include "client_sdk/math/portable_math.hpp"
+#include "client_sdk/python/hosting/file_controllers.hpp"
 #include "client_sdk/python/native/parts.hpp"
 
 NB_MODULE(_native, module) {
@@ -11,6 +12,8 @@ NB_MODULE(_native, module) {
   module.attr("version") = COHORT_VERSION;
   module.def("bind_library_calls", &cohort::bind_library_calls);
   module.def("functions_not_portable", &cohort::functions_not_portable);
+  using cohort::python::FileControllers;
+  module.attr("file_controllers") = nanobind::capsule(&cohort::python::file_controllers, FileControllers::capsule);
   cohort::python::add_experiment(module);
   cohort::python::add_simulation(module);
   cohort::python::add_batch(module);

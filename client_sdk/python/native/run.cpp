@@ -39,7 +39,7 @@ class TeamControllers {
     for (nb::handle controller : controllers) {
       if (nb::isinstance<nb::str>(controller)) {
         plugins_.emplace_back(nb::cast<std::string>(controller), folders);
-        kinds_.push_back(kind_of(plugins_.back().plugin()));
+        kinds_.push_back(plugins_.back().kind());
       } else {
         kinds_.push_back(kind_of_maker(controller.ptr()));  // `controllers` keeps it alive
       }

@@ -35,7 +35,8 @@ constexpr std::string_view losses[] = {"go_on", "rewind"};
 constexpr ExtensionKey team[] = {
     {"name", name, "", "", "unique"},
     {"robots", name, "", "", "a selector or a list of selectors", true},
-    {"controller", name, "", "", "the name of a controller, or a path to its plugin (`….so`), relative to this file"},
+    {"controller", name, "", "",
+     "the name of a controller, or a path to a plugin (`….so`) or to Python (`….py`), relative to this file"},
     {"parameters", group, "", no_value, "what the controller is given; see below"},
     {"period", count, "ticks", "1", "asked every so many ticks"},
     {"phase", whole, "ticks", "0", "first asked at this tick; less than the period"},

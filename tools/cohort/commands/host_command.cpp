@@ -18,6 +18,7 @@ struct HostCommand {
 int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
   const ControllerEnds ends(log, {.exit_code = exit_failed});
   const LoadedPlugin loaded(command.plugin, default_plugin_directories());
+  const ControllerKind kind = loaded.kind();
   ClientOptions options;
   options.server = command.client.connection.server;
   if (!command.client.connection.domains.empty())
@@ -27,10 +28,10 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
   options.inline_step = command.inline_step;
   options.start_must_succeed = command.for_run;  // nobody else would come in its place
   options.tell = [&](Severity severity, const std::string& text) {
-    const std::string name = loaded.plugin().name;
-    log.write(command.for_run ? LogLevel::debug : level_of(severity), name + ": " + text, {{"controller", name}});
+    log.write(command.for_run ? LogLevel::debug : level_of(severity), kind.name + ": " + text,
+              {{"controller", kind.name}});
   };
-  switch (run_client(loaded.plugin(), options, stop)) {
+  switch (run_client(kind, options, stop)) {
     case ClientEnd::finished: return exit_ok;
     case ClientEnd::interrupted: return exit_interrupted;
     case ClientEnd::refused: return exit_usage;
@@ -45,8 +46,10 @@ int host(const HostCommand& command, Log& log, const std::atomic<bool>& stop) {
 
 Subcommand add_host(CommandLine app, LogFlags& flags) {
   const auto command = std::make_shared<HostCommand>();
-  CommandLine line = app.add_subcommand("host", "Run a controller plugin for some robots of a server");
-  line.add_option("PLUGIN", command->plugin, "Name of a controller, or path to its plugin").required().type_name("");
+  CommandLine line = app.add_subcommand("host", "Run a controller for some robots of a server");
+  line.add_option("PLUGIN", command->plugin, "Name of a controller, or path to its plugin or its file of Python")
+      .required()
+      .type_name("");
   add_client_options(line, command->client);
   add_log_flags(line, flags);
   line.add_flag("--inline", command->inline_step,

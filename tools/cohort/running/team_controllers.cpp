@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "client_sdk/hosting/controller_call.hpp"
-#include "client_sdk/hosting/plugin_file.hpp"
 #include "server/description/input_error.hpp"
 #include "server/run/roster.hpp"
 
@@ -32,6 +31,10 @@ std::optional<Problem> try_controller(const Experiment& experiment, const Team& 
     start.reason = StartReason::check;
     const Callee callee(team.controller, start.name, team.name);
     const ControllerCall under_way(callee, "start", start.tick);
+    if (kind.create_for_all) {
+      make_handler(kind)->start(admit, descriptions);
+      return std::nullopt;
+    }
     kind.create()->start(start);
     start.parameters.check_all_were_asked_for();
   } catch (const ParameterError& error) {
@@ -53,8 +56,8 @@ void for_plugins(const Experiment& experiment, const Use& use) {
   for (const Team& team : experiment.teams) {
     if (!is_plugin(team)) continue;
     std::string name = team.controller;
-    const bool is_path = name.find('/') != std::string::npos || name.ends_with(".so");
-    if (is_path && std::filesystem::path(name).is_relative()) name = experiment.file.parent_path() / name;
+    if (is_controller_path(name) && std::filesystem::path(name).is_relative())
+      name = experiment.file.parent_path() / name;
     try {
       use(team, name);
     } catch (const std::runtime_error& error) {
@@ -67,7 +70,7 @@ void for_plugins(const Experiment& experiment, const Use& use) {
 }  // namespace
 
 ControllerKind TeamController::kind() const {
-  if (plugin) return kind_of(plugin->plugin());
+  if (plugin) return plugin->kind();
   return {keyboard_controller, [] { return keyboard_controller_without_keys(); }};
 }
 
@@ -76,9 +79,8 @@ bool has_keyboard(const Experiment& experiment) {
 }
 
 void check_controllers(const Experiment& experiment) {
-  for_plugins(experiment, [](const Team&, const std::string& name) {
-    check_plugin_file(find_plugin(name, default_plugin_directories()));
-  });
+  for_plugins(experiment,
+              [](const Team&, const std::string& name) { check_controller(name, default_plugin_directories()); });
 }
 
 std::vector<TeamController> load_controllers(const Experiment& experiment) {

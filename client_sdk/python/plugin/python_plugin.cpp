@@ -1,0 +1,18 @@
+#include <cohort/controller.hpp>
+#include <stdexcept>
+
+#include "client_sdk/python/plugin/interpreter.hpp"
+
+// The plugin by which `cohort` runs controllers in files of Python.
+
+extern "C" __attribute__((visibility("default"))) const cohort::Plugin cohort_plugin = {
+    cohort::Plugin::current_abi, "python",
+    []() -> cohort::Controller* {
+      throw std::runtime_error("the plugin 'python' needs a file: name the file of a controller, such as wanderer.py");
+    },
+    [](cohort::Controller* controller) { delete controller; }};
+
+extern "C" __attribute__((visibility("default"))) void cohort_kind_in_file(const char* file,
+                                                                           cohort::ControllerKind& kind) {
+  kind = cohort::python::controllers_of_package().kind_in(file);
+}

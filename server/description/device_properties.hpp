@@ -9,9 +9,9 @@
 #include "server/description/emitter.hpp"
 #include "server/description/input_error.hpp"
 
-/// What the stages need to know of a device, whatever its kind. A kind that has a property answers by a member:
-/// `motors`, `belts`, `tracks`, `thruster`, `emitters`, `held_child`, `not_planar`, `readout`. The functions at the end
-/// of devices.hpp ask any device. Frames: L a link.
+/// What the stages need to know of a device, whatever its kind. A kind that has a property derives from it
+/// (`TrackPair`, `Thruster`) or answers by a member: `motors`, `belts`, `emitters`, `held_child`, `not_planar`,
+/// `readout`. The functions at the end of devices.hpp ask any device. Frames: L a link.
 namespace cohort::description {
 
 /// What any motor on a joint has.
@@ -37,25 +37,34 @@ struct TrackPair {
   double wheel_radius = 0.0;         ///< from motor torque to traction [m]
   double max_torque = 0.0;           ///< per side [N m]
   double max_velocity = 0.0;         ///< of the ground points [m/s]
-  double friction = 0.0;             ///< Coulomb coefficient of the tracks
+  double friction = 0.0;             ///< Coulomb coefficient of the tracks; a pair has the smaller of the two
 
-  /// The joints of the wheels that the tracks stand for, which drive where wheels are simulated.
+  /// The joints of the real wheels that the tracks stand for. Where wheels are simulated (Fidelity::articulated) their
+  /// motors are the drive; elsewhere they are welded to the link, and their collisions are none.
   std::vector<std::size_t> left_wheels{};
   std::vector<std::size_t> right_wheels{};
 };
 
 /// A propeller, which pushes its link along the z axis of R and turns it about that axis.
 struct Thruster {
-  std::size_t link = 0;
+  /// How it turns at a positive velocity, seen against the z axis of R: from above, if that points up.
+  enum class Direction { ccw, cw };
+
+  std::size_t link = 0;  ///< feels thrust, reaction and drag
   Pose X_LR;
-  double reaction_sense = -1.0;             ///< of the torque about z at a positive thrust: 1 or -1
-  double motor_constant = 0.0;              ///< thrust for each ω|ω| [N s^2/rad^2]
+  Direction direction = Direction::ccw;
+  /// Thrust for each ω|ω| [N s^2/rad^2]. With the thrust coefficient of a propeller of diameter D in a fluid (Fossen,
+  /// "Handbook of marine craft hydrodynamics and motion control", 2011, chapter 12), it is density K D^4 / 4π^2.
+  double motor_constant = 0.0;
   double moment_constant = 0.0;             ///< reaction torque for each newton of thrust [m]
   double drag_coefficient = 0.0;            ///< force for each |ω| v across the axis [N s^2/(rad m)]
   double rolling_moment_coefficient = 0.0;  ///< torque for the same [N s^2/rad]
   double time_constant_up = 0.0;            ///< while its velocity rises [s]; 0: at once
   double time_constant_down = 0.0;          ///< while it falls [s]
   double density = 0.0;                     ///< of the fluid that the coefficients are of [kg/m^3]; 0: the same in any
+
+  /// Returns the sign of the torque about z at a positive thrust.
+  double reaction_sense() const { return direction == Direction::ccw ? -1.0 : 1.0; }
 };
 
 /// A sender of messages to the robots around.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace cohort::description {
 namespace {
@@ -26,6 +27,18 @@ Answer answer_of(const Device& device, const Ask& ask) {
           return ask(kind);
         else
           return {};
+      },
+      device);
+}
+
+template <class Part>
+const Part* part_of(const Device& device) {
+  return std::visit(
+      []<class Kind>(const Kind& kind) -> const Part* {
+        if constexpr (std::is_base_of_v<Part, Kind>)
+          return &kind;
+        else
+          return nullptr;
       },
       device);
 }
@@ -65,11 +78,6 @@ std::vector<MotorLimits> AckermannDrive::motors() const {
   return motors;
 }
 
-TrackPair TreelDrive::tracks() const {
-  return {link,         half_gauge, half_contact_length, ground_height, wheel_radius, max_torque,
-          max_velocity, friction,   left_wheels,         right_wheels};
-}
-
 std::vector<BeltPlace> Belt::belts() const { return {{link, axis_L.normalized()}}; }
 
 std::vector<BeltPlace> TrackedDrive::belts() const {
@@ -77,19 +85,6 @@ std::vector<BeltPlace> TrackedDrive::belts() const {
   for (const std::vector<std::size_t>* links : {&left_links, &right_links})
     for (const std::size_t link : *links) belts.push_back({link, Eigen::Vector3d::UnitY()});
   return belts;
-}
-
-Thruster Rotor::thruster() const {
-  return {.link = link,
-          .X_LR = X_LR,
-          .reaction_sense = direction == Direction::ccw ? -1.0 : 1.0,
-          .motor_constant = motor_constant,
-          .moment_constant = moment_constant,
-          .drag_coefficient = drag_coefficient,
-          .rolling_moment_coefficient = rolling_moment_coefficient,
-          .time_constant_up = time_constant_up,
-          .time_constant_down = time_constant_down,
-          .density = density};
 }
 
 std::vector<DeviceEmitter> LedRing::emitters() const {
@@ -136,15 +131,9 @@ std::vector<BeltPlace> belts_of(const Device& device) {
                                            [](const auto& kind) -> decltype(kind.belts()) { return kind.belts(); });
 }
 
-std::optional<TrackPair> tracks_of(const Device& device) {
-  return answer_of<std::optional<TrackPair>>(device,
-                                             [](const auto& kind) -> decltype(kind.tracks()) { return kind.tracks(); });
-}
+const TrackPair* tracks_of(const Device& device) { return part_of<TrackPair>(device); }
 
-std::optional<Thruster> thruster_of(const Device& device) {
-  return answer_of<std::optional<Thruster>>(
-      device, [](const auto& kind) -> decltype(kind.thruster()) { return kind.thruster(); });
-}
+const Thruster* thruster_of(const Device& device) { return part_of<Thruster>(device); }
 
 std::vector<DeviceEmitter> emitters_of(const Device& device) {
   return answer_of<std::vector<DeviceEmitter>>(

@@ -13,23 +13,8 @@ namespace cohort::description {
 
 /// Two tracks that share one rigid body ("treels", tracks and wheels of the s-bot): drawn as four ground points, two a
 /// side. Commands `NAME/left/velocity` and `NAME/right/velocity` [m/s].
-struct TreelDrive {
+struct TreelDrive : TrackPair {
   std::string name;
-  std::size_t link = 0;
-  double half_gauge = 0.0;           ///< |y| of the ground points in the link's frame [m]
-  double half_contact_length = 0.0;  ///< |x| of the ground points [m]
-  double ground_height = 0.0;        ///< z of the ground points [m]
-  double wheel_radius = 0.0;         ///< from motor torque to traction [m]
-  double max_torque = 0.0;           ///< per side [N m]
-  double max_velocity = 0.0;         ///< of the ground points [m/s]
-  double friction = 0.0;             ///< Coulomb coefficient of the tracks; a pair has the smaller of the two
-
-  /// The joints of the real wheels that this stands for. Where wheels are simulated (Fidelity::articulated) their
-  /// motors are the drive; elsewhere they are welded to the link, and their collisions are none.
-  std::vector<std::size_t> left_wheels{};
-  std::vector<std::size_t> right_wheels{};
-
-  TrackPair tracks() const;
 };
 
 /// A motor with a velocity loop on one joint, on the first axis of a universal one. Command `NAME/0/velocity` [rad/s]

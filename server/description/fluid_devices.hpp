@@ -14,29 +14,13 @@ namespace cohort::description {
 /// A propeller in air or water, of a motor whose speed follows its target with a time constant (Furrer et al., "RotorS
 /// – A modular Gazebo MAV simulator framework", in: Robot operating system, 2016). Its thrust is along the z axis of R
 /// at positive velocities. Command and observation `NAME/0/velocity` [rad/s].
-struct Rotor {
-  /// How it turns at a positive velocity, seen against the z axis of R: from above, if that points up.
-  enum class Direction { ccw, cw };
-
+struct Rotor : Thruster {
   std::string name;
-  std::size_t link = 0;  ///< feels thrust, reaction and drag
-  Pose X_LR;
-  Direction direction = Direction::ccw;
   double min_velocity = 0.0;  ///< <= 0 [rad/s]
   double max_velocity = 0.0;  ///< [rad/s]
-  /// Thrust for each ω|ω| [N s^2/rad^2]. With the thrust coefficient of a propeller of diameter D in a fluid (Fossen,
-  /// "Handbook of marine craft hydrodynamics and motion control", 2011, chapter 12), it is density K D^4 / 4π^2.
-  double motor_constant = 0.0;
-  double moment_constant = 0.0;             ///< reaction torque for each newton of thrust [m]
-  double drag_coefficient = 0.0;            ///< force for each |ω| v across the axis [N s^2/(rad m)]
-  double rolling_moment_coefficient = 0.0;  ///< torque for the same [N s^2/rad]
-  double time_constant_up = 0.0;            ///< while its velocity rises [s]; 0: at once
-  double time_constant_down = 0.0;          ///< while it falls [s]
-  double density = 0.0;                     ///< of the fluid that the coefficients are of [kg/m^3]; 0: the same in any
   Readout readout{};
 
   static constexpr const char* not_planar = "rotor";
-  Thruster thruster() const;
 };
 
 /// A surface that gives lift and drag: a wing, a rudder, a sail, a keel. Coefficients as of Gazebo's LiftDrag. In F, at

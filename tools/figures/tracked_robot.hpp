@@ -29,7 +29,8 @@ inline description::Model tracked_robot() {
   joint.parent = chassis;
   joint.child = turret;
   model.joints.push_back(joint);
-  model.devices.push_back(TreelDrive{"treel", chassis, 0.04, 0.04, 0.0, 0.022, 0.02, 0.2, 0.8});
+  TreelDrive drive{{chassis, 0.04, 0.04, 0.0, 0.022, 0.02, 0.2, 0.8}, "treel"};
+  model.devices.emplace_back(drive);
   return model;
 }
 

@@ -157,7 +157,7 @@ concept HasTable = requires {
 template <class Struct, class Keys, class Visit>
 constexpr void for_keys_of(const Keys& keys, const Visit& visit) {
   const auto visit_own = [&]<class Key>(const Key& each) {
-    if constexpr (std::is_same_v<Struct, typename Key::Struct>) visit(each);
+    if constexpr (std::is_base_of_v<typename Key::Struct, Struct>) visit(each);
   };
   std::apply([&](const auto&... each) { (visit_own(each), ...); }, keys);
 }

@@ -50,7 +50,9 @@ void read_value(const KeyValues&, const keys::ReferenceKey<Struct, Member>&, Str
 /// Fills what a struct has of the keys of a kind.
 template <class Kind, class Struct>
 void read_values(const KeyValues& values, Struct& into) {
-  keys::for_keys_of<Struct>(keys::keys_of<Kind>, [&](const auto& key) { read_value(values, key, into); });
+  keys::for_keys_of<Struct>(keys::keys_of<Kind>, [&]<class Key>(const Key& key) {
+    read_value(values, key, static_cast<typename Key::Struct&>(into));
+  });
 }
 
 /// Of a child of a link; nothing if it is of another kind, or if anything is wrong, and reported then.

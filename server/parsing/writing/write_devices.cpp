@@ -71,8 +71,9 @@ std::vector<std::string> texts_of(const keys::ReferenceKey<Struct, Member>& key,
 // What a struct has of the keys of a kind.
 template <class Kind, class Struct>
 void write_values(XmlNode& element, const Struct& from, const auto&... scope) {
-  keys::for_keys_of<Struct>(keys::keys_of<Kind>, [&](const auto& key) {
-    for (const std::string& text : texts_of(key, from, scope...)) add_key(element, key.name, text);
+  keys::for_keys_of<Struct>(keys::keys_of<Kind>, [&]<class Key>(const Key& key) {
+    const auto& owner = static_cast<const typename Key::Struct&>(from);
+    for (const std::string& text : texts_of(key, owner, scope...)) add_key(element, key.name, text);
   });
 }
 

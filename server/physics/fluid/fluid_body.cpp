@@ -29,7 +29,7 @@ std::size_t FluidBody::rotor_of(std::size_t device) const {
 // One after the other, so that the sum does not depend on who has begun it.
 void FluidBody::add_power(double& power) const {
   for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    const description::Thruster& rotor = model_->rotors[i].thruster;
+    const description::Thruster& rotor = *model_->rotors[i].thruster;
     const double speed = std::abs(rotors_[i].velocity);
     power += rotor.moment_constant * rotor.motor_constant * speed * speed * speed;
   }
@@ -71,7 +71,7 @@ void FluidBody::apply(Equations& equations, const Media& media, double step) {
 // The motor is of first order, which is exact for a target that stays for a step.
 void FluidBody::push_by_rotor(std::size_t index, Equations& equations, const Media& media, double step) {
   const FluidModel::RotorPlace& placed = model_->rotors[index];
-  const description::Thruster& rotor = placed.thruster;
+  const description::Thruster& rotor = *placed.thruster;
   RotorState& state = rotors_[index];
   const double time_constant = state.target > state.velocity ? rotor.time_constant_up : rotor.time_constant_down;
   state.after = state.target + (state.velocity - state.target) * std::exp(-step / time_constant);
@@ -81,7 +81,7 @@ void FluidBody::push_by_rotor(std::size_t index, Equations& equations, const Med
   const double thrust =
       share_of_density(rotor.density, at.medium) * rotor.motor_constant * state.after * std::abs(state.after);
   push(placed, at.X_WP.position,
-       {rotor.reaction_sense * step * rotor.moment_constant * thrust * axis_W, step * thrust * axis_W}, equations);
+       {rotor.reaction_sense() * step * rotor.moment_constant * thrust * axis_W, step * thrust * axis_W}, equations);
 }
 
 // What the section at the surface adds to the force as the body sinks and leans during the step. The axes about which
@@ -103,7 +103,7 @@ void FluidBody::stiffen(const FluidModel::Float& floating, const SubmergedPart& 
 
 void FluidBody::drag_rotor(std::size_t index, Equations& equations, const Media& media, double step) {
   const FluidModel::RotorPlace& placed = model_->rotors[index];
-  const description::Thruster& rotor = placed.thruster;
+  const description::Thruster& rotor = *placed.thruster;
   const double speed = std::abs(rotors_[index].after);
   if (speed == 0.0 || (rotor.drag_coefficient == 0.0 && rotor.rolling_moment_coefficient == 0.0)) return;
   const Here at = here(placed, equations, media);

@@ -26,7 +26,7 @@ struct FluidModel {
     FloatingShape shape;
   };
   struct RotorPlace : Place {
-    description::Thruster thruster;
+    const description::Thruster* thruster = nullptr;
     std::size_t device = 0;
   };
   struct FinPlace : Place {

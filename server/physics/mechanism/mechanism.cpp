@@ -40,7 +40,7 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
     : model_(&model), links_(model.links.size()), joints_(model.joints.size()) {
   std::vector<char> welded(model.joints.size(), 0);
   for (const description::Device& device : model.devices) {
-    const auto drive = description::tracks_of(device);
+    const description::TrackPair* const drive = description::tracks_of(device);
     if (!drive) continue;
     for (const auto* wheels : {&drive->left_wheels, &drive->right_wheels}) {
       for (const std::size_t wheel : *wheels) {

@@ -21,7 +21,8 @@ void Multibody::build_devices() {
                                     "'");
       add_motor(mechanism().joint(motor.joint).first_dof, motor.max_effort, motor.max_velocity, name);
     }
-    if (const auto drive = description::tracks_of(model.devices[device])) add_drive(device, *drive);
+    if (const description::TrackPair* const drive = description::tracks_of(model.devices[device]))
+      add_drive(device, *drive);
   }
 }
 

@@ -18,10 +18,10 @@ constexpr std::array sides{Side::left, Side::right};
 
 geometry::Bounds TrackRows::ground_region(const Pose& X_WS) const {
   const Eigen::Matrix3d R = (X_WS.orientation * X_SL_.orientation).toRotationMatrix();
-  const double rise = 0.5 * (drive_.wheel_radius + reach);
+  const double rise = 0.5 * (drive_->wheel_radius + reach);
   const Eigen::Vector3d centre_W =
-      X_WS * X_SL_.position + (drive_.ground_height + 0.5 * (drive_.wheel_radius - reach)) * R.col(2);
-  const Eigen::Vector3d half_W = R.cwiseAbs() * Eigen::Vector3d(drive_.half_contact_length, drive_.half_gauge, rise);
+      X_WS * X_SL_.position + (drive_->ground_height + 0.5 * (drive_->wheel_radius - reach)) * R.col(2);
+  const Eigen::Vector3d half_W = R.cwiseAbs() * Eigen::Vector3d(drive_->half_contact_length, drive_->half_gauge, rise);
   return {centre_W - half_W, centre_W + half_W};
 }
 
@@ -29,11 +29,11 @@ void TrackRows::find_ground(const geometry::Scene& scene, const SurfacePairs& su
                             std::span<const std::uint32_t> candidates) {
   X_WL_ = X_WS * X_SL_;
   const Eigen::Matrix3d R = X_WL_.orientation.toRotationMatrix();
-  const Eigen::Vector3d centre_W = X_WL_.position + drive_.ground_height * R.col(2);
-  const GroundFinder finder(scene, candidates, R.col(2), drive_.wheel_radius, reach);
+  const Eigen::Vector3d centre_W = X_WL_.position + drive_->ground_height * R.col(2);
+  const GroundFinder finder(scene, candidates, R.col(2), drive_->wheel_radius, reach);
   std::size_t i = 0;
   for (const Side side : sides) {
-    for (const double end : {drive_.half_contact_length, -drive_.half_contact_length}) {
+    for (const double end : {drive_->half_contact_length, -drive_->half_contact_length}) {
       // A track that reaches over an edge or a slit stands on the outermost part that has ground.
       Point& point = points_[i++];
       for (const double share : {1.0, 0.5, 0.0}) {
@@ -101,7 +101,7 @@ void TrackRows::add_rows(Problem& problem, int index, const Anchors& anchors, do
       row.target = track.target + track.carried;
       row.limits = Row::Limits::friction;
       row.friction = friction[s];
-      row.cap = drive_.max_torque / drive_.wheel_radius * step;
+      row.cap = drive_->max_torque / drive_->wheel_radius * step;
       row.load_begin = begin[s];
       row.load_end = begin[s + 1];
     }

@@ -21,7 +21,7 @@ class TrackRows {
  public:
   /// `X_SL`: the drive's link in the root segment.
   TrackRows(const description::Model& model, const description::TrackPair& drive, const Pose& X_SL)
-      : drive_(drive), surface_(surface_of_tracks(model, drive)), X_SL_(X_SL) {}
+      : drive_(&drive), surface_(surface_of_tracks(model, drive)), X_SL_(X_SL) {}
 
   /// Whether that is something new.
   bool set_target(Side side, double velocity) { return std::exchange(side_of(side).target, velocity) != velocity; }
@@ -46,7 +46,7 @@ class TrackRows {
   }
 
   /// The link that the tracks are on.
-  std::size_t link() const { return drive_.link; }
+  std::size_t link() const { return drive_->link; }
   /// Calls `visit(solid, point_W, impulse_W)` for what each solid under the tracks did to the link in the last step.
   template <class Visit>
   void for_each_impulse(Visit&& visit) const;
@@ -100,13 +100,13 @@ class TrackRows {
   std::optional<Directions> directions() const;
   /// What a side stands on: of two things the one under its rear.
   std::optional<std::uint32_t> solid_under(Side side) const;
-  Eigen::Vector3d point_of(Side side) const { return X_WL_ * Eigen::Vector3d(0.0, y_of(side), drive_.ground_height); }
-  Eigen::Vector3d middle() const { return X_WL_ * Eigen::Vector3d(0.0, 0.0, drive_.ground_height); }
+  Eigen::Vector3d point_of(Side side) const { return X_WL_ * Eigen::Vector3d(0.0, y_of(side), drive_->ground_height); }
+  Eigen::Vector3d middle() const { return X_WL_ * Eigen::Vector3d(0.0, 0.0, drive_->ground_height); }
   Track& side_of(Side side) { return tracks_[static_cast<std::size_t>(side)]; }
   const Track& side_of(Side side) const { return tracks_[static_cast<std::size_t>(side)]; }
-  double y_of(Side side) const { return side == Side::left ? drive_.half_gauge : -drive_.half_gauge; }
+  double y_of(Side side) const { return side == Side::left ? drive_->half_gauge : -drive_->half_gauge; }
 
-  description::TrackPair drive_;
+  const description::TrackPair* drive_;  // of the model
   description::Surface surface_;
   Pose X_SL_;
   std::array<Track, 2> tracks_;

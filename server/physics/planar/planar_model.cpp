@@ -1,7 +1,6 @@
 #include "server/physics/planar/planar_model.hpp"
 
 #include <stdexcept>
-#include <utility>
 
 namespace cohort::physics {
 
@@ -24,12 +23,12 @@ PlanarModel::PlanarModel(const description::Model& model)
       add_motor(motor, description::name_of(device));
     if (const std::string reason = description::reason_against_planar(device); !reason.empty())
       throw std::invalid_argument(reason);
-    if (auto drive = description::tracks_of(device)) {
+    if (const description::TrackPair* const drive = description::tracks_of(device)) {
       if (drive_) throw std::invalid_argument("more than one treel drive cannot be planar");
       if (mechanism_.link(drive->link).segment != 0)
         throw std::invalid_argument("treel drive '" + description::name_of(device) + "' is not on the root link '" +
                                     model.links[0].name + "'");
-      drive_ = std::move(drive);
+      drive_ = drive;
     }
   }
   add_masses();

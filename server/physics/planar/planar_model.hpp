@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +34,7 @@ class PlanarModel {
   int motor_of_joint(std::size_t joint) const { return motor_of_joint_[joint]; }
   int motor_of_segment(int segment) const { return motor_of_segment_[static_cast<std::size_t>(segment)]; }
   /// Null if it has none.
-  const description::TrackPair* drive() const { return drive_ ? &*drive_ : nullptr; }
+  const description::TrackPair* drive() const { return drive_; }
 
   // Of the whole model with all its joints at zero.
   double mass() const { return mass_; }
@@ -50,7 +49,7 @@ class PlanarModel {
   std::vector<Motor> motors_;
   std::vector<int> motor_of_joint_;
   std::vector<int> motor_of_segment_;
-  std::optional<description::TrackPair> drive_;
+  const description::TrackPair* drive_ = nullptr;
   double mass_ = 0.0;
   Eigen::Vector3d centre_M_ = Eigen::Vector3d::Zero();
   Eigen::Matrix3d inertia_M_ = Eigen::Matrix3d::Zero();

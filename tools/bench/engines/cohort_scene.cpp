@@ -66,9 +66,10 @@ Model robot_model(const Robot& robot, Drive drive) {
     add_caster(model, robot.caster_x, robot);
     add_caster(model, -robot.caster_x, robot);
   } else {
-    model.devices.push_back(description::TreelDrive{"treel", 0, robot.half_gauge, robot.half_contact_length, 0.0,
-                                                    robot.wheel_radius, robot.max_torque, robot.max_speed,
-                                                    robot.track_friction});
+    model.devices.push_back(
+        description::TreelDrive{{0, robot.half_gauge, robot.half_contact_length, 0.0, robot.wheel_radius,
+                                 robot.max_torque, robot.max_speed, robot.track_friction},
+                                "treel"});
   }
   model.devices.push_back(
       description::VelocityMotor{"turret", turret_joint, robot.max_turret_rate, robot.max_turret_torque});

@@ -34,8 +34,8 @@ struct Mount {
   gripping::Grippers& grippers;
   gripping::DetachableJoints& detachable_joints;
   UserActions& actions;
-  BodyId body;         ///< the robot's, which is its index among the description's instances
-  std::size_t device;  ///< index in the robot's model
+  BodyId body;      ///< the robot's, which is its index among the description's instances
+  DeviceId device;  ///< of the robot's model
 
   const description::Model& model() const { return description.models[description.instances[body.value].model]; }
   const description::Joint& joint(std::size_t index) const { return model().joints[index]; }

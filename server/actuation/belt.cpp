@@ -11,7 +11,7 @@ class Belt final : public ActuatorOf<description::Belt> {
     return {{device_.name + "/0/velocity", "m/s", 1, -device_.max_velocity, device_.max_velocity, device_.velocity}};
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_belt_velocity_target(mount_.body, LinkId{device_.link}, values[0]);
+    mount_.world.set_device_target(mount_.body, mount_.device, 0, values[0]);
   }
 };
 

@@ -9,7 +9,7 @@ std::unique_ptr<Actuator> make_actuator(const Mount& mount) {
     if constexpr (requires { make_actuator(device, mount); }) return make_actuator(device, mount);
     return nullptr;
   };
-  return std::visit(make, mount.model().devices[mount.device]);
+  return std::visit(make, mount.model().devices[mount.device.value]);
 }
 
 }  // namespace cohort::actuation

@@ -11,7 +11,7 @@ class Rotor final : public ActuatorOf<description::Rotor> {
     return {{device_.name + "/0/velocity", "rad/s", 1, device_.min_velocity, device_.max_velocity, 0.0}};
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_rotor_velocity_target(mount_.body, mount_.device, values[0]);
+    mount_.world.set_device_target(mount_.body, mount_.device, 0, values[0]);
   }
 };
 

@@ -13,15 +13,16 @@ class TrackedDrive final : public ActuatorOf<description::TrackedDrive> {
   std::vector<Channel> channels() const override { return twist_channels(device_); }
   void apply(std::span<const double> values) override {
     const double difference = 0.5 * device_.track_separation * values[1] / device_.steering_efficiency;
-    run(device_.left_links, values[0] - difference);
-    run(device_.right_links, values[0] + difference);
+    const std::size_t left = device_.left_links.size();
+    run(0, left, values[0] - difference);
+    run(left, left + device_.right_links.size(), values[0] + difference);
   }
 
  private:
-  void run(const std::vector<std::size_t>& links, double velocity) {
-    for (const std::size_t link : links)
-      mount_.world.set_belt_velocity_target(mount_.body, LinkId{link},
-                                            std::clamp(velocity, -device_.max_velocity, device_.max_velocity));
+  void run(std::size_t begin, std::size_t end, double velocity) {
+    for (std::size_t belt = begin; belt < end; ++belt)
+      mount_.world.set_device_target(mount_.body, mount_.device, belt,
+                                     std::clamp(velocity, -device_.max_velocity, device_.max_velocity));
   }
 };
 

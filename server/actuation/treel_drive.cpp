@@ -15,8 +15,8 @@ class TreelDrive final : public ActuatorOf<description::TreelDrive> {
     return channels;
   }
   void apply(std::span<const double> values) override {
-    mount_.world.set_track_velocity_target(mount_.body, mount_.device, physics::Side::left, values[0]);
-    mount_.world.set_track_velocity_target(mount_.body, mount_.device, physics::Side::right, values[1]);
+    for (std::size_t side = 0; side < 2; ++side)
+      mount_.world.set_device_target(mount_.body, mount_.device, side, values[side]);
   }
 };
 

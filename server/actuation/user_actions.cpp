@@ -11,7 +11,7 @@ void UserActions::add_robot(std::uint32_t robot, BodyId body, const description:
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const auto* const action = std::get_if<description::UserAction>(&model.devices[device]);
     if (action == nullptr) continue;
-    numbers_[{body, device}] = static_cast<std::uint32_t>(actions_.size());
+    numbers_[{body, DeviceId{device}}] = static_cast<std::uint32_t>(actions_.size());
     actions_.push_back({.name = action->name, .robot = robot, .body = body});
   }
 }

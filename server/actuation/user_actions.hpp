@@ -36,7 +36,7 @@ class UserActions {
   /// A robot has come, with the next id.
   void add_robot(std::uint32_t robot, BodyId body, const description::Model& model);
   /// The number of the action that is a device of a robot.
-  std::uint32_t of_device(BodyId body, std::size_t device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
   void command(std::uint32_t action, double value) { actions_[action].value = value; }
   /// After each step: which of them begin.
   void finish_step();
@@ -51,7 +51,7 @@ class UserActions {
  private:
   const physics::World& world_;
   std::vector<ActionOfRobot> actions_;
-  std::map<std::pair<BodyId, std::size_t>, std::uint32_t> numbers_;
+  std::map<std::pair<BodyId, DeviceId>, std::uint32_t> numbers_;
 };
 
 }  // namespace cohort::actuation

@@ -135,6 +135,10 @@ const TrackPair* tracks_of(const Device& device) { return part_of<TrackPair>(dev
 
 const Thruster* thruster_of(const Device& device) { return part_of<Thruster>(device); }
 
+std::size_t output_count(const Device& device) {
+  return (tracks_of(device) != nullptr ? 2 : 0) + belts_of(device).size() + (thruster_of(device) != nullptr ? 1 : 0);
+}
+
 std::vector<DeviceEmitter> emitters_of(const Device& device) {
   return answer_of<std::vector<DeviceEmitter>>(
       device, [](const auto& kind) -> decltype(kind.emitters()) { return kind.emitters(); });

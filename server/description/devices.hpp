@@ -288,6 +288,8 @@ std::vector<MotorLimits> motor_limits(const Device& device);
 std::vector<BeltPlace> belts_of(const Device& device);
 const TrackPair* tracks_of(const Device& device);   ///< null: it has none
 const Thruster* thruster_of(const Device& device);  ///< null: it is none
+/// Returns how many things other than joints the device drives: tracks, belts, a rotor.
+std::size_t output_count(const Device& device);
 std::vector<DeviceEmitter> emitters_of(const Device& device);
 std::optional<HeldChild> held_child_of(const Device& device);
 /// Why no planar world can have the device, as `rotor 'NAME' cannot be planar`; empty if one can.

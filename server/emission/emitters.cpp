@@ -101,7 +101,7 @@ void Emitters::add_devices(BodyId body, const description::Model& model) {
     if (emitters.empty()) continue;
     for (const description::DeviceEmitter& emitter : emitters)
       add_to_device({body, LinkId{emitter.link}, emitter.X_LE}, emitter);
-    devices_.push_back({body, device, first});
+    devices_.push_back({body, DeviceId{device}, first});
   }
 }
 
@@ -121,9 +121,9 @@ void Emitters::add_to_device(const Mount& mount, const description::DeviceEmitte
              emitter.what);
 }
 
-Emitters::OfDevice Emitters::of_device(BodyId body, std::size_t device) const {
+Emitters::OfDevice Emitters::of_device(BodyId body, DeviceId device) const {
   const auto found = std::lower_bound(devices_.begin(), devices_.end(), std::pair{body, device},
-                                      [](const DeviceEntry& entry, const std::pair<BodyId, std::size_t>& key) {
+                                      [](const DeviceEntry& entry, const std::pair<BodyId, DeviceId>& key) {
                                         return std::pair{entry.body, entry.device} < key;
                                       });
   if (found == devices_.end() || found->body != body || found->device != device)

@@ -110,8 +110,8 @@ class Emitters {
     std::uint32_t marker = 0;
     std::uint32_t beacon = 0;
   };
-  /// `device`: index in the body's model, of one that emits.
-  OfDevice of_device(BodyId body, std::size_t device) const;
+  /// Throws std::logic_error for a device that emits nothing.
+  OfDevice of_device(BodyId body, DeviceId device) const;
   /// Of an emitter of a body's model, by its index there. Throws std::invalid_argument if there is none.
   void change(BodyId body, std::size_t emitter, const description::EmitterChange& change);
   void set_lamp(std::uint32_t lamp, const Eigen::Vector3d& color) { lamps_[lamp].light.color = color; }
@@ -129,7 +129,7 @@ class Emitters {
  private:
   struct DeviceEntry {
     BodyId body;
-    std::size_t device = 0;
+    DeviceId device;
     OfDevice first;
   };
   enum class Kind : std::uint8_t { lamp, tone, marker, climate_source };

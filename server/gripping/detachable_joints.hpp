@@ -25,7 +25,7 @@ class DetachableJoints {
   /// A body has come, of one of the description's models: an instance of the description by now.
   void add_body(BodyId body, const description::Model& model);
   /// The number of the joint that is a device of a robot.
-  std::uint32_t of_device(BodyId body, std::size_t device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
 
   /// Holds both links as they stand to each other, once both are in the world, or lets go. After what it held was torn
   /// away, by leaving the world or being moved, it holds again only once it has let go.
@@ -53,7 +53,7 @@ class DetachableJoints {
   const description::World& description_;
   physics::World& world_;
   std::vector<Joint> joints_;
-  std::map<std::pair<BodyId, std::size_t>, std::uint32_t> numbers_;
+  std::map<std::pair<BodyId, DeviceId>, std::uint32_t> numbers_;
 };
 
 }  // namespace cohort::gripping

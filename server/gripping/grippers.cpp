@@ -42,7 +42,7 @@ void Grippers::add_body(BodyId body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const auto* gripper = std::get_if<description::Gripper>(&model.devices[device]);
     if (gripper == nullptr) continue;
-    numbers_[{body, device}] = static_cast<std::uint32_t>(grippers_.size());
+    numbers_[{body, DeviceId{device}}] = static_cast<std::uint32_t>(grippers_.size());
     grippers_.push_back({.body = body, .device = gripper});
   }
   for (const description::GripRing& ring : model.grip_rings) largest_ring_ = std::max(largest_ring_, ring.radius);

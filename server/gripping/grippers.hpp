@@ -35,7 +35,7 @@ class Grippers {
   /// A body has come, of one of the description's models.
   void add_body(BodyId body, const description::Model& model);
   /// The number of the gripper that is a device of a robot.
-  std::uint32_t of_device(BodyId body, std::size_t device) const { return numbers_.at({body, device}); }
+  std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
 
   /// Moves the opening towards `opening` for one step, then grasps, holds or lets go. When it closes past half it
   /// grasps the nearest that is within its acceptance, and if there is nothing, what comes there while it is closed.
@@ -81,7 +81,7 @@ class Grippers {
   double step_;
   double largest_ring_ = 0.0;
   std::vector<Gripper> grippers_;
-  std::map<std::pair<BodyId, std::size_t>, std::uint32_t> numbers_;
+  std::map<std::pair<BodyId, DeviceId>, std::uint32_t> numbers_;
 };
 
 }  // namespace cohort::gripping

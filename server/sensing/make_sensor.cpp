@@ -9,7 +9,7 @@ std::unique_ptr<Sensor> make_sensor(const Mount& mount) {
     if constexpr (requires { make_sensor(device, mount); }) return make_sensor(device, mount);
     return nullptr;
   };
-  return std::visit(make, mount.model().devices[mount.device]);
+  return std::visit(make, mount.model().devices[mount.device.value]);
 }
 
 }  // namespace cohort::sensing

@@ -27,7 +27,7 @@ struct Mount {
   const gripping::Grippers& grippers;
   SharedViews& views;
   BodyId body;         ///< the robot's, which is its index among the description's instances
-  std::size_t device;  ///< index in the robot's model
+  DeviceId device;     ///< of the robot's model
   std::uint64_t seed;  ///< of the experiment; with the robot's name it fixes what is random
 
   const std::string& robot_name() const { return description.instances[body.value].name; }

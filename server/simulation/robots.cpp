@@ -104,12 +104,13 @@ Robots::DevicesOfRobot Robots::make_devices(const Robot& robot) {
   DevicesOfRobot made;
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     if (auto sensor = sensing::make_sensor({around_.world, around_.emitters, description, around_.grippers, views_,
-                                            robot.body, device, around_.seed})) {
+                                            robot.body, DeviceId{device}, around_.seed})) {
       if (sensor->needs_record()) around_.world.record(robot.body);
       made.sensors.emplace_back(std::move(sensor), &model.devices[device]);
     }
-    if (auto actuator = actuation::make_actuator({around_.world, around_.emitters, description, around_.grippers,
-                                                  around_.detachable_joints, around_.actions, robot.body, device}))
+    if (auto actuator =
+            actuation::make_actuator({around_.world, around_.emitters, description, around_.grippers,
+                                      around_.detachable_joints, around_.actions, robot.body, DeviceId{device}}))
       made.actuators.push_back(std::move(actuator));
   }
   return made;

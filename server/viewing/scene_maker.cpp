@@ -67,7 +67,7 @@ void SceneMaker::choose_lamps() {
         return std::holds_alternative<description::Light>(emitter.what);
       });
       if (lamps == 0) continue;
-      const std::uint32_t first = emitters.of_device(BodyId{instance}, device).lamp;
+      const std::uint32_t first = emitters.of_device(BodyId{instance}, DeviceId{device}).lamp;
       std::fill_n(is_led.begin() + first, lamps, char{1});
     }
   }

@@ -41,7 +41,7 @@ class Swarm {
     grippers_ = std::make_unique<gripping::Grippers>(description_, *world_);
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
-        auto sensor = make_sensor({*world_, *emitters_, description_, *grippers_, views_, BodyId{body}, device, 1});
+        auto sensor = make_sensor({*world_, *emitters_, description_, *grippers_, views_, BodyId{body}, DeviceId{device}, 1});
         if (!sensor) continue;
         sensors_.push_back(std::move(sensor));
         std::size_t size = 0;

@@ -62,8 +62,8 @@ description::Model tracked_vehicle(double friction) {
   return model;
 }
 void run_tracks(SmallWorld& small, BodyId body, double left, double right) {
-  small.world().set_belt_velocity_target(body, LinkId{1}, left);
-  small.world().set_belt_velocity_target(body, LinkId{2}, right);
+  small.world().set_device_target(body, DeviceId{0}, 0, left);
+  small.world().set_device_target(body, DeviceId{0}, 1, right);
 }
 
 // That the body's belts do in this time [J].
@@ -72,7 +72,7 @@ double work_of(SmallWorld& small, BodyId body, double time) {
   double work = 0.0;
   for (auto steps = std::lround(time / step); steps > 0; --steps) {
     small.world().step();
-    work += step * small.world().driven_power(body);
+    work += step * small.driven_power(body);
   }
   return work;
 }
@@ -88,7 +88,7 @@ TEST_P(Belts, BringWhatTheyCarryToTheirSpeedWithNoMoreThanFrictionGives) {
       const Vector3d along = X_WB.orientation * Vector3d(sense, 0, 0);
       small.run(0.1);
       EXPECT_LT(small.velocity(box).head<2>().norm(), 1e-6) << "it stands";
-      small.world().set_belt_velocity_target(belt, LinkId{0}, sense * speed);
+      small.world().set_device_target(belt, DeviceId{0}, 0, sense * speed);
       for (const double time : {0.1, 0.2}) {
         small.run(0.1);
         EXPECT_NEAR(along.dot(small.velocity(box)), friction * g * time, 0.01 * friction * g * time) << yaw;
@@ -111,7 +111,7 @@ TEST_P(Belts, CarryUpASlopeAndDownWhatFrictionHolds) {
     const Pose X_WB = turned(0, 0, 2, Vector3d::UnitY(), -slope);  // x goes up
     const auto belt = small.add(conveyor(friction), X_WB);
     const auto box = small.add(crate(), on(X_WB, 0, 0.05));
-    small.world().set_belt_velocity_target(belt, LinkId{0}, sense * speed);
+    small.world().set_device_target(belt, DeviceId{0}, 0, sense * speed);
     const Vector3d along = X_WB.orientation * Vector3d(sense, 0, 0);
     small.run(0.1);
     const double acceleration = g * (friction * std::cos(slope) - sense * std::sin(slope));
@@ -128,7 +128,7 @@ TEST_P(Belts, DoNotCarryWhatIsTooSteep) {
   const Pose X_WB = turned(0, 0, 2, Vector3d::UnitY(), -slope);
   const auto belt = small.add(conveyor(friction), X_WB);
   const auto box = small.add(crate(), on(X_WB, 1, 0.05));
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 5.0);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 5.0);
   small.run(0.5);
   const double acceleration = g * (std::sin(slope) - friction * std::cos(slope));
   EXPECT_NEAR(-(X_WB.orientation.conjugate() * small.velocity(box)).x(), 0.5 * acceleration, 0.02 * acceleration);
@@ -144,7 +144,7 @@ TEST_P(Belts, CarryWithTheFrictionThatIsAlongThem) {
   surface.second_friction = across;
   const auto belt = small.add(model, at(0, 0, 1));
   const auto box = small.add(crate(), at(0, 0, 1.05));
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 2.0);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 2.0);
   small.run(0.2);
   EXPECT_NEAR(small.velocity(box).x(), along * g * 0.2, 0.01 * along * g);
 }
@@ -155,7 +155,7 @@ TEST_P(Belts, OfAnyAxisRunAboutIt) {
   std::get<description::Belt>(model.devices[0]).axis_L = {-3.0, 0, 0};  // y of the world on top
   const auto belt = small.add(model, at(0, 0, 1));
   const auto box = small.add(crate(), at(0, -0.3, 1.05));
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.4);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 0.4);
   small.run(0.5);
   EXPECT_LT((small.velocity(box) - Vector3d(0, 0.4, 0)).norm(), 1e-3) << small.velocity(box).transpose();
 }
@@ -164,14 +164,14 @@ TEST_P(Belts, CarryRobotsWhoseTracksMeasureWhatTheyRollOnThem) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const auto robot = small.add(GetParam().robot(), at(-1, 0, 1));
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.15);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 0.15);
   small.run(1.0);
   EXPECT_NEAR(small.velocity(robot).x(), 0.15, 2e-3) << "it stands on the belt";
-  EXPECT_NEAR(small.world().track(robot, 0, physics::Side::left).velocity, 0.0, 2e-3);
+  EXPECT_NEAR(small.world().device_state(robot, DeviceId{0}, 0).velocity, 0.0, 2e-3);
   small.drive(robot, -0.15, -0.15);
   small.run(1.0);
   EXPECT_NEAR(small.velocity(robot).x(), 0.0, 2e-3) << "it walks against it";
-  EXPECT_NEAR(small.world().track(robot, 0, physics::Side::left).velocity, -0.15, 2e-3);
+  EXPECT_NEAR(small.world().device_state(robot, DeviceId{0}, 0).velocity, -0.15, 2e-3);
 }
 
 TEST_P(Belts, DriveAVehicleStraightAtTheirSpeed) {
@@ -246,8 +246,8 @@ TEST_P(Belts, DoTheWorkThatBringsWhatTheyCarryToTheirSpeed) {
     const auto belt = small.add(conveyor(friction), at(0, 0, 1));
     small.add(crate(), at(0, 0, 1.05));
     small.run(0.1);
-    EXPECT_EQ(small.world().driven_power(belt), 0.0) << "it stands";
-    small.world().set_belt_velocity_target(belt, LinkId{0}, sense * speed);
+    EXPECT_EQ(small.driven_power(belt), 0.0) << "it stands";
+    small.world().set_device_target(belt, DeviceId{0}, 0, sense * speed);
     const double work = work_of(small, belt, 1.0);
     EXPECT_NEAR(work, mass * speed * speed, 0.03 * mass * speed * speed);
     EXPECT_LT(work_of(small, belt, 0.5), 1e-3) << "it only goes along";
@@ -280,23 +280,24 @@ TEST_P(Belts, GoOnRubbingWhatIsJammedThroughASnapshot) {
     return small;
   };
   const auto first = jammed();
-  first->world().set_belt_velocity_target(belt, LinkId{0}, speed);
+  first->world().set_device_target(belt, DeviceId{0}, 0, speed);
   first->run(3.0);
-  const double power = first->world().driven_power(belt);
+  const double power = first->driven_power(belt);
+  EXPECT_DOUBLE_EQ(first->world().device_state(belt, DeviceId{0}, 0).effort * speed, power);
   EXPECT_NEAR(power, friction * mass * g * speed, 0.02 * friction * mass * g * speed);
   const auto second = jammed();
   restore_from(first->world(), second->world());
-  EXPECT_EQ(second->world().driven_power(belt), power);
+  EXPECT_EQ(second->driven_power(belt), power);
   first->run(0.1);
   second->run(0.1);
-  EXPECT_EQ(second->world().driven_power(belt), first->world().driven_power(belt));
+  EXPECT_EQ(second->driven_power(belt), first->driven_power(belt));
 }
 
 TEST_P(Belts, OnBeltsAddUp) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const auto vehicle = small.add(tracked_vehicle(1.0), at(0, 0, 1.05));
-  small.world().set_belt_velocity_target(belt, LinkId{0}, -0.4);
+  small.world().set_device_target(belt, DeviceId{0}, 0, -0.4);
   run_tracks(small, vehicle, 0.4, 0.4);
   small.run(1.0);
   EXPECT_LT(small.velocity(vehicle).norm(), 4e-3) << "it runs and stays where it is";
@@ -316,7 +317,7 @@ struct Hall {
   }
   void command() {
     for (std::size_t i = 0; i < belts.size(); ++i)
-      small.world().set_belt_velocity_target(belts[i], LinkId{0}, i % 2 == 0 ? 0.5 : -0.7);
+      small.world().set_device_target(belts[i], DeviceId{0}, 0, i % 2 == 0 ? 0.5 : -0.7);
     run_tracks(small, vehicle, 0.5, 0.4);
   }
   SmallWorld small;
@@ -342,9 +343,9 @@ TEST_P(Belts, AreToldApartByTheirSpeedAlone) {
   SmallWorld small(GetParam().world());
   const auto belt = small.add(conveyor(1.0), at(0, 0, 1));
   const std::uint64_t before = hash_of(small.world());
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.0);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 0.0);
   EXPECT_EQ(hash_of(small.world()), before) << "the same again is no change";
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.1);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 0.1);
   EXPECT_NE(hash_of(small.world()), before);
 }
 
@@ -354,10 +355,10 @@ TEST_P(Belts, WakeWhatSleepsOnThem) {
   const auto box = small.add(crate(), at(0, 0, 1.05));
   small.run(2.0);
   const std::uint64_t asleep = hash_of(small.world());
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.0);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 0.0);
   small.run(0.1);
   EXPECT_EQ(hash_of(small.world()), asleep) << "the same again wakes nobody";
-  small.world().set_belt_velocity_target(belt, LinkId{0}, 0.3);
+  small.world().set_device_target(belt, DeviceId{0}, 0, 0.3);
   small.run(0.5);
   EXPECT_NEAR(small.velocity(box).x(), 0.3, 1e-3);
 }

@@ -74,7 +74,7 @@ Model quadcopter(double time_constant = 0.0) {
 const double hover = std::sqrt(copter_mass * g / (4.0 * motor_constant));
 
 void spin(physics::World& world, BodyId body, double velocity) {
-  for (std::size_t device = 0; device < 4; ++device) world.set_rotor_velocity_target(body, device, velocity);
+  for (std::size_t device = 0; device < 4; ++device) world.set_device_target(body, DeviceId{device}, 0, velocity);
 }
 
 TEST_P(Fluids, AQuadcopterHoversAtTheThrustThatItsWeightAsksFor) {
@@ -97,8 +97,8 @@ TEST_P(Fluids, ReactionTorquesOfRotorsCancelOrTurnTheBody) {
   const auto body = small.add(quadcopter(), at(0, 0, 3));
   physics::World& world = small.world();
   const double more = 1.1, less = std::sqrt(2.0 - more * more);
-  for (const std::size_t cw : {0u, 3u}) world.set_rotor_velocity_target(body, cw, more * hover);
-  for (const std::size_t ccw : {1u, 2u}) world.set_rotor_velocity_target(body, ccw, less * hover);
+  for (const std::size_t cw : {0u, 3u}) world.set_device_target(body, DeviceId{cw}, 0, more * hover);
+  for (const std::size_t ccw : {1u, 2u}) world.set_device_target(body, DeviceId{ccw}, 0, less * hover);
   small.run(0.5);
   const double thrust = copter_mass * g / 4.0;
   const double torque = 2.0 * moment_constant * thrust * (more * more - less * less);
@@ -116,13 +116,13 @@ TEST_P(Fluids, ARotorReaches63PercentAfterItsTimeConstant) {
   const auto body = small.add(model, at(0, 0, 3));
   spin(small.world(), body, 500.0);
   small.run(0.2);
-  EXPECT_NEAR(small.world().rotor_velocity(body, 0), 500.0 * (1.0 - std::exp(-1.0)), 1e-9);
+  EXPECT_NEAR(small.world().device_state(body, DeviceId{0}, 0).velocity, 500.0 * (1.0 - std::exp(-1.0)), 1e-9);
   small.run(5.0);
-  const double before = small.world().rotor_velocity(body, 0);
+  const double before = small.world().device_state(body, DeviceId{0}, 0).velocity;
   spin(small.world(), body, 0.0);
   small.run(0.4);
-  EXPECT_NEAR(small.world().rotor_velocity(body, 0), before * std::exp(-1.0), 1e-9);
-  EXPECT_NEAR(small.world().rotor_velocity(body, 1), before * std::exp(-2.0), 1e-9);
+  EXPECT_NEAR(small.world().device_state(body, DeviceId{0}, 0).velocity, before * std::exp(-1.0), 1e-9);
+  EXPECT_NEAR(small.world().device_state(body, DeviceId{1}, 0).velocity, before * std::exp(-2.0), 1e-9);
 }
 
 TEST_P(Fluids, ARotorIsDraggedAcrossItsAxis) {
@@ -135,7 +135,7 @@ TEST_P(Fluids, ARotorIsDraggedAcrossItsAxis) {
   model.devices.push_back(rotor);
   const auto body = small.add(model, at(0, 0, 3));
   small.world().set_root_twist(body, {Vector3d::Zero(), Vector3d(3, -1, 0)});
-  small.world().set_rotor_velocity_target(body, 0, 400.0);
+  small.world().set_device_target(body, DeviceId{0}, 0, 400.0);
   small.run(1.0);
   const double share = std::pow(1.0 + 0.01 * 400.0 * 1e-3 / 2.0, -100);
   EXPECT_LT((small.velocity(body) - Vector3d(3 * share, -share, motor_constant * 400 * 400 / 2.0)).norm(), 1e-9);
@@ -154,7 +154,7 @@ TEST_P(Fluids, ARotorLiftsABodyWithAJoint) {
   model.joints.push_back(gimbal);
   const auto body = small.add(model, at(0, 0, 3));
   for (std::size_t rotor = 0; rotor < 4; ++rotor)
-    small.world().set_rotor_velocity_target(body, rotor, hover * std::sqrt((copter_mass + 0.1) / copter_mass));
+    small.world().set_device_target(body, DeviceId{rotor}, 0, hover * std::sqrt((copter_mass + 0.1) / copter_mass));
   small.run(2.0);
   EXPECT_LT((small.position(body) - Vector3d(0, 0, 3)).norm(), 1e-6);
 }
@@ -194,7 +194,7 @@ TEST_P(Fluids, AThrusterPushesBothWaysAndInItsOwnFluid) {
     thruster.density = water_density;
     model.devices.push_back(thruster);
     const auto body = small.add(model, at(0, 0, z));
-    small.world().set_rotor_velocity_target(body, 0, -2 * pi * turns);
+    small.world().set_device_target(body, DeviceId{0}, 0, -2 * pi * turns);
     const double share = z < 0.0 ? 1.0 : 1.225 / water_density;
     const physics::Wrench wrench = wrench_on(small, body);
     EXPECT_LT((wrench.force_W - share * Vector3d(-thrust, 0, 0)).norm(), 1e-9 * thrust);
@@ -209,9 +209,9 @@ TEST_P(Fluids, ARotorThatComesBackAfterItsBodyWasLostStandsStill) {
   spin(small.world(), body, 0.5 * hover);
   small.run(1.0);
   ASSERT_FALSE(small.world().is_active(body));
-  EXPECT_GT(small.world().rotor_velocity(body, 0), 0.0);
+  EXPECT_GT(small.world().device_state(body, DeviceId{0}, 0).velocity, 0.0);
   small.world().set_present(body, true);
-  EXPECT_EQ(small.world().rotor_velocity(body, 0), 0.0);
+  EXPECT_EQ(small.world().device_state(body, DeviceId{0}, 0).velocity, 0.0);
   small.world().place_body(body, at(0, 0, 1));
   spin(small.world(), body, hover);
   small.run(1.0);
@@ -365,7 +365,7 @@ TEST_P(Fluids, ABoatReachesTheSpeedAtWhichItsDragIsItsThrust) {
   drag.angular_damping = {3, 3, 3};
   boat.drags.push_back(drag);
   const auto body = small.add(boat, at(0, 0, 0));
-  small.world().set_rotor_velocity_target(body, 0, 100.0);
+  small.world().set_device_target(body, DeviceId{0}, 0, 100.0);
   small.run(60.0);
   const Vector3d through_water =
       small.world().link_pose(body, LinkId{0}).orientation.conjugate() * (small.velocity(body) - current);
@@ -402,7 +402,7 @@ TEST_P(Fluids, ARudderTurnsABoatToItsSide) {
     boat.drags.push_back(drag);
     const auto body = small.add(boat, at(0, 0, 0));
     small.world().set_joint_target(body, JointId{0}, physics::JointTarget::position(0.3 * side));
-    small.world().set_rotor_velocity_target(body, 1, 100.0);
+    small.world().set_device_target(body, DeviceId{1}, 0, 100.0);
     small.run(3.0);
     EXPECT_NEAR(small.world().joint_state(body, JointId{0}).position, 0.3 * side, 0.02);
     // The end of the blade is on the right: the stern goes left.
@@ -538,7 +538,7 @@ TEST_P(Fluids, WhatARotorLiftsGoesThroughTheJointsThatHoldIt) {
   Model model = anchored();
   model.devices.push_back(rotor_at({0.3, 0, 0}));
   const auto body = small.add(model, at(0, 0, 1));
-  small.world().set_rotor_velocity_target(body, 0, 600.0);
+  small.world().set_device_target(body, DeviceId{0}, 0, 600.0);
   const double thrust = motor_constant * 600.0 * 600.0;
   const physics::Wrench wrench = wrench_on(small, body);
   EXPECT_LT((wrench.force_W - Vector3d(0, 0, thrust - g)).norm(), 1e-9);
@@ -586,7 +586,7 @@ TEST(FluidsByBothDynamics, AreTheSameForAChainOfFloatsThatIsTowed) {
     tug.drag_coefficient = 1e-4;
     chain.devices.push_back(tug);
     const auto body = small.add(chain, at(0, 0, 0.05));
-    small.world().set_rotor_velocity_target(body, 0, 700.0);
+    small.world().set_device_target(body, DeviceId{0}, 0, 700.0);
     small.run(2.0);
     EXPECT_GT(small.velocity(body, 0).x(), 0.05) << "it is towed";
     std::vector<Vector3d> places;

@@ -7,7 +7,6 @@ namespace cohort::test {
 namespace {
 
 using Eigen::Vector3d;
-using physics::Side;
 
 // Robots in a row, each turret held to the one before.
 struct Chain {
@@ -77,7 +76,8 @@ TEST_P(Formations, AConnectionReportsTheForceThatGoesThroughIt) {
   EXPECT_NEAR(chain.small.world().connections().wrench(chain.connections[0]).force_W.x(), pull, 0.01);
   // What holds the other is the world, and its own tracks, which are told to stand still.
   double own = 0.0;
-  for (const Side side : {Side::left, Side::right}) own += chain.small.world().track(chain.robots[0], 0, side).traction;
+  for (const std::size_t side : {0, 1})
+    own += chain.small.world().device_state(chain.robots[0], DeviceId{0}, side).effort;
   EXPECT_NEAR(chain.small.world().connections().wrench(held).force_W.x() + own, -pull, 0.01);
 }
 

@@ -181,8 +181,8 @@ TEST(JointForces, TheTurretsJointFeelsThePullOfTheTracks) {
     small.world().connections().connect({robot, LinkId{1}}, {{0.06, 0, 0.02}}, {BodyId{0}, LinkId{0}});
     small.drive(robot, -0.2, -0.2);
     small.run(1.0);
-    const double traction = small.world().track(robot, 0, physics::Side::left).traction +
-                            small.world().track(robot, 0, physics::Side::right).traction;
+    const double traction = small.world().device_state(robot, DeviceId{0}, 0).effort +
+                            small.world().device_state(robot, DeviceId{0}, 1).effort;
     EXPECT_NEAR(traction, -2.0 * 0.02 / 0.022, 1e-6) << "both motors' torque over the radius of the wheels";
     const Pose X_WL = small.world().link_pose(robot, LinkId{0});
     const Vector3d on_turret_L = X_WL.orientation.conjugate() * small.world().joint_wrench(robot, JointId{0}).force_W;

@@ -10,7 +10,6 @@ using description::Box;
 using description::Cylinder;
 using description::Fidelity;
 using Eigen::Vector3d;
-using physics::Side;
 
 description::Model disc(double mass, double radius, description::Surface surface = {}) {
   return loose("disc", Cylinder{radius, 0.04}, solid_cylinder(mass, radius, 0.04, 0.0), surface);
@@ -33,7 +32,7 @@ TEST(Planar, ARobotDrivesAtTheCommandedSpeed) {
   small.run(2.0);
   EXPECT_NEAR((small.position(robot) - start).norm(), 0.2, 0.2 * 0.005);
   EXPECT_NEAR(small.velocity(robot).x(), 0.1 * std::cos(0.7), 0.1 * 0.005);
-  EXPECT_NEAR(small.world().track(robot, 0, Side::left).velocity, 0.1, 0.1 * 0.005);
+  EXPECT_NEAR(small.world().device_state(robot, DeviceId{0}, 0).velocity, 0.1, 0.1 * 0.005);
   EXPECT_EQ(small.position(robot).z(), 0.0);
 }
 
@@ -66,8 +65,8 @@ TEST(Planar, AWallStopsARobotAndItsTractionIsLimited) {
     EXPECT_LT(small.velocity(robot).norm(), 1e-3);
     // The torque of a motor over the radius of the wheels, or friction under half the weight.
     const double most = std::min(0.02 / 0.022, friction * 0.5 * 0.7 * g);
-    for (const Side side : {Side::left, Side::right})
-      EXPECT_NEAR(small.world().track(robot, 0, side).traction, most, 1e-6);
+    for (const std::size_t side : {0, 1})
+      EXPECT_NEAR(small.world().device_state(robot, DeviceId{0}, side).effort, most, 1e-6);
     ASSERT_EQ(small.world().contacts().size(), 1u);
     EXPECT_NEAR(small.world().contacts()[0].impulse / 0.01, 2.0 * most, 1e-3);
     EXPECT_TRUE(small.world().contacts()[0].normal_W.isApprox(-Vector3d::UnitX(), 1e-9));

@@ -20,7 +20,7 @@ TEST(Scenes, ARobotOnItsBackLiesOnItsTurretAndItsTracksTurnInTheAir) {
   small.drive(robot, 0.2, 0.2);
   small.run(2.0);
   EXPECT_LT((small.position(robot) - before).norm(), 1e-3);
-  EXPECT_EQ(small.world().track(robot, 0, physics::Side::left).velocity, 0.2);
+  EXPECT_EQ(small.world().device_state(robot, DeviceId{0}, 0).velocity, 0.2);
 }
 
 TEST(Scenes, ARobotOnItsSideLiesOnHullAndTurret) {
@@ -100,7 +100,7 @@ TEST(Scenes, ARobotDrivesUpASlopeAndStandsOnIt) {
   small.run(5.0);
   EXPECT_LT((small.position(robot) - settled).norm(), 0.4e-3) << "creep in 5 s";
   // Standing still takes the drives the weight along the slope, shared by both sides.
-  const double holding = small.world().track(robot, 0, physics::Side::left).traction;
+  const double holding = small.world().device_state(robot, DeviceId{0}, 0).effort;
   EXPECT_NEAR(2.0 * holding, robot_mass * g * std::sin(slope), 0.01);
   small.drive(robot, 0.05, 0.05);
   small.run(4.0);
@@ -140,7 +140,7 @@ TEST(Scenes, ARobotThatSetsOffOnALooseBoardPushesItBack) {
   EXPECT_GT(forwards, 0.01);
   EXPECT_NEAR(0.5 * small.velocity(plank).x(), -forwards, 1e-4) << "momentum";
   EXPECT_NEAR(small.velocity(robot).x() - small.velocity(plank).x(), 0.1, 1e-3) << "velocity over the board";
-  EXPECT_NEAR(small.world().track(robot, 0, physics::Side::left).velocity, 0.1, 1e-3);
+  EXPECT_NEAR(small.world().device_state(robot, DeviceId{0}, 0).velocity, 0.1, 1e-3);
 }
 
 TEST(Scenes, ARobotPushesALooseBoxAsFarAsItDrives) {

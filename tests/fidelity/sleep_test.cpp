@@ -184,8 +184,7 @@ TEST_P(Sleeping, ARobotOnABoardSleepsAndDrivesOffWithIt) {
   const auto restored = physics::make_world(small.description, workers);
   restore_from(small.world(), *restored);
   for (physics::World* world : {&small.world(), restored.get()}) {
-    for (const physics::Side side : {physics::Side::left, physics::Side::right})
-      world->set_track_velocity_target(robot, 0, side, 0.1);
+    for (const std::size_t side : {0, 1}) world->set_device_target(robot, DeviceId{0}, side, 0.1);
     for (int i = 0; i < 50; ++i) world->step();
   }
   EXPECT_FALSE(small.world().is_asleep(board));

@@ -72,7 +72,7 @@ class Sensed {
     emitters_.emplace(small.description, world);
     grippers_.emplace(small.description, small.world());
     const description::Model& model = small.description.models[small.description.instances[body.value].model];
-    sensor_ = sensing::make_sensor({world, *emitters_, small.description, *grippers_, views_, body, 0, 1});
+    sensor_ = sensing::make_sensor({world, *emitters_, small.description, *grippers_, views_, body, DeviceId{0}, 1});
     if (sensor_->needs_record()) small.world().record(body);
     channels_ = sensor_->channels();
     for (const Channel& channel : channels_) size_ += channel.size;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "server/physics/make_world.hpp"
+#include "server/physics/world/driven_power.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::test {
@@ -28,8 +29,11 @@ class SmallWorld {
   }
   /// Of a robot as `tracked_robot` makes it.
   void drive(BodyId body, double left, double right) {
-    world().set_track_velocity_target(body, 0, physics::Side::left, left);
-    world().set_track_velocity_target(body, 0, physics::Side::right, right);
+    world().set_device_target(body, DeviceId{0}, 0, left);
+    world().set_device_target(body, DeviceId{0}, 1, right);
+  }
+  double driven_power(BodyId body) {
+    return physics::driven_power(world(), body, description.models[world().model_of(body)]);
   }
   Eigen::Vector3d position(BodyId body, std::size_t link = 0) { return world().link_pose(body, LinkId{link}).position; }
   Eigen::Vector3d velocity(BodyId body, std::size_t link = 0) {

@@ -20,19 +20,10 @@ Spatial torque_about(const Vector3d& direction_W) { return {direction_W, Vector3
 FluidBody::FluidBody(std::shared_ptr<const FluidModel> model)
     : model_(std::move(model)), rotors_(model_->rotors.size()), submerged_(model_->floats.size()) {}
 
-std::size_t FluidBody::rotor_of(std::size_t device) const {
-  std::size_t index = 0;
-  while (model_->rotors[index].device != device) ++index;
-  return index;
-}
-
-// One after the other, so that the sum does not depend on who has begun it.
-void FluidBody::add_power(double& power) const {
-  for (std::size_t i = 0; i < rotors_.size(); ++i) {
-    const description::Thruster& rotor = *model_->rotors[i].thruster;
-    const double speed = std::abs(rotors_[i].velocity);
-    power += rotor.moment_constant * rotor.motor_constant * speed * speed * speed;
-  }
+OutputState FluidBody::state(const DeviceOutputs::Propeller& rotor) const {
+  const description::Thruster& thruster = *model_->rotors[rotor.index].thruster;
+  const double velocity = rotors_[rotor.index].velocity;
+  return {0.0, velocity, thruster.moment_constant * thruster.motor_constant * std::abs(velocity) * velocity};
 }
 
 void FluidBody::finish_step() {

@@ -26,12 +26,13 @@ class FluidBody {
   /// The rotors stand still, until the next step.
   void stop();
 
-  /// `device`: index of a rotor among the model's devices.
-  double rotor_velocity(std::size_t device) const { return rotors_[rotor_of(device)].velocity; }
-  void set_rotor_target(std::size_t device, double velocity) { rotors_[rotor_of(device)].target = velocity; }
-
-  /// Adds what each rotor gives to its own fluid [W].
-  void add_power(double& power) const;
+  /// Sets the velocity that a rotor goes to. Returns false: that wakes no body, as one with rotors does not sleep.
+  bool set_target(const DeviceOutputs::Propeller& rotor, double velocity) {
+    rotors_[rotor.index].target = velocity;
+    return false;
+  }
+  /// Returns what a rotor does, with the torque that it has in the fluid of its coefficients.
+  OutputState state(const DeviceOutputs::Propeller& rotor) const;
 
   /// What acted in the last step, on a link at a point [N s, N m s].
   struct Impulse {
@@ -64,7 +65,6 @@ class FluidBody {
     Media::Medium medium;
   };
 
-  std::size_t rotor_of(std::size_t device) const;
   static Here here(const Place& place, const Equations& equations, const Media& media);
   static double share_of_density(double density, const Media::Medium& medium) {
     return density > 0.0 ? medium.density / density : 1.0;

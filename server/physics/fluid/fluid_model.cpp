@@ -20,9 +20,9 @@ FluidModel::FluidModel(const Mechanism& mechanism, const Media& media) {
     if (is_windy && described.feels_wind)
       windages.push_back({place(link, described.inertial.X_LI), described.inertial.mass});
   }
-  for (std::size_t device = 0; device < model.devices.size(); ++device)
-    if (const description::Thruster* const thruster = description::thruster_of(model.devices[device]))
-      rotors.push_back({place(thruster->link, thruster->X_LR), thruster, device});
+  for (const description::Device& device : model.devices)
+    if (const description::Thruster* const thruster = description::thruster_of(device))
+      rotors.push_back({place(thruster->link, thruster->X_LR), thruster});
   for (const description::Fin& fin : model.fins)
     fins.push_back({place(fin.link, fin.X_LF), &fin, std::tan(fin.alpha0)});
   for (const description::Drag& drag : model.drags) drags.push_back({place(drag.link, drag.X_LD), &drag});

@@ -27,7 +27,6 @@ struct FluidModel {
   };
   struct RotorPlace : Place {
     const description::Thruster* thruster = nullptr;
-    std::size_t device = 0;
   };
   struct FinPlace : Place {
     const description::Fin* fin = nullptr;
@@ -40,8 +39,8 @@ struct FluidModel {
     double mass = 0.0;      // [kg]
   };
 
-  std::vector<Float> floats;  // none without water
-  std::vector<RotorPlace> rotors;
+  std::vector<Float> floats;       // none without water
+  std::vector<RotorPlace> rotors;  // in the order of the devices
   std::vector<FinPlace> fins;
   std::vector<DragPlace> drags;
   std::vector<Windage> windages;  // none without wind

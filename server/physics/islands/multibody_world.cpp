@@ -21,6 +21,12 @@ IslandSolver& solver_of_this_thread() {
   return solver;
 }
 
+template <class Output>
+Multibody& driver_of(const Member& member, const Output& /*driven*/) {
+  return *member.multibody;
+}
+FluidBody& driver_of(const Member& member, const DeviceOutputs::Propeller& /*driven*/) { return *member.fluid; }
+
 }  // namespace
 
 MultibodyWorld::MultibodyWorld(const description::World& description, WorkerPool& workers, const MultibodyWorld* like,
@@ -124,13 +130,6 @@ Activity MultibodyWorld::activity(BodyId body) const {
   return member.is_asleep ? Activity::asleep : Activity::awake;
 }
 
-double MultibodyWorld::driven_power(BodyId body) const {
-  if (is_static(body)) return 0.0;
-  double power = multibody(body).driven_power();
-  if (const FluidBody* const fluid = assembly_.members[bodies_[body.value].member].fluid.get()) fluid->add_power(power);
-  return power;
-}
-
 Pose MultibodyWorld::link_pose(BodyId body, LinkId link) const {
   if (!is_static(body)) return multibody(body).motion().link_pose(link.value);
   return bodies_[body.value].X_WM * description_.models[bodies_[body.value].model].links[link.value].X_ML;
@@ -146,6 +145,21 @@ JointState MultibodyWorld::joint_state(BodyId body, JointId joint) const {
   const Multibody& its = multibody(body);
   return {its.motion().joint_position(joint.value), its.motion().joint_velocity(joint.value),
           its.joint_effort(joint.value)};
+}
+
+OutputState MultibodyWorld::device_state(BodyId body, DeviceId device, std::size_t output) const {
+  if (is_static(body)) return {};
+  const Member& member = assembly_.members[bodies_[body.value].member];
+  return std::visit([&](const auto& driven) { return driver_of(member, driven).state(driven); },
+                    member.multibody->mechanism().outputs().at(device, output));
+}
+
+void MultibodyWorld::set_device_target(BodyId body, DeviceId device, std::size_t output, double velocity) {
+  const Member& member = assembly_.members[bodies_[body.value].member];
+  const bool is_new =
+      std::visit([&](const auto& driven) { return driver_of(member, driven).set_target(driven, velocity); },
+                 member.multibody->mechanism().outputs().at(device, output));
+  if (is_new) wake(body);
 }
 
 Wrench MultibodyWorld::joint_wrench(BodyId body, JointId joint) const {

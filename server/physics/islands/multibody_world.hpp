@@ -36,15 +36,12 @@ class MultibodyWorld final : public World, private WorldConnections {
   Pose link_pose(BodyId body, LinkId link) const override;
   Twist link_twist(BodyId body, LinkId link) const override;
   JointState joint_state(BodyId body, JointId joint) const override;
-  TrackState track(BodyId body, std::size_t drive, Side side) const override {
-    return multibody(body).track(drive, side);
-  }
+  OutputState device_state(BodyId body, DeviceId device, std::size_t output) const override;
   void record(BodyId body) override {
     if (!is_static(body)) assembly_.record(wake(body).member);
   }
   Wrench joint_wrench(BodyId body, JointId joint) const override;
   Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const override;
-  double driven_power(BodyId body) const override;
 
   WorldConnections& connections() override { return *this; }
   const WorldConnections& connections() const override { return *this; }
@@ -52,18 +49,7 @@ class MultibodyWorld final : public World, private WorldConnections {
   void set_joint_target(BodyId body, JointId joint, const JointTarget& target) override {
     if (multibody(body).set_joint_target(joint.value, target.kind, target.value)) wake(body);
   }
-  void set_track_velocity_target(BodyId body, std::size_t drive, Side side, double velocity) override {
-    if (multibody(body).set_track_velocity_target(drive, side, velocity)) wake(body);
-  }
-  void set_belt_velocity_target(BodyId body, LinkId link, double velocity) override {
-    if (multibody(body).set_belt_velocity(link.value, velocity)) wake(body);
-  }
-  double rotor_velocity(BodyId body, std::size_t device) const override {
-    return assembly_.members[bodies_[body.value].member].fluid->rotor_velocity(device);
-  }
-  void set_rotor_velocity_target(BodyId body, std::size_t device, double velocity) override {
-    assembly_.members[bodies_[body.value].member].fluid->set_rotor_target(device, velocity);
-  }
+  void set_device_target(BodyId body, DeviceId device, std::size_t output, double velocity) override;
   void set_root_twist(BodyId body, const Twist& twist) override {
     wake(body);
     multibody(body).motion().set_root_twist(twist);

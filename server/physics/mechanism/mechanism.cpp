@@ -1,6 +1,8 @@
 #include "server/physics/mechanism/mechanism.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <stdexcept>
 
 #include "server/physics/mechanism/rotation.hpp"
 
@@ -18,6 +20,21 @@ const description::Joint* joint_above(const description::Model& model, std::size
   for (const description::Joint& joint : model.joints)
     if (joint.child == link) return &joint;
   return nullptr;
+}
+
+DeviceOutputs::Wheels wheels_of(const Mechanism& mechanism, const description::TrackPair& pair,
+                                const std::vector<std::size_t>& joints) {
+  DeviceOutputs::Wheels side;
+  side.radius = pair.wheel_radius;
+  side.max_effort = pair.max_torque / static_cast<double>(std::max<std::size_t>(1, joints.size()));
+  side.max_velocity = pair.max_velocity / pair.wheel_radius;
+  for (const std::size_t joint : joints) {
+    const Mechanism::JointPlace& place = mechanism.joint(joint);
+    const Segment& wheel = mechanism.segments()[static_cast<std::size_t>(place.segment)];
+    const Eigen::Vector3d axis = wheel.X_PS.orientation * wheel.axis_S;
+    side.wheels.push_back({place.first_dof, axis.y() < 0.0 ? -1.0 : 1.0});
+  }
+  return side;
 }
 
 }  // namespace
@@ -55,11 +72,9 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   }
   for (std::size_t link = 0; link < model.links.size(); ++link) add_link(link, welded);
   for (const description::Device& device : model.devices)
-    for (const description::MotorLimits& motor : description::motor_limits(device)) {
-      motor_joints_.push_back(motor.joint);
+    for (const description::MotorLimits& motor : description::motor_limits(device))
       if (joints_[motor.joint].dofs > 0)
         dofs_[static_cast<std::size_t>(joints_[motor.joint].first_dof)].rotor_inertia = motor.rotor_inertia;
-    }
   for (const description::Coupling& coupling : model.couplings) {
     const JointPlace& follower = joints_[coupling.follower];
     const JointPlace& leader = joints_[coupling.leader];
@@ -69,6 +84,31 @@ Mechanism::Mechanism(const description::Model& model, description::Fidelity fide
   turn_to_principal_axes();
   find_light_segments();
   if (has_kinematic_root()) make_root_immovable();
+  find_outputs();
+}
+
+void Mechanism::find_outputs() {
+  std::size_t belts = 0;
+  std::size_t rotors = 0;
+  for (const description::Device& device : model_->devices) {
+    std::vector<DeviceOutputs::Output>& outputs = outputs_.by_device.emplace_back();
+    if (const description::TrackPair* const pair = description::tracks_of(device)) {
+      if (links_[pair->link].segment != 0)
+        throw std::invalid_argument("treel drive '" + description::name_of(device) + "' is not on the root link '" +
+                                    model_->links[0].name + "'");
+      if (has_wheels_ && !(pair->left_wheels.empty() && pair->right_wheels.empty())) {
+        for (const auto* joints : {&pair->left_wheels, &pair->right_wheels})
+          outputs.emplace_back(wheels_of(*this, *pair, *joints));
+      } else {
+        for (const Side side : {Side::left, Side::right})
+          outputs.emplace_back(DeviceOutputs::Track{outputs_.tracks.size(), side});
+        outputs_.tracks.push_back(pair);
+      }
+    }
+    for (std::size_t i = description::belts_of(device).size(); i > 0; --i)
+      outputs.emplace_back(DeviceOutputs::BeltLink{belts++});
+    if (description::thruster_of(device) != nullptr) outputs.emplace_back(DeviceOutputs::Propeller{rotors++});
+  }
 }
 
 // A sphere, so that nothing turns it either. Impulses of a robot's step change its velocity by less than doubles tell.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/description/world.hpp"
+#include "server/physics/mechanism/device_outputs.hpp"
 #include "server/physics/mechanism/lanes.hpp"
 
 namespace cohort::physics {
@@ -48,6 +49,7 @@ struct Dof {
 /// Coordinates are those of the joints alone: an angle, a way, or the quaternion x y z w of a ball joint.
 class Mechanism {
  public:
+  /// Throws std::invalid_argument for tracks that are not on the root link.
   Mechanism(const description::Model& model, description::Fidelity fidelity);
 
   struct LinkPlace {
@@ -71,8 +73,8 @@ class Mechanism {
     double offset = 0.0;
   };
   const std::vector<Follower>& followers() const { return followers_; }
-  /// The joints that motors drive, but for those of tracks, in the order of the devices.
-  const std::vector<std::size_t>& motor_joints() const { return motor_joints_; }
+  /// What devices drive beside joints.
+  const DeviceOutputs& outputs() const { return outputs_; }
 
   const std::vector<Segment>& segments() const { return segments_; }
   const std::vector<Dof>& dofs() const { return dofs_; }
@@ -106,6 +108,7 @@ class Mechanism {
   int add_segment(int parent, Motion motion, const Pose& X_PS, const Eigen::Vector3d& axis_S,
                   const description::JointAxis* axis);
   void turn_to_principal_axes();
+  void find_outputs();
   void find_light_segments();
   void make_root_immovable();
   void add_mass(int index, const description::Inertial& inertial, const Pose& X_SL);
@@ -116,7 +119,7 @@ class Mechanism {
   std::vector<LinkPlace> links_;
   std::vector<JointPlace> joints_;
   std::vector<Follower> followers_;
-  std::vector<std::size_t> motor_joints_;
+  DeviceOutputs outputs_;
   std::vector<double> zero_coordinates_;
   std::vector<int> parents_;
   std::vector<char> is_light_;  // by segment

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 namespace cohort::physics {
 
@@ -17,10 +16,6 @@ Belts::Belts(const Mechanism& mechanism) {
     }
 }
 
-bool Belts::set_velocity(std::size_t link, double velocity) {
-  return std::exchange(std::ranges::find(belts_, link, &RunningLink::link)->velocity, velocity) != velocity;
-}
-
 void Belts::unload() {
   for (RunningLink& belt : belts_) belt.force = 0.0;
 }
@@ -32,12 +27,6 @@ void Belts::load(std::size_t link, const std::vector<Pose>& X_WS, const Eigen::V
     const RunningSurface at_unit_velocity{X_WS[belt.segment].orientation * belt.axis_S, 1.0};
     belt.force -= force_W.dot(at_unit_velocity.velocity_at(outward_W));
   }
-}
-
-double Belts::power() const {
-  double power = 0.0;
-  for (const RunningLink& belt : belts_) power += std::max(0.0, belt.force * belt.velocity);
-  return power;
 }
 
 RunningSurface Belts::of_link(std::size_t link, const std::vector<Pose>& X_WS) const {

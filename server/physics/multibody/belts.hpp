@@ -1,8 +1,10 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "server/physics/mechanism/mechanism.hpp"
+#include "server/physics/world/physics_world.hpp"
 #include "server/physics/world/running_surface.hpp"
 
 namespace cohort::physics {
@@ -13,8 +15,12 @@ class Belts {
   /// Throws std::invalid_argument if two devices drive one link.
   explicit Belts(const Mechanism& mechanism);
 
-  /// Of a link that has a belt [m/s]. Whether it is another one than before.
-  bool set_velocity(std::size_t link, double velocity);
+  /// Sets the velocity of a belt [m/s]; returns whether it is another one than before. Belts are numbered in the order
+  /// of the devices.
+  bool set_velocity(std::size_t belt, double velocity) {
+    return std::exchange(belts_[belt].velocity, velocity) != velocity;
+  }
+  OutputState state(std::size_t belt) const { return {0.0, belts_[belt].velocity, belts_[belt].force}; }
   /// How the surface of a link runs, which is in its segment at `X_WS`.
   RunningSurface of_link(std::size_t link, const std::vector<Pose>& X_WS) const;
 
@@ -23,8 +29,6 @@ class Belts {
   /// Adds a force on a link, where its surface looks towards `outward_W`; nothing if it has no belt [N].
   void load(std::size_t link, const std::vector<Pose>& X_WS, const Eigen::Vector3d& outward_W,
             const Eigen::Vector3d& force_W);
-  /// What they give to what they carry: force along the surface times its velocity; one that is driven gives 0 [W].
-  double power() const;
 
   /// Calls `visit` for each number of the state, always in the same order.
   template <class Self, class Visit>

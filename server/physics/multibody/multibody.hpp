@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -32,14 +31,19 @@ class Multibody {
   bool set_joint_target(std::size_t joint, JointRows::Control control, double target);
   /// Of the joint's motor over the last step [N m] or [N], 0 if it has none.
   double joint_effort(std::size_t joint) const;
-  /// Of joints, tracks and belts over the last step, as World::driven_power [W].
-  double driven_power() const;
-  /// Whether that is something new. The device has to be a treel drive.
-  bool set_track_velocity_target(std::size_t device, Side side, double velocity);
-  TrackState track(std::size_t device, Side side) const;
 
-  /// The link has to have a belt. Whether it is another one than before.
-  bool set_belt_velocity(std::size_t link, double velocity) { return belts_.set_velocity(link, velocity); }
+  /// Sets the velocity that an output of a device goes to; returns whether it is another one than before.
+  bool set_target(const DeviceOutputs::Track& track, double velocity) {
+    return treels_[track.pair].set_target(track.side, velocity);
+  }
+  bool set_target(const DeviceOutputs::Wheels& side, double velocity);
+  bool set_target(const DeviceOutputs::BeltLink& belt, double velocity) {
+    return belts_.set_velocity(belt.index, velocity);
+  }
+  OutputState state(const DeviceOutputs::Track& track) const { return treels_[track.pair].track(track.side); }
+  OutputState state(const DeviceOutputs::Wheels& side) const;
+  OutputState state(const DeviceOutputs::BeltLink& belt) const { return belts_.state(belt.index); }
+
   RunningSurface surface_of(std::size_t link) const { return belts_.of_link(link, motion_.segment_poses()); }
 
   bool has_belts() const { return !belts_.is_empty(); }
@@ -87,19 +91,7 @@ class Multibody {
   }
 
  private:
-  /// Drives whose wheels are simulated: how the velocity of a track becomes that of its joints.
-  struct WheelDrive {
-    double radius = 0.0;
-    std::array<std::vector<int>, 2> dofs;       // by side
-    std::array<std::vector<double>, 2> senses;  // 1: a positive velocity of the joint drives forwards; or -1
-  };
-  struct Drive {  // index into treels_ or wheels_, -1: not so
-    int treel = -1;
-    int wheels = -1;
-  };
-
   void build_devices();
-  void add_drive(std::size_t device, const description::TrackPair& drive);
   void add_motor(int dof, double max_effort, double max_velocity, const std::string& device);
 
   BodyMotion motion_;
@@ -107,9 +99,7 @@ class Multibody {
   JointRows joints_;
   LoopRows loops_;
   Belts belts_;
-  std::vector<Drive> drives_;  // by device
   std::vector<TrackRows> treels_;
-  std::vector<WheelDrive> wheels_;
   double last_step_ = 0.0;  // [s]
 };
 

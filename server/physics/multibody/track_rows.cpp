@@ -129,7 +129,7 @@ void TrackRows::read_rows(const Problem& problem, double step) {
         track.state.velocity = problem.velocity(row) - track.carried;  // one that grips turns as the ground goes by
     }
     track.state.position += track.state.velocity * step;
-    track.state.traction = track.impulse / step;
+    track.state.effort = track.impulse / step;
   }
 }
 

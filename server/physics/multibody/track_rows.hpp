@@ -25,7 +25,7 @@ class TrackRows {
 
   /// Whether that is something new.
   bool set_target(Side side, double velocity) { return std::exchange(side_of(side).target, velocity) != velocity; }
-  const TrackState& track(Side side) const { return side_of(side).state; }
+  const OutputState& track(Side side) const { return side_of(side).state; }
 
   /// Where the ground is looked for. `X_WS`: the root segment.
   geometry::Bounds ground_region(const Pose& X_WS) const;
@@ -68,7 +68,7 @@ class TrackRows {
       visit(track.target);
       visit(track.state.position);
       visit(track.state.velocity);
-      visit(track.state.traction);
+      visit(track.state.effort);
       visit(track.impulse);
     }
     for (auto& point : self.points_) visit(point.impulse);
@@ -78,7 +78,7 @@ class TrackRows {
  private:
   struct Track {
     double target = 0.0;
-    TrackState state;
+    OutputState state;
     double impulse = 0.0;  // of the drive row
     int row = -1;          // of this step, -1 while no ground point of this side touches
     double carried = 0.0;  // of this step: how fast the surface under it runs forwards [m/s]

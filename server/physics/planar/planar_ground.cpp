@@ -133,7 +133,7 @@ void PlanarGround::finish(const PlanarVelocity& velocity, double step) {
     const bool slips = row.limit < motor_limit_ && std::abs(impulse_[side]) >= row.limit;
     track.state.velocity = slips ? track.target : speed_along(forward_W_, row.lever, velocity);
     track.state.position += track.state.velocity * step;
-    track.state.traction = impulse_[side] / step;
+    track.state.effort = impulse_[side] / step;
   }
 }
 

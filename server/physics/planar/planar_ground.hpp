@@ -21,7 +21,7 @@ class PlanarGround {
   PlanarGround(double friction, double weight, double arm, double step);
 
   void set_target(Side side, double velocity) { tracks_[static_cast<std::size_t>(side)].target = velocity; }
-  const TrackState& track(Side side) const { return tracks_[static_cast<std::size_t>(side)].state; }
+  const OutputState& track(Side side) const { return tracks_[static_cast<std::size_t>(side)].state; }
   const std::array<double, 3>& impulse() const { return impulse_; }
   void set_impulse(const std::array<double, 3>& impulse) { impulse_ = impulse; }
 
@@ -41,14 +41,14 @@ class PlanarGround {
       visit(track.target);
       visit(track.state.position);
       visit(track.state.velocity);
-      visit(track.state.traction);
+      visit(track.state.effort);
     }
   }
 
  private:
   struct Track {
     double target = 0.0;
-    TrackState state;
+    OutputState state;
   };
   struct Row {
     double lever = 0.0;     // of the row's direction about the centre of mass [m]

@@ -25,9 +25,6 @@ PlanarModel::PlanarModel(const description::Model& model)
       throw std::invalid_argument(reason);
     if (const description::TrackPair* const drive = description::tracks_of(device)) {
       if (drive_) throw std::invalid_argument("more than one treel drive cannot be planar");
-      if (mechanism_.link(drive->link).segment != 0)
-        throw std::invalid_argument("treel drive '" + description::name_of(device) + "' is not on the root link '" +
-                                    model.links[0].name + "'");
       drive_ = drive;
     }
   }

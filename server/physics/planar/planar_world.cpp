@@ -58,14 +58,20 @@ void PlanarWorld::set_joint_state(BodyId body, JointId joint, std::span<const do
   scene_.update();
 }
 
-// Joints move by command and take no effort.
-double PlanarWorld::driven_power(BodyId body) const {
-  if (bodies_[body.value].member == Anchors::nobody) return 0.0;
-  const PlanarGround& ground = grounds_[bodies_[body.value].member];
-  double power = 0.0;
-  for (const Side side : {Side::left, Side::right})
-    power += std::max(0.0, ground.track(side).traction * ground.track(side).velocity);
-  return power;
+// Tracks are all that can be planar.
+Side PlanarWorld::side_of(std::uint32_t member, DeviceId device, std::size_t output) const {
+  return std::get<DeviceOutputs::Track>(planar_.model(member).mechanism().outputs().at(device, output)).side;
+}
+
+OutputState PlanarWorld::device_state(BodyId body, DeviceId device, std::size_t output) const {
+  const std::uint32_t member = bodies_[body.value].member;
+  if (member == Anchors::nobody) return {};
+  return grounds_[member].track(side_of(member, device, output));
+}
+
+void PlanarWorld::set_device_target(BodyId body, DeviceId device, std::size_t output, double velocity) {
+  const std::uint32_t member = bodies_[body.value].member;
+  grounds_[member].set_target(side_of(member, device, output), velocity);
 }
 
 void PlanarWorld::record(BodyId body) {

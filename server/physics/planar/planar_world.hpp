@@ -56,13 +56,10 @@ class PlanarWorld final : public World, private WorldConnections {
   Pose link_pose(BodyId body, LinkId link) const override;
   Twist link_twist(BodyId body, LinkId link) const override;
   JointState joint_state(BodyId body, JointId joint) const override;
-  TrackState track(BodyId body, std::size_t, Side side) const override {
-    return grounds_[bodies_[body.value].member].track(side);
-  }
+  OutputState device_state(BodyId body, DeviceId device, std::size_t output) const override;
   void record(BodyId body) override;
   Wrench joint_wrench(BodyId, JointId) const override { return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
   Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const override;
-  double driven_power(BodyId body) const override;
 
   WorldConnections& connections() override { return *this; }
   const WorldConnections& connections() const override { return *this; }
@@ -70,12 +67,7 @@ class PlanarWorld final : public World, private WorldConnections {
   void set_joint_target(BodyId body, JointId joint, const JointTarget& target) override {
     planar_.set_joint_target(bodies_[body.value].member, joint.value, target.kind, target.value);
   }
-  void set_track_velocity_target(BodyId body, std::size_t, Side side, double velocity) override {
-    grounds_[bodies_[body.value].member].set_target(side, velocity);
-  }
-  void set_belt_velocity_target(BodyId, LinkId, double) override {}          // none can be planar
-  double rotor_velocity(BodyId, std::size_t) const override { return 0.0; }  // none can be planar
-  void set_rotor_velocity_target(BodyId, std::size_t, double) override {}
+  void set_device_target(BodyId body, DeviceId device, std::size_t output, double velocity) override;
   void set_root_twist(BodyId body, const Twist& twist) override {
     planar_.set_root_twist(bodies_[body.value].member, twist);
   }
@@ -152,6 +144,7 @@ class PlanarWorld final : public World, private WorldConnections {
   void report_contacts();
   void quarantine();
   void take_out(std::uint32_t index);
+  Side side_of(std::uint32_t member, DeviceId device, std::size_t output) const;
   Anchors::Part part_of(std::uint32_t solid) const { return part_of_solid_[solid]; }
 
   const description::World& description_;

@@ -32,13 +32,12 @@ struct Twist {
   Eigen::Vector3d linear_W;   ///< of the link's origin [m/s]
 };
 
-/// What the tracks of one treel drive do, relative to the hull.
-struct TrackState {
-  double position = 0.0;  ///< way travelled since the world began [m]
-  double velocity = 0.0;  ///< [m/s]
-  double traction = 0.0;  ///< force along the track over the last step [N]
+/// What an output of a device does, relative to the link that it is on: a track, a belt or a rotor.
+struct OutputState {
+  double position = 0.0;  ///< way of a track since the world began [m]; 0 for belts and rotors, which do not count it
+  double velocity = 0.0;  ///< of the surface of a track or a belt [m/s], of a rotor [rad/s]
+  double effort = 0.0;  ///< force along a track or a belt over the last step [N]; torque of a rotor on its fluid [N m]
 };
-enum class Side : std::uint8_t { left = 0, right = 1 };
 
 /// A joint and its motor. All is zero for a joint that is fixed and for a body that is static.
 struct JointState {
@@ -125,7 +124,10 @@ class World {
   virtual Pose link_pose(BodyId body, LinkId link) const = 0;    ///< X_WL
   virtual Twist link_twist(BodyId body, LinkId link) const = 0;  ///< zero for a static body
   virtual JointState joint_state(BodyId body, JointId joint) const = 0;
-  virtual TrackState track(BodyId body, std::size_t drive, Side side) const = 0;
+  /// What a device drives beside joints are its outputs: the left and the right track of a description::TrackPair, 0
+  /// and 1; belts, in the order of description::belts_of; the rotor of a description::Thruster. Throws
+  /// std::out_of_range for an output that the device does not have, as `set_device_target` does.
+  virtual OutputState device_state(BodyId body, DeviceId device, std::size_t output) const = 0;
 
   /// From the next step on keeps what `joint_wrench` and `link_acceleration` tell of a body that moves, which are zero
   /// otherwise. Between steps. None of the three is part of the state: after `restore`, and where a body was put
@@ -138,25 +140,14 @@ class World {
   /// Mean acceleration over the last step of a point that is fixed to a link, in world axes, gravity not taken out
   /// [m/s^2]: zero at rest, `gravity` in free fall.
   virtual Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const = 0;
-  /// Mechanical power that the body's devices gave to what they move over the last step, joints, tracks, belts and
-  /// rotors, each at its velocity at the end of the step; one that brakes counts as 0 [W].
-  virtual double driven_power(BodyId body) const = 0;
-
   virtual WorldConnections& connections() = 0;
   virtual const WorldConnections& connections() const = 0;
 
   /// For a joint that a motor drives.
   virtual void set_joint_target(BodyId body, JointId joint, const JointTarget& target) = 0;
-  /// `drive`: index of a TreelDrive among the model's devices; velocity of the track over ground [m/s].
-  virtual void set_track_velocity_target(BodyId body, std::size_t drive, Side side, double velocity) = 0;
-
-  /// Of a link that is a belt: of its surface along it [m/s].
-  virtual void set_belt_velocity_target(BodyId body, LinkId link, double velocity) = 0;
-
-  /// `device`: index of a Rotor among the model's devices; its velocity [rad/s].
-  virtual double rotor_velocity(BodyId body, std::size_t device) const = 0;
-  /// What its velocity goes to, with its time constants [rad/s].
-  virtual void set_rotor_velocity_target(BodyId body, std::size_t device, double velocity) = 0;
+  /// Sets the velocity that an output of a device goes to: of a track over ground or of the surface of a belt [m/s], at
+  /// once but for the limits of the motor; of a rotor [rad/s], with its time constants.
+  virtual void set_device_target(BodyId body, DeviceId device, std::size_t output, double velocity) = 0;
 
   /// Of a root link that is free to move.
   virtual void set_root_twist(BodyId body, const Twist& twist) = 0;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "server/core/state_visitors.hpp"
+#include "server/physics/world/driven_power.hpp"
 #include "server/sensing/sensor_kinds.hpp"
 
 namespace cohort::sensing {
@@ -46,7 +47,9 @@ std::vector<Channel> Battery::channels() const {
 void Battery::remember(std::uint64_t tick, bool) {
   if (tick == noted_tick_) return;  // nothing has moved since, or at all yet
   noted_tick_ = tick;
-  power_ = energy_ > 0.0 ? device_.idle_power + mount_.world.driven_power(mount_.body) / device_.motor_efficiency : 0.0;
+  power_ = energy_ > 0.0
+               ? device_.idle_power + driven_power(mount_.world, mount_.body, mount_.model()) / device_.motor_efficiency
+               : 0.0;
   energy_ = std::max(0.0, energy_ - power_ * step_);
 }
 

@@ -11,7 +11,7 @@ class RotorEncoder final : public SensorOf<description::Rotor> {
     return {{device_.name + "/0/velocity", "rad/s", 1, device_.min_velocity, device_.max_velocity, 0.0}};
   }
   void sense(std::uint64_t, std::span<double> values) const override {
-    values[0] = mount_.world.rotor_velocity(mount_.body, mount_.device);
+    values[0] = mount_.world.device_state(mount_.body, mount_.device, 0).velocity;
   }
 };
 

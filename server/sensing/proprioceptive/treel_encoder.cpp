@@ -18,8 +18,8 @@ class TreelEncoder final : public SensorOf<description::TreelEncoder> {
   }
   void sense(std::uint64_t, std::span<double> values) const override {
     std::size_t i = 0;
-    for (const physics::Side side : {physics::Side::left, physics::Side::right}) {
-      const physics::TrackState track = mount_.world.track(mount_.body, device_.drive, side);
+    for (const std::size_t side : {0, 1}) {
+      const physics::OutputState track = mount_.world.device_state(mount_.body, DeviceId{device_.drive}, side);
       values[i++] = track.position;
       values[i++] = track.velocity;
     }

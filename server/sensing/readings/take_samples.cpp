@@ -26,7 +26,7 @@ description::Samples take_samples(const description::Model& model, std::size_t d
   const emission::Emitters emitters(description, *world);
   SharedViews views;
   const gripping::Grippers grippers(description, *world);
-  const auto sensor = make_sensor({*world, emitters, description, grippers, views, BodyId{0}, device, 1});
+  const auto sensor = make_sensor({*world, emitters, description, grippers, views, BodyId{0}, DeviceId{device}, 1});
   const std::uint64_t ticks = ring.technique == description::ProximityTechnique::random_ray ? random_ticks : 1;
 
   description::Samples samples;

@@ -1,15 +1,18 @@
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+
 #include "server/physics/islands/islands.hpp"
 #include "server/physics/make_world.hpp"
 #include "tests/support/robots.hpp"
+#include "tests/support/small_world.hpp"
 
 namespace cohort::physics {
 namespace {
 
 using namespace test;
 
-constexpr std::size_t drive = 0;  // device index of the tracked robot's treel drive
+constexpr DeviceId drive{0};  // of the tracked robot
 
 struct Drive {
   double left;
@@ -17,8 +20,8 @@ struct Drive {
 };
 
 void command(World& world, BodyId body, Drive tracks) {
-  world.set_track_velocity_target(body, drive, Side::left, tracks.left);
-  world.set_track_velocity_target(body, drive, Side::right, tracks.right);
+  world.set_device_target(body, drive, 0, tracks.left);
+  world.set_device_target(body, drive, 1, tracks.right);
 }
 
 void run(World& world, int steps) {
@@ -45,6 +48,18 @@ TEST(World, TakesNoJointForALinkNorALinkForAJoint) {
   static_assert(!has_link<RobotId, LinkId> && !has_link<LinkId, BodyId> && !has_link<std::uint32_t, std::size_t>);
 }
 
+TEST(World, RefusesAnOutputThatADeviceDoesNotHave) {
+  using enum description::Fidelity;
+  for (const description::Fidelity fidelity : {treel, articulated, planar}) {
+    SmallWorld small;
+    small.description.physics.fidelity = fidelity;
+    const BodyId body = small.add(tracked_robot(), {{0, 0, 0}});
+    EXPECT_THROW(small.world().device_state(body, drive, 2), std::out_of_range);
+    EXPECT_THROW(small.world().set_device_target(body, drive, 2, 0.1), std::out_of_range);
+    EXPECT_THROW(small.world().device_state(body, DeviceId{1000}, 0), std::out_of_range);
+  }
+}
+
 TEST(TreelDrive, StandsStillWhenToldTo) {
   description::World description = world_with_floor();
   const BodyId body{place(description, tracked_robot(), "robot", at(0, 0, 0, 0.3))};
@@ -68,7 +83,7 @@ TEST(TreelDrive, ReachesTheCommandedVelocityWithinHalfAPercent) {
   const double before = world->link_pose(body, LinkId{0}).position.x();
   run(*world, 100);
   EXPECT_NEAR(world->link_pose(body, LinkId{0}).position.x() - before, 0.1, 0.0005);
-  EXPECT_NEAR(world->track(body, drive, Side::left).velocity, 0.1, 0.0005);
+  EXPECT_NEAR(world->device_state(body, drive, 0).velocity, 0.1, 0.0005);
 }
 
 TEST(TreelDrive, TurnsOnTheSpotAtTheRateOfItsGauge) {
@@ -107,7 +122,7 @@ TEST(TreelDrive, PushesWithNoMoreThanItsMotorsGive) {
   command(*world, body, {0.2, 0.2});
   run(*world, 120);  // against the wall, and not yet turned along it
   // Torque over wheel radius: 0.02 N m / 0.022 m a side.
-  EXPECT_NEAR(world->track(body, drive, Side::left).traction, 0.02 / 0.022, 0.01);
+  EXPECT_NEAR(world->device_state(body, drive, 0).effort, 0.02 / 0.022, 0.01);
   double momentum = 0.0;
   for (int i = 0; i < 50; ++i) {
     world->step();
@@ -129,7 +144,7 @@ TEST(TreelDrive, SlipsOnGroundThatGripsLessThanItsMotors) {
   run(*world, 10);
   // a = mu g while the tracks slip, and the encoders see the tracks, not the ground.
   EXPECT_NEAR((world->link_twist(body, LinkId{0}).linear_W.x() - before.linear_W.x()) / 0.1, 0.05 * 9.81, 0.03);
-  EXPECT_EQ(world->track(body, drive, Side::left).velocity, 0.2);
+  EXPECT_EQ(world->device_state(body, drive, 0).velocity, 0.2);
 }
 
 TEST(TreelDrive, DrivesOnTopOfABoxAndStandsOnIt) {

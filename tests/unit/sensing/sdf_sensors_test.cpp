@@ -160,8 +160,8 @@ TEST(ContactSensor, OfAPlanarBodyFeelsTheWallThatItIsDrivenInto) {
   sensed.small.description.physics.fidelity = description::Fidelity::planar;
   sensed.add_wall({0.1, 2.0, 0.3}, at(0.058 + 0.05 + 0.02, 0, 0.15));
   EXPECT_EQ(sensed.value("touching"), 0.0);
-  sensed.small.world().set_track_velocity_target(sensed.body, 1, physics::Side::left, 0.1);
-  sensed.small.world().set_track_velocity_target(sensed.body, 1, physics::Side::right, 0.1);
+  sensed.small.world().set_device_target(sensed.body, DeviceId{1}, 0, 0.1);
+  sensed.small.world().set_device_target(sensed.body, DeviceId{1}, 1, 0.1);
   sensed.small.run(1.0);
   EXPECT_EQ(sensed.value("touching"), 1.0);
   EXPECT_GT(sensed.value("force"), 0.1);

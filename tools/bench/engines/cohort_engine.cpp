@@ -30,8 +30,8 @@ class CohortEngine final : public Engine {
       world_->set_joint_target(body, JointId{left_wheel_joint}, Target::velocity(command.left / robot_.wheel_radius));
       world_->set_joint_target(body, JointId{right_wheel_joint}, Target::velocity(command.right / robot_.wheel_radius));
     } else {
-      world_->set_track_velocity_target(body, treel_drive, physics::Side::left, command.left);
-      world_->set_track_velocity_target(body, treel_drive, physics::Side::right, command.right);
+      world_->set_device_target(body, DeviceId{treel_drive}, 0, command.left);
+      world_->set_device_target(body, DeviceId{treel_drive}, 1, command.right);
     }
     world_->set_joint_target(body, JointId{turret_joint}, Target::velocity(command.turret));
   }

@@ -113,7 +113,7 @@ class CohortSensing final : public SensingRun {
     for (const std::size_t body : description_.robots)
       for (std::size_t device = 0; device < devices.size(); ++device) {
         sensors_.push_back(sensing::make_sensor(
-            {*world_, emitters_, description_, grippers_, views_, BodyId{body}, device, scene.seed}));
+            {*world_, emitters_, description_, grippers_, views_, BodyId{body}, DeviceId{device}, scene.seed}));
         std::size_t of_sensor = 0;
         for (const Channel& channel : sensors_.back()->channels()) of_sensor += channel.size;
         ends_.push_back(size += of_sensor);

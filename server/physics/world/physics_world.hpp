@@ -5,13 +5,13 @@
 #include <memory>
 #include <span>
 
-#include "server/core/hash.hpp"
 #include "server/core/ids.hpp"
-#include "server/core/snapshot.hpp"
 #include "server/core/worker_pool.hpp"
 #include "server/description/world.hpp"
 #include "server/geometry/scene/scene.hpp"
 #include "server/physics/world/world_connections.hpp"
+#include "server/physics/world/world_records.hpp"
+#include "server/physics/world/world_state.hpp"
 
 namespace cohort::physics {
 
@@ -90,7 +90,7 @@ struct Quarantine {
 ///
 /// With Fidelity::planar bodies have a position and a heading only, on flat ground: planar_world.hpp says what of all
 /// this is then different.
-class World {
+class World : public WorldState, public WorldRecords {
  public:
   virtual ~World() = default;
 
@@ -129,17 +129,6 @@ class World {
   /// std::out_of_range for an output that the device does not have, as `set_device_target` does.
   virtual OutputState device_state(BodyId body, DeviceId device, std::size_t output) const = 0;
 
-  /// From the next step on keeps what `joint_wrench` and `link_acceleration` tell of a body that moves, which are zero
-  /// otherwise. Between steps. None of the three is part of the state: after `restore`, and where a body was put
-  /// elsewhere or is not in the world, both are zero until the end of the next step. A static body has neither.
-  virtual void record(BodyId body) = 0;
-  /// On the joint's child by its parent over the last step, about the joint's origin, both as they were when the step
-  /// began: all that goes through the joint, of motor, friction, damping, spring, limits and what the joint does not
-  /// let move; also of a fixed joint. Zero for a planar body.
-  virtual Wrench joint_wrench(BodyId body, JointId joint) const = 0;
-  /// Mean acceleration over the last step of a point that is fixed to a link, in world axes, gravity not taken out
-  /// [m/s^2]: zero at rest, `gravity` in free fall.
-  virtual Eigen::Vector3d link_acceleration(BodyId body, LinkId link, const Eigen::Vector3d& p_LP) const = 0;
   virtual WorldConnections& connections() = 0;
   virtual const WorldConnections& connections() const = 0;
 
@@ -159,17 +148,6 @@ class World {
   /// Those between bodies that sleep first, each in the order of the bodies' solids: the same for any number of
   /// workers.
   virtual std::span<const Contact> contacts() const = 0;
-
-  /// Adds all that decides how `body` goes on: pose, velocities, joints, tracks, targets, warm-start impulses.
-  virtual void hash_body(BodyId body, StateHash& hash) const = 0;
-  /// Adds every contact point and every connection with what the solver's warm start takes from it.
-  virtual void hash_contacts(StateHash& hash) const = 0;
-
-  /// Everything that decides how the world goes on; between steps.
-  virtual void save(SnapshotWriter& writer) const = 0;
-  /// Into a world as it is after its construction, of the same description. Throws SnapshotError if the snapshot is of
-  /// something else; the world is then not to be used.
-  virtual void restore(SnapshotReader& reader) = 0;
 };
 
 }  // namespace cohort::physics

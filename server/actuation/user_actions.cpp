@@ -4,10 +4,10 @@ namespace cohort::actuation {
 
 UserActions::UserActions(const description::World& description, const physics::World& world) : world_(world) {
   for (std::uint32_t robot = 0; robot < description.robots.size(); ++robot)
-    add_robot(robot, BodyId{description.robots[robot]}, description.robot_model(robot));
+    add_robot(RobotId{robot}, BodyId{description.robots[robot]}, description.robot_model(robot));
 }
 
-void UserActions::add_robot(std::uint32_t robot, BodyId body, const description::Model& model) {
+void UserActions::add_robot(RobotId robot, BodyId body, const description::Model& model) {
   for (std::size_t device = 0; device < model.devices.size(); ++device) {
     const auto* const action = std::get_if<description::UserAction>(&model.devices[device]);
     if (action == nullptr) continue;

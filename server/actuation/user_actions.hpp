@@ -17,7 +17,7 @@ namespace cohort::actuation {
 /// An action of one robot.
 struct ActionOfRobot {
   std::string name;
-  std::uint32_t robot = 0;  ///< its id
+  RobotId robot;
   BodyId body;
   double value = 0.0;    ///< commanded for the last step; 0 if the robot was not in the world
   bool is_done = false;  ///< the value is above `UserActions::threshold`
@@ -34,7 +34,7 @@ class UserActions {
   UserActions(const description::World& description, const physics::World& world);
 
   /// A robot has come, with the next id.
-  void add_robot(std::uint32_t robot, BodyId body, const description::Model& model);
+  void add_robot(RobotId robot, BodyId body, const description::Model& model);
   /// The number of the action that is a device of a robot.
   std::uint32_t of_device(BodyId body, DeviceId device) const { return numbers_.at({body, device}); }
   void command(std::uint32_t action, double value) { actions_[action].value = value; }

@@ -60,7 +60,7 @@ std::string Schedule::who_begins(const description::Reaction& reaction) const {
   std::size_t others = 0;
   for (const actuation::ActionOfRobot& action : actions_.all()) {
     if (!action.begins || action.name != reaction.action ||
-        !std::binary_search(reaction.robots.begin(), reaction.robots.end(), action.robot))
+        !std::binary_search(reaction.robots.begin(), reaction.robots.end(), action.robot.value))
       continue;
     if (text.empty())
       text = "'" + objects_.name(action.body.value) + "'";

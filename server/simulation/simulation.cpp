@@ -86,10 +86,10 @@ void Simulation::handle_actions() {
     bool is_handled = false;
     for (const auto& [name, handler] : handlers_) {  // to which a handler may add one
       if (name != action.name || !world_->is_active(action.body)) continue;
-      handler(action.robot, action.value);
+      handler(action.robot.value, action.value);
       is_handled = true;
     }
-    if (is_handled && action.begins) happened_.push_back(action.name + " of '" + robot_name(action.robot) + "'");
+    if (is_handled && action.begins) happened_.push_back(action.name + " of '" + robot_name(action.robot.value) + "'");
   }
 }
 
@@ -117,7 +117,7 @@ void Simulation::enrol(std::uint32_t object, std::size_t team) {
   const auto robot = static_cast<std::uint32_t>(world.robots.size());
   world.robots.push_back(object);
   experiment_.edit().teams[team].robots.push_back(robot);
-  actions_.add_robot(robot, body, model);
+  actions_.add_robot(RobotId{robot}, body, model);
   robots_.add();
 }
 

@@ -12,7 +12,7 @@
 #include "client_sdk/hosting/state_parts.hpp"
 #include "idl/dds/transport.hpp"
 #include "idl/wire/messages.hpp"
-#include "server/serving/control/received_request.hpp"
+#include "server/serving/control/requests/received_request.hpp"
 
 namespace cohort::session {
 

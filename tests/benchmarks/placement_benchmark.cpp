@@ -5,7 +5,7 @@
 
 #include "server/placement/place.hpp"
 #include "server/placement/with_seed.hpp"
-#include "tests/support/arena_of_obstacles.hpp"
+#include "tests/support/worlds/arena_of_obstacles.hpp"
 
 // A robot in an arena with 24 obstacles, which stand where they are (argument 0) or are drawn too (argument 1).
 namespace cohort::placement {

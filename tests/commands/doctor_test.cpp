@@ -8,7 +8,7 @@
 
 #include "idl/dds/survey.hpp"
 #include "tests/support/keys.hpp"
-#include "tests/support/version_2.hpp"
+#include "tests/support/worlds/version_2.hpp"
 
 // Each fault is brought about, and has to be found.
 namespace cohort::test {

@@ -2,8 +2,8 @@
 
 #include "server/recording/recording.hpp"
 #include "tests/support/control.hpp"
-#include "tests/support/field_of_robots.hpp"
 #include "tests/support/recordings.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 namespace cohort::test {
 namespace {

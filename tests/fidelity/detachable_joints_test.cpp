@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/sensing_world.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 namespace cohort::test {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "server/core/random.hpp"
 #include "server/physics/dynamics/equations.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 // Bullet's articulated bodies and our own mass matrix give the same velocities and the same answers to impulses,
 // whatever the mechanism and its state.

@@ -7,7 +7,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "server/simulation/simulation.hpp"
 #include "tests/support/files.hpp"
-#include "tests/support/sensing_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
 
 namespace cohort::test {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "server/simulation/simulation.hpp"
-#include "tests/support/model_text.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/model_text.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <future>
 #include <thread>
 
-#include "client_sdk/src/control_client.hpp"
+#include "client_sdk/src/control/control_client.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/serving/server.hpp"
 #include "tests/support/controlled_run.hpp"

@@ -8,7 +8,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/run/in_process.hpp"
 #include "tests/support/controlled_run.hpp"
-#include "tests/support/sbot_layout.hpp"
+#include "tests/support/worlds/sbot_layout.hpp"
 
 // A run goes on from a snapshot with what its controllers remembered.
 namespace cohort::test {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "idl/dds/transport.hpp"
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <csignal>
 
 #include "tests/support/control.hpp"
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 namespace {

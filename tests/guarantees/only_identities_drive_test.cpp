@@ -7,7 +7,7 @@
 
 #include "idl/dds/transport.hpp"
 #include "tests/support/keys.hpp"
-#include "tests/support/sbot_layout.hpp"
+#include "tests/support/worlds/sbot_layout.hpp"
 
 // With security an identity drives its own robots, and nobody else has any effect.
 namespace cohort::test {

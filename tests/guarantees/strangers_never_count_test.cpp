@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "idl/dds/transport.hpp"
-#include "tests/support/field_of_robots.hpp"
-#include "tests/support/sbot_layout.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
+#include "tests/support/worlds/sbot_layout.hpp"
 
 namespace cohort::test {
 namespace {

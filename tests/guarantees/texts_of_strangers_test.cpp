@@ -2,7 +2,7 @@
 
 #include "client_sdk/text/printable.hpp"
 #include "idl/wire/control_messages.hpp"
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 // What others say of themselves is shown to people, and is never a command to their terminal or the end of a summary.
 namespace cohort::test {

@@ -227,3 +227,11 @@ def test_the_end_of_the_experiment_ends_a_run():
     calls = []
     simulation.run(each=lambda now: calls.append(now.tick))
     assert simulation.is_over and simulation.tick == 100 and calls == list(range(100))
+
+
+def test_a_bound_that_a_policy_has_rounded_to_float32_acts_as_the_bound(simulation):
+    upper = simulation.robots[0].command_channels["treel/left/velocity"].upper
+    assert numpy.float32(upper) > upper
+    simulation.commands[:, tracks_of(simulation)] = numpy.float32(upper)
+    simulation.step()
+    assert simulation.commands[0, tracks_of(simulation)].tolist() == [upper, upper]

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "client_sdk/src/control_client.hpp"
+#include "client_sdk/src/control/control_client.hpp"
 #include "tests/support/control.hpp"
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 

@@ -5,7 +5,7 @@
 #include <ostream>
 #include <string>
 
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 namespace cohort::test {
 

@@ -10,7 +10,7 @@
 #include "server/sensing/make_sensor.hpp"
 #include "server/sensing/readings/signal_chain.hpp"
 #include "server/sensing/sensor.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 namespace cohort::test {
 

@@ -86,6 +86,7 @@ int run_program(nb::handle maker, std::vector<std::string> arguments) {
 
 NB_MODULE(_client, module) {
   using namespace nanobind::literals;
+  nanobind::set_leak_warnings(false);  // of objects that live when Python ends
   module.def("host", &cohort::python::host, "maker"_a, "robots"_a, "server"_a, "domain"_a, "secure"_a);
   module.def("run_program", &cohort::python::run_program, "maker"_a, "arguments"_a);
 }

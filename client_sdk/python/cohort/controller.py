@@ -166,14 +166,14 @@ class Controller:
 
         class Wanderer(cohort.Controller):
             def start(self, start):
-                self.near = start.observations("proximity/*/reading")
+                self.left_eye = start.observation("proximity/0/reading")
+                self.right_eye = start.observation("proximity/14/reading")
                 self.left = start.command("treel/left/velocity")
                 self.right = start.command("treel/right/velocity")
 
             def step(self, observation, command):
-                turn = observation[self.near].max() > 0.5
-                command[self.left] = -0.1 if turn else 0.2
-                command[self.right] = 0.1 if turn else 0.2
+                command[self.left] = 0.2 * (1.0 - observation[self.right_eye])
+                command[self.right] = 0.2 * (1.0 - observation[self.left_eye])
 
     Attributes, as long as it drives a robot:
         robot: what `start` was told last, a `Start`.

@@ -6,6 +6,19 @@
 
 namespace cohort::python {
 
+void take_bounds_of_float32(const std::vector<Channel>& channels, std::span<double> values) {
+  std::size_t at = 0;
+  for (const Channel& channel : channels) {
+    for (std::uint32_t i = 0; i < channel.size; ++i, ++at) {
+      double& value = values[at];
+      if (value > channel.upper && value == static_cast<double>(static_cast<float>(channel.upper)))
+        value = channel.upper;
+      if (value < channel.lower && value == static_cast<double>(static_cast<float>(channel.lower)))
+        value = channel.lower;
+    }
+  }
+}
+
 ArraySimulation::ArraySimulation(std::shared_ptr<const description::Experiment> experiment, unsigned threads)
     : experiment_(std::move(experiment)),
       threads_(threads),
@@ -39,8 +52,10 @@ bool ArraySimulation::is_timed_out() const {
 
 void ArraySimulation::command() {
   const auto values_of = [&](std::uint32_t robot) {
-    const std::size_t size = simulation_->kinds()[simulation_->kind_of(robot)].command_size;
-    return std::span<const double>(commands_->data() + robot * command_size_, size);
+    const RobotKind& kind = simulation_->kinds()[simulation_->kind_of(robot)];
+    const std::span<double> values(commands_->data() + robot * command_size_, kind.command_size);
+    take_bounds_of_float32(kind.command, values);
+    return values;
   };
   for (std::uint32_t robot = 0; robot < simulation_->robot_count(); ++robot)
     if (const auto fault = simulation_->check_command(robot, values_of(robot)))

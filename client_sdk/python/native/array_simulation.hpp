@@ -13,6 +13,9 @@
 
 namespace cohort::python {
 
+/// Brings a value that is a bound of its channel, but for the rounding to float32 of a policy, to this bound.
+void take_bounds_of_float32(const std::vector<Channel>& channels, std::span<double> values);
+
 /// A Simulation with what its robots observe and are commanded in arrays [robot, channel]. Rows are as long as the
 /// longest one. One thread at a time.
 class ArraySimulation {

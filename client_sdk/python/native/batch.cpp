@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "client_sdk/python/native/array_simulation.hpp"
 #include "client_sdk/python/native/arrays.hpp"
 #include "client_sdk/python/native/channels.hpp"
 #include "client_sdk/python/native/one_user.hpp"
@@ -39,7 +40,12 @@ void step_batch(HeldBatch& held, std::uint64_t ticks, const std::optional<Mask>&
   std::span<const std::uint8_t> chosen;
   if (only) chosen = {reinterpret_cast<const std::uint8_t*>(only->data()), only->shape(0)};
   const nb::gil_scoped_release no_gil;
-  held.batch.step(ticks, chosen);
+  Batch& batch = held.batch;
+  for (std::size_t row = 0; row < batch.worlds() * batch.robots(); ++row) {
+    const RobotKind& kind = batch.kinds()[batch.kind_of(static_cast<std::uint32_t>(row % batch.robots()))];
+    take_bounds_of_float32(kind.command, batch.commands().subspan(row * batch.command_size(), kind.command_size));
+  }
+  batch.step(ticks, chosen);
 }
 
 // Resets the worlds that the mask has, each to its seed.

@@ -8,7 +8,7 @@
 #include "client_sdk/text/printable.hpp"
 #include "server/serving/control/control_actions.hpp"
 #include "server/serving/control/control_texts.hpp"
-#include "server/serving/control/request_checks.hpp"
+#include "server/serving/control/requests/request_checks.hpp"
 
 namespace cohort::session {
 namespace {

@@ -15,10 +15,10 @@
 #include "server/serving/control/kept_snapshots.hpp"
 #include "server/serving/control/live_recordings.hpp"
 #include "server/serving/control/model_texts.hpp"
-#include "server/serving/control/received_request.hpp"
-#include "server/serving/control/request_budget.hpp"
-#include "server/serving/control/request_ledger.hpp"
-#include "server/serving/control/requester_slots.hpp"
+#include "server/serving/control/requests/received_request.hpp"
+#include "server/serving/control/requests/request_budget.hpp"
+#include "server/serving/control/requests/request_ledger.hpp"
+#include "server/serving/control/requests/requester_slots.hpp"
 
 namespace cohort::session {
 

@@ -8,7 +8,7 @@
 #include "server/serving/control/controlled_run.hpp"
 #include "server/serving/control/kept_snapshots.hpp"
 #include "server/serving/control/live_recordings.hpp"
-#include "server/serving/control/request_ledger.hpp"
+#include "server/serving/control/requests/request_ledger.hpp"
 
 namespace cohort::session {
 

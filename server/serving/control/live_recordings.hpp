@@ -13,7 +13,7 @@
 #include "server/recording/mcap/writing/spool.hpp"
 #include "server/recording/recorder.hpp"
 #include "server/run/run.hpp"
-#include "server/serving/control/kept_for_client.hpp"
+#include "server/serving/control/requests/kept_for_client.hpp"
 
 namespace cohort::session {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tests/support/sensing_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
 
 /// Motors on joints as devices: what they are told, and what encoders and torque sensors say of it.
 namespace cohort {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "tests/support/sensing_world.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 /// What robots do that no joint stands for, and what comes of it.
 namespace cohort {

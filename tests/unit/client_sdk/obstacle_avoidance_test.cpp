@@ -10,7 +10,7 @@
 
 #include "client_sdk/hosting/controller_host.hpp"
 #include "client_sdk/hosting/plugin_loader.hpp"
-#include "tests/support/flat_arena.hpp"
+#include "tests/support/worlds/flat_arena.hpp"
 
 namespace cohort {
 namespace {

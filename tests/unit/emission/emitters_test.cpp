@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/sensing_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
 
 /// Lights, sounds and what hears and sees them, against closed forms.
 namespace cohort {

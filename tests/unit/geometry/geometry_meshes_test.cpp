@@ -6,7 +6,7 @@
 
 #include "server/core/infinity.hpp"
 #include "server/geometry/shapes/mesh_surface.hpp"
-#include "tests/support/random_scene.hpp"
+#include "tests/support/worlds/random_scene.hpp"
 
 // Shapes that are not centred solids of a few numbers: meshes and height maps.
 namespace cohort::geometry {

@@ -7,7 +7,7 @@
 
 #include "server/core/infinity.hpp"
 #include "server/geometry/scene/ray_fan.hpp"
-#include "tests/support/random_scene.hpp"
+#include "tests/support/worlds/random_scene.hpp"
 
 namespace cohort::geometry {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "server/core/infinity.hpp"
-#include "tests/support/random_scene.hpp"
+#include "tests/support/worlds/random_scene.hpp"
 
 namespace cohort::geometry {
 namespace {

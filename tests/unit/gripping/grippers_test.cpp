@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/sensing_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
 
 /// What grippers grasp, hold and lose.
 namespace cohort {

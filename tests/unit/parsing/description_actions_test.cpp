@@ -4,7 +4,7 @@
 
 #include "server/description/experiment.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Breakable joints, user actions, and the events that they and emitters have.
 namespace cohort::description {

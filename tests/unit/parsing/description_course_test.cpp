@@ -2,7 +2,7 @@
 
 #include "server/description/experiment.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort::description {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "server/parsing/files/sample_file.hpp"
 #include "server/parsing/world/read_world.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 /// Cameras, techniques and samples of sensors, and the colours of links, in files.
 namespace cohort::description {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "server/parsing/world/read_world.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 /// Rotors, fins, drag, air, water and wind in files.
 namespace cohort::description {

@@ -11,7 +11,7 @@
 #include "server/parsing/model/mass_properties.hpp"
 #include "server/parsing/model/terrain.hpp"
 #include "server/parsing/world/read_world.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Models inside of models, URDF, older versions, mass from density, ground from functions.
 namespace cohort::description {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "server/core/infinity.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Joints, and the devices that name them.
 namespace cohort::description {

@@ -6,7 +6,7 @@
 
 #include "server/parsing/world/read_world.hpp"
 #include "server/placement/occupancy.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort::description {
 namespace {

@@ -7,7 +7,7 @@
 #include "server/parsing/plugins/gazebo_plugins.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/writing/write_world.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 /// Plugins of Gazebo in files.
 namespace cohort::description {

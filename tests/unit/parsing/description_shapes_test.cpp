@@ -7,7 +7,7 @@
 #include "server/core/random.hpp"
 #include "server/geometry/shapes/convex_hull.hpp"
 #include "server/geometry/shapes/footprint.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Shapes, and the files that hold some of them.
 namespace cohort::description {

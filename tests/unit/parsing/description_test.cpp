@@ -19,7 +19,7 @@
 #include "server/parsing/keys/experiment_keys.hpp"
 #include "server/parsing/keys/extensions.hpp"
 #include "server/parsing/world/read_world.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort::description {
 namespace {

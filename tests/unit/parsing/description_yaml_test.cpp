@@ -12,7 +12,7 @@
 #include "server/parsing/sdf/file_kind.hpp"
 #include "server/parsing/sdf/schema/yaml_sdf.hpp"
 #include "server/parsing/world/read_world.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort::description {
 namespace {

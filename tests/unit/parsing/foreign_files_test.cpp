@@ -8,7 +8,7 @@
 
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/parsing/world/read_world.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Files that were not written for Cohort: what moves is honoured or named, the rest never stops them.
 namespace cohort::description {

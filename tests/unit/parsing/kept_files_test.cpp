@@ -10,7 +10,7 @@
 #include "server/description/experiment.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // A collision of what moves is read, or an error says why it is not and what to do.
 namespace cohort::description {

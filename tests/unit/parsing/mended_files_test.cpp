@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Files of the field that SDF or URDF in the strict sense would refuse: what becomes of them.
 namespace cohort::description {

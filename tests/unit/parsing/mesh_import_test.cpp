@@ -19,7 +19,7 @@
 
 #include "server/parsing/files/limited_child.hpp"
 #include "server/parsing/files/mesh_file.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Meshes from outside: whatever is in them, this process goes on.
 namespace cohort::description {

@@ -4,7 +4,7 @@
 #include "server/parsing/world/read_world.hpp"
 #include "server/parsing/writing/write_world.hpp"
 #include "server/simulation/simulation.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort::description {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort {
 namespace {

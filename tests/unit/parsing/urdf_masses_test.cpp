@@ -4,7 +4,7 @@
 #include <numbers>
 #include <string>
 
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // Links of a URDF without mass: their joints stay, and they weigh what their shapes do.
 namespace cohort::description {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 // A world or a model by itself is an experiment without controllers.
 namespace cohort::description {

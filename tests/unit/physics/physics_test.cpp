@@ -5,7 +5,7 @@
 #include "server/physics/islands/islands.hpp"
 #include "server/physics/make_world.hpp"
 #include "tests/support/robots.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 namespace cohort::physics {
 namespace {

@@ -11,8 +11,8 @@
 #include "server/geometry/shapes/footprint.hpp"
 #include "server/placement/place.hpp"
 #include "server/placement/with_seed.hpp"
-#include "tests/support/arena_of_obstacles.hpp"
-#include "tests/support/experiment_text.hpp"
+#include "tests/support/worlds/arena_of_obstacles.hpp"
+#include "tests/support/worlds/experiment_text.hpp"
 
 // Links the stage alone, without libsdformat and what reads files.
 namespace cohort::placement {

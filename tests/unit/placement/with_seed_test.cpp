@@ -9,8 +9,8 @@
 
 #include "server/description/experiment.hpp"
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "tests/support/experiment_text.hpp"
-#include "tests/support/written_worlds.hpp"
+#include "tests/support/worlds/experiment_text.hpp"
+#include "tests/support/worlds/written_worlds.hpp"
 
 namespace cohort::description {
 namespace {

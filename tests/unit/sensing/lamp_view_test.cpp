@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "server/core/random.hpp"
-#include "tests/support/sensing_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
 
 namespace cohort::sensing {
 namespace {

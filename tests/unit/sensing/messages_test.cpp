@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tests/support/sensing_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
 
 /// Messages from robot to robot, and the climate.
 namespace cohort {

@@ -5,7 +5,7 @@
 
 #include "server/core/random.hpp"
 #include "server/sensing/readings/take_samples.hpp"
-#include "tests/support/sensing_world.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
 
 /// The ways to measure proximity, against closed forms and each other.
 namespace cohort {

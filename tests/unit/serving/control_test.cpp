@@ -7,7 +7,7 @@
 #include "server/run/exchange.hpp"
 #include "server/run/playback.hpp"
 #include "server/run/session_snapshot.hpp"
-#include "server/serving/control/request_ledger.hpp"
+#include "server/serving/control/requests/request_ledger.hpp"
 #include "tests/support/robots.hpp"
 
 namespace cohort::session {

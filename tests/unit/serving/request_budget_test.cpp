@@ -1,4 +1,4 @@
-#include "server/serving/control/request_budget.hpp"
+#include "server/serving/control/requests/request_budget.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "server/core/infinity.hpp"
 #include "server/simulation/simulation.hpp"
-#include "tests/support/model_text.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/model_text.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 /// What is done to a running simulation from outside.
 namespace cohort {

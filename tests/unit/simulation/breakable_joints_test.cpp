@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "server/simulation/simulation.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 /// A weight that hangs from a beam by a breakable joint, and other things that are held.
 namespace cohort {

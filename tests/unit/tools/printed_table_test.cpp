@@ -1,9 +1,9 @@
-#include "tools/cohort/cli/printed_table.hpp"
+#include "tools/cohort/cli/terminal/printed_table.hpp"
 
 #include <gtest/gtest.h>
 
 #include "tests/support/files.hpp"
-#include "tests/support/small_world.hpp"
+#include "tests/support/worlds/small_world.hpp"
 
 namespace cohort::tool {
 namespace {

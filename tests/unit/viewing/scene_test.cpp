@@ -7,7 +7,7 @@
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/viewing/scene_maker.hpp"
 #include "tests/support/files.hpp"
-#include "tests/support/shipped_experiment.hpp"
+#include "tests/support/worlds/shipped_experiment.hpp"
 
 namespace cohort::viewing {
 namespace {

@@ -1,6 +1,7 @@
 #include "tools/bench/engines/cohort_scene.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "server/description/world_in_code.hpp"
 
@@ -66,10 +67,15 @@ Model robot_model(const Robot& robot, Drive drive) {
     add_caster(model, robot.caster_x, robot);
     add_caster(model, -robot.caster_x, robot);
   } else {
-    model.devices.push_back(
-        description::TreelDrive{{0, robot.half_gauge, robot.half_contact_length, 0.0, robot.wheel_radius,
-                                 robot.max_torque, robot.max_speed, robot.track_friction},
-                                "treel"});
+    description::TreelDrive treel;
+    treel.name = "treel";
+    treel.half_gauge = robot.half_gauge;
+    treel.half_contact_length = robot.half_contact_length;
+    treel.wheel_radius = robot.wheel_radius;
+    treel.max_torque = robot.max_torque;
+    treel.max_velocity = robot.max_speed;
+    treel.friction = robot.track_friction;
+    model.devices.push_back(std::move(treel));
   }
   model.devices.push_back(
       description::VelocityMotor{"turret", turret_joint, robot.max_turret_rate, robot.max_turret_torque});

@@ -7,8 +7,8 @@
 
 #include "server/core/processors.hpp"
 #include "server/recording/difference.hpp"
-#include "tools/cohort/cli/replay_progress.hpp"
 #include "tools/cohort/cli/shown.hpp"
+#include "tools/cohort/cli/terminal/replay_progress.hpp"
 #include "tools/cohort/cli/wording.hpp"
 #include "tools/cohort/commands/commands.hpp"
 

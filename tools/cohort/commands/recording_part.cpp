@@ -1,6 +1,6 @@
 #include "tools/cohort/commands/recording_part.hpp"
 
-#include "tools/cohort/cli/replay_progress.hpp"
+#include "tools/cohort/cli/terminal/replay_progress.hpp"
 #include "tools/cohort/cli/wording.hpp"
 
 namespace cohort::tool {

@@ -4,7 +4,7 @@
 
 #include "client_sdk/src/attachment.hpp"
 #include "client_sdk/src/domains.hpp"
-#include "tools/cohort/cli/key_reader.hpp"
+#include "tools/cohort/cli/terminal/key_reader.hpp"
 #include "tools/cohort/commands/commands.hpp"
 #include "tools/cohort/commands/shared_options.hpp"
 #include "tools/cohort/running/keyboard.hpp"

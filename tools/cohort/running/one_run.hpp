@@ -6,8 +6,8 @@
 
 #include "server/recording/recorder.hpp"
 #include "server/run/run.hpp"
-#include "tools/cohort/cli/printed_table.hpp"
-#include "tools/cohort/cli/terminal.hpp"
+#include "tools/cohort/cli/terminal/printed_table.hpp"
+#include "tools/cohort/cli/terminal/terminal.hpp"
 #include "tools/cohort/running/run_options.hpp"
 #include "tools/cohort/running/watchdog.hpp"
 #include "tools/drawing/plot_view.hpp"

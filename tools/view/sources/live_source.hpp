@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "client_sdk/src/control_client.hpp"
+#include "client_sdk/src/control/control_client.hpp"
 #include "idl/dds/transport.hpp"
 #include "tools/view/driving/drivers.hpp"
 #include "tools/view/messages/scene_publisher.hpp"

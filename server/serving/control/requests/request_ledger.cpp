@@ -1,4 +1,4 @@
-#include "server/serving/control/request_ledger.hpp"
+#include "server/serving/control/requests/request_ledger.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "server/serving/control/requester_slots.hpp"
+#include "server/serving/control/requests/requester_slots.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/gripped_swarm.hpp"
+#include "tests/support/worlds/gripped_swarm.hpp"
 
 namespace cohort::test {
 namespace {

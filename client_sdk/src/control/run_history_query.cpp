@@ -1,4 +1,4 @@
-#include "client_sdk/src/run_history_query.hpp"
+#include "client_sdk/src/control/run_history_query.hpp"
 
 #include <algorithm>
 #include <span>

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "server/core/random.hpp"
-#include "tests/support/lifting.hpp"
+#include "tests/support/worlds/lifting.hpp"
 
 namespace cohort::test {
 

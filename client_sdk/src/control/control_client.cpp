@@ -1,4 +1,4 @@
-#include "client_sdk/src/control_client.hpp"
+#include "client_sdk/src/control/control_client.hpp"
 
 #include <unistd.h>
 

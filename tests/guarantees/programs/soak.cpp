@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "idl/dds/transport.hpp"
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "idl/dds/transport.hpp"
-#include "tests/support/sbot_layout.hpp"
+#include "tests/support/worlds/sbot_layout.hpp"
 
 int main(int argc, char** argv) {
   using namespace cohort;

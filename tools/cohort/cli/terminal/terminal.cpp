@@ -1,4 +1,4 @@
-#include "tools/cohort/cli/terminal.hpp"
+#include "tools/cohort/cli/terminal/terminal.hpp"
 
 #include <fmt/format.h>
 

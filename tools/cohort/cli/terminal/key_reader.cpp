@@ -1,4 +1,4 @@
-#include "tools/cohort/cli/key_reader.hpp"
+#include "tools/cohort/cli/terminal/key_reader.hpp"
 
 #include <poll.h>
 #include <unistd.h>

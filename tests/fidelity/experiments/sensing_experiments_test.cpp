@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/shipped_experiment.hpp"
+#include "tests/support/worlds/shipped_experiment.hpp"
 
 namespace cohort {
 namespace {

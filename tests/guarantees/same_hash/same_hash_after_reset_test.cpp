@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 namespace {

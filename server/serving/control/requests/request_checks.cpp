@@ -1,4 +1,4 @@
-#include "server/serving/control/request_checks.hpp"
+#include "server/serving/control/requests/request_checks.hpp"
 
 #include <algorithm>
 #include <cmath>

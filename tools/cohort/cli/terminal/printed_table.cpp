@@ -1,4 +1,4 @@
-#include "tools/cohort/cli/printed_table.hpp"
+#include "tools/cohort/cli/terminal/printed_table.hpp"
 
 #include <fmt/format.h>
 

@@ -6,9 +6,9 @@
 #include <thread>
 #include <utility>
 
-#include "client_sdk/src/control_client.hpp"
-#include "client_sdk/src/control_values.hpp"
-#include "client_sdk/src/run_history_query.hpp"
+#include "client_sdk/src/control/control_client.hpp"
+#include "client_sdk/src/control/control_values.hpp"
+#include "client_sdk/src/control/run_history_query.hpp"
 
 namespace cohort {
 namespace {

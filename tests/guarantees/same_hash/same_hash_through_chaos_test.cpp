@@ -4,7 +4,7 @@
 #include <random>
 #include <thread>
 
-#include "tests/support/field_of_robots.hpp"
+#include "tests/support/worlds/field_of_robots.hpp"
 
 namespace cohort::test {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "idl/wire/control_messages.hpp"
-#include "server/serving/control/kept_for_client.hpp"
+#include "server/serving/control/requests/kept_for_client.hpp"
 
 namespace cohort::session {
 

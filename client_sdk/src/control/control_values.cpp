@@ -1,4 +1,4 @@
-#include "client_sdk/src/control_values.hpp"
+#include "client_sdk/src/control/control_values.hpp"
 
 namespace cohort {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "server/parsing/experiment/read_experiment.hpp"
-#include "tests/support/shipped_experiment.hpp"
+#include "tests/support/worlds/shipped_experiment.hpp"
 
 namespace cohort {
 namespace {

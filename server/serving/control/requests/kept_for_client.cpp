@@ -1,4 +1,4 @@
-#include "server/serving/control/kept_for_client.hpp"
+#include "server/serving/control/requests/kept_for_client.hpp"
 
 #include <algorithm>
 #include <numeric>

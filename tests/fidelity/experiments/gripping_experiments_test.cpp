@@ -11,8 +11,8 @@
 #include "server/core/random.hpp"
 #include "server/parsing/world/read_world.hpp"
 #include "tests/support/process.hpp"
-#include "tests/support/sensing_world.hpp"
-#include "tests/support/shipped_experiment.hpp"
+#include "tests/support/worlds/sensing_world.hpp"
+#include "tests/support/worlds/shipped_experiment.hpp"
 
 namespace cohort {
 namespace {

@@ -6,13 +6,17 @@ import math
 import os
 import pathlib
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy
 from numpy.typing import ArrayLike
 
-from cohort import _native
+from cohort import _native, _plots
 from cohort.channels import Channels
 from cohort.experiment import Experiment
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 def _vector(values, name, size=3):
@@ -320,6 +324,21 @@ class Simulation:
             link: its name; the root link by default.
         """
         self._native.apply_force(name, link, _vector(force, "force"), _vector(torque, "torque"), duration)
+
+    def plot(self, paths: ArrayLike | None = None, *, radius: float = 0.06, axes: Axes | None = None) -> Axes:
+        """Draws the world from above at the present tick, and returns the `matplotlib.axes.Axes`.
+
+        A robot is a circle with a line to where its x axis points. Another object is a square at its position; one that
+        was not moved from the world's origin, such as the ground, is not drawn.
+
+        Args:
+            paths: an array [step, robot, 2 or more] of positions, such as copies of `poses` after some of the steps.
+            radius: of the circles [m].
+            axes: to draw on; by default those of a new figure.
+
+        Needs the package matplotlib. Raises ValueError if `paths` has another shape.
+        """
+        return _plots.plot(self, paths, radius, axes)
 
     def __repr__(self) -> str:
         return f"<cohort.Simulation {self._experiment.name}: tick {self.tick}, {self._native.robot_count} robots>"

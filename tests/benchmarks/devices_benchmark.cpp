@@ -54,7 +54,7 @@ class Swarm {
   void light_up() {
     for (std::size_t body : description_.robots)
       for (std::uint32_t led = 0; led < leds_a_robot; ++led)
-        emitters_->set_marker(emitters_->of_device(BodyId{body}, 1).marker + led, Eigen::Vector3d::Ones());
+        emitters_->set_marker(emitters_->of_device(BodyId{body}, DeviceId{1}).marker + led, Eigen::Vector3d::Ones());
   }
 
   void sense(std::uint64_t tick) {

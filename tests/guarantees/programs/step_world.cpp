@@ -3,7 +3,6 @@
 // FROM: the tick at which the world stands after construction or loading. --act: at this tick objects are spawned,
 // moved, pushed and removed. Prints the state hash at TO.
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -15,22 +14,9 @@
 
 #include "server/parsing/experiment/read_experiment.hpp"
 #include "server/simulation/simulation.hpp"
+#include "tests/guarantees/programs/command_by_sines.hpp"
 
 namespace {
-
-void command(cohort::Simulation& simulation) {
-  std::vector<double> values;
-  for (std::uint32_t robot = 0; robot < simulation.robot_count(); ++robot) {
-    values.clear();
-    const double phase = 0.013 * static_cast<double>(simulation.tick()) + robot;
-    for (const cohort::Channel& channel : simulation.kinds()[simulation.kind_of(robot)].command) {
-      const double middle = 0.5 * (channel.lower + channel.upper), reach = 0.25 * (channel.upper - channel.lower);
-      for (std::uint32_t i = 0; i < channel.size; ++i)
-        values.push_back(middle + reach * std::sin(phase + static_cast<double>(values.size())));
-    }
-    simulation.set_command(robot, values);
-  }
-}
 
 void act(cohort::Simulation& simulation) {
   const std::string crate =
@@ -68,7 +54,7 @@ int main(int count, char** arguments) {
   const std::uint64_t acting = options.contains("--act") ? std::stoull(options["--act"]) : ~std::uint64_t{0};
   while (simulation.tick() < std::stoull(arguments[3])) {
     if (simulation.tick() == acting) act(simulation);
-    command(simulation);
+    cohort::test::command_by_sines(simulation);
     simulation.step();
   }
   if (options.contains("--save")) {

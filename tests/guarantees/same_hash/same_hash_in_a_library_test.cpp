@@ -1,0 +1,50 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.hpp"
+
+// A program that loads Cohort as a library has sin, cos … of the C library before it: calls of Bullet, and our own,
+// must not take these.
+namespace cohort::test {
+namespace {
+
+std::string hash_from(std::vector<std::string> command) {
+  const Ended ended = run_to_end(command);
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  return ended.out;
+}
+
+std::vector<std::string> shipped_experiments() {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(COHORT_SOURCE_DIR "/worlds/experiments"))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem());
+  std::ranges::sort(names);
+  return names;
+}
+
+class SameHashInALibrary : public testing::TestWithParam<std::string> {};
+
+TEST_P(SameHashInALibrary, OfEveryShippedExperiment) {
+  const std::string experiment = COHORT_SOURCE_DIR "/worlds/experiments/" + GetParam() + ".yaml";
+  const std::string program = hash_from({COHORT_BUILD_DIR "/bin/step_world", experiment, "0", "100"});
+  const std::string library = hash_from(
+      {COHORT_BUILD_DIR "/bin/load_library", COHORT_BUILD_DIR "/lib/libstep_in_library.so", experiment, "100"});
+  EXPECT_EQ(library, program);
+  EXPECT_EQ(program.size(), 17u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Experiments, SameHashInALibrary, testing::ValuesIn(shipped_experiments()),
+                         [](const auto& name) { return name.param; });
+
+// Else the test above would pass whatever was bound.
+TEST(SameHashInALibraryThatIsNotBound, CallsGoToTheCLibrary) {
+  hash_from({COHORT_BUILD_DIR "/bin/load_library", COHORT_BUILD_DIR "/lib/libstep_in_library.so",
+             COHORT_SOURCE_DIR "/worlds/experiments/obstacle_avoidance.yaml", "1", "unbound"});
+}
+
+}  // namespace
+}  // namespace cohort::test

@@ -1,37 +1,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/container/base.hpp"
+#include "tests/container/clean_debian.hpp"
 #include "tests/support/http.hpp"
 
 namespace cohort::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A Debian 12 that has nothing but its base, in a mount namespace of its own.
-class CleanDebian {
- public:
-  explicit CleanDebian(const fs::path& archive) {
-    const Ended unpacked = run_for_long({"tar", "-C", root_.path(), "-xf", archive});
-    if (unpacked.exit_code != 0) throw std::runtime_error(unpacked.out);
-    fs::copy_file("/etc/resolv.conf", root_ / "etc/resolv.conf", fs::copy_options::overwrite_existing);
-  }
-
-  fs::path operator/(const std::string& name) const { return root_ / name; }
-
-  Ended run(const std::string& script) const { return run_for_long(command(script), environment); }
-  /// What runs the script in there, with these variables.
-  std::vector<std::string> command(const std::string& script) const {
-    return {
-        "unshare",    "--mount", "/bin/sh", "-ec", R"(mount -t proc proc "$0/proc"; exec chroot "$0" /bin/sh -ec "$1")",
-        root_.path(), script};
-  }
-  static inline const Process::Environment environment = {
-      {"DEBIAN_FRONTEND", "noninteractive"}, {"LC_ALL", "C"}, {"COHORT_PLUGIN_PATH", ""}};
-
- private:
-  ScratchFolder root_;
-};
 
 // Without node or a way to npm's registry, the page was not built.
 void expect_view(const CleanDebian& debian, const std::string& recording) {
@@ -82,6 +58,14 @@ TEST(DebianPackage, InstallsOnACleanDebianAndRunsTheDemoToTheSameBits) {
   const Ended development = debian.run("apt-get install -y -s --no-install-recommends /tmp/cohort-dev_*.deb");
   EXPECT_EQ(development.exit_code, 0) << development.out;
   EXPECT_NE(development.out.find("Inst cyclonedds-dev"), std::string::npos) << development.out;
+
+  if (fs::exists(packages / ("python3-cohort_" COHORT_VERSION "_amd64.deb"))) {
+    const Ended python = debian.run("apt-get install -y -q --no-install-recommends /tmp/python3-cohort_*.deb");
+    ASSERT_EQ(python.exit_code, 0) << python.out;
+    const Ended hash = debian.run(hash_in_python("python3"));
+    EXPECT_EQ(hash.out, reference_hash(5) + "\n");
+    debian.run("apt-get purge -y -q python3-cohort");
+  }
 
   const Ended removed = debian.run("apt-get purge -y -q cohort");
   EXPECT_EQ(removed.exit_code, 0) << removed.out;

@@ -47,6 +47,7 @@ bool is_loopback(const std::string& address) { return address.starts_with("127."
 
 view::WebOptions web_options(const ViewCommand& command, const std::string& name) {
   view::WebOptions options{name, command.network, command.port.value_or(usual_port), command.token, command.origins};
+  options.or_any_free_port = !command.port;
   if (options.token.empty() && !is_loopback(command.network)) options.token = view::random_token();
   return options;
 }
@@ -103,18 +104,6 @@ class Desertion {
   std::optional<std::chrono::steady_clock::time_point> seen_at_;
 };
 
-std::unique_ptr<view::WebServer> listen(const ViewCommand& command, view::WebOptions options, Log& log,
-                                        view::Topics& topics) {
-  view::PageFiles page = page_or_warning(log);
-  if (command.port) return std::make_unique<view::WebServer>(std::move(options), std::move(page), topics);
-  try {
-    return std::make_unique<view::WebServer>(options, page, topics);
-  } catch (const std::runtime_error&) {
-    options.port = 0;
-    return std::make_unique<view::WebServer>(std::move(options), std::move(page), topics);
-  }
-}
-
 // `make_source` makes what publishes to its topics.
 template <class MakeSource>
 int serve(const ViewCommand& command, const std::string& name, Log& log, const std::atomic<bool>& stop,
@@ -124,7 +113,7 @@ int serve(const ViewCommand& command, const std::string& name, Log& log, const s
     if (published_to != nullptr) published_to->published();
   });
   const view::WebOptions options = web_options(command, name);
-  const auto server = listen(command, options, log, topics);
+  const auto server = std::make_unique<view::WebServer>(options, page_or_warning(log), topics);
   published_to = server.get();
   const auto source = make_source(topics);
   const std::string address = say_where(command, options, server->port());

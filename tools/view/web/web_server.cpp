@@ -35,9 +35,9 @@ constexpr std::size_t largest_message = std::size_t{1} << 20;  // from a client 
 constexpr std::uint32_t largest_header = 8192;
 constexpr std::chrono::seconds request_time{10};
 
-constexpr const char* content_policy =
+constexpr const char* policy_but_for_frames =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
-    "connect-src 'self' ws: wss:; media-src blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    "connect-src 'self' ws: wss:; media-src blob:; base-uri 'none'; form-action 'none'; frame-ancestors ";
 
 using Request = http::request<http::empty_body>;
 using Response = http::response<http::string_body>;
@@ -57,12 +57,17 @@ Visitor visitor_of(const Request& request) {
 class WebServer::State {
  public:
   State(WebOptions asked, PageFiles files, Topics& published_topics)
-      : options(std::move(asked)), page(std::move(files)), topics(published_topics), acceptor(context) {}
+      : options(std::move(asked)),
+        page(std::move(files)),
+        topics(published_topics),
+        content_policy(policy_but_for_frames + options.frame_ancestors),
+        acceptor(context) {}
 
   class WebSocket;
   class Page;
 
   void listen();
+  error_code listen(const tcp::endpoint& endpoint);
   void accept();
   void give_way();
   // Several calls before the thread comes to it are one.
@@ -76,6 +81,7 @@ class WebServer::State {
   const WebOptions options;
   const PageFiles page;
   Topics& topics;
+  const std::string content_policy;
   Admission admission;
   const std::string session = random_token();
   std::atomic<bool> is_pumping{false};
@@ -239,7 +245,7 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
     response_ = Response(status, request.version());
     response_.set(http::field::content_type, type + "; charset=utf-8");
     response_.set(http::field::cache_control, "no-store");
-    response_.set("Content-Security-Policy", content_policy);
+    response_.set("Content-Security-Policy", state_.content_policy);
     response_.set("X-Content-Type-Options", "nosniff");
     response_.set("Referrer-Policy", "no-referrer");
     response_.keep_alive(request.keep_alive());
@@ -262,18 +268,25 @@ class WebServer::State::Page : public std::enable_shared_from_this<Page> {
 void WebServer::State::listen() {
   const auto fail = [&](const error_code& error) {
     throw std::runtime_error("cannot listen at " + options.address + ", port " + std::to_string(options.port) + ": " +
-                             error.message() + "; --port chooses another port");
+                             error.message() + "; choose another port");
   };
   error_code error;
   const asio::ip::address address = asio::ip::make_address(options.address, error);
   if (error) fail(error);
-  const tcp::endpoint endpoint(address, options.port);
+  error = listen({address, options.port});
+  if (error && options.or_any_free_port) error = listen({address, 0});
+  if (error) fail(error);
+  admission = {address.is_loopback(), options.token, options.origins};
+}
+
+error_code WebServer::State::listen(const tcp::endpoint& endpoint) {
+  error_code error;
+  acceptor = tcp::acceptor(context);
   acceptor.open(endpoint.protocol(), error);
   if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor.bind(endpoint, error);
   if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
-  if (error) fail(error);
-  admission = {address.is_loopback(), options.token, options.origins};
+  return error;
 }
 
 void WebServer::State::accept() {

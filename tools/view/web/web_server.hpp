@@ -30,6 +30,9 @@ struct WebOptions {
   std::uint16_t port = 8080;           ///< 0: any free one
   std::string token{};                 ///< that a client has to give; empty: none
   std::vector<std::string> origins{};  ///< of other pages that may connect, such as `https://app.foxglove.dev`
+  bool or_any_free_port = false;       ///< where `port` is taken
+  /// Pages that may show this one in a frame, as a content security policy names them.
+  std::string frame_ancestors = "'none'";
 };
 
 /// Serves the page and, at `/`, the WebSocket. One thread runs it; nothing that a browser does takes longer than its

@@ -288,8 +288,12 @@ export function showPressed(viewer: Viewer): void {
 
 /** What was chosen before, or else what the system prefers. */
 export function preferredTheme(): "light" | "dark" {
-  const kept = localStorage.getItem(themeKey);
-  if (kept === "light" || kept === "dark") return kept;
+  try {
+    const kept = localStorage.getItem(themeKey);
+    if (kept === "light" || kept === "dark") return kept;
+  } catch {
+    // A page in a frame of another one may keep nothing in some browsers.
+  }
   return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 }
 

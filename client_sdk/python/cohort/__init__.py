@@ -39,6 +39,7 @@ from cohort.experiment import Experiment, Result, Team, run, run_seeds
 from cohort.findings import Comparison, Difference, Verification
 from cohort.recording import Recording, RecordingError, World, compare
 from cohort.simulation import Robot, Simulation
+from cohort.view import View
 
 __version__ = _native.version
 del numpy
@@ -66,6 +67,7 @@ __all__ = [
     "Team",
     "TeamController",
     "Verification",
+    "View",
     "World",
     "compare",
     "examples",

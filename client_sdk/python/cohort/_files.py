@@ -25,6 +25,17 @@ def worlds_folder():
     return folder
 
 
+def page_folder():
+    """Returns the folder of the built page of the view."""
+    folder = worlds_folder().parent / "view"
+    if not (folder / "index.html").is_file():
+        raise FileNotFoundError(
+            f"the page of the view is not in '{folder}': it is built with Cohort where there are node 18 and npm "
+            "(tools/install-packages tools/packages-node.txt), as by cmake --build build/release --target view_page"
+        )
+    return folder
+
+
 def model_folders():
     """Returns the folders of the models that come with Cohort."""
     return [worlds_folder() / "robots", worlds_folder() / "objects"]

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from cohort import _native, _plots
 from cohort.channels import Channels
 from cohort.experiment import Experiment
+from cohort.view import View
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,6 +108,7 @@ class Simulation:
         self._experiment = experiment
         self._native = _native.Simulation(experiment._native, threads)
         self._robots: list[Robot] = []
+        self._view: View | None = None
 
     @property
     def experiment(self) -> Experiment:
@@ -339,6 +341,32 @@ class Simulation:
         Needs the package matplotlib. Raises ValueError if `paths` has another shape.
         """
         return _plots.plot(self, paths, radius, axes)
+
+    def view(self, port: int | None = None, open: bool = False) -> View:
+        """Shows the simulation in a browser while this program steps it, and returns the `View`.
+
+            simulation.view(open=True)
+            simulation.run(until=60)
+
+        The page of `cohort view` is served at 127.0.0.1 until the view is closed or the simulation is gone. Viewers see
+        at most 30 states a second, and the last one after each call. They change nothing, so the state hash is the
+        same. In Jupyter a view that ends a cell shows itself. A simulation has one view: while it is open, it is
+        returned again.
+
+        Args:
+            port: where browsers find it; by default 8080, or any free port if that is taken. 0: any free one.
+            open: whether to open the page in a browser; in Jupyter nothing is opened.
+
+        Raises FileNotFoundError if the page was not built, RuntimeError if the port is taken, and ValueError if the
+        simulation has a view at another port.
+        """
+        if self._view is None or self._view.closed:
+            self._view = View(self._native, str(self._experiment.name), port)
+        elif port and port != self._view.port:
+            raise ValueError(f"the simulation is shown at {self._view.url} already: close that view first")
+        if open:
+            self._view.open()
+        return self._view
 
     def __repr__(self) -> str:
         return f"<cohort.Simulation {self._experiment.name}: tick {self.tick}, {self._native.robot_count} robots>"

@@ -87,6 +87,7 @@ void ArraySimulation::reset(std::shared_ptr<const description::Experiment> exper
   auto simulation = std::make_unique<Simulation>(*experiment, threads_);
   experiment_ = std::move(experiment);
   simulation_ = std::move(simulation);
+  ++world_number_;
   make_arrays();
 }
 
@@ -94,6 +95,7 @@ void ArraySimulation::restore(std::span<const std::byte> snapshot) {
   auto simulation = std::make_unique<Simulation>(*experiment_, threads_);
   simulation->restore(snapshot);
   simulation_ = std::move(simulation);
+  ++world_number_;
   make_arrays();
 }
 

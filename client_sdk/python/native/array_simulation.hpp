@@ -33,6 +33,9 @@ class ArraySimulation {
   const std::shared_ptr<std::vector<double>>& observations() const { return observations_; }
   const std::shared_ptr<std::vector<double>>& commands() const { return commands_; }
 
+  /// Counts the worlds that there have been: a reset or a restore makes another one.
+  std::uint32_t world_number() const { return world_number_; }
+
   bool is_timed_out() const;
   bool is_over() const { return simulation_->stop_reason().has_value() || is_timed_out(); }
 
@@ -53,6 +56,7 @@ class ArraySimulation {
   std::shared_ptr<const description::Experiment> experiment_;
   unsigned threads_;
   std::unique_ptr<Simulation> simulation_;
+  std::uint32_t world_number_ = 0;
   std::size_t observation_size_ = 0;
   std::size_t command_size_ = 0;
   std::shared_ptr<std::vector<double>> observations_;

@@ -15,6 +15,7 @@
 #include "client_sdk/python/native/array_simulation.hpp"
 #include "client_sdk/python/native/arrays.hpp"
 #include "client_sdk/python/native/channels.hpp"
+#include "client_sdk/python/native/live_view.hpp"
 #include "client_sdk/python/native/one_user.hpp"
 #include "client_sdk/python/native/parts.hpp"
 
@@ -24,14 +25,45 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-/// What Python holds: a simulation, and who uses it now.
+/// What Python holds: a simulation, who uses it now, and the view that shows it.
 class Held {
  public:
   Held(std::shared_ptr<const description::Experiment> experiment, unsigned threads)
       : arrays(std::move(experiment), threads) {}
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+  ~Held() { close_view(); }
 
   ArraySimulation arrays;
   OneUser user;
+
+  /// The only use of the simulation, by Python and by the view. Begins and ends with Python's global lock.
+  class Turn {
+   public:
+    explicit Turn(Held& held) : turn_(held.user), view_(held.view_) {
+      if (view_ != nullptr) view_->begin_turn();
+    }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    ~Turn() {
+      if (view_ != nullptr) view_->end_turn();
+    }
+    /// Shows how the simulation has changed, if it is time.
+    void show() {
+      if (view_ != nullptr) view_->changed();
+    }
+
+   private:
+    OneUser::Turn turn_;
+    std::shared_ptr<LiveView> view_;
+  };
+
+  /// Throws std::runtime_error if the port is taken.
+  std::shared_ptr<LiveView> open_view(const std::string& page, std::optional<std::uint16_t> port) {
+    const OneUser::Turn turn(user);
+    close_view();
+    return view_ = std::make_shared<LiveView>(arrays, view::read_page(page), port);
+  }
 
   /// Throws std::invalid_argument if there is no such robot.
   void expect_robot(std::uint32_t robot) const {
@@ -48,6 +80,13 @@ class Held {
     if (!object) throw std::invalid_argument("there is no object '" + name + "'");
     return *object;
   }
+
+ private:
+  void close_view() {
+    if (view_ != nullptr) view_->close();
+  }
+
+  std::shared_ptr<LiveView> view_;
 };
 
 Pose pose_of(const Vector3d& position, const Vector4d& wxyz) {
@@ -71,7 +110,7 @@ void append(std::vector<double>& values, const Vector3d& vector) {
 // Steps until the run is over or as often as is asked. Looks for Ctrl-C now and then: the simulation then stands at the
 // boundary that it has reached.
 std::uint64_t step_simulation(Held& held, std::uint64_t ticks, bool stop_when_over) {
-  const OneUser::Turn turn(held.user);
+  Held::Turn turn(held);
   constexpr auto look_every = std::chrono::milliseconds(50);
   auto looked = std::chrono::steady_clock::now();
   held.arrays.command();
@@ -81,6 +120,7 @@ std::uint64_t step_simulation(Held& held, std::uint64_t ticks, bool stop_when_ov
       const nb::gil_scoped_release no_gil;
       do {
         held.arrays.step();
+        turn.show();
         ++done;
       } while (done < ticks && !(stop_when_over && held.arrays.is_over()) &&
                std::chrono::steady_clock::now() - looked < look_every);
@@ -160,7 +200,7 @@ nb::ndarray<nb::numpy, Value, nb::c_contig> shared_array(const std::shared_ptr<s
 }
 
 std::string act(Held& held, const Action& action) {
-  const OneUser::Turn turn(held.user);
+  const Held::Turn turn(held);
   return held.arrays.act(action);
 }
 
@@ -188,20 +228,26 @@ std::string apply_force(Held& held, const std::string& name, const std::string& 
 }
 
 nb::bytes save(Held& held) {
-  const OneUser::Turn turn(held.user);
+  const Held::Turn turn(held);
   const std::vector<std::byte> bytes = held.arrays.simulation().save();
   return nb::bytes(bytes.data(), bytes.size());
 }
 
+// The simulation keeps it, so nothing else may read meanwhile.
+std::uint64_t state_hash(Held& held) {
+  const Held::Turn turn(held);
+  return held.arrays.simulation().state_hash();
+}
+
 void restore(Held& held, const nb::bytes& bytes) {
-  const OneUser::Turn turn(held.user);
+  const Held::Turn turn(held);
   const auto* data = static_cast<const std::byte*>(bytes.data());
   const nb::gil_scoped_release no_gil;
   held.arrays.restore({data, bytes.size()});
 }
 
 void reset_simulation(Held& held, std::shared_ptr<const description::Experiment> experiment) {
-  const OneUser::Turn turn(held.user);
+  const Held::Turn turn(held);
   const nb::gil_scoped_release no_gil;
   held.arrays.reset(std::move(experiment));
 }
@@ -217,16 +263,21 @@ void add_simulation(nb::module_& module) {
   const auto simulation = [](const auto& get) {
     return [get](const Held& held) { return get(held.arrays.simulation()); };
   };
+  nb::class_<LiveView>(module, "LiveView")
+      .def_prop_ro("port", &LiveView::port)
+      .def_prop_ro("is_closed", &LiveView::is_closed)
+      .def("close", &LiveView::close, nb::call_guard<nb::gil_scoped_release>());
   nb::class_<Held>(module, "Simulation")
       .def(nb::new_(&make), nb::arg("experiment"), nb::arg("threads"))
       .def("step", &step_simulation, nb::arg("ticks"), nb::arg("stop_when_over"))
       .def("reset", &reset_simulation, nb::arg("experiment"))
       .def("save", &save)
+      .def("open_view", &Held::open_view, nb::arg("page"), nb::arg("port").none())
       .def("restore", &restore, nb::arg("snapshot"))
       .def_prop_ro("tick", simulation([](const Simulation& of) { return of.tick(); }))
       .def_prop_ro("time",
                    simulation([](const Simulation& of) { return std::chrono::duration<double>(of.time()).count(); }))
-      .def_prop_ro("state_hash", simulation([](const Simulation& of) { return of.state_hash(); }))
+      .def_prop_ro("state_hash", &state_hash)
       .def_prop_ro("stop_reason", simulation([](const Simulation& of) { return of.stop_reason(); }))
       .def_prop_ro("happened", simulation([](const Simulation& of) { return of.happened(); }))
       .def_prop_ro("quarantined", simulation([](const Simulation& of) { return of.quarantined(); }))

@@ -9,7 +9,7 @@ using messages::field;
 
 /// How what is shown goes on. Times of a recording are its log times, of a server simulated ones.
 struct ViewStatus {
-  std::string source;  ///< `recording` or `server`
+  std::string source;  ///< `recording`, `server`, or `program`, which steps a world of its own
   std::string name;    ///< of the recording's file, or the experiment
   bool may_control = false;
   bool can_seek = false;            ///< to times from `seekable_from_ns` to `seekable_to_ns`

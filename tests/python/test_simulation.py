@@ -231,7 +231,7 @@ def test_the_end_of_the_experiment_ends_a_run():
 
 def test_a_bound_that_a_policy_has_rounded_to_float32_acts_as_the_bound(simulation):
     upper = simulation.robots[0].command_channels["treel/left/velocity"].upper
-    assert numpy.float32(upper) > upper
+    assert float(numpy.float32(upper)) > upper
     simulation.commands[:, tracks_of(simulation)] = numpy.float32(upper)
     simulation.step()
     assert simulation.commands[0, tracks_of(simulation)].tolist() == [upper, upper]

@@ -97,3 +97,24 @@ def test_results_of_seeds_are_a_table():
 def test_a_run_is_recorded(tmp_path, cohort_program):
     made().run(Forward, record=tmp_path / "run.mcap")
     assert "identical" in cohort_program("replay", str(tmp_path / "run.mcap"), "--verify")
+
+
+def test_a_world_is_made_of_the_words_of_sdf():
+    world = {
+        "name": "field",
+        "model": [
+            {
+                "name": "ground",
+                "static": True,
+                "link": {"name": "body", "collision": {"name": "floor", "geometry": {"plane": {}}}},
+            }
+        ],
+        "include": [{"uri": "model://sbot", "name": f"sbot_{i}", "pose": [0.3 * i, 0, 0, 0, 0, 0]} for i in range(3)],
+    }
+    experiment = made(world=world, teams=[{"name": "all", "robots": "*", "controller": Forward}])
+    assert experiment.robots == ["sbot_0", "sbot_1", "sbot_2"]
+    simulation = cohort.Simulation(experiment)
+    assert simulation.poses[:, 0].tolist() == pytest.approx([0.0, 0.3, 0.6])
+    assert experiment.run().ticks == 200
+    with pytest.raises(cohort.InputError, match="experiment-world.yaml:.*gravitie"):
+        made(world=world | {"gravitie": 3}, teams=[])

@@ -104,7 +104,8 @@ class Experiment:
             teams=[{"name": "explorers", "robots": "explorers/*", "controller": Wanderer}],
         )
 
-    The controller of a team may be a class that derives from `cohort.Controller`, or left out: then `run` gives one, or
+    `world` is a path, or a dictionary: a world as files in YAML write it, which have SDF's words. The controller of a
+    team may be a class that derives from `cohort.Controller`, or left out: then `run` gives one, or
     the robots stay as they are. Paths are relative to `folder`, by default the working directory. Raises
     `cohort.InputError` with every problem that was found, in the words of `cohort check`.
     """
@@ -125,9 +126,16 @@ class Experiment:
         self._classes: dict[object, type] = {}
         if isinstance(keys.get("teams"), (list, tuple)):
             keys["teams"] = [self._named_team(team) for team in keys["teams"]]
+        world = None
+        if isinstance(keys.get("world"), dict):
+            world = json.dumps({"world": keys["world"]}, cls=_PathEncoder, indent=1)
+            keys["world"] = f"{name}-world.yaml"
         text = json.dumps(keys, cls=_PathEncoder, indent=1)
-        file = pathlib.Path(folder).absolute() / f"{name}.yaml"
-        self._native = _native.Experiment.read_text(text, file, None, None, _files.model_folders())
+        folder = pathlib.Path(folder).absolute()
+        texts = [(os.fspath(folder / f"{name}.yaml"), text)]
+        if world is not None:
+            texts.append((os.fspath(folder / keys["world"]), world))
+        self._native = _native.Experiment.read_texts(texts, None, None, _files.model_folders())
 
     def _named_team(self, team):
         """Returns a team whose controller is a name, and keeps its class if it has one."""
@@ -161,7 +169,7 @@ class Experiment:
     ) -> Experiment:
         """Reads an experiment from a text in YAML whose paths are relative to `folder`."""
         file = pathlib.Path(folder).absolute() / f"{name}.yaml"
-        return cls._of(_native.Experiment.read_text(text, file, seed, duration, _files.model_folders()))
+        return cls._of(_native.Experiment.read_texts([(os.fspath(file), text)], seed, duration, _files.model_folders()))
 
     @classmethod
     def _of(cls, native: _native.Experiment) -> Experiment:

@@ -3,6 +3,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -15,6 +16,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "client_sdk/python/native/parts.hpp"
@@ -48,11 +50,14 @@ ExperimentPtr read(const fs::path& file, std::optional<std::uint64_t> seed, std:
   return std::make_shared<const Experiment>(parsing::read_experiment(file, seed, time, model_folders));
 }
 
-ExperimentPtr read_text(const std::string& text, const fs::path& file, std::optional<std::uint64_t> seed,
-                        std::optional<double> duration, const std::vector<fs::path>& model_folders) {
+ExperimentPtr read_texts(const std::vector<std::pair<std::string, std::string>>& texts,
+                         std::optional<std::uint64_t> seed, std::optional<double> duration,
+                         const std::vector<fs::path>& model_folders) {
   const auto time = nanoseconds_of(duration);
+  std::vector<description::KeptFile> files;
+  for (const auto& [path, text] : texts) files.push_back({path, text});
   const nb::gil_scoped_release no_gil;
-  return std::make_shared<const Experiment>(parsing::read_experiment_text(text, file, seed, time, model_folders));
+  return std::make_shared<const Experiment>(parsing::read_experiment_texts(files, seed, time, model_folders));
 }
 
 nb::list teams_of(const Experiment& experiment) {
@@ -76,7 +81,7 @@ void add_experiment(nb::module_& module) {
 
   nb::class_<Experiment>(module, "Experiment")
       .def_static("read", &read, nb::arg("file"), nb::arg("seed"), nb::arg("duration"), nb::arg("model_folders"))
-      .def_static("read_text", &read_text, nb::arg("text"), nb::arg("file"), nb::arg("seed"), nb::arg("duration"),
+      .def_static("read_texts", &read_texts, nb::arg("texts"), nb::arg("seed"), nb::arg("duration"),
                   nb::arg("model_folders"))
       .def("with_seed",
            [](const ExperimentPtr& experiment, std::uint64_t seed) { return session::with_seed(experiment, seed); })

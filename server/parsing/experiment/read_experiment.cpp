@@ -207,13 +207,13 @@ Experiment read_experiment(const fs::path& named, std::optional<std::uint64_t> s
   return read_from(disk, file, seed, duration, last_model_folders);
 }
 
-Experiment read_experiment_text(const std::string& text, const fs::path& named, std::optional<std::uint64_t> seed,
-                                std::optional<std::chrono::nanoseconds> duration,
-                                const std::vector<fs::path>& last_model_folders) {
-  const fs::path file = without_links(named);
+Experiment read_experiment_texts(const std::vector<KeptFile>& texts, std::optional<std::uint64_t> seed,
+                                 std::optional<std::chrono::nanoseconds> duration,
+                                 const std::vector<fs::path>& last_model_folders) {
+  const fs::path file = without_links(texts.at(0).path);
   InputFiles disk;
   disk.trust(file, last_model_folders);
-  disk.add(file, text);
+  for (const KeptFile& text : texts) disk.add(without_links(text.path), text.bytes);
   return read_from(disk, file, seed, duration, last_model_folders);
 }
 

@@ -18,12 +18,12 @@ Experiment read_experiment(const std::filesystem::path& file, std::optional<std:
                            const std::vector<std::filesystem::path>& last_model_folders = {},
                            Xacro xacro = Xacro::refused);
 
-/// Reads an experiment from `text`, as if it were the content of `file`, which need not be there: messages name it, and
-/// paths are relative to its folder. Otherwise as the function above.
-Experiment read_experiment_text(const std::string& text, const std::filesystem::path& file,
-                                std::optional<std::uint64_t> seed = {},
-                                std::optional<std::chrono::nanoseconds> duration = {},
-                                const std::vector<std::filesystem::path>& last_model_folders = {});
+/// Reads an experiment from the first of `texts`, and what it names of the others, as if they were files of these
+/// paths, which need not be there: messages name them, and paths are relative to their folders. Otherwise as the
+/// function above.
+Experiment read_experiment_texts(const std::vector<KeptFile>& texts, std::optional<std::uint64_t> seed = {},
+                                 std::optional<std::chrono::nanoseconds> duration = {},
+                                 const std::vector<std::filesystem::path>& last_model_folders = {});
 
 /// Reads an experiment again from what was kept when it was read first, on whatever machine and without looking at any
 /// file: the same experiment bit for bit, if `seed` and `duration` are those that it had.

@@ -66,7 +66,7 @@ struct DifferentialDrive {
 };
 
 /// A vehicle that steers two wheels as a car: all of them roll about one centre. Commands as of a DifferentialDrive;
-/// it turns no tighter than its steering lets it.
+/// the limit of its steering is the tightest turn.
 struct AckermannDrive {
   std::string name;
   std::vector<std::size_t> left_joints{};  ///< of the wheels that are driven

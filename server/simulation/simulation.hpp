@@ -119,8 +119,8 @@ class Simulation {
   /// One after the other, with one sensing after all of them.
   std::vector<ActionResult> act(std::span<const Action> actions);
 
-  /// As it was described, with the models, objects and robots that have come since. Of one that was built like another:
-  /// with the seed and the poses of that one.
+  /// Returns the experiment with the models, objects and robots that have come since. A simulation that was built like
+  /// another returns the seed and the poses of that one.
   const description::Experiment& experiment() const { return *experiment_; }
   const description::World& description() const { return experiment_->world; }
   /// Everything in the world by its scoped name; an object's index is that of its body in `world()`.

@@ -44,11 +44,16 @@ def model_folders():
 def plugin_folders():
     """Returns the folders where controllers are looked for that are named without a path."""
     folders = [pathlib.Path(each) for each in os.environ.get("COHORT_PLUGIN_PATH", "").split(":") if each]
-    return folders + [
-        _package / "lib/cohort/controllers",
-        _package.parent.parent / "lib/controllers",
-        *sorted(pathlib.Path("/usr/lib").glob("*/cohort/controllers")),
-        *sorted(pathlib.Path("/usr/local/lib").glob("cohort/controllers")),
+    prefixes = [
+        pathlib.Path("/usr/local/lib"),
+        pathlib.Path("/usr/lib"),
+        *sorted(pathlib.Path("/usr/lib").glob("*-linux-gnu")),
+    ]
+    return [
+        *folders,
+        _package / "lib/cohort/controllers",  # of a wheel
+        _package.parent.parent / "lib/controllers",  # of a build tree
+        *(prefix / "cohort/controllers" for prefix in prefixes),
     ]
 
 

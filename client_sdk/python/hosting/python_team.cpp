@@ -132,7 +132,7 @@ std::vector<std::string> PythonTeam::load(std::span<const RobotState> states) {
   if (first == states.end()) return {};
   if (first->state->controller != name_ || first->state->bytes.empty())
     return {"the state is of controllers '" + first->state->controller + "', or of other robots together: '" + name_ +
-            "' begins anew"};
+            "' starts without it"};
   const Lock lock;
   guarded(name_, "load", 0, [&] {
     StateReader reader(first->state->bytes);

@@ -40,7 +40,7 @@ class BodyMotion {
   const Pose& segment_pose(int segment) const { return X_WS_[static_cast<std::size_t>(segment)]; }
   Pose link_pose(std::size_t link) const;  ///< X_WL
   Twist link_twist(std::size_t link) const;
-  /// Of the segment, its velocity at a point.
+  /// Returns the velocity of the segment at a point.
   Twist segment_twist(int segment, const Eigen::Vector3d& point_W) const;
   /// No point within `reach` of all joints it hangs on, and of the reference, moves faster [m/s].
   double greatest_speed(double reach) const;

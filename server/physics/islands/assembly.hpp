@@ -173,7 +173,7 @@ struct Assembly {
   void integrate(std::uint32_t index, const Problem& problem);
 
  private:
-  /// Of the collision `index` of the model.
+  /// Adds the solid of the collision `index` of the model.
   void add_solid(BodyId body, const ModelParts& parts, std::size_t index, const Pose& X_WC, Anchors::Part part);
   /// Of a solid: how its surface runs.
   RunningSurface surface_of(std::uint32_t solid) const;

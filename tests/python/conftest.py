@@ -110,3 +110,6 @@ class Served:
         self.code = code
         self.errors = errors
         self.state_hash = int(summary.get("state_hash", "0"), 16)
+
+    def __repr__(self):
+        return f"<served run: exit code {self.code}, {self.errors!r}>"

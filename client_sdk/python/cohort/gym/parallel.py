@@ -6,7 +6,7 @@ from cohort.gym.environments import _box
 from cohort.gym.worlds import Worlds
 
 
-def parallel_env(experiment, **arguments):
+def parallel_env(experiment, *, done=None, **arguments):
     """Returns one world as a `pettingzoo.ParallelEnv`: each robot is an agent, by its scoped name.
 
     Arguments as of `VectorEnv`, but for `num_envs` and `autoreset_mode`. `reward` and `done` return an array [1, robot]
@@ -18,36 +18,16 @@ def parallel_env(experiment, **arguments):
         metadata = {"name": "cohort", "render_modes": []}
 
         def __init__(self):
-            done = arguments.pop("done", None)
-            self._worlds = Worlds(
-                experiment,
-                1,
-                done=None,
-                **(
-                    {
-                        "horizon": None,
-                        "observe": None,
-                        "act": None,
-                        "robots": None,
-                        "ticks_per_step": 1,
-                        "threads": 1,
-                        "dtype": numpy.float32,
-                    }
-                    | arguments
-                ),
-            )
+            self._worlds = Worlds(experiment, 1, **arguments)
             self._done = done
             self.possible_agents = list(self._worlds.names)
             self.agents = []
-            shape = lambda bounds: bounds[0].shape
+            observed, commanded = self._worlds.observation_bounds, self._worlds.command_bounds
+            dtype = self._worlds.dtype
             self._observation_spaces = {
-                agent: _box(self._worlds.observation_bounds, shape(self._worlds.observation_bounds), self._worlds.dtype)
-                for agent in self.possible_agents
+                agent: _box(observed, observed[0].shape, dtype) for agent in self.possible_agents
             }
-            self._action_spaces = {
-                agent: _box(self._worlds.command_bounds, shape(self._worlds.command_bounds), self._worlds.dtype)
-                for agent in self.possible_agents
-            }
+            self._action_spaces = {agent: _box(commanded, commanded[0].shape, dtype) for agent in self.possible_agents}
             self._is_seeded = False
 
         def observation_space(self, agent):

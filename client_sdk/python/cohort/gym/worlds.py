@@ -2,7 +2,6 @@
 
 import numpy
 
-from cohort._files import experiment_called
 from cohort.batch import Batch
 from cohort.experiment import Experiment
 
@@ -19,13 +18,14 @@ class State:
         seconds: simulated time of a step [s].
     """
 
-    def __init__(self, batch, robots, seconds):
-        self._observation_channels = batch.observation_channels(robots[0])
-        self._command_channels = batch.command_channels(robots[0])
+    def __init__(self, batch, rows, seconds):
+        self._observation_channels = batch.observation_channels(rows.start)
+        self._command_channels = batch.command_channels(rows.start)
         self._places = {}
-        self.observations = batch.observations[:, robots]
-        self.commands = batch.commands[:, robots]
-        self.poses = batch.poses[:, robots]
+        # Views, which show what is new after each step.
+        self.observations = batch.observations[:, rows]
+        self.commands = batch.commands[:, rows]
+        self.poses = batch.poses[:, rows]
         self.last_poses = self.poses.copy()
         self.steps = numpy.zeros(batch.worlds, dtype=numpy.int64)
         self.seconds = seconds
@@ -73,11 +73,23 @@ class Worlds:
     """A batch of worlds as environments see it. Robots that take part have the same channels."""
 
     def __init__(
-        self, experiment, count, *, reward, done, horizon, observe, act, robots, ticks_per_step, threads, dtype
+        self,
+        experiment,
+        count,
+        *,
+        reward,
+        done=None,
+        horizon=None,
+        observe=None,
+        act=None,
+        robots=None,
+        ticks_per_step=1,
+        threads=1,
+        dtype=numpy.float32,
     ):
         if not isinstance(experiment, Experiment):
             # Episodes end by `done` and `horizon`; a time that the experiment has ends one too.
-            experiment = Experiment.read(experiment_called(experiment))
+            experiment = Experiment.read(experiment)
         if ticks_per_step < 1 or (horizon is not None and horizon < 1):
             raise ValueError(
                 f"ticks_per_step is {ticks_per_step} and horizon is {horizon}, expected at least 1 of each"
@@ -85,12 +97,11 @@ class Worlds:
         self.batch = Batch(experiment, count, threads)
         self.robots = self._chosen(robots)
         self.names = [self.batch.robots[robot] for robot in self.robots]
-        # A slice makes views, which show what is new after each step.
         if self.robots != list(range(self.robots[0], self.robots[-1] + 1)):
             raise ValueError(
                 f"the robots {self.names} have other robots between them; choose some whose ids are in a row"
             )
-        self._rows = slice(self.robots[0], self.robots[-1] + 1)
+        rows = slice(self.robots[0], self.robots[-1] + 1)
         if len({self.batch.robot_model(robot) for robot in self.robots}) != 1:
             raise ValueError(
                 "robots of several models have different channels: choose those of one model with `robots`"
@@ -102,15 +113,10 @@ class Worlds:
         observation_places, command_places = _places(observed, observe), _places(commanded, act)
         self.observation_bounds = observed.lower[observation_places], observed.upper[observation_places]
         self.command_bounds = commanded.lower[command_places], commanded.upper[command_places]
-        self._observed = self.batch.observations[:, self._rows]
         self._observation_places = observation_places
-        self._commands = self.batch.commands[:, self._rows]
         self._command_places = command_places
         self.dtype = numpy.dtype(dtype)
-        self.state = State.__new__(State)
-        self.state.__init__(self.batch, self.robots, ticks_per_step * experiment.step)
-        self.state.observations, self.state.commands = self._observed, self._commands
-        self.state.poses = self.batch.poses[:, self._rows]
+        self.state = State(self.batch, rows, ticks_per_step * experiment.step)
         self._reward, self._done, self._horizon = reward, done, horizon
         self._ticks = ticks_per_step
         self._seeds = numpy.zeros(count, dtype=numpy.uint64)
@@ -164,7 +170,7 @@ class Worlds:
         if not numpy.isfinite(actions).all():
             env, robot, value = (int(each[0]) for each in numpy.nonzero(~numpy.isfinite(actions)))
             raise ValueError(f"the action of environment {env}, robot {self.names[robot]}, value {value} is not finite")
-        self._commands[:, :, self._command_places] = numpy.minimum(numpy.maximum(actions, lower), upper)
+        self.state.commands[:, :, self._command_places] = numpy.minimum(numpy.maximum(actions, lower), upper)
         state = self.state
         numpy.copyto(state.last_poses, state.poses)
         self.batch.step(self._ticks, which)
@@ -193,4 +199,4 @@ class Worlds:
 
     def observations(self):
         """Returns what is observed of all worlds, a new array [env, robot, value]."""
-        return self._observed[:, :, self._observation_places].astype(self.dtype)
+        return self.state.observations[:, :, self._observation_places].astype(self.dtype)

@@ -28,19 +28,27 @@ void PlanarCollision::add_static() {
   member_of_solid_.push_back(Anchors::nobody);
 }
 
+void PlanarCollision::check_static(const description::Shape& shape, const Pose& X_WC) {
+  static_cast<void>(outline_of(shape, X_WC));
+}
+
 PlanarCollision::Outline PlanarCollision::outline_of_static(std::uint32_t index) const {
   const geometry::Solid& solid = scene_.solid(index);
+  return outline_of(solid.shape(), solid.X_WC);
+}
+
+PlanarCollision::Outline PlanarCollision::outline_of(const description::Shape& shape, const Pose& X_WC) {
   Outline outline;
-  if (const auto* plane = std::get_if<description::Plane>(&solid.shape())) {
-    const Eigen::Vector3d normal_W = solid.X_WC.orientation * plane->normal.normalized();
+  if (const auto* plane = std::get_if<description::Plane>(&shape)) {
+    const Eigen::Vector3d normal_W = X_WC.orientation * plane->normal.normalized();
     if (std::abs(normal_W.z()) <= level) {
       const Eigen::Vector2d normal = normal_W.head<2>().normalized();
-      outline = HalfPlane{normal, normal.dot(solid.X_WC.position.head<2>())};
+      outline = HalfPlane{normal, normal.dot(X_WC.position.head<2>())};
     } else if (normal_W.head<2>().norm() > level) {
       throw std::invalid_argument("a plane that is neither level nor upright cannot be planar");
     }
-  } else if (const auto footprint = geometry::footprint_of(solid.shape(), solid.X_WC)) {
-    const auto* mesh = std::get_if<description::Mesh>(&solid.shape());
+  } else if (const auto footprint = geometry::footprint_of(shape, X_WC)) {
+    const auto* mesh = std::get_if<description::Mesh>(&shape);
     if (mesh == nullptr || mesh->convex) {
       outline = *footprint;
     } else if (footprint->highest - footprint->lowest > level) {

@@ -33,8 +33,10 @@ class PlanarCollision {
     outlines_.reserve(solids);
     member_of_solid_.reserve(solids);
   }
-  /// The next solid of the scene, one that does not move: a wall, or what nothing can run into. Throws
-  /// std::invalid_argument for what is neither flat ground nor an upright wall.
+  /// Throws std::invalid_argument for a solid that does not move and is neither flat ground nor an upright wall.
+  static void check_static(const description::Shape& shape, const Pose& X_WC);
+  /// Adds the next solid of the scene, one that does not move: a wall, or what nothing can run into. Throws as
+  /// `check_static`.
   void add_static();
   /// The next body that moves, or, `is_fixed`, whose segments do at the most. Its solids follow.
   void add_member(bool is_fixed);
@@ -94,6 +96,7 @@ class PlanarCollision {
     std::vector<PlanarPair> pairs;
   };
   Outline outline_of_static(std::uint32_t index) const;
+  static Outline outline_of(const description::Shape& shape, const Pose& X_WC);
   void find_near(std::uint32_t index, std::vector<std::uint32_t>& near) const;
   void find_pairs(std::uint32_t index, Memory& memory);
   void find_contact(std::uint32_t solid, std::uint32_t other, Memory& memory);

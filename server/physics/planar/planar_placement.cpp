@@ -67,7 +67,7 @@ PlanarWorld::PlanarWorld(const description::World& description, WorkerPool& work
 }
 
 BodyId PlanarWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arrival) {
-  if (arrival == Arrival::anew) check_ground(description_.models[model], X_WM);
+  if (arrival == Arrival::anew) check_new(description_.models[model], X_WM);
   const BodyId body = create_body(model, X_WM);
   scene_.build();
   const std::uint32_t member = bodies_[body.value].member;
@@ -75,10 +75,16 @@ BodyId PlanarWorld::add_body(std::size_t model, const Pose& X_WM, Arrival arriva
   return body;
 }
 
-// Throws as create_body and put_on_ground would, for a body that is not there yet.
-void PlanarWorld::check_ground(const description::Model& described, const Pose& X_WM) const {
-  if (described.is_static) return;
+// Throws as create_body and put_on_ground would, for a body that is not there yet: they leave parts of one behind.
+void PlanarWorld::check_new(const description::Model& described, const Pose& X_WM) const {
   try {
+    check_placed(described, X_WM);
+    if (described.is_static) {
+      for (const description::Link& link : described.links)
+        for (const description::Collision& collision : link.collisions)
+          PlanarCollision::check_static(collision.shape, X_WM * link.X_ML * collision.X_LC);
+      return;
+    }
     const PlanarModel model(described);
     if (!needs_ground(model)) return;
     PlanarBodies alone;
@@ -102,6 +108,15 @@ void PlanarWorld::check_ground(const description::Model& described, const Pose& 
   }
 }
 
+void PlanarWorld::check_placed(const description::Model& model, const Pose& X_WM) const {
+  const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
+  if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
+    throw std::invalid_argument("a robot that leans cannot be planar");
+  const auto feels_wind = [](const description::Link& link) { return link.feels_wind; };
+  if (description_.air.wind != Vector3d::Zero() && std::any_of(model.links.begin(), model.links.end(), feels_wind))
+    throw std::invalid_argument("what feels the wind cannot be planar");
+}
+
 bool PlanarWorld::needs_ground(const PlanarModel& model) const {
   return !model.is_immovable() && description_.gravity.z() * model.mass() != 0.0;
 }
@@ -112,12 +127,7 @@ BodyId PlanarWorld::create_body(std::size_t model_index, const Pose& X_WM) {
   if (model_index >= models_.size()) models_.resize(model_index + 1);  // it has come since
   try {
     if (!model.is_static && !models_[model_index]) models_[model_index] = std::make_shared<const PlanarModel>(model);
-    const double lean = (X_WM.orientation * Vector3d::UnitZ()).head<2>().norm();
-    if (model.is_robot() && (lean > most_lean || (X_WM.orientation * Vector3d::UnitZ()).z() < 0.0))
-      throw std::invalid_argument("a robot that leans cannot be planar");
-    const auto feels_wind = [](const description::Link& link) { return link.feels_wind; };
-    if (description_.air.wind != Vector3d::Zero() && std::any_of(model.links.begin(), model.links.end(), feels_wind))
-      throw std::invalid_argument("what feels the wind cannot be planar");
+    check_placed(model, X_WM);
     PlacedBody& placed = bodies_.emplace_back();
     placed.model = static_cast<std::uint32_t>(model_index);
     placed.X_WM = X_WM;

@@ -128,7 +128,8 @@ class PlanarWorld final : public World, private WorldConnections {
   void put_back_body(BodyId body);
   void put_on_ground(std::uint32_t index);
   void place_on_ground(std::uint32_t member, const Pose& X_WM);
-  void check_ground(const description::Model& described, const Pose& X_WM) const;
+  void check_new(const description::Model& described, const Pose& X_WM) const;
+  void check_placed(const description::Model& model, const Pose& X_WM) const;
   bool needs_ground(const PlanarModel& model) const;
   std::uint32_t ground_under(const Eigen::Vector3d& origin_W) const;
 

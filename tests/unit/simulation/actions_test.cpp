@@ -525,6 +525,30 @@ TEST(PlanarActions, WhereThereIsNoGroundNothingIsChanged) {
   EXPECT_EQ(simulation.state_hash(), untouched.state_hash());
 }
 
+// A text that comes next has the index of the model that was refused.
+TEST(PlanarActions, WhatIsRefusedIsForgottenWithItsModel) {
+  description::Experiment experiment;
+  experiment.world.physics.fidelity = description::Fidelity::planar;
+  place(experiment.world, static_shape("floor", description::Box{{2, 2, 0.1}}), "floor", at(0, 0, -0.05));
+  experiment.teams.emplace_back().name = "team";
+  Simulation simulation(experiment, 1), untouched(experiment, 1);
+  const auto robot = std::make_shared<const description::ParsedModel>(
+      description::ParsedModel{.text = "robot", .model = tracked_robot(), .materials = {""}});
+  const std::string plane =
+      "<sdf version='1.9'><model name='plane'><static>true</static><link name='body'><collision name='slope'><geometry>"
+      "<plane><normal>0 0 1</normal></plane></geometry></collision></link></model></sdf>";
+  Pose leaning = at(0.3, 0, 0.1);
+  leaning.orientation = Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX());
+  EXPECT_THROW(simulation.act(SpawnObject{"first", robot, leaning}), std::invalid_argument);
+  EXPECT_THROW(simulation.act(SpawnObject{"first", model_of_text(plane), leaning}), std::invalid_argument);
+  EXPECT_EQ(simulation.world().body_count(), simulation.objects().size());
+  for (Simulation* each : {&simulation, &untouched}) {
+    each->act(SpawnObject{"other", model_of_text(crate_yaml), at(0.5, 0, 0.1)});
+    for (int i = 0; i < 20; ++i) each->step();
+  }
+  EXPECT_EQ(simulation.state_hash(), untouched.state_hash());
+}
+
 // ---- As bytes ----
 
 std::vector<Action> one_of_each() {

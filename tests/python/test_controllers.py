@@ -39,6 +39,13 @@ class Counting(cohort.Controller):
         self.steps = int(state)
 """
 
+COUNTING_TOGETHER = (
+    COUNTING.replace("Controller", "TeamController")
+    .replace("def start(self, start):", "def start(self, robots):")
+    .replace("start.command(", "robots[0].command(")
+    .replace("command[self.left]", "command[:, self.left]")
+)
+
 
 @pytest.fixture
 def write(tmp_path):
@@ -254,8 +261,9 @@ def test_without_the_plugin_the_message_says_what_is_missing(cohort_program, wri
 
 
 @pytest.mark.parametrize("place", ["process", "inprocess"])
-def test_a_run_goes_on_from_a_snapshot_with_what_controllers_remember(cohort_program, write, domain, place):
-    experiment = write(COUNTING)
+@pytest.mark.parametrize("source", [COUNTING, COUNTING_TOGETHER], ids=["each", "together"])
+def test_a_run_goes_on_from_a_snapshot_with_what_controllers_remember(cohort_program, write, domain, place, source):
+    experiment = write(source)
     whole = hash_of(cohort_program, experiment)
     snapshot = experiment.with_name("snapshot")
     with cohort_program.running("run", experiment, "--quiet", "--paused", "--domain", domain):

@@ -236,3 +236,33 @@ def test_a_bound_that_a_policy_has_rounded_to_float32_acts_as_the_bound(simulati
     simulation.commands[:, tracks_of(simulation)] = numpy.float32(upper)
     simulation.step()
     assert simulation.commands[0, tracks_of(simulation)].tolist() == [upper, upper]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda batch: batch.robot_model(16), "there is no robot 16, expected one below 16"),
+        (lambda batch: batch.observation_channels(99), "there is no robot 99"),
+        (lambda batch: batch.tick(2), "there is no world 2, expected one below 2"),
+        (lambda batch: batch.state_hash(7), "there is no world 7"),
+        (lambda batch: batch.step(only=numpy.ones(3, dtype=bool)), "a choice of 3 worlds, expected one of 2"),
+    ],
+)
+def test_what_a_batch_has_not_is_named(call, message):
+    with pytest.raises(ValueError, match=message):
+        call(cohort.Batch("obstacle_avoidance", worlds=2))
+
+
+def test_nothing_is_read_while_another_thread_steps(simulation):
+    stepping = threading.Thread(target=simulation.step, args=(20_000,))
+    stepping.start()
+    refused = set()
+    while stepping.is_alive() and len(refused) < 3:
+        for name in ("poses", "tick", "observations"):
+            try:
+                getattr(simulation, name)
+            except RuntimeError:
+                refused.add(name)
+    stepping.join()
+    assert refused == {"poses", "tick", "observations"}
+    assert simulation.tick == 20_000

@@ -107,11 +107,9 @@ def controller_in(file):
     specification = importlib.util.spec_from_file_location(name, path)
     module = importlib.util.module_from_spec(specification)
     sys.modules[name] = module
-    sys.path.insert(0, str(path.parent))
-    try:
-        specification.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(path.parent))
+    if str(path.parent) not in sys.path:
+        sys.path.insert(0, str(path.parent))  # for good, as where Python runs the file: it may import later too
+    specification.loader.exec_module(module)
     classes = [
         value
         for value in vars(module).values()
@@ -143,7 +141,7 @@ def parameter_problem(error):
 
 def describe(error):
     """Returns an exception as one line: where it was raised, and what it says."""
-    here = str(pathlib.Path(__file__).parent)
+    here = f"{pathlib.Path(__file__).parent}/"
     frames = traceback.extract_tb(error.__traceback__)
     shown = [each for each in frames if not each.filename.startswith((here, "<frozen "))]
     places = [f"{pathlib.Path(each.filename).name}:{each.lineno} in {each.name}" for each in shown]

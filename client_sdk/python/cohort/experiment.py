@@ -105,9 +105,9 @@ class Experiment:
         )
 
     `world` is a path, or a dictionary: a world as files in YAML write it, which have SDF's words. The controller of a
-    team may be a class that derives from `cohort.Controller`, or left out: then `run` gives one, or
-    the robots stay as they are. Paths are relative to `folder`, by default the working directory. Raises
-    `cohort.InputError` with every problem that was found, in the words of `cohort check`.
+    team may be a class that derives from `cohort.Controller`, or left out: then `run` gives one, or the robots stay as
+    they are. Paths are relative to `folder`, by default the working directory. Raises `cohort.InputError` with every
+    problem that was found, in the words of `cohort check`.
     """
 
     def __init__(
@@ -232,10 +232,9 @@ class Experiment:
         """Runs the experiment to its end in this process, and returns a `Result`.
 
         Args:
-            controllers: what drives the robots: a class that derives from `cohort.Controller`, the name or the path
-            of a
-                controller, or a dictionary of these by the names of teams. Teams that are not named have the controller
-                of the experiment.
+            controllers: what drives the robots: a class that derives from `cohort.Controller`, the name or the path of
+                a controller, or a dictionary of these by the names of teams. Teams that are not named have the
+                controller of the experiment.
             threads: that step the world; the result is the same for any number.
             record: path of a recording (MCAP) to write.
 

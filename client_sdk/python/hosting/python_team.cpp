@@ -40,7 +40,10 @@ void PythonTeam::start(const wire::Admit& admit, std::span<const wire::RobotDesc
   std::vector<Start> starts;
   for (const wire::AdmittedRobot& robot : admit.robots) starts.push_back(start_of(admit, robot, descriptions));
   std::ranges::sort(starts, {}, &Start::robot);
-  if (starts.empty()) return;
+  if (starts.empty()) {
+    robots_.clear();
+    return;
+  }
   for (const Start& start : starts)
     if (start.model != starts[0].model)
       throw ControllerFailure("the controller '" + name_ + "' drives all robots of a process together, and " +

@@ -8,6 +8,8 @@
 
 #include <memory>
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "client_sdk/python/native/array_simulation.hpp"
 #include "client_sdk/python/native/arrays.hpp"
@@ -23,7 +25,26 @@ struct HeldBatch {
   HeldBatch(const description::Experiment& experiment, std::size_t worlds, unsigned threads)
       : batch(experiment, worlds, threads) {}
   Batch batch;
-  OneUser user;
+  mutable OneUser user;
+
+  /// Throws std::invalid_argument if there is no such robot.
+  const RobotKind& kind_of(std::uint32_t robot) const {
+    if (robot >= batch.robots()) throw std::invalid_argument(there_is_no("robot", robot, batch.robots()));
+    return batch.kinds()[batch.kind_of(robot)];
+  }
+  /// Returns the world, which nobody steps meanwhile. Throws std::invalid_argument if there is no such world.
+  template <class Get>
+  auto read_world(std::size_t world, const Get& get) const {
+    const OneUser::Turn turn(user);
+    if (world >= batch.worlds()) throw std::invalid_argument(there_is_no("world", world, batch.worlds()));
+    return get(batch);
+  }
+
+ private:
+  static std::string there_is_no(const char* what, std::size_t index, std::size_t count) {
+    return std::string("there is no ") + what + " " + std::to_string(index) + ", expected one below " +
+           std::to_string(count);
+  }
 };
 
 std::unique_ptr<HeldBatch> make_batch(const std::shared_ptr<const description::Experiment>& experiment,
@@ -75,17 +96,16 @@ void add_batch(nb::module_& module) {
       .def("reset", &reset_worlds, nb::arg("mask"), nb::arg("seeds"))
       .def_prop_ro("worlds", [](const HeldBatch& held) { return held.batch.worlds(); })
       .def_prop_ro("robots", [](const HeldBatch& held) { return held.batch.robots(); })
-      .def("robot_name", [](const HeldBatch& held, std::uint32_t robot) { return held.batch.robot_name(robot); })
-      .def("robot_model", [](const HeldBatch& held,
-                             std::uint32_t robot) { return held.batch.kinds()[held.batch.kind_of(robot)].model; })
+      .def("robot_name",
+           [](const HeldBatch& held, std::uint32_t robot) {
+             held.kind_of(robot);
+             return held.batch.robot_name(robot);
+           })
+      .def("robot_model", [](const HeldBatch& held, std::uint32_t robot) { return held.kind_of(robot).model; })
       .def("observation_channels",
-           [](const HeldBatch& held, std::uint32_t robot) {
-             return channel_tuples(held.batch.kinds()[held.batch.kind_of(robot)].observation);
-           })
+           [](const HeldBatch& held, std::uint32_t robot) { return channel_tuples(held.kind_of(robot).observation); })
       .def("command_channels",
-           [](const HeldBatch& held, std::uint32_t robot) {
-             return channel_tuples(held.batch.kinds()[held.batch.kind_of(robot)].command);
-           })
+           [](const HeldBatch& held, std::uint32_t robot) { return channel_tuples(held.kind_of(robot).command); })
       .def_prop_ro(
           "observations",
           [](nb::handle self) {
@@ -110,8 +130,13 @@ void add_batch(nb::module_& module) {
             return view_of(batch.done().data(), {batch.worlds()}, self);
           },
           nb::rv_policy::automatic)
-      .def("tick", [](const HeldBatch& held, std::size_t world) { return held.batch.tick(world); })
-      .def("state_hash", [](const HeldBatch& held, std::size_t world) { return held.batch.hash(world); });
+      .def("tick",
+           [](const HeldBatch& held, std::size_t world) {
+             return held.read_world(world, [&](const Batch& batch) { return batch.tick(world); });
+           })
+      .def("state_hash", [](const HeldBatch& held, std::size_t world) {
+        return held.read_world(world, [&](const Batch& batch) { return batch.hash(world); });
+      });
 }
 
 }  // namespace cohort::python

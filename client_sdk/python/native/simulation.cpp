@@ -35,7 +35,14 @@ class Held {
   ~Held() { close_view(); }
 
   ArraySimulation arrays;
-  OneUser user;
+  mutable OneUser user;
+
+  /// Returns what `get` reads of the simulation, which nobody steps meanwhile.
+  template <class Get>
+  auto read(const Get& get) const {
+    const OneUser::Turn turn(user);
+    return get(arrays.simulation());
+  }
 
   /// The only use of the simulation, by Python and by the view. Begins and ends with Python's global lock.
   class Turn {
@@ -65,20 +72,22 @@ class Held {
     return view_ = std::make_shared<LiveView>(arrays, view::read_page(page), port);
   }
 
-  /// Throws std::invalid_argument if there is no such robot.
-  void expect_robot(std::uint32_t robot) const {
-    if (robot >= arrays.simulation().robot_count())
-      throw std::invalid_argument("there is no robot " + std::to_string(robot) + ", expected an id below " +
-                                  std::to_string(arrays.simulation().robot_count()));
-  }
-  const RobotKind& kind_of(std::uint32_t robot) const {
-    expect_robot(robot);
-    return arrays.simulation().kinds()[arrays.simulation().kind_of(robot)];
+  /// The same with a robot. Throws std::invalid_argument if there is no such robot.
+  template <class Get>
+  auto read_robot(std::uint32_t robot, const Get& get) const {
+    return read([&](const Simulation& simulation) {
+      if (robot >= simulation.robot_count())
+        throw std::invalid_argument("there is no robot " + std::to_string(robot) + ", expected an id below " +
+                                    std::to_string(simulation.robot_count()));
+      return get(simulation, robot, simulation.kinds()[simulation.kind_of(robot)]);
+    });
   }
   std::uint32_t object_called(const std::string& name) const {
-    const auto object = arrays.simulation().objects().find(name);
-    if (!object) throw std::invalid_argument("there is no object '" + name + "'");
-    return *object;
+    return read([&](const Simulation& simulation) {
+      const auto object = simulation.objects().find(name);
+      if (!object) throw std::invalid_argument("there is no object '" + name + "'");
+      return *object;
+    });
   }
 
  private:
@@ -132,6 +141,7 @@ std::uint64_t step_simulation(Held& held, std::uint64_t ticks, bool stop_when_ov
 }
 
 Array object_poses(const Held& held) {
+  const OneUser::Turn turn(held.user);
   const Simulation& simulation = held.arrays.simulation();
   const std::size_t count = simulation.objects().size();
   std::vector<double> values;
@@ -141,6 +151,7 @@ Array object_poses(const Held& held) {
 }
 
 Array object_velocities(const Held& held) {
+  const OneUser::Turn turn(held.user);
   const Simulation& simulation = held.arrays.simulation();
   const std::size_t count = simulation.objects().size();
   std::vector<double> values;
@@ -154,6 +165,7 @@ Array object_velocities(const Held& held) {
 }
 
 nb::dict contacts(const Held& held) {
+  const OneUser::Turn turn(held.user);
   const auto contacts = held.arrays.simulation().world().contacts();
   std::vector<std::uint32_t> objects;
   std::vector<double> positions, normals, distances, impulses;
@@ -175,6 +187,7 @@ nb::dict contacts(const Held& held) {
 }
 
 nb::list object_names(const Held& held) {
+  const OneUser::Turn turn(held.user);
   const Objects& objects = held.arrays.simulation().objects();
   nb::list names;
   for (std::uint32_t object = 0; object < objects.size(); ++object) names.append(objects.name(object));
@@ -182,6 +195,7 @@ nb::list object_names(const Held& held) {
 }
 
 nb::ndarray<nb::numpy, bool, nb::c_contig> objects_present(const Held& held) {
+  const OneUser::Turn turn(held.user);
   const Objects& objects = held.arrays.simulation().objects();
   auto* present = new bool[objects.size()];
   for (std::uint32_t object = 0; object < objects.size(); ++object) present[object] = objects.is_present(object);
@@ -212,8 +226,9 @@ std::string spawn(Held& held, const std::string& model, const std::string& text,
                     .allow_renaming = allow_renaming,
                     .team = team};
   if (!text.empty()) spawn.model = held.arrays.experiment().read_model(text);
+  const Held::Turn turn(held);
   const std::uint32_t before = held.arrays.simulation().objects().size();
-  act(held, spawn);
+  held.arrays.act(spawn);
   return held.arrays.simulation().objects().name(before);
 }
 
@@ -260,8 +275,9 @@ std::unique_ptr<Held> make(std::shared_ptr<const description::Experiment> experi
 }  // namespace
 
 void add_simulation(nb::module_& module) {
-  const auto simulation = [](const auto& get) {
-    return [get](const Held& held) { return get(held.arrays.simulation()); };
+  const auto simulation = [](const auto& get) { return [get](const Held& held) { return held.read(get); }; };
+  const auto of_robot = [](const auto& get) {
+    return [get](const Held& held, std::uint32_t robot) { return held.read_robot(robot, get); };
   };
   nb::class_<LiveView>(module, "LiveView")
       .def_prop_ro("port", &LiveView::port)
@@ -282,11 +298,16 @@ void add_simulation(nb::module_& module) {
       .def_prop_ro("happened", simulation([](const Simulation& of) { return of.happened(); }))
       .def_prop_ro("quarantined", simulation([](const Simulation& of) { return of.quarantined(); }))
       .def_prop_ro("robot_count", simulation([](const Simulation& of) { return of.robot_count(); }))
-      .def_prop_ro("is_over", [](const Held& held) { return held.arrays.is_over(); })
+      .def_prop_ro("is_over",
+                   [](const Held& held) {
+                     const OneUser::Turn turn(held.user);
+                     return held.arrays.is_over();
+                   })
       .def_prop_ro("threads", [](const Held& held) { return held.arrays.threads(); })
       .def_prop_ro(
           "observations",
           [](const Held& held) {
+            const OneUser::Turn turn(held.user);
             return shared_array<const double>(held.arrays.observations(), held.arrays.simulation().robot_count(),
                                               held.arrays.observation_size());
           },
@@ -294,25 +315,23 @@ void add_simulation(nb::module_& module) {
       .def_prop_ro(
           "commands",
           [](const Held& held) {
+            const OneUser::Turn turn(held.user);
             return shared_array<double>(held.arrays.commands(), held.arrays.simulation().robot_count(),
                                         held.arrays.command_size());
           },
           nb::rv_policy::automatic)
       .def("robot_name",
-           [](const Held& held, std::uint32_t robot) {
-             held.expect_robot(robot);
-             return held.arrays.simulation().robot_name(robot);
-           })
-      .def("robot_model", [](const Held& held, std::uint32_t robot) { return held.kind_of(robot).model; })
-      .def("robot_object",
-           [](const Held& held, std::uint32_t robot) {
-             held.expect_robot(robot);
-             return held.arrays.simulation().body_of(robot).value;
-           })
-      .def("observation_channels",
-           [](const Held& held, std::uint32_t robot) { return channel_tuples(held.kind_of(robot).observation); })
-      .def("command_channels",
-           [](const Held& held, std::uint32_t robot) { return channel_tuples(held.kind_of(robot).command); })
+           of_robot([](const Simulation& of, std::uint32_t robot, const RobotKind&) { return of.robot_name(robot); }))
+      .def("robot_model", of_robot([](const Simulation&, std::uint32_t, const RobotKind& kind) { return kind.model; }))
+      .def("robot_object", of_robot([](const Simulation& of, std::uint32_t robot, const RobotKind&) {
+             return of.body_of(robot).value;
+           }))
+      .def("observation_channels", of_robot([](const Simulation&, std::uint32_t, const RobotKind& kind) {
+             return channel_tuples(kind.observation);
+           }))
+      .def("command_channels", of_robot([](const Simulation&, std::uint32_t, const RobotKind& kind) {
+             return channel_tuples(kind.command);
+           }))
       .def_prop_ro("object_names", &object_names)
       .def_prop_ro("objects_present", &objects_present, nb::rv_policy::automatic)
       .def("object_called", &Held::object_called)

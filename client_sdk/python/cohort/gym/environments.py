@@ -23,9 +23,8 @@ class VectorEnv(gymnasium.vector.VectorEnv):
         experiment: an `Experiment`, or what `Experiment.read` takes.
         num_envs: how many worlds.
         reward: called after each step with a `State`; returns an array [env].
-        done: called after each step with a `State`; returns an array [env] of bool: the episode terminates. It also
-        does
-            if a stop condition of the experiment holds, or the state of a robot breaks.
+        done: called after each step with a `State`; returns an array [env] of bool: the episode terminates. It
+            also does if a stop condition of the experiment holds, or the state of a robot breaks.
         horizon: steps after which an episode is truncated. It also is at the end of the experiment's duration.
         observe, act: patterns of channels, such as `["proximity/*/reading"]`; by default all.
         robots: names of robots, or patterns, with ids in a row; by default all. The others keep neutral commands.
